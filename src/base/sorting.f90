@@ -1,0 +1,116 @@
+!> Sorting and look-up of integer keys.
+module epcont_base_sorting
+  implicit none
+  private
+  public :: sorted_order, id_index, new_id_index
+
+  !> Finds the position of an id in the list it was made from.
+  type :: id_index
+    private
+    integer, allocatable :: key(:)       !! the ids, ascending [n]
+    integer, allocatable :: position(:)  !! where each stood in the original list [n]
+  contains
+    procedure :: find
+    procedure :: within
+  end type id_index
+
+contains
+
+  !> The permutation that puts `key` in ascending order; equal keys keep their order (merge sort).
+  pure function sorted_order(key) result(order)
+    integer, intent(in) :: key(:)
+    integer, allocatable :: order(:)
+    integer, allocatable :: merged(:)
+    integer :: n, width, left, middle, right, i, j, k
+
+    n = size(key)
+    order = [(i, i=1, n)]
+    if (n < 2) return
+    if (all(key(2:) >= key(:n - 1))) return
+    allocate (merged(n))
+    width = 1
+    do while (width < n)
+      do left = 1, n, 2*width
+        middle = min(left + width, n + 1)
+        right = min(left + 2*width, n + 1)
+        i = left
+        j = middle
+        do k = left, right - 1
+          if (i >= middle) then
+            merged(k) = order(j)
+            j = j + 1
+          else if (j >= right) then
+            merged(k) = order(i)
+            i = i + 1
+          else if (key(order(j)) < key(order(i))) then
+            merged(k) = order(j)
+            j = j + 1
+          else
+            merged(k) = order(i)
+            i = i + 1
+          end if
+        end do
+      end do
+      order = merged
+      width = 2*width
+    end do
+  end function sorted_order
+
+  !> Index of a list of ids; of equal ids the first is the one found.
+  pure function new_id_index(ids) result(index)
+    integer, intent(in) :: ids(:)
+    type(id_index) :: index
+
+    index%position = sorted_order(ids)
+    index%key = ids(index%position)
+  end function new_id_index
+
+  !> Position of `id` in the original list; 0 where it is absent.
+  elemental function find(self, id) result(position)
+    class(id_index), intent(in) :: self
+    integer, intent(in) :: id
+    integer :: position
+    integer :: at
+
+    at = first_not_below(self%key, id)
+    position = 0
+    if (at > size(self%key)) return
+    if (self%key(at) == id) position = self%position(at)
+  end function find
+
+  !> Positions of all ids from `first` to `last`, in ascending order of id.
+  pure function within(self, first, last) result(positions)
+    class(id_index), intent(in) :: self
+    integer, intent(in) :: first, last
+    integer, allocatable :: positions(:)
+    integer :: from, to
+
+    from = first_not_below(self%key, first)
+    to = from
+    do while (to <= size(self%key))
+      if (self%key(to) > last) exit
+      to = to + 1
+    end do
+    positions = self%position(from:to - 1)
+  end function within
+
+  !> The first place in the ascending list `key` that is not below `id` (size + 1: none).
+  pure function first_not_below(key, id) result(at)
+    integer, intent(in) :: key(:)
+    integer, intent(in) :: id
+    integer :: at
+    integer :: low, high
+
+    low = 1
+    high = size(key) + 1
+    do while (low < high)
+      at = low + (high - low)/2
+      if (key(at) < id) then
+        low = at + 1
+      else
+        high = at
+      end if
+    end do
+    at = low
+  end function first_not_below
+end module epcont_base_sorting

@@ -1,0 +1,71 @@
+!> Small conversions between numbers and text.
+module epcont_base_text
+  use epcont_base_kinds, only: i8, wp
+  implicit none
+  private
+  public :: upper, text_of, short_real, plural
+
+  !> The shortest decimal text of an integer.
+  interface text_of
+    module procedure :: text_of_integer, text_of_long
+  end interface text_of
+
+contains
+
+  !> `string` with the letters a-z made capital.
+  pure function upper(string) result(capital)
+    character(len=*), intent(in) :: string
+    character(len=len(string)) :: capital
+    integer, parameter :: shift = iachar('a') - iachar('A')
+    integer :: i
+
+    capital = string
+    do i = 1, len(string)
+      if (string(i:i) >= 'a' .and. string(i:i) <= 'z') capital(i:i) = achar(iachar(string(i:i)) - shift)
+    end do
+  end function upper
+
+  pure function text_of_integer(number) result(text)
+    integer, intent(in) :: number
+    character(len=:), allocatable :: text
+
+    text = text_of_long(int(number, i8))
+  end function text_of_integer
+
+  pure function text_of_long(number) result(text)
+    integer(i8), intent(in) :: number
+    character(len=:), allocatable :: text
+    character(len=20) :: buffer
+
+    write (buffer, '(i0)') number
+    text = trim(buffer)
+  end function text_of_long
+
+  !> A real with four significant digits, for messages: `0.01250`, `1.250E-07`.
+  pure function short_real(number) result(text)
+    real(wp), intent(in) :: number
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+    real(wp) :: size
+
+    size = abs(number)
+    if (number == 0.0_wp) then
+      buffer = '0.0'
+    else if (size >= 1.0e-3_wp .and. size < 9999.5_wp) then
+      write (buffer, '(g0.4)') number
+    else
+      write (buffer, '(es12.3e3)') number
+    end if
+    text = trim(adjustl(buffer))
+  end function short_real
+
+  !> `1 pair`, `2 pairs`.
+  pure function plural(count, noun) result(text)
+    integer, intent(in) :: count
+    character(len=*), intent(in) :: noun
+    character(len=:), allocatable :: text
+
+    text = text_of(count)//' '//noun
+    if (count /= 1) text = text//'s'
+  end function plural
+end module epcont_base_text

@@ -1,0 +1,9 @@
+!> Name and version of the program.
+module epcont_base_version
+  implicit none
+  private
+
+  character(len=*), parameter, public :: program_name = 'epcont'
+  !> Kept equal to the version in CMakeLists.txt (a test compares them).
+  character(len=*), parameter, public :: program_version = '0.1.0'
+end module epcont_base_version
