@@ -1,0 +1,381 @@
+!> The bulk data: each card checked field by field against the catalogue, and stored in its table.
+module epcont_deck_bulk
+  use epcont_base_kinds, only: i8, wp
+  use epcont_base_text, only: text_of, upper
+  use epcont_deck_card, only: card_fields, gather
+  use epcont_deck_catalogue, only: card_kinds, card_param, catalogue, parameters
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_deck_entry, only: card_entry, field_entry, id_field, kind_word, largest_id, number_of, slot_of
+  use epcont_deck_field, only: scan_integer, scan_sound, scan_word
+  use epcont_deck_source, only: source
+  use epcont_deck_spelling, only: likely_name
+  use epcont_deck_table, only: card_table, new_table
+  use epcont_deck_value, only: fault_of, read_value
+  implicit none
+  private
+  public :: read_bulk
+
+  !> Words of case control, which without BEGIN BULK are taken for cards.
+  character(len=*), parameter :: control_words = &
+    ' SOL CEND TITLE SUBTITLE LABEL LOAD ECHO DISPLACEMENT STRESS SPCFORCES SUBCASE BEGIN '
+
+contains
+
+  !> Read the cards from line `first` on into `table`, one element for each entry of the catalogue.
+  subroutine read_bulk(lines, first, table, faults)
+    type(source), intent(in) :: lines
+    integer, intent(in) :: first
+    type(card_table), allocatable, intent(out) :: table(:)
+    type(diagnostics), intent(inout) :: faults
+    type(card_entry) :: entry(card_kinds)
+    type(field_entry), allocatable :: parameter_entry(:)
+    type(card_fields) :: card
+    integer :: line, k, errors
+
+    entry = catalogue()
+    parameter_entry = parameters()
+    allocate (table(card_kinds))
+    do k = 1, card_kinds
+      table(k) = new_table(entry(k))
+    end do
+    k = 1
+    line = first
+    do while (line <= lines%count)
+      card%next = line + 1
+      if (.not. lines%blank(line)) then
+        errors = faults%error_count()
+        call gather(lines, line, card, faults)
+        call find_card(card%name, entry, k)
+        if (k == 0) then
+          if (card%sound) call add_unknown(lines, card, entry, faults)
+        else
+          call table(k)%add_card(line)
+          if (card%sound) call read_card(lines, card, entry(k), parameter_entry, table(k), faults)
+          table(k)%sound(table(k)%count) = faults%error_count() == errors
+        end if
+      end if
+      line = card%next
+    end do
+    do k = 1, card_kinds
+      call table(k)%finish()
+      call add_notes(lines, entry(k), table(k), faults)
+    end do
+  end subroutine read_bulk
+
+  !> The entry of a name, tried first where the last card had its; 0 where there is none.
+  pure subroutine find_card(name, entry, k)
+    character(len=8), intent(in) :: name
+    type(card_entry), intent(in) :: entry(:)
+    integer, intent(inout) :: k
+
+    if (k > 0) then
+      if (entry(k)%name == name) return
+    end if
+    do k = size(entry), 1, -1
+      if (entry(k)%name == name) return
+    end do
+  end subroutine find_card
+
+  !> A name that is not in the catalogue.
+  subroutine add_unknown(lines, card, entry, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_entry), intent(in) :: entry(:)
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: name, remedy, word
+    integer :: k
+
+    name = upper(lines%text(card%name_first:card%name_last))
+    if (lines%text(lines%first(card%line):lines%first(card%line)) == '+' .or. &
+        lines%text(lines%first(card%line):lines%first(card%line)) == '*' .or. name == '') then
+      call faults%add_error(card%name_place(lines), 'a continuation line without a card before it', 'the name of a card')
+      return
+    end if
+    k = likely_name(name, entry%name)
+    word = name(:scan(name//' ', ' =(') - 1)
+    remedy = 'epcont --cards lists the cards that are read'
+    if (k > 0) remedy = 'did you mean '//trim(entry(k)%name)//'?'
+    if (index(control_words, ' '//word//' ') > 0 .and. len(word) > 0) remedy = 'one line BEGIN BULK behind case control'
+    call faults%add_error(card%name_place(lines), 'unknown card '//name, remedy)
+  end subroutine add_unknown
+
+  !> Read one card into the last row of its table.
+  subroutine read_card(lines, card, entry, parameter_entry, table, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_entry), intent(in) :: entry
+    type(field_entry), intent(in) :: parameter_entry(:)
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    integer :: column, named
+
+    named = 0
+    if (entry%name == 'PARAM') call find_parameter(lines, card, parameter_entry, faults, named)
+    if (named < 0) return
+    do column = 1, size(entry%field)
+      if (named > 0 .and. column == 2) then
+        call read_field(lines, card, parameter_entry(named), column, table, faults)
+      else
+        call read_field(lines, card, entry%field(column), column, table, faults)
+      end if
+    end do
+    call check_blanks(lines, card, entry, faults)
+    if (entry%list_number > 0) call read_list(lines, card, entry, table, faults)
+  end subroutine read_card
+
+  !> Which PARAM it is; 0 where the name is no word, -1 (with a fault) where it is unknown.
+  subroutine find_parameter(lines, card, parameter_entry, faults, named)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(field_entry), intent(in) :: parameter_entry(:)
+    type(diagnostics), intent(inout) :: faults
+    integer, intent(out) :: named
+    character(len=8) :: word
+    character(len=:), allocatable :: remedy
+    integer :: outcome, i
+
+    named = 0
+    if (.not. card%filled(1)) return
+    call scan_word(lines%text(card%first(1):card%last(1)), word, outcome)
+    if (outcome /= scan_sound) return
+    do named = 1, size(parameter_entry)
+      if (parameter_entry(named)%name == word) return
+    end do
+    named = -1
+    i = likely_name(word, parameter_entry%name)
+    if (i > 0) then
+      remedy = 'did you mean '//trim(parameter_entry(i)%name)//'?'
+    else
+      remedy = 'epcont --cards PARAM lists the parameters'
+    end if
+    call faults%add_error(card%place(lines, 1), 'unknown parameter '//trim(word), remedy)
+  end subroutine find_parameter
+
+  !> Read one field into the last row of the table.
+  subroutine read_field(lines, card, entry, column, table, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(field_entry), intent(in) :: entry
+    integer, intent(in) :: column
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    real(wp) :: value
+    character(len=8) :: word
+    integer :: slot, outcome
+
+    slot = slot_of(entry%number)
+    if (.not. card%filled(slot)) then
+      if (table%same_as(column) > 0) table%value(column, table%count) = table%value(table%same_as(column), table%count)
+      if (needed(card, entry)) call add_fault(lines, card, table, entry, 'is blank', entry%allowed(), faults)
+      return
+    end if
+    call read_value(lines%text(card%first(slot):card%last(slot)), entry, value, word, outcome)
+    if (outcome == scan_sound) then
+      table%value(column, table%count) = value
+      if (entry%kind == kind_word) table%word(column, table%count) = word
+      table%given(column, table%count) = .true.
+    else
+      call add_value_fault(lines, card, slot, entry, outcome, table, faults)
+    end if
+    if (entry%used) return
+    table%noted(column) = table%noted(column) + 1
+    if (table%noted(column) == 1) table%noted_card(column) = table%count
+  end subroutine read_field
+
+  !> May the field not be blank?
+  pure logical function needed(card, entry)
+    type(card_fields), intent(in) :: card
+    type(field_entry), intent(in) :: entry
+
+    needed = entry%required
+    if (.not. needed .and. entry%with > 0) needed = card%filled(slot_of(entry%with))
+  end function needed
+
+  subroutine add_value_fault(lines, card, slot, entry, outcome, table, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    integer, intent(in) :: slot
+    type(field_entry), intent(in) :: entry
+    integer, intent(in) :: outcome
+    type(card_table), intent(in) :: table
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: what, remedy
+
+    call fault_of(lines%text(card%first(slot):card%last(slot)), entry, outcome, what, remedy)
+    call add_fault(lines, card, table, entry, what, remedy, faults)
+  end subroutine add_value_fault
+
+  !> A fault of one field: `GRID 17: field 4 (X1) is ...`.
+  subroutine add_fault(lines, card, table, entry, what, remedy, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_table), intent(in) :: table
+    type(field_entry), intent(in) :: entry
+    character(len=*), intent(in) :: what, remedy
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: name
+
+    name = trim(entry%name)
+    if (card%name == 'PARAM' .and. entry%number == 3) name = 'VALUE'
+    call faults%add_error(card%place(lines, slot_of(entry%number)), &
+                          identity(lines, card)//': '//field_text(entry%number, name)//' '//what, remedy)
+  end subroutine add_fault
+
+  !> `field 4 (X1)`.
+  pure function field_text(number, name) result(text)
+    integer, intent(in) :: number
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: text
+
+    text = 'field '//text_of(number)
+    if (len(name) > 0) text = text//' ('//name//')'
+  end function field_text
+
+  !> `GRID 17`, or `GRID` where the id is not one; `PARAM PLANE`.
+  pure function identity(lines, card) result(text)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    character(len=:), allocatable :: text
+    integer(i8) :: id
+    integer :: outcome
+    character(len=8) :: word
+
+    text = trim(card%name)
+    if (.not. card%filled(1)) return
+    if (text == 'PARAM') then
+      call scan_word(lines%text(card%first(1):card%last(1)), word, outcome)
+      if (outcome == scan_sound) text = text//' '//trim(word)
+    else
+      call scan_integer(lines%text(card%first(1):card%last(1)), id, outcome)
+      if (outcome == scan_sound .and. id > 0 .and. id <= largest_id) text = text//' '//text_of(id)
+    end if
+  end function identity
+
+  !> Fields that the catalogue does not know must be blank.
+  subroutine check_blanks(lines, card, entry, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_entry), intent(in) :: entry
+    type(diagnostics), intent(inout) :: faults
+    integer :: slot, last
+
+    last = card%count
+    if (entry%list_number > 0) last = min(last, slot_of(entry%list_number) - 1)
+    do slot = 1, last
+      if (card%last(slot) < card%first(slot)) cycle
+      if (slot <= size(entry%column_at)) then
+        if (entry%column_at(slot) > 0) cycle
+      end if
+      call faults%add_error(card%place(lines, slot), &
+                            identity(lines, card)//': '//field_text(number_of(slot), '')//' must be blank', &
+                            'blank; '//trim(entry%name)//' ends with field '//text_of(entry%last_number()))
+    end do
+  end subroutine check_blanks
+
+  !> Read the list of ids at the end of a card.
+  subroutine read_list(lines, card, entry, table, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_entry), intent(in) :: entry
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    type(field_entry) :: item
+    integer :: slot, from, to
+
+    slot = slot_of(entry%list_number)
+    if (.not. any(card%last(slot:card%count) >= card%first(slot:card%count))) then
+      item = id_field(entry%list_number, entry%field_name(entry%list_number), '')
+      call add_fault(lines, card, table, item, 'is blank', item%allowed(), faults)
+    end if
+    do while (slot <= card%count)
+      if (card%filled(slot)) then
+        call read_item(lines, card, entry, slot, table, faults, from)
+        to = from
+        if (entry%has_ranges .and. from > 0 .and. is_thru(lines, card, slot + 1)) then
+          slot = slot + 2
+          call read_item(lines, card, entry, slot, table, faults, to)
+          if (to > 0 .and. to < from) call add_backward(lines, card, entry, slot, from, faults)
+          if (to > 0) call table%add_item(from, to, number_of(slot - 2))
+        else if (from > 0) then
+          call table%add_item(from, to, number_of(slot))
+        end if
+      end if
+      slot = slot + 1
+    end do
+  end subroutine read_list
+
+  !> One id of a list; 0 (with a fault) where it is not one.
+  subroutine read_item(lines, card, entry, slot, table, faults, id)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_entry), intent(in) :: entry
+    integer, intent(in) :: slot
+    type(card_table), intent(in) :: table
+    type(diagnostics), intent(inout) :: faults
+    integer, intent(out) :: id
+    type(field_entry) :: item
+    integer(i8) :: number
+    integer :: outcome
+
+    id = 0
+    if (card%filled(slot)) then
+      call scan_integer(lines%text(card%first(slot):card%last(slot)), number, outcome)
+      if (outcome == scan_sound .and. number > 0 .and. number <= largest_id) then
+        id = int(number)
+        return
+      end if
+    end if
+    item = id_field(number_of(slot), entry%field_name(number_of(slot)), '')
+    if (card%filled(slot)) then
+      if (outcome == scan_sound) outcome = -1
+      call add_value_fault(lines, card, slot, item, outcome, table, faults)
+    else
+      call add_fault(lines, card, table, item, 'is blank', item%allowed(), faults)
+    end if
+  end subroutine read_item
+
+  !> Does the slot hold the word THRU?
+  pure logical function is_thru(lines, card, slot)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    integer, intent(in) :: slot
+
+    is_thru = .false.
+    if (.not. card%filled(slot)) return
+    if (card%last(slot) - card%first(slot) == 3) is_thru = upper(lines%text(card%first(slot):card%last(slot))) == 'THRU'
+  end function is_thru
+
+  !> THRU that leads to a smaller id.
+  subroutine add_backward(lines, card, entry, slot, from, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_entry), intent(in) :: entry
+    integer, intent(in) :: slot, from
+    type(diagnostics), intent(inout) :: faults
+
+    character(len=:), allocatable :: field
+
+    field = field_text(number_of(slot), entry%field_name(number_of(slot)))
+    call faults%add_error(card%place(lines, slot), identity(lines, card)//': '//field//' is less than the id before THRU', &
+                          'an id of at least '//text_of(from))
+  end subroutine add_backward
+
+  !> List once each field that was filled and has no effect.
+  subroutine add_notes(lines, entry, table, faults)
+    type(source), intent(in) :: lines
+    type(card_entry), intent(in) :: entry
+    type(card_table), intent(in) :: table
+    type(diagnostics), intent(inout) :: faults
+    type(card_fields) :: card
+    type(diagnostics) :: unheard
+    integer :: column
+
+    do column = 1, size(table%noted)
+      if (table%noted(column) == 0) cycle
+      call gather(lines, table%line(table%noted_card(column)), card, unheard)
+      call faults%add_note(card%place(lines, slot_of(entry%field(column)%number)), trim(entry%name)//': '// &
+                           field_text(entry%field(column)%number, trim(entry%field(column)%name))// &
+                           ' has no effect (cards with it: '//text_of(table%noted(column))//')')
+    end do
+  end subroutine add_notes
+end module epcont_deck_bulk
