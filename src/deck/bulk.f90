@@ -38,6 +38,7 @@ contains
     do k = 1, card_kinds
       table(k) = new_table(entry(k))
     end do
+    call reserve(lines, first, entry, table)
     k = 1
     line = first
     do while (line <= lines%count)
@@ -62,6 +63,32 @@ contains
     end do
   end subroutine read_bulk
 
+  !> Room in each table for the cards that seem to be there, so that a large deck need not move its tables about.
+  subroutine reserve(lines, first, entry, table)
+    type(source), intent(in) :: lines
+    integer, intent(in) :: first
+    type(card_entry), intent(in) :: entry(:)
+    type(card_table), intent(inout) :: table(:)
+    character(len=8) :: name
+    integer :: cards(size(entry))
+    integer :: line, k, cut
+
+    cards = 0
+    k = 1
+    do line = first, lines%count
+      if (lines%blank(line)) cycle
+      name = lines%text(lines%first(line):min(lines%last(line), lines%first(line) + 7))
+      if (name(1:1) < 'A') cycle
+      cut = scan(name, ',*')
+      if (cut > 0) name(cut:) = ''
+      call find_card(name, entry, k)
+      if (k > 0) cards(k) = cards(k) + 1
+    end do
+    do k = 1, size(entry)
+      call table(k)%reserve(cards(k))
+    end do
+  end subroutine reserve
+
   !> The entry of a name, tried first where the last card had its; 0 where there is none.
   pure subroutine find_card(name, entry, k)
     character(len=8), intent(in) :: name
@@ -83,15 +110,17 @@ contains
     type(card_entry), intent(in) :: entry(:)
     type(diagnostics), intent(inout) :: faults
     character(len=:), allocatable :: name, remedy, word
+    character(len=8) :: names(size(entry))
     integer :: k
 
+    names = entry%name
     name = upper(lines%text(card%name_first:card%name_last))
     if (lines%text(lines%first(card%line):lines%first(card%line)) == '+' .or. &
         lines%text(lines%first(card%line):lines%first(card%line)) == '*' .or. name == '') then
       call faults%add_error(card%name_place(lines), 'a continuation line without a card before it', 'the name of a card')
       return
     end if
-    k = likely_name(name, entry%name)
+    k = likely_name(name, names)
     word = name(:scan(name//' ', ' =(') - 1)
     remedy = 'epcont --cards lists the cards that are read'
     if (k > 0) remedy = 'did you mean '//trim(entry(k)%name)//'?'
@@ -130,7 +159,7 @@ contains
     type(field_entry), intent(in) :: parameter_entry(:)
     type(diagnostics), intent(inout) :: faults
     integer, intent(out) :: named
-    character(len=8) :: word
+    character(len=8) :: word, names(size(parameter_entry))
     character(len=:), allocatable :: remedy
     integer :: outcome, i
 
@@ -142,7 +171,8 @@ contains
       if (parameter_entry(named)%name == word) return
     end do
     named = -1
-    i = likely_name(word, parameter_entry%name)
+    names = parameter_entry%name
+    i = likely_name(word, names)
     if (i > 0) then
       remedy = 'did you mean '//trim(parameter_entry(i)%name)//'?'
     else

@@ -96,7 +96,7 @@ contains
   pure function row(field, columns, name, kind, default, use, meaning) result(text)
     character(len=*), intent(in) :: field, columns, name, kind, default, use, meaning
     character(len=:), allocatable :: text
-    character(len=47) :: head
+    character(len=46) :: head
 
     write (head, '(a5, 2x, a7, 2x, a5, 2x, a7, 2x, a7, 2x, a5)') &
       padded(field, 5), padded(columns, 7), padded(name, 5), padded(kind, 7), padded(default, 7), padded(use, 5)

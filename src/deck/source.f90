@@ -81,6 +81,11 @@ contains
       trouble = 'no such file'
       return
     end if
+    inquire (file=path//'/.', exist=exists)
+    if (exists) then
+      trouble = 'a directory, not a file'
+      return
+    end if
     open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=status)
     if (status /= 0) then
       trouble = 'cannot be opened for reading'

@@ -28,6 +28,7 @@ module epcont_deck_table
     integer :: items = 0                               !! in all lists
   contains
     procedure :: column
+    procedure :: reserve
     procedure :: add_card
     procedure :: add_item
     procedure :: finish
@@ -77,16 +78,20 @@ contains
     error stop 'no such field in the catalogue of cards'
   end function column
 
+  !> Room for `cards` cards; more may come.
+  subroutine reserve(self, cards)
+    class(card_table), intent(inout) :: self
+    integer, intent(in) :: cards
+
+    if (cards > size(self%line)) call resize(self, cards)
+  end subroutine reserve
+
   !> Add a card, all its fields blank; it begins at the source line `line`.
   subroutine add_card(self, line)
     class(card_table), intent(inout) :: self
     integer, intent(in) :: line
-    integer :: room
 
-    if (self%count == size(self%line)) then
-      room = max(first_room, 2*self%count)
-      call resize(self, room)
-    end if
+    if (self%count == size(self%line)) call resize(self, max(first_room, 2*self%count))
     self%count = self%count + 1
     self%value(:, self%count) = self%default
     self%given(:, self%count) = .false.
