@@ -1,23 +1,21 @@
 !> The bulk data: each card checked field by field against the catalogue, and stored in its table.
 module epcont_deck_bulk
-  use epcont_base_kinds, only: i8, wp
-  use epcont_base_text, only: text_of, upper
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
   use epcont_deck_card, only: card_fields, gather
-  use epcont_deck_catalogue, only: card_kinds, card_param, catalogue, parameters
+  use epcont_deck_catalogue, only: card_kinds, catalogue, parameters
+  use epcont_deck_complaint, only: add_fault, add_unknown, add_value_fault, field_text, identity
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_deck_entry, only: card_entry, field_entry, id_field, kind_word, largest_id, number_of, slot_of
-  use epcont_deck_field, only: scan_integer, scan_sound, scan_word
+  use epcont_deck_entry, only: card_entry, field_entry, kind_word, number_of, slot_of
+  use epcont_deck_field, only: scan_sound, scan_word
+  use epcont_deck_id_list, only: read_list
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: likely_name
   use epcont_deck_table, only: card_table, new_table
-  use epcont_deck_value, only: fault_of, read_value
+  use epcont_deck_value, only: read_value
   implicit none
   private
   public :: read_bulk
-
-  !> Words of case control, which without BEGIN BULK are taken for cards.
-  character(len=*), parameter :: control_words = &
-    ' SOL CEND TITLE SUBTITLE LABEL LOAD ECHO DISPLACEMENT STRESS SPCFORCES SUBCASE BEGIN '
 
 contains
 
@@ -103,31 +101,6 @@ contains
     end do
   end subroutine find_card
 
-  !> A name that is not in the catalogue.
-  subroutine add_unknown(lines, card, entry, faults)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    type(card_entry), intent(in) :: entry(:)
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: name, remedy, word
-    character(len=8) :: names(size(entry))
-    integer :: k
-
-    names = entry%name
-    name = upper(lines%text(card%name_first:card%name_last))
-    if (lines%text(lines%first(card%line):lines%first(card%line)) == '+' .or. &
-        lines%text(lines%first(card%line):lines%first(card%line)) == '*' .or. name == '') then
-      call faults%add_error(card%name_place(lines), 'a continuation line without a card before it', 'the name of a card')
-      return
-    end if
-    k = likely_name(name, names)
-    word = name(:scan(name//' ', ' =(') - 1)
-    remedy = 'epcont --cards lists the cards that are read'
-    if (k > 0) remedy = 'did you mean '//trim(entry(k)%name)//'?'
-    if (index(control_words, ' '//word//' ') > 0 .and. len(word) > 0) remedy = 'one line BEGIN BULK behind case control'
-    call faults%add_error(card%name_place(lines), 'unknown card '//name, remedy)
-  end subroutine add_unknown
-
   !> Read one card into the last row of its table.
   subroutine read_card(lines, card, entry, parameter_entry, table, faults)
     type(source), intent(in) :: lines
@@ -196,7 +169,7 @@ contains
     slot = slot_of(entry%number)
     if (.not. card%filled(slot)) then
       if (table%same_as(column) > 0) table%value(column, table%count) = table%value(table%same_as(column), table%count)
-      if (needed(card, entry)) call add_fault(lines, card, table, entry, 'is blank', entry%allowed(), faults)
+      if (needed(card, entry)) call add_fault(lines, card, entry, 'is blank', entry%allowed(), faults)
       return
     end if
     call read_value(lines%text(card%first(slot):card%last(slot)), entry, value, word, outcome)
@@ -205,7 +178,7 @@ contains
       if (entry%kind == kind_word) table%word(column, table%count) = word
       table%given(column, table%count) = .true.
     else
-      call add_value_fault(lines, card, slot, entry, outcome, table, faults)
+      call add_value_fault(lines, card, slot, entry, outcome, faults)
     end if
     if (entry%used) return
     table%noted(column) = table%noted(column) + 1
@@ -220,66 +193,6 @@ contains
     needed = entry%required
     if (.not. needed .and. entry%with > 0) needed = card%filled(slot_of(entry%with))
   end function needed
-
-  subroutine add_value_fault(lines, card, slot, entry, outcome, table, faults)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    integer, intent(in) :: slot
-    type(field_entry), intent(in) :: entry
-    integer, intent(in) :: outcome
-    type(card_table), intent(in) :: table
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: what, remedy
-
-    call fault_of(lines%text(card%first(slot):card%last(slot)), entry, outcome, what, remedy)
-    call add_fault(lines, card, table, entry, what, remedy, faults)
-  end subroutine add_value_fault
-
-  !> A fault of one field: `GRID 17: field 4 (X1) is ...`.
-  subroutine add_fault(lines, card, table, entry, what, remedy, faults)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    type(card_table), intent(in) :: table
-    type(field_entry), intent(in) :: entry
-    character(len=*), intent(in) :: what, remedy
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: name
-
-    name = trim(entry%name)
-    if (card%name == 'PARAM' .and. entry%number == 3) name = 'VALUE'
-    call faults%add_error(card%place(lines, slot_of(entry%number)), &
-                          identity(lines, card)//': '//field_text(entry%number, name)//' '//what, remedy)
-  end subroutine add_fault
-
-  !> `field 4 (X1)`.
-  pure function field_text(number, name) result(text)
-    integer, intent(in) :: number
-    character(len=*), intent(in) :: name
-    character(len=:), allocatable :: text
-
-    text = 'field '//text_of(number)
-    if (len(name) > 0) text = text//' ('//name//')'
-  end function field_text
-
-  !> `GRID 17`, or `GRID` where the id is not one; `PARAM PLANE`.
-  pure function identity(lines, card) result(text)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    character(len=:), allocatable :: text
-    integer(i8) :: id
-    integer :: outcome
-    character(len=8) :: word
-
-    text = trim(card%name)
-    if (.not. card%filled(1)) return
-    if (text == 'PARAM') then
-      call scan_word(lines%text(card%first(1):card%last(1)), word, outcome)
-      if (outcome == scan_sound) text = text//' '//trim(word)
-    else
-      call scan_integer(lines%text(card%first(1):card%last(1)), id, outcome)
-      if (outcome == scan_sound .and. id > 0 .and. id <= largest_id) text = text//' '//text_of(id)
-    end if
-  end function identity
 
   !> Fields that the catalogue does not know must be blank.
   subroutine check_blanks(lines, card, entry, faults)
@@ -301,94 +214,6 @@ contains
                             'blank; '//trim(entry%name)//' ends with field '//text_of(entry%last_number()))
     end do
   end subroutine check_blanks
-
-  !> Read the list of ids at the end of a card.
-  subroutine read_list(lines, card, entry, table, faults)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    type(card_entry), intent(in) :: entry
-    type(card_table), intent(inout) :: table
-    type(diagnostics), intent(inout) :: faults
-    type(field_entry) :: item
-    integer :: slot, from, to
-
-    slot = slot_of(entry%list_number)
-    if (.not. any(card%last(slot:card%count) >= card%first(slot:card%count))) then
-      item = id_field(entry%list_number, entry%field_name(entry%list_number), '')
-      call add_fault(lines, card, table, item, 'is blank', item%allowed(), faults)
-    end if
-    do while (slot <= card%count)
-      if (card%filled(slot)) then
-        call read_item(lines, card, entry, slot, table, faults, from)
-        to = from
-        if (entry%has_ranges .and. from > 0 .and. is_thru(lines, card, slot + 1)) then
-          slot = slot + 2
-          call read_item(lines, card, entry, slot, table, faults, to)
-          if (to > 0 .and. to < from) call add_backward(lines, card, entry, slot, from, faults)
-          if (to > 0) call table%add_item(from, to, number_of(slot - 2))
-        else if (from > 0) then
-          call table%add_item(from, to, number_of(slot))
-        end if
-      end if
-      slot = slot + 1
-    end do
-  end subroutine read_list
-
-  !> One id of a list; 0 (with a fault) where it is not one.
-  subroutine read_item(lines, card, entry, slot, table, faults, id)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    type(card_entry), intent(in) :: entry
-    integer, intent(in) :: slot
-    type(card_table), intent(in) :: table
-    type(diagnostics), intent(inout) :: faults
-    integer, intent(out) :: id
-    type(field_entry) :: item
-    integer(i8) :: number
-    integer :: outcome
-
-    id = 0
-    if (card%filled(slot)) then
-      call scan_integer(lines%text(card%first(slot):card%last(slot)), number, outcome)
-      if (outcome == scan_sound .and. number > 0 .and. number <= largest_id) then
-        id = int(number)
-        return
-      end if
-    end if
-    item = id_field(number_of(slot), entry%field_name(number_of(slot)), '')
-    if (card%filled(slot)) then
-      if (outcome == scan_sound) outcome = -1
-      call add_value_fault(lines, card, slot, item, outcome, table, faults)
-    else
-      call add_fault(lines, card, table, item, 'is blank', item%allowed(), faults)
-    end if
-  end subroutine read_item
-
-  !> Does the slot hold the word THRU?
-  pure logical function is_thru(lines, card, slot)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    integer, intent(in) :: slot
-
-    is_thru = .false.
-    if (.not. card%filled(slot)) return
-    if (card%last(slot) - card%first(slot) == 3) is_thru = upper(lines%text(card%first(slot):card%last(slot))) == 'THRU'
-  end function is_thru
-
-  !> THRU that leads to a smaller id.
-  subroutine add_backward(lines, card, entry, slot, from, faults)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    type(card_entry), intent(in) :: entry
-    integer, intent(in) :: slot, from
-    type(diagnostics), intent(inout) :: faults
-
-    character(len=:), allocatable :: field
-
-    field = field_text(number_of(slot), entry%field_name(number_of(slot)))
-    call faults%add_error(card%place(lines, slot), identity(lines, card)//': '//field//' is less than the id before THRU', &
-                          'an id of at least '//text_of(from))
-  end subroutine add_backward
 
   !> List once each field that was filled and has no effect.
   subroutine add_notes(lines, entry, table, faults)

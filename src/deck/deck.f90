@@ -18,10 +18,9 @@ module epcont_deck_deck
   public :: card_cbar, card_cgap, card_cord2r, card_ctria3, card_force, card_grid, card_kinds, card_mat1, card_param, &
             card_pgap, card_ploadx1, card_pshell, card_rbe2, card_spc, card_spc1, card_suport
 
-  !> All that a deck says.
-  type :: deck_type
+  !> All that a deck says: titles, sets chosen and output wanted, as case control has it, and the cards.
+  type, extends(case_control) :: deck_type
     type(source) :: source                         !! its text
-    type(case_control) :: control                  !! titles, sets chosen, output wanted
     type(card_table), allocatable :: card(:)       !! its cards [card_kinds]
     type(card_entry), allocatable :: entry(:)      !! what the catalogue says of each [card_kinds]
   contains
@@ -45,7 +44,7 @@ contains
     deck%entry = catalogue()
     call read_source(path, deck%source, faults, error)
     if (allocated(error)) return
-    call read_case_control(deck%source, deck%control, bulk, faults)
+    call read_case_control(deck%source, deck%case_control, bulk, faults)
     call read_bulk(deck%source, bulk, deck%card, faults)
   end subroutine read_deck
 

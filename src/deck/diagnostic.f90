@@ -4,7 +4,7 @@ module epcont_deck_diagnostic
   use epcont_base_sorting, only: sorted_order
   implicit none
   private
-  public :: place_type, diagnostic, diagnostics, same_place
+  public :: place_type, diagnostic, diagnostics
 
   integer, parameter, public :: severity_error = 1    !! the deck is rejected
   integer, parameter, public :: severity_warning = 2  !! the deck is read, but look here
@@ -115,9 +115,10 @@ contains
   pure function in_deck_order(self) result(order)
     class(diagnostics), intent(in) :: self
     integer, allocatable :: order(:)
-    integer :: line(self%count), column(self%count)
+    integer, allocatable :: line(:), column(:)
     integer :: i
 
+    allocate (line(self%count), column(self%count))
     do i = 1, self%count
       line(i) = self%list(i)%place%line
       if (line(i) == 0) line(i) = huge(1)
@@ -135,11 +136,4 @@ contains
 
     fault = self%list(i)
   end function item
-
-  !> Do two places denote the same columns?
-  elemental logical function same_place(a, b)
-    type(place_type), intent(in) :: a, b
-
-    same_place = a%line == b%line .and. a%first == b%first .and. a%last == b%last
-  end function same_place
 end module epcont_deck_diagnostic

@@ -2,7 +2,8 @@
 module epcont_deck_manual
   use epcont_base_text, only: text_of, upper
   use epcont_deck_catalogue, only: card_kinds, card_param, catalogue, parameters
-  use epcont_deck_entry, only: card_entry, field_entry, kind_any, kind_components, kind_integer, kind_real, number_of, slot_of
+  use epcont_deck_entry, only: card_entry, field_entry, kind_any, kind_components, kind_integer, kind_real, number_of, &
+                               slot_of
   implicit none
   private
   public :: manual

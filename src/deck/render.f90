@@ -38,7 +38,8 @@ contains
     if (any(shown > 0)) text = text//lines%deck_name()//': '//tally(shown)//newline
   end function render
 
-  !> The notes in deck order, one line each, without the file where it is the deck's own.
+  !> The notes in deck order, one line each, for the listing: without the name of the deck, and of included files
+  !! the name as seen from it, so that it does not matter from where the deck was read.
   pure function render_notes(faults, lines) result(text)
     type(diagnostics), intent(in) :: faults
     type(source), intent(in) :: lines
@@ -51,7 +52,8 @@ contains
     order = faults%in_deck_order()
     do i = 1, size(order)
       fault = faults%item(order(i))
-      if (fault%severity == severity_note) text = text//heading(fault, lines)//newline
+      if (fault%severity /= severity_note) cycle
+      text = text//note_file(fault, lines)//columns(fault%place, lines)//printable(fault%what)//newline
     end do
   end function render_notes
 
@@ -107,14 +109,47 @@ contains
       if (place%line == 0) then
         text = lines%deck_name()//': '
       else
-        text = lines%file_name(place%line)//':'//text_of(lines%number(place%line))//':'//text_of(place%first)
-        if (place%last > place%first) text = text//'-'//text_of(place%last)
-        text = text//': '
+        text = lines%file_name(place%line)//':'//columns(place, lines)
       end if
     end associate
     if (fault%severity == severity_warning) text = text//'warning: '
     text = text//printable(fault%what)
   end function heading
+
+  !> `41:25-32: `; empty for the deck as a whole.
+  pure function columns(place, lines) result(text)
+    type(place_type), intent(in) :: place
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (place%line == 0) return
+    text = text_of(lines%number(place%line))//':'//text_of(place%first)
+    if (place%last > place%first) text = text//'-'//text_of(place%last)
+    text = text//': '
+  end function columns
+
+  !> The included file that a note is about, and a colon.
+  pure function note_file(fault, lines) result(text)
+    type(diagnostic), intent(in) :: fault
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (fault%place%line == 0) return
+    if (lines%file(fault%place%line) == 1) return
+    text = lines%file_name(fault%place%line)//':'
+    if (index(text, deck_directory(lines)) == 1) text = text(len(deck_directory(lines)) + 1:)
+  end function note_file
+
+  !> The directory of the deck, with a slash at the end; empty where it was named without one.
+  pure function deck_directory(lines) result(directory)
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: directory
+
+    directory = lines%deck_name()
+    directory = directory(:index(directory, '/', back=.true.))
+  end function deck_directory
 
   !> The line of the deck, and below it carets under the value (or the whole field, where that is blank).
   !! Of a line too long to show, the part that holds the place.

@@ -6,7 +6,7 @@ module epcont_deck_value
                                scan_too_large, scan_too_long, scan_too_small, scan_word
   implicit none
   private
-  public :: read_value, fault_of
+  public :: read_value, fault_of, out_of_range
 
   !> A fault that is not one of form, beside the outcomes of a scan.
   integer, parameter :: out_of_range = -1
