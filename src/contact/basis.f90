@@ -54,7 +54,7 @@ contains
   !> Forces and motions for right-hand sides h and p; call only if the basis is sound.
   pure subroutine respond(basis, opening, load, force, approach)
     type(contact_basis), intent(in) :: basis
-    real(wp), intent(in) :: opening(:, :)                  !! h, gaps of the pairs without forces [s, k]
+    real(wp), contiguous, intent(in) :: opening(:, :)                  !! h, gaps of the pairs without forces [s, k]
     real(wp), intent(in) :: load(:, :)                     !! p [m, k]
     real(wp), allocatable, intent(out) :: force(:, :)      !! R_S [s, k]
     real(wp), allocatable, intent(out) :: approach(:, :)   !! q [m, k]

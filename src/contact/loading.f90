@@ -54,14 +54,14 @@ contains
     if (entering > 0 .and. step%load_rate > 0.0_wp) closed(entering) = .true.
   end subroutine follow_load
 
-  !> Is all of the load carried before another variable blocks?
+  !> Is all of the load carried before another variable blocks, or together with it?
   pure function is_complete(tableau, step) result(complete)
     type(contact_tableau), intent(in) :: tableau
     type(step_type), intent(in) :: step
     logical :: complete
     integer :: row
 
-    complete = step%load_rate > 0.0_wp .and. step%full_load <= step%ratio
+    complete = step%load_rate > 0.0_wp .and. step%full_load <= step%ratio*(1.0_wp + load_tolerance)
     row = row_of(tableau, load_factor)
     if (row > 0) complete = complete .or. tableau%value(row) >= 1.0_wp - load_tolerance
   end function is_complete

@@ -22,6 +22,8 @@ module epcont_contact_simplex
   real(wp), parameter :: ray_tolerance = 1.0e-7_wp
   !> Pivots allowed for each unknown before the order of ties is given up for broken.
   integer, parameter :: pivots_per_unknown = 10
+  !> In scaled units a force or motion up to this is what rounding leaves of zero.
+  real(wp), parameter :: noise = 100*epsilon(1.0_wp)
   !> Fresh starts before the problem is given up.
   integer, parameter :: restart_limit = 10
 
@@ -103,7 +105,7 @@ contains
       if (outcome == path_ray .and. is_overlap(scaled, ray)) then
         solution%state = contact_overlap
         return
-      else if (outcome == path_complete) then
+      else if (outcome == path_complete .and. mod(attempt, 2) == 0) then
         state = fresh_state(scaled, closed, first_touching)
         lifted = max(basic_values(state), 0.0_wp)
       else
@@ -207,11 +209,11 @@ contains
     type(contact_solution), intent(inout) :: solution
     logical, allocatable :: pressed(:)
 
-    ! What rounding leaves of a zero is zero.
     state%gap(state%basis%pairs) = 0.0_wp
-    state%force = max(state%force, 0.0_wp)
     solution%touching = state%gap <= negligible
     where (solution%touching) state%gap = 0.0_wp
+    where (state%force <= noise) state%force = 0.0_wp
+    where (abs(state%approach) <= noise) state%approach = 0.0_wp
     pressed = state%force > negligible
     solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
     call share_equally(scaled, solution%indeterminate, state%force)

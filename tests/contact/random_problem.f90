@@ -155,14 +155,30 @@ contains
     gap_error = problem%initial_gap + problem%load_gap + matmul(problem%flexibility, solution%force) &
                 - matmul(problem%motion, solution%approach) - solution%gap
     load_error = matmul(solution%force, problem%motion) - problem%resultant
-    gap_size = maxval([abs(problem%initial_gap + problem%load_gap), abs(problem%initial_gap), &
-                       abs(matmul(problem%flexibility, solution%force)), &
-                       abs(matmul(problem%motion, solution%approach)), tiny(1.0_wp)])
-    force_size = maxval([abs(solution%force), tiny(1.0_wp)])
-    load_size = maxval([abs(problem%resultant), force_size*abs(pack(problem%motion, .true.)), tiny(1.0_wp)])
+    force_size = largest(solution%force)
+    gap_size = maxval([largest(problem%initial_gap), largest(problem%load_gap), tiny(1.0_wp), &
+                       largest(pack(problem%flexibility, .true.))*force_size, &
+                       largest(pack(problem%motion, .true.))*largest(solution%approach)])
+    ! Nothing has a length: no gap, no flexibility. What rounding leaves of zero has no measure.
+    if (max(largest(problem%initial_gap), largest(problem%load_gap), &
+            largest(pack(problem%flexibility, .true.))) <= 0.0_wp) gap_size = huge(1.0_wp)
+    if (any(problem%flexibility /= 0.0_wp)) then
+      force_size = max(force_size, gap_size/largest(pack(problem%flexibility, .true.)))
+    end if
+    force_size = max(force_size, tiny(1.0_wp))
+    load_size = max(largest(problem%resultant), force_size*largest(pack(problem%motion, .true.)), tiny(1.0_wp))
     residual = maxval([abs(gap_error)/gap_size, -solution%gap/gap_size, -solution%force/force_size, &
                        solution%gap/gap_size*(solution%force/force_size), abs(load_error)/load_size, 0.0_wp])
   end function residual_of
+
+  !> Largest absolute value; 0 of none.
+  pure function largest(values)
+    real(wp), intent(in) :: values(:)
+    real(wp) :: largest
+
+    largest = 0.0_wp
+    if (size(values) > 0) largest = maxval(abs(values))
+  end function largest
 
   !> Is y a motion that the load drives and that closes no gap: P'y > 0 and A y <= 0?
   function is_escape(problem, motion) result(escape)
