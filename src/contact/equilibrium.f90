@@ -11,7 +11,7 @@ module epcont_contact_equilibrium
   use epcont_contact_scaling, only: negligible, scaled_problem
   implicit none
   private
-  public :: rigid_start, find_rigid_start
+  public :: rigid_start, find_rigid_start, can_carry
 
   !> What rigid bodies do under the load.
   type :: rigid_start
@@ -26,7 +26,7 @@ module epcont_contact_equilibrium
   !> A row whose entries are all below this, with A and P of size one, depends on the others.
   real(wp), parameter :: dependence_tolerance = 1.0e-9_wp
 
-  !> Rows: equations of equilibrium. Columns: forces 1..n, then one artificial force a row.
+  !> Rows: equations of equilibrium, with the signs that make P >= 0. Columns: forces 1..n, then one artificial force a row.
   type :: programme
     real(wp), allocatable :: entry(:, :)      !! [m, n + m]
     real(wp), allocatable :: value(:)         !! basic variables [m]
@@ -40,19 +40,17 @@ contains
     type(scaled_problem), intent(in) :: problem
     type(rigid_start), intent(out) :: start
     type(programme) :: lp
-    real(wp), allocatable :: direction(:)   !! signs that make the right-hand side >= 0 [m]
     integer :: m, n
 
     n = size(problem%gap)
     m = size(problem%resultant)
     allocate (start%touching(n), source=.false.)
     allocate (start%redundant(m), source=.false.)
-    direction = sign(1.0_wp, problem%resultant)
-    lp = first_programme(problem, direction)
+    lp = first_programme(problem%motion, problem%resultant)
     call minimise(lp, n)
-    start%balanced = sum(lp%value, mask=lp%basic > n) <= balance_tolerance
+    start%balanced = is_balanced(lp, n)
     if (.not. start%balanced) then
-      start%escape = direction*(1.0_wp - lp%reduced_cost(n + 1:))
+      start%escape = sign(1.0_wp, problem%resultant)*(1.0_wp - lp%reduced_cost(n + 1:))
       return
     end if
     call expel_artificials(lp, n)
@@ -62,22 +60,43 @@ contains
     start%redundant(pack(lp%basic, lp%basic > n) - n) = .true.
   end subroutine find_rigid_start
 
+  !> Are there R >= 0 with A'R = P?
+  pure function can_carry(motion, resultant) result(carried)
+    real(wp), intent(in) :: motion(:, :)    !! A, largest entry about one [n, m]
+    real(wp), intent(in) :: resultant(:)    !! P [m]
+    logical :: carried
+    type(programme) :: lp
+
+    lp = first_programme(motion, resultant)
+    call minimise(lp, size(motion, 1))
+    carried = is_balanced(lp, size(motion, 1))
+  end function can_carry
+
+  !> Do the true forces, variables up to n, carry all of the load?
+  pure function is_balanced(lp, n) result(balanced)
+    type(programme), intent(in) :: lp
+    integer, intent(in) :: n
+    logical :: balanced
+
+    balanced = sum(lp%value, mask=lp%basic > n) <= balance_tolerance
+  end function is_balanced
+
   !> Phase 1: the artificial forces carry all of the load and cost one a unit.
-  pure function first_programme(problem, direction) result(lp)
-    type(scaled_problem), intent(in) :: problem
-    real(wp), intent(in) :: direction(:)
+  pure function first_programme(motion, resultant) result(lp)
+    real(wp), intent(in) :: motion(:, :)    !! [n, m]
+    real(wp), intent(in) :: resultant(:)    !! [m]
     type(programme) :: lp
     real(wp) :: size_of_load
     integer :: i, m, n
 
-    n = size(problem%gap)
-    m = size(problem%resultant)
-    size_of_load = maxval([abs(problem%resultant), 0.0_wp])
+    n = size(motion, 1)
+    m = size(resultant)
+    size_of_load = maxval([abs(resultant), 0.0_wp])
     if (size_of_load <= 0.0_wp) size_of_load = 1.0_wp
-    lp%value = abs(problem%resultant)/size_of_load
+    lp%value = abs(resultant)/size_of_load
     allocate (lp%entry(m, n + m), source=0.0_wp)
     do i = 1, m
-      lp%entry(i, :n) = direction(i)*problem%motion(:, i)
+      lp%entry(i, :n) = sign(1.0_wp, resultant(i))*motion(:, i)
       lp%entry(i, n + i) = 1.0_wp
     end do
     lp%basic = [(n + i, i=1, m)]

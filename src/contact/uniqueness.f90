@@ -2,6 +2,7 @@
 module epcont_contact_uniqueness
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, new_basis, rank_tolerance, regular_flexibility
+  use epcont_contact_equilibrium, only: can_carry
   use epcont_contact_scaling, only: negligible, scaled_problem
   use epcont_linalg_dense, only: add_product, cholesky_solve, null_space, pivoted_cholesky
   implicit none
@@ -14,57 +15,57 @@ module epcont_contact_uniqueness
 contains
 
   !> Pairs whose force can change without any gap or resultant changing: z with F z = 0, A'z = 0, and z >= 0
-  !> where the force is zero. Such z come from the touching pairs that pivoted Cholesky of F_g leaves out,
-  !> after the pressed ones.
+  !> where there is no force yet.
+  !>
+  !> With the gaps of the pressed pairs held closed, an idle touching pair j feels the forces z of the idle
+  !> ones through the Schur complement M of F_g, and M z = 0 is asked of z.
   pure function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
     type(scaled_problem), intent(in) :: problem
     logical, intent(in) :: touching(:)      !! gap zero [n]
-    logical, intent(in) :: pressed(:)       !! force beyond rounding; a basis, so their own forces are unique [n]
+    logical, intent(in) :: pressed(:)       !! force beyond rounding; of a basis, so unique by themselves [n]
     logical, allocatable :: indeterminate(:)
     type(contact_basis) :: basis
-    real(wp), allocatable :: null(:, :), opposing(:, :), reduced(:, :), dependent(:, :)
-    integer, allocatable :: idle(:), order(:)
-    integer :: j, k, rank
+    real(wp), allocatable :: answer(:, :), change(:, :), coupling(:, :), loose(:, :)
+    integer, allocatable :: growing(:), idle(:)
+    integer :: k
 
     allocate (indeterminate(size(touching)), source=.false.)
     idle = pack([(k, k=1, size(touching))], touching .and. .not. pressed)
     if (size(idle) == 0) return
-    ! F_g of the idle pairs with the gaps of the pressed ones held closed (Schur complement).
     basis = new_basis(problem, pressed)
-    reduced = regular_flexibility(problem, basis%gamma, idle, idle)
-    null = regular_flexibility(problem, basis%gamma, basis%pairs, idle)
-    opposing = transpose(null)
-    call cholesky_solve(basis%factor, null)
-    call add_product(-1.0_wp, opposing, null, reduced)
-    dependent = reduced
-    call pivoted_cholesky(reduced, rank_tolerance(problem), order, rank)
-    dependent = dependent(order(:rank), order(rank + 1:))
-    reduced = reduced(:rank, :rank)
-    call cholesky_solve(reduced, dependent)
-    do j = 1, size(idle) - rank
-      if (any(dependent(:, j) > null_tolerance)) cycle   ! some idle force would have to pull
-      indeterminate(idle(order(rank + j))) = .true.
-      where (abs(dependent(:, j)) > null_tolerance) indeterminate(idle(order(:rank))) = .true.
-    end do
-    call mark_opposing(indeterminate)
+    coupling = regular_flexibility(problem, basis%gamma, idle, idle)
+    answer = regular_flexibility(problem, basis%gamma, basis%pairs, idle)
+    loose = transpose(answer)
+    call cholesky_solve(basis%factor, answer)
+    call add_product(-1.0_wp, loose, answer, coupling)
 
-  contains
-
-    !> The pressed pairs that give way to the idle ones marked so far.
-    pure subroutine mark_opposing(marked)
-      logical, intent(inout) :: marked(:)
-      real(wp), allocatable :: change(:)
-      integer :: i, j
-
-      do j = rank + 1, size(idle)
-        if (.not. marked(idle(order(j)))) cycle
-        change = null(:, order(j)) - matmul(null(:, order(:rank)), dependent(:, j - rank))
-        do i = 1, size(change)
-          if (abs(change(i)) > null_tolerance) marked(basis%pairs(i)) = .true.
-        end do
-      end do
-    end subroutine mark_opposing
+    growing = forces_that_can_grow(coupling, rank_tolerance(problem))
+    indeterminate(idle(growing)) = .true.
+    loose = null_space(coupling(growing, growing), rank_tolerance(problem))
+    change = matmul(answer(:, growing), loose)
+    indeterminate(basis%pairs) = [(any(abs(change(k, :)) > null_tolerance), k=1, size(change, 1))]
   end function find_indeterminate_forces
+
+  !> The j for which some z >= 0 with M z = 0 has z_j > 0.
+  pure function forces_that_can_grow(coupling, zero) result(growing)
+    real(wp), intent(in) :: coupling(:, :)   !! M, semidefinite [e, e]
+    real(wp), intent(in) :: zero             !! an entry up to this is rounding
+    integer, allocatable :: growing(:)
+    real(wp), allocatable :: factor(:, :), rows(:, :)
+    integer, allocatable :: order(:)
+    logical, allocatable :: grows(:)
+    integer :: j, rank
+
+    factor = coupling
+    call pivoted_cholesky(factor, zero, order, rank)
+    allocate (grows(size(order)), source=.false.)
+    if (rank < size(order)) then
+      rows = coupling(:, order(:rank))/max(maxval(abs(coupling)), zero)
+      where (abs(coupling(:, order(:rank))) <= zero) rows = 0.0_wp
+      grows = [(can_carry(rows, -rows(j, :)), j=1, size(order))]
+    end if
+    growing = pack([(j, j=1, size(order))], grows)
+  end function forces_that_can_grow
 
   !> Pairs with equal rows in F and A share their force equally.
   pure subroutine share_equally(problem, indeterminate, force)
