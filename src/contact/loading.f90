@@ -61,7 +61,7 @@ contains
     logical :: complete
     integer :: row
 
-    complete = step%load_rate > 0.0_wp .and. step%full_load <= step%ratio*(1.0_wp + load_tolerance)
+    complete = step%load_rate > 0.0_wp .and. step%full_load*(1.0_wp - load_tolerance) <= step%ratio
     row = row_of(tableau, load_factor)
     if (row > 0) complete = complete .or. tableau%value(row) >= 1.0_wp - load_tolerance
   end function is_complete
