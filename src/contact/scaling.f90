@@ -2,10 +2,12 @@
 !>
 !> Forces are measured in rho, gaps in omega, and each motion by the largest gap that it closes:
 !>
-!>     rho   = max(max|g| / max|F|, max_j |P_j| / max|A_j|)
-!>     omega = max(rho max|F|, max|g|, max g^),   g = g0 + gl,   g^ = max(g0, 0)
+!>     rho   = max(max(-g, |gl|) / max|F|, max_j |P_j| / max|A_j|),   g = g0 + gl
+!>     omega = rho max|F|
 !>
-!> Motions are scaled one by one because translations and rotations have different units.
+!> so that what drives the contact is of size one, however far apart the other pairs are. Without load or
+!> overlap rho is max|g| / max|F|; without flexibility omega is max|g|. Motions are scaled one by one
+!> because translations and rotations have different units.
 module epcont_contact_scaling
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_problem, contact_solution
@@ -34,7 +36,8 @@ contains
   pure function scale_problem(problem) result(scaled)
     type(contact_problem), intent(in) :: problem
     type(scaled_problem) :: scaled
-    real(wp) :: largest
+    real(wp) :: driving   !! largest gap that asks for forces
+    real(wp) :: largest   !! max|F|
     integer :: j, m
 
     m = size(problem%resultant)
@@ -44,10 +47,12 @@ contains
     scaled%unloaded_gap = max(problem%initial_gap, 0.0_wp)
     largest = largest_of(reshape(problem%flexibility, [size(problem%flexibility)]))
 
-    scaled%force_unit = largest_of(problem%resultant/scaled%motion_size)
-    if (largest > 0.0_wp) scaled%force_unit = max(scaled%force_unit, largest_of(scaled%gap)/largest)
+    driving = max(largest_of(min(scaled%gap, 0.0_wp)), largest_of(problem%load_gap))
+    scaled%force_unit = force_unit(largest, driving, largest_of(problem%resultant/scaled%motion_size))
+    if (scaled%force_unit <= 0.0_wp) scaled%force_unit = force_unit(largest, largest_of(scaled%gap), 0.0_wp)
     if (scaled%force_unit <= 0.0_wp) scaled%force_unit = 1.0_wp
-    scaled%gap_unit = max(scaled%force_unit*largest, largest_of(scaled%gap), largest_of(scaled%unloaded_gap))
+    scaled%gap_unit = scaled%force_unit*largest
+    if (scaled%gap_unit <= 0.0_wp) scaled%gap_unit = max(largest_of(scaled%gap), largest_of(scaled%unloaded_gap))
     if (scaled%gap_unit <= 0.0_wp) scaled%gap_unit = 1.0_wp
 
     scaled%flexibility = problem%flexibility*(scaled%force_unit/scaled%gap_unit)
@@ -59,6 +64,15 @@ contains
       scaled%motion(:, j) = scaled%motion(:, j)/scaled%motion_size(j)
     end do
   end function scale_problem
+
+  !> rho, from max|F|, the largest driving gap and the largest load; 0 if there is nothing to measure.
+  pure function force_unit(flexibility, gap, load) result(unit)
+    real(wp), intent(in) :: flexibility, gap, load
+    real(wp) :: unit
+
+    unit = load
+    if (flexibility > 0.0_wp) unit = max(unit, gap/flexibility)
+  end function force_unit
 
   !> Hold the motions in `dropped` at zero: they leave the problem.
   pure subroutine drop_motions(scaled, dropped)

@@ -16,13 +16,13 @@ module epcont_contact_simplex
   private
   public :: solve_contact
 
-  !> Force or gap of the wrong sign that rounding may leave, in scaled units.
+  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units.
   real(wp), parameter :: sign_tolerance = 1.0e-10_wp
   !> Part of its forces by which a ray may miss F z = 0 and A'z = 0.
   real(wp), parameter :: ray_tolerance = 1.0e-7_wp
   !> Pivots allowed for each unknown before the order of ties is given up for broken.
   integer, parameter :: pivots_per_unknown = 10
-  !> In scaled units a force or motion up to this is what rounding leaves of zero.
+  !> Part of a quantity that rounding leaves where it should cancel.
   real(wp), parameter :: noise = 100*epsilon(1.0_wp)
   !> Fresh starts before the problem is given up.
   integer, parameter :: restart_limit = 10
@@ -99,7 +99,7 @@ contains
     if (present(start)) lifted = max(basic_values(state), 0.0_wp)
     do attempt = 0, restart_limit
       solution%state = contact_solved
-      if (has_right_signs(state)) return
+      if (has_right_signs(scaled, state)) return
       solution%restarts = attempt
       call follow_load_from(scaled, state, lifted, solution, outcome, closed, ray)
       if (outcome == path_ray .and. is_overlap(scaled, ray)) then
@@ -113,7 +113,7 @@ contains
         lifted = lifted_apart(state, attempt)
       end if
     end do
-    if (.not. has_right_signs(state)) solution%state = contact_stalled
+    if (.not. has_right_signs(scaled, state)) solution%state = contact_stalled
   end subroutine find_contacts
 
   !> Forces, gaps and motions of a set of contacts, from F and A.
@@ -179,12 +179,16 @@ contains
     values = max(values, 0.0_wp) + [(1.0_wp + real(k, wp)/n, k=1, n)]/2.0_wp**attempt
   end function lifted_apart
 
-  !> The test of the fresh solution: R >= 0 and w >= 0.
-  pure function has_right_signs(state) result(right)
+  !> The test of the fresh solution: R >= 0 and w >= 0, to the rounding of the largest force and gap.
+  pure function has_right_signs(scaled, state) result(right)
+    type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(in) :: state
     logical :: right
+    real(wp) :: force_tolerance, gap_tolerance
 
-    right = all(basic_values(state) >= -sign_tolerance)
+    force_tolerance = sign_tolerance*maxval([abs(state%force), 1.0_wp])
+    gap_tolerance = force_tolerance + noise*maxval([abs(scaled%gap), 0.0_wp])
+    right = all(state%force >= -force_tolerance) .and. all(state%gap >= -gap_tolerance)
   end function has_right_signs
 
   !> Is z = `ray` really a proof that no solution exists: F z = 0, A'z = 0, z >= 0 and g'z < 0?
