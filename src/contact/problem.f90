@@ -15,7 +15,7 @@ module epcont_contact_problem
   !> What is true of the problem.
   integer, parameter, public :: contact_solved = 0          !! forces, gaps and approach satisfy all conditions
   integer, parameter, public :: contact_no_equilibrium = 1  !! no R >= 0 carry P: the bodies move off along `escape`
-  integer, parameter, public :: contact_overlap = 2         !! the pairs `overlapping` are driven into each other; nothing gives way
+  integer, parameter, public :: contact_overlap = 2         !! the pairs `overlapping` are too close and nothing gives way
   integer, parameter, public :: contact_stalled = 3         !! no set of touching pairs passed the test: rounding has won
 
   !> Number of pivots kept in `history`; all are counted.

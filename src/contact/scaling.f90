@@ -45,7 +45,7 @@ contains
     scaled%motion_size = maximum_of_columns(problem%motion)
     scaled%gap = problem%initial_gap + problem%load_gap
     scaled%unloaded_gap = max(problem%initial_gap, 0.0_wp)
-    largest = largest_of(reshape(problem%flexibility, [size(problem%flexibility)]))
+    largest = max(maxval(abs(problem%flexibility)), 0.0_wp)   ! maxval of nothing is negative
 
     driving = max(largest_of(min(scaled%gap, 0.0_wp)), largest_of(problem%load_gap))
     scaled%force_unit = force_unit(largest, driving, largest_of(problem%resultant/scaled%motion_size))
