@@ -1,0 +1,199 @@
+!> The start: which pairs touch first if the bodies are rigid.
+!>
+!> The ordinary two-phase simplex, with Bland's rule, on
+!>
+!>     minimise g^'R   subject to   A'R = P,   R >= 0
+!>
+!> The first phase finds forces that carry the load at all, or a motion along which nothing resists it;
+!> the second, bounded since g^ >= 0, the statically determinate set of pairs that closes first.
+module epcont_contact_equilibrium
+  use epcont_base_kinds, only: wp
+  use epcont_contact_scaling, only: negligible, scaled_problem
+  implicit none
+  private
+  public :: rigid_start, find_rigid_start, can_carry
+
+  !> What rigid bodies do under the load.
+  type :: rigid_start
+    logical :: balanced = .false.          !! some forces R >= 0 carry P
+    logical, allocatable :: touching(:)    !! the pairs that touch first, one a kept motion [n]
+    logical, allocatable :: redundant(:)   !! motions neither resisted nor loaded [m]
+    real(wp), allocatable :: escape(:)     !! y with P'y > 0, A y <= 0, if not balanced [m]
+  end type rigid_start
+
+  !> Part of |P| that phase 1 may leave uncarried.
+  real(wp), parameter :: balance_tolerance = 1.0e-9_wp
+  !> A row whose entries are all below this, with A and P of size one, depends on the others.
+  real(wp), parameter :: dependence_tolerance = 1.0e-9_wp
+
+  !> Rows: equations of equilibrium, with the signs that make P >= 0. Columns: forces 1..n, then one artificial force a row.
+  type :: programme
+    real(wp), allocatable :: entry(:, :)      !! [m, n + m]
+    real(wp), allocatable :: value(:)         !! basic variables [m]
+    integer, allocatable :: basic(:)          !! which variable is basic in each row [m]
+    real(wp), allocatable :: reduced_cost(:)  !! [n + m]
+  end type programme
+
+contains
+
+  pure subroutine find_rigid_start(problem, start)
+    type(scaled_problem), intent(in) :: problem
+    type(rigid_start), intent(out) :: start
+    type(programme) :: lp
+    integer :: m, n
+
+    n = size(problem%gap)
+    m = size(problem%resultant)
+    allocate (start%touching(n), source=.false.)
+    allocate (start%redundant(m), source=.false.)
+    lp = first_programme(problem%motion, problem%resultant)
+    call minimise(lp, n)
+    start%balanced = is_balanced(lp, n)
+    if (.not. start%balanced) then
+      start%escape = sign(1.0_wp, problem%resultant)*(1.0_wp - lp%reduced_cost(n + 1:))
+      return
+    end if
+    call expel_artificials(lp, n)
+    call price(lp, problem%unloaded_gap)
+    call minimise(lp, n)
+    start%touching(pack(lp%basic, lp%basic <= n)) = .true.
+    start%redundant(pack(lp%basic, lp%basic > n) - n) = .true.
+  end subroutine find_rigid_start
+
+  !> Are there R >= 0 with A'R = P?
+  pure function can_carry(motion, resultant) result(carried)
+    real(wp), intent(in) :: motion(:, :)    !! A, largest entry about one [n, m]
+    real(wp), intent(in) :: resultant(:)    !! P [m]
+    logical :: carried
+    type(programme) :: lp
+
+    lp = first_programme(motion, resultant)
+    call minimise(lp, size(motion, 1))
+    carried = is_balanced(lp, size(motion, 1))
+  end function can_carry
+
+  !> Do the true forces, variables up to n, carry all of the load?
+  pure function is_balanced(lp, n) result(balanced)
+    type(programme), intent(in) :: lp
+    integer, intent(in) :: n
+    logical :: balanced
+
+    balanced = sum(lp%value, mask=lp%basic > n) <= balance_tolerance
+  end function is_balanced
+
+  !> Phase 1: the artificial forces carry all of the load and cost one a unit.
+  pure function first_programme(motion, resultant) result(lp)
+    real(wp), intent(in) :: motion(:, :)    !! [n, m]
+    real(wp), intent(in) :: resultant(:)    !! [m]
+    type(programme) :: lp
+    real(wp) :: size_of_load
+    integer :: i, m, n
+
+    n = size(motion, 1)
+    m = size(resultant)
+    size_of_load = maxval([abs(resultant), 0.0_wp])
+    if (size_of_load <= 0.0_wp) size_of_load = 1.0_wp
+    lp%value = abs(resultant)/size_of_load
+    allocate (lp%entry(m, n + m), source=0.0_wp)
+    do i = 1, m
+      lp%entry(i, :n) = sign(1.0_wp, resultant(i))*motion(:, i)
+      lp%entry(i, n + i) = 1.0_wp
+    end do
+    lp%basic = [(n + i, i=1, m)]
+    allocate (lp%reduced_cost(n + m), source=0.0_wp)
+    lp%reduced_cost(:n) = -sum(lp%entry(:, :n), dim=1)
+  end function first_programme
+
+  !> Phase 2: forces cost their gaps; what is left of the artificials is zero and costs nothing.
+  pure subroutine price(lp, gap)
+    type(programme), intent(inout) :: lp
+    real(wp), intent(in) :: gap(:)   !! [n]
+    integer :: i, n
+
+    n = size(gap)
+    lp%reduced_cost = 0.0_wp
+    lp%reduced_cost(:n) = gap
+    do i = 1, size(lp%basic)
+      if (lp%basic(i) > n) cycle
+      lp%reduced_cost = lp%reduced_cost - gap(lp%basic(i))*lp%entry(i, :)
+    end do
+  end subroutine price
+
+  !> Exchange until no force lowers the cost. Bland's rule ends; the limit guards against rounding, and
+  !> a set that is not quite the best serves as well, since the contact simplex lifts its start.
+  pure subroutine minimise(lp, n)
+    type(programme), intent(inout) :: lp
+    integer, intent(in) :: n   !! columns that may enter
+    integer :: column, count, row
+
+    do count = 1, 100*(n + size(lp%basic))
+      column = findloc(lp%reduced_cost(:n) < -negligible, .true., dim=1)
+      if (column == 0) exit
+      row = leaving_row(lp, column)
+      if (row == 0) exit
+      call exchange(lp, row, column)
+    end do
+  end subroutine minimise
+
+  !> Least ratio; of ties, the variable of least index (Bland). 0: none decreases.
+  pure function leaving_row(lp, column) result(row)
+    type(programme), intent(in) :: lp
+    integer, intent(in) :: column
+    integer :: row
+    real(wp) :: least, ratio, zero
+    integer :: i
+
+    row = 0
+    least = huge(least)
+    zero = negligible*maxval([abs(lp%entry(:, column)), 1.0_wp])
+    do i = 1, size(lp%basic)
+      if (lp%entry(i, column) <= zero) cycle
+      ratio = lp%value(i)/lp%entry(i, column)
+      if (row > 0) then
+        if (ratio > least + negligible) cycle
+        if (ratio >= least - negligible .and. lp%basic(i) > lp%basic(row)) cycle
+      end if
+      row = i
+      least = ratio
+    end do
+  end function leaving_row
+
+  pure subroutine exchange(lp, row, column)
+    type(programme), intent(inout) :: lp
+    integer, intent(in) :: row, column
+    real(wp) :: factor
+    integer :: i
+
+    factor = lp%entry(row, column)
+    lp%entry(row, :) = lp%entry(row, :)/factor
+    lp%value(row) = lp%value(row)/factor
+    do i = 1, size(lp%basic)
+      if (i == row) cycle
+      factor = lp%entry(i, column)
+      lp%entry(i, :) = lp%entry(i, :) - factor*lp%entry(row, :)
+      lp%value(i) = max(lp%value(i) - factor*lp%value(row), 0.0_wp)
+    end do
+    lp%reduced_cost = lp%reduced_cost - lp%reduced_cost(column)*lp%entry(row, :)
+    lp%basic(row) = column
+  end subroutine exchange
+
+  !> Replace each artificial force that is basic at zero by a true one; where none can, the equation is
+  !> redundant and the artificial stays to mark it.
+  pure subroutine expel_artificials(lp, n)
+    type(programme), intent(inout) :: lp
+    integer, intent(in) :: n
+    integer :: column, i
+
+    if (n == 0) return
+    do i = 1, size(lp%basic)
+      if (lp%basic(i) <= n) cycle
+      lp%value(i) = 0.0_wp
+      column = maxloc(abs(lp%entry(i, :n)), dim=1)
+      if (abs(lp%entry(i, column)) > dependence_tolerance) then
+        call exchange(lp, i, column)
+      else
+        lp%entry(i, :n) = 0.0_wp
+      end if
+    end do
+  end subroutine expel_artificials
+end module epcont_contact_equilibrium

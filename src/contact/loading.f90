@@ -1,0 +1,106 @@
+!> The simplex on the load not carried yet: follow the contact as the load factor t grows from 0 to 1.
+module epcont_contact_loading
+  use epcont_base_kinds, only: wp
+  use epcont_contact_entry_rule, only: next_to_enter
+  use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
+  use epcont_contact_ratio_test, only: step_type, test_ratios
+  use epcont_contact_scaling, only: negligible
+  use epcont_contact_tableau, only: column_of, contact_tableau, load_factor, pivot, row_of
+  implicit none
+  private
+  public :: follow_load
+
+  !> How the load path ended.
+  integer, parameter, public :: path_complete = 0  !! all of the load is carried
+  integer, parameter, public :: path_ray = 1       !! the load cannot grow and nothing gives way
+  integer, parameter, public :: path_endless = 2   !! too many pivots: rounding has broken the order of ties
+
+  !> A load factor this near to 1 is all of the load.
+  real(wp), parameter :: load_tolerance = 1.0e-10_wp
+
+contains
+
+  !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens.
+  pure subroutine follow_load(tableau, pivot_limit, solution, outcome, closed, ray)
+    type(contact_tableau), intent(inout) :: tableau
+    integer, intent(in) :: pivot_limit
+    type(contact_solution), intent(inout) :: solution   !! pivots are counted and recorded here
+    integer, intent(out) :: outcome                     !! one of the above
+    logical, allocatable, intent(out) :: closed(:)      !! pairs with a basic force at the end [n]
+    real(wp), allocatable, intent(out) :: ray(:)        !! growth of the forces along a ray [n]
+    type(step_type) :: step
+    integer :: column, count, entering, left
+
+    allocate (ray(size(tableau%basic)), source=0.0_wp)
+    outcome = path_endless
+    entering = load_factor
+    do count = 0, pivot_limit
+      column = column_of(tableau, entering)
+      step = test_ratios(tableau, column)
+      if (is_complete(tableau, step)) then
+        outcome = path_complete
+      else if (step%row == 0) then
+        outcome = path_ray
+        ray = force_growth(tableau, column)
+      end if
+      if (outcome /= path_endless .or. count == pivot_limit) exit
+      left = tableau%basic(step%row)
+      call pivot(tableau, step%row, column)
+      call record(tableau, entering, left, step%ratio, solution)
+      entering = next_to_enter(left)
+    end do
+    closed = basic_forces(tableau)
+    ! The force on its way in at full load is positive; where it moved no load it stays out.
+    if (entering > 0 .and. step%load_rate > 0.0_wp) closed(entering) = .true.
+  end subroutine follow_load
+
+  !> Is all of the load carried before another variable blocks, or together with it?
+  pure function is_complete(tableau, step) result(complete)
+    type(contact_tableau), intent(in) :: tableau
+    type(step_type), intent(in) :: step
+    logical :: complete
+    integer :: row
+
+    complete = step%load_rate > 0.0_wp .and. step%full_load*(1.0_wp - load_tolerance) <= step%ratio
+    row = row_of(tableau, load_factor)
+    if (row > 0) complete = complete .or. tableau%value(row) >= 1.0_wp - load_tolerance
+  end function is_complete
+
+  !> Pairs whose force is basic.
+  pure function basic_forces(tableau) result(closed)
+    type(contact_tableau), intent(in) :: tableau
+    logical, allocatable :: closed(:)
+    integer :: k
+
+    closed = [(row_of(tableau, k) > 0, k=1, size(tableau%basic))]
+  end function basic_forces
+
+  !> Growth of each force with the entering variable.
+  pure function force_growth(tableau, column) result(growth)
+    type(contact_tableau), intent(in) :: tableau
+    integer, intent(in) :: column
+    real(wp), allocatable :: growth(:)
+    integer :: i
+
+    allocate (growth(size(tableau%basic)), source=0.0_wp)
+    do i = 1, size(tableau%basic)
+      if (tableau%basic(i) > 0) growth(tableau%basic(i)) = tableau%entry(i, column)
+    end do
+    if (tableau%nonbasic(column) > 0) growth(tableau%nonbasic(column)) = 1.0_wp
+  end function force_growth
+
+  !> Count the pivot and, of the first ones, write down what happened.
+  pure subroutine record(tableau, entered, left, ratio, solution)
+    type(contact_tableau), intent(in) :: tableau
+    integer, intent(in) :: entered, left
+    real(wp), intent(in) :: ratio
+    type(contact_solution), intent(inout) :: solution
+    integer :: row
+
+    solution%pivots = solution%pivots + 1
+    if (ratio <= negligible) solution%degenerate_pivots = solution%degenerate_pivots + 1
+    if (solution%pivots > history_limit) return
+    row = row_of(tableau, load_factor)
+    solution%history = [solution%history, pivot_record(entered, left, tableau%value(row), ratio)]
+  end subroutine record
+end module epcont_contact_loading

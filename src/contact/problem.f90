@@ -1,0 +1,55 @@
+!> What is asked of the contact solver, and what it answers.
+!>
+!> Of n candidate pairs and m free rigid motions of the bodies, find contact forces R, gaps w and
+!> motions q with (3-2)..(3-5), generalised:
+!>
+!>     w = g0 + gl + F R - A q >= 0,   R >= 0,   R.w = 0,   A'R = P
+!>
+!> F is symmetric and semidefinite; it may be singular.
+module epcont_contact_problem
+  use epcont_base_kinds, only: wp
+  implicit none
+  private
+  public :: contact_problem, contact_solution, pivot_record
+
+  !> What is true of the problem.
+  integer, parameter, public :: contact_solved = 0          !! forces, gaps and approach satisfy all conditions
+  integer, parameter, public :: contact_no_equilibrium = 1  !! no R >= 0 carry P: the bodies move off along `escape`
+  integer, parameter, public :: contact_overlap = 2         !! the pairs `overlapping` are too close and nothing gives way
+  integer, parameter, public :: contact_stalled = 3         !! no set of touching pairs passed the test: rounding has won
+
+  !> Number of pivots kept in `history`; all are counted.
+  integer, parameter, public :: history_limit = 50
+
+  type :: contact_problem
+    real(wp), allocatable :: flexibility(:, :)  !! F, opening of pair i by a unit force at pair j [length/force] [n, n]
+    real(wp), allocatable :: motion(:, :)       !! A, closing of the gaps by unit rigid motions [n, m]
+    real(wp), allocatable :: initial_gap(:)     !! g0, negative: an overlap [length] [n]
+    real(wp), allocatable :: load_gap(:)        !! gl, opening by the loads without contact [length] [n]
+    real(wp), allocatable :: resultant(:)       !! P, load of the bodies along their free motions [m]
+  end type contact_problem
+
+  !> One pivot. A variable is an integer: k is the force R_k, -k the gap w_k, 0 the load factor.
+  type :: pivot_record
+    integer :: entered = 0          !! the variable that became basic
+    integer :: left = 0             !! the variable that became zero
+    real(wp) :: load_factor = 0.0_wp  !! t after the pivot, from 0 to 1
+    real(wp) :: ratio = 0.0_wp      !! increase of the entered variable, in the solver's scaled units
+  end type pivot_record
+
+  type :: contact_solution
+    integer :: state = contact_stalled       !! one of the states above
+    real(wp), allocatable :: force(:)        !! R [force] [n]
+    real(wp), allocatable :: gap(:)          !! w [length] [n]
+    real(wp), allocatable :: approach(:)     !! q [m]
+    logical, allocatable :: touching(:)      !! closed pairs, pressed or not [n]
+    real(wp), allocatable :: escape(:)       !! y with P'y > 0 and A y <= 0, if there is no equilibrium [m]
+    logical, allocatable :: overlapping(:)   !! pairs that overlap and cannot give way [n]
+    logical, allocatable :: indeterminate(:) !! pairs whose force is not unique: `force` is one choice of many [n]
+    logical, allocatable :: motion_free(:)   !! motions that nothing determines; `approach` is one choice of many [m]
+    integer :: pivots = 0                    !! exchanges made
+    integer :: degenerate_pivots = 0         !! of these, without change of any variable
+    integer :: restarts = 0                  !! fresh starts, after a set failed the test at full load
+    type(pivot_record), allocatable :: history(:)  !! the first pivots, at most `history_limit`
+  end type contact_solution
+end module epcont_contact_problem

@@ -1,0 +1,120 @@
+!> What the contact conditions leave open: forces that can be shared in many ways, motions that nothing holds.
+module epcont_contact_uniqueness
+  use epcont_base_kinds, only: wp
+  use epcont_contact_basis, only: contact_basis, new_basis, rank_tolerance, regular_flexibility
+  use epcont_contact_equilibrium, only: can_carry
+  use epcont_contact_scaling, only: negligible, scaled_problem
+  use epcont_linalg_dense, only: add_product, cholesky_solve, null_space, pivoted_cholesky
+  implicit none
+  private
+  public :: find_indeterminate_forces, share_equally, find_free_motions
+
+  !> Components of a null vector (largest about 1) up to this are zero.
+  real(wp), parameter :: null_tolerance = 1.0e-7_wp
+
+contains
+
+  !> Pairs whose force can change without any gap or resultant changing: z with F z = 0, A'z = 0, and z >= 0
+  !> where there is no force yet.
+  !>
+  !> With the gaps of the pressed pairs held closed, an idle touching pair j feels the forces z of the idle
+  !> ones through the Schur complement M of F_g, and M z = 0 is asked of z.
+  pure function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
+    type(scaled_problem), intent(in) :: problem
+    logical, intent(in) :: touching(:)      !! gap zero [n]
+    logical, intent(in) :: pressed(:)       !! force beyond rounding; of a basis, so unique by themselves [n]
+    logical, allocatable :: indeterminate(:)
+    type(contact_basis) :: basis
+    real(wp), allocatable :: answer(:, :), change(:, :), coupling(:, :), loose(:, :)
+    integer, allocatable :: growing(:), idle(:)
+    integer :: k
+
+    allocate (indeterminate(size(touching)), source=.false.)
+    idle = pack([(k, k=1, size(touching))], touching .and. .not. pressed)
+    if (size(idle) == 0) return
+    basis = new_basis(problem, pressed)
+    coupling = regular_flexibility(problem, basis%gamma, idle, idle)
+    answer = regular_flexibility(problem, basis%gamma, basis%pairs, idle)
+    loose = transpose(answer)
+    call cholesky_solve(basis%factor, answer)
+    call add_product(-1.0_wp, loose, answer, coupling)
+
+    growing = forces_that_can_grow(coupling, rank_tolerance(problem))
+    indeterminate(idle(growing)) = .true.
+    loose = null_space(coupling(growing, growing), rank_tolerance(problem))
+    change = matmul(answer(:, growing), loose)
+    indeterminate(basis%pairs) = [(any(abs(change(k, :)) > null_tolerance), k=1, size(change, 1))]
+  end function find_indeterminate_forces
+
+  !> The j for which some z >= 0 with M z = 0 has z_j > 0.
+  pure function forces_that_can_grow(coupling, zero) result(growing)
+    real(wp), intent(in) :: coupling(:, :)   !! M, semidefinite [e, e]
+    real(wp), intent(in) :: zero             !! an entry up to this is rounding
+    integer, allocatable :: growing(:)
+    real(wp), allocatable :: factor(:, :), rows(:, :)
+    integer, allocatable :: order(:)
+    logical, allocatable :: grows(:)
+    integer :: j, rank
+
+    factor = coupling
+    call pivoted_cholesky(factor, zero, order, rank)
+    allocate (grows(size(order)), source=.false.)
+    if (rank < size(order)) then
+      rows = coupling(:, order(:rank))/max(maxval(abs(coupling)), zero)
+      where (abs(coupling(:, order(:rank))) <= zero) rows = 0.0_wp
+      grows = [(can_carry(rows, -rows(j, :)), j=1, size(order))]
+    end if
+    growing = pack([(j, j=1, size(order))], grows)
+  end function forces_that_can_grow
+
+  !> Pairs with equal rows in F and A share their force equally.
+  pure subroutine share_equally(problem, indeterminate, force)
+    type(scaled_problem), intent(in) :: problem
+    logical, intent(in) :: indeterminate(:)    !! [n]
+    real(wp), intent(inout) :: force(:)        !! [n]
+    integer, allocatable :: alike(:), pairs(:)
+    integer :: i, k
+    logical, allocatable :: shared(:)
+
+    pairs = pack([(k, k=1, size(force))], indeterminate)
+    allocate (shared(size(pairs)), source=.false.)
+    do i = 1, size(pairs)
+      if (shared(i)) cycle
+      alike = pack([(k, k=i, size(pairs))], [(are_alike(problem, pairs(i), pairs(k)), k=i, size(pairs))])
+      force(pairs(alike)) = sum(force(pairs(alike)))/size(alike)
+      shared(alike) = .true.
+    end do
+  end subroutine share_equally
+
+  !> Have two pairs the same flexibility and the same motion?
+  pure function are_alike(problem, i, k) result(alike)
+    type(scaled_problem), intent(in) :: problem
+    integer, intent(in) :: i, k
+    logical :: alike
+    real(wp) :: zero
+
+    zero = negligible*max(problem%flexibility(i, i), problem%flexibility(k, k))
+    alike = all(abs(problem%motion(i, :) - problem%motion(k, :)) <= negligible)
+    if (alike) alike = all(abs(problem%flexibility(:, i) - problem%flexibility(:, k)) <= zero)
+  end function are_alike
+
+  !> Motions that the pressed pairs do not hold and that no idle touching pair blocks in both directions.
+  pure function find_free_motions(problem, touching, pressed) result(free)
+    type(scaled_problem), intent(in) :: problem
+    logical, intent(in) :: touching(:), pressed(:)   !! [n]
+    logical, allocatable :: free(:)                  !! [m]
+    real(wp), allocatable :: closing(:, :), loose(:, :)
+    integer, allocatable :: holding(:), idle(:)
+    integer :: j, k
+
+    allocate (free(size(problem%resultant)), source=.false.)
+    holding = pack([(k, k=1, size(pressed))], pressed)
+    idle = pack([(k, k=1, size(pressed))], touching .and. .not. pressed)
+    loose = null_space(problem%motion(holding, :), null_tolerance)
+    closing = matmul(problem%motion(idle, :), loose)
+    do j = 1, size(loose, 2)
+      if (any(closing(:, j) > null_tolerance) .and. any(closing(:, j) < -null_tolerance)) cycle
+      free = free .or. abs(loose(:, j)) > null_tolerance
+    end do
+  end function find_free_motions
+end module epcont_contact_uniqueness

@@ -1,0 +1,199 @@
+!> Explicit interfaces of the BLAS and LAPACK routines in use, so that the compiler checks every call.
+!>
+!> Arguments are those of the LAPACK Users' Guide. `info` < 0 is a fault of the caller, `info` > 0 a
+!> property of the matrix.
+module epcont_linalg_lapack
+  use epcont_base_kinds, only: wp
+  implicit none
+  private
+  public :: dgemm, dgemv, dsymv, dsyrk, dtrsm
+  public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs, dpbcon
+  public :: dgetrf, dgetrs, dgeqp3, dorgqr, dgesvd, dsyev
+
+  ! BLAS
+  interface
+    !> C = alpha op(A) op(B) + beta C
+    pure subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+      import :: wp
+      character(len=1), intent(in) :: transa, transb
+      integer, intent(in) :: m, n, k, lda, ldb, ldc
+      real(wp), intent(in) :: alpha, beta
+      real(wp), intent(in) :: a(lda, *), b(ldb, *)
+      real(wp), intent(inout) :: c(ldc, *)
+    end subroutine dgemm
+
+    !> y = alpha op(A) x + beta y
+    pure subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: wp
+      character(len=1), intent(in) :: trans
+      integer, intent(in) :: m, n, lda, incx, incy
+      real(wp), intent(in) :: alpha, beta
+      real(wp), intent(in) :: a(lda, *), x(*)
+      real(wp), intent(inout) :: y(*)
+    end subroutine dgemv
+
+    !> y = alpha A x + beta y, A symmetric
+    pure subroutine dsymv(uplo, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: wp
+      character(len=1), intent(in) :: uplo
+      integer, intent(in) :: n, lda, incx, incy
+      real(wp), intent(in) :: alpha, beta
+      real(wp), intent(in) :: a(lda, *), x(*)
+      real(wp), intent(inout) :: y(*)
+    end subroutine dsymv
+
+    !> C = alpha A A' + beta C (or A'A), one triangle of C
+    pure subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
+      import :: wp
+      character(len=1), intent(in) :: uplo, trans
+      integer, intent(in) :: n, k, lda, ldc
+      real(wp), intent(in) :: alpha, beta
+      real(wp), intent(in) :: a(lda, *)
+      real(wp), intent(inout) :: c(ldc, *)
+    end subroutine dsyrk
+
+    !> op(A) X = alpha B or X op(A) = alpha B, A triangular; X replaces B
+    pure subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
+      import :: wp
+      character(len=1), intent(in) :: side, uplo, transa, diag
+      integer, intent(in) :: m, n, lda, ldb
+      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: a(lda, *)
+      real(wp), intent(inout) :: b(ldb, *)
+    end subroutine dtrsm
+  end interface
+
+  ! Symmetric positive definite matrices
+  interface
+    !> Cholesky factor
+    pure subroutine dpotrf(uplo, n, a, lda, info)
+      import :: wp
+      character(len=1), intent(in) :: uplo
+      integer, intent(in) :: n, lda
+      real(wp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: info
+    end subroutine dpotrf
+
+    !> Solution with the factor of dpotrf
+    pure subroutine dpotrs(uplo, n, nrhs, a, lda, b, ldb, info)
+      import :: wp
+      character(len=1), intent(in) :: uplo
+      integer, intent(in) :: n, nrhs, lda, ldb
+      real(wp), intent(in) :: a(lda, *)
+      real(wp), intent(inout) :: b(ldb, *)
+      integer, intent(out) :: info
+    end subroutine dpotrs
+
+    !> Inverse from the factor of dpotrf
+    pure subroutine dpotri(uplo, n, a, lda, info)
+      import :: wp
+      character(len=1), intent(in) :: uplo
+      integer, intent(in) :: n, lda
+      real(wp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: info
+    end subroutine dpotri
+
+    !> Cholesky factor of a semidefinite matrix with complete pivoting, P'AP = LL'
+    pure subroutine dpstrf(uplo, n, a, lda, piv, rank, tol, work, info)
+      import :: wp
+      character(len=1), intent(in) :: uplo
+      integer, intent(in) :: n, lda
+      real(wp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: piv(*), rank, info
+      real(wp), intent(in) :: tol
+      real(wp), intent(out) :: work(*)
+    end subroutine dpstrf
+
+    !> Cholesky factor of a band matrix
+    pure subroutine dpbtrf(uplo, n, kd, ab, ldab, info)
+      import :: wp
+      character(len=1), intent(in) :: uplo
+      integer, intent(in) :: n, kd, ldab
+      real(wp), intent(inout) :: ab(ldab, *)
+      integer, intent(out) :: info
+    end subroutine dpbtrf
+
+    !> Solution with the factor of dpbtrf
+    pure subroutine dpbtrs(uplo, n, kd, nrhs, ab, ldab, b, ldb, info)
+      import :: wp
+      character(len=1), intent(in) :: uplo
+      integer, intent(in) :: n, kd, nrhs, ldab, ldb
+      real(wp), intent(in) :: ab(ldab, *)
+      real(wp), intent(inout) :: b(ldb, *)
+      integer, intent(out) :: info
+    end subroutine dpbtrs
+
+    !> Reciprocal condition number from the factor of dpbtrf
+    pure subroutine dpbcon(uplo, n, kd, ab, ldab, anorm, rcond, work, iwork, info)
+      import :: wp
+      character(len=1), intent(in) :: uplo
+      integer, intent(in) :: n, kd, ldab
+      real(wp), intent(in) :: ab(ldab, *)
+      real(wp), intent(in) :: anorm
+      real(wp), intent(out) :: rcond, work(*)
+      integer, intent(out) :: iwork(*), info
+    end subroutine dpbcon
+
+    !> Eigenvalues, ascending, and eigenvectors of a symmetric matrix
+    pure subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
+      import :: wp
+      character(len=1), intent(in) :: jobz, uplo
+      integer, intent(in) :: n, lda, lwork
+      real(wp), intent(inout) :: a(lda, *)
+      real(wp), intent(out) :: w(*), work(*)
+      integer, intent(out) :: info
+    end subroutine dsyev
+  end interface
+
+  ! General matrices
+  interface
+    !> LU factor with row interchanges
+    pure subroutine dgetrf(m, n, a, lda, ipiv, info)
+      import :: wp
+      integer, intent(in) :: m, n, lda
+      real(wp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: ipiv(*), info
+    end subroutine dgetrf
+
+    !> Solution with the factor of dgetrf
+    pure subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+      import :: wp
+      character(len=1), intent(in) :: trans
+      integer, intent(in) :: n, nrhs, lda, ldb
+      real(wp), intent(in) :: a(lda, *)
+      integer, intent(in) :: ipiv(*)
+      real(wp), intent(inout) :: b(ldb, *)
+      integer, intent(out) :: info
+    end subroutine dgetrs
+
+    !> QR factor with column pivoting
+    pure subroutine dgeqp3(m, n, a, lda, jpvt, tau, work, lwork, info)
+      import :: wp
+      integer, intent(in) :: m, n, lda, lwork
+      real(wp), intent(inout) :: a(lda, *)
+      integer, intent(inout) :: jpvt(*)
+      real(wp), intent(out) :: tau(*), work(*)
+      integer, intent(out) :: info
+    end subroutine dgeqp3
+
+    !> The orthogonal matrix of a QR factor
+    pure subroutine dorgqr(m, n, k, a, lda, tau, work, lwork, info)
+      import :: wp
+      integer, intent(in) :: m, n, k, lda, lwork
+      real(wp), intent(inout) :: a(lda, *)
+      real(wp), intent(in) :: tau(*)
+      real(wp), intent(out) :: work(*)
+      integer, intent(out) :: info
+    end subroutine dorgqr
+
+    !> Singular values, descending, and singular vectors
+    pure subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
+      import :: wp
+      character(len=1), intent(in) :: jobu, jobvt
+      integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
+      real(wp), intent(inout) :: a(lda, *)
+      real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)
+      integer, intent(out) :: info
+    end subroutine dgesvd
+  end interface
+end module epcont_linalg_lapack

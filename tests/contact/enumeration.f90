@@ -1,0 +1,60 @@
+!> Reference for small problems: every set of pairs in contact is tried.
+module enumeration
+  use epcont_base_kinds, only: wp
+  use epcont_contact_problem, only: contact_problem
+  use epcont_linalg_dense, only: lu_solve
+  implicit none
+  private
+  public :: all_answers
+
+  !> Sign errors and pivots up to this are rounding; the test problems have entries of about one.
+  real(wp), parameter :: tolerance = 1.0e-8_wp
+
+contains
+
+  !> Forces of all basic answers [n, answers]; none if the problem has no answer. A of full column rank.
+  function all_answers(problem) result(answers)
+    type(contact_problem), intent(in) :: problem
+    real(wp), allocatable :: answers(:, :)
+    real(wp), allocatable :: force(:)
+    integer, allocatable :: closed(:)
+    integer :: code, k, n
+
+    n = size(problem%initial_gap)
+    allocate (answers(n, 0))
+    do code = 0, 2**n - 1
+      closed = pack([(k, k=1, n)], [(btest(code, k - 1), k=1, n)])
+      force = answer_of_set(problem, closed)
+      if (size(force) == n) answers = reshape([answers, force], [n, size(answers, 2) + 1])
+    end do
+  end function all_answers
+
+  !> Forces if exactly these pairs are closed; of size 0 (or unlike n) if they are no answer.
+  function answer_of_set(problem, closed) result(force)
+    type(contact_problem), intent(in) :: problem
+    integer, intent(in) :: closed(:)
+    real(wp), allocatable :: force(:)
+    real(wp), allocatable :: matrix(:, :), right(:, :), gap(:), copy(:, :)
+    integer :: info, m, n, s
+
+    n = size(problem%initial_gap)
+    m = size(problem%resultant)
+    s = size(closed)
+    allocate (matrix(s + m, s + m), right(s + m, 1), source=0.0_wp)
+    matrix(:s, :s) = problem%flexibility(closed, closed)
+    matrix(:s, s + 1:) = -problem%motion(closed, :)
+    matrix(s + 1:, :s) = transpose(problem%motion(closed, :))
+    gap = problem%initial_gap + problem%load_gap
+    right(:s, 1) = -gap(closed)
+    right(s + 1:, 1) = problem%resultant
+    copy = matrix
+    call lu_solve(copy, right, info)
+    allocate (force(n + 1), source=0.0_wp)
+    if (info /= 0) return
+    if (maxval([abs(right), 0.0_wp]) > 1.0e8_wp) return   ! singular but for rounding
+    if (any(right(:s, 1) < -tolerance)) return
+    force(closed) = right(:s, 1)
+    gap = gap + matmul(problem%flexibility, force(:n)) - matmul(problem%motion, right(s + 1:, 1))
+    if (all(gap >= -tolerance)) force = force(:n)
+  end function answer_of_set
+end module enumeration
