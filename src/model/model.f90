@@ -1,0 +1,69 @@
+!> The scene: what the deck describes, checked once and read-only from then on.
+!>
+!> Components come first in all arrays. Nodes, elements and pairs are known by their position; their ids
+!> of the deck serve for output alone.
+module epcont_model_model
+  use epcont_base_kinds, only: wp
+  use epcont_element_tria3, only: tria3_area
+  use epcont_material_elasticity, only: elastic_matrix
+  implicit none
+  private
+  public :: model_type
+
+  type :: model_type
+    integer :: nodes = 0, elements = 0, pairs = 0, bodies = 0
+    integer, allocatable :: node_id(:)          !! [nodes]
+    real(wp), allocatable :: x(:, :)            !! coordinates [length] [2, nodes]
+    integer, allocatable :: element_id(:)       !! [elements]
+    integer, allocatable :: corner(:, :)        !! nodes of each element, counter-clockwise [3, elements]
+    integer, allocatable :: section(:)          !! section of each element [elements]
+    real(wp), allocatable :: thickness(:)       !! [length] [sections]
+    logical, allocatable :: plane_strain(:)     !! else plane stress [sections]
+    real(wp), allocatable :: young(:)           !! [stress] [sections]
+    real(wp), allocatable :: poisson(:)         !! [sections]
+    logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
+    real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
+    integer, allocatable :: leader(:, :)        !! node whose displacement the freedom shares: itself if not tied [2, nodes]
+    logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
+    real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]
+    integer, allocatable :: pair_id(:)          !! [pairs]
+    integer, allocatable :: pair_node(:, :)     !! nodes A and B [2, pairs]
+    real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
+    real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
+    integer, allocatable :: body(:)             !! of each node [nodes]
+  contains
+    procedure :: corners
+    procedure :: area
+    procedure :: material_matrix
+  end type model_type
+
+contains
+
+  !> Coordinates of the corners of an element.
+  pure function corners(self, element) result(x)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: element
+    real(wp) :: x(2, 3)
+
+    x = self%x(:, self%corner(:, element))
+  end function corners
+
+  pure function area(self, element)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: element
+    real(wp) :: area
+
+    area = tria3_area(self%corners(element))
+  end function area
+
+  !> D of an element [3, 3].
+  pure function material_matrix(self, element) result(d)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: element
+    real(wp) :: d(3, 3)
+
+    associate (s => self%section(element))
+      d = elastic_matrix(self%young(s), self%poisson(s), self%plane_strain(s))
+    end associate
+  end function material_matrix
+end module epcont_model_model
