@@ -1,0 +1,68 @@
+!> Ids of cards: unique in their space, and found where other cards name them.
+module epcont_model_reference
+  use epcont_base_sorting, only: id_index, new_id_index, sorted_order
+  use epcont_base_text, only: text_of
+  use epcont_deck_deck, only: deck_type
+  use epcont_deck_diagnostic, only: diagnostics
+  implicit none
+  private
+  public :: index_of_ids, check_unique, resolve
+
+contains
+
+  !> Index of the ids in the first field of all cards of a table.
+  pure function index_of_ids(deck, card) result(index)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: card  !! which table
+    type(id_index) :: index
+
+    index = new_id_index(nint(deck%card(card)%value(1, :)))
+  end function index_of_ids
+
+  !> Each id stands once in the first fields of these tables, which share one id space.
+  subroutine check_unique(deck, cards, faults)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: cards(:)
+    type(diagnostics), intent(inout) :: faults
+    integer, allocatable :: id(:), table(:), row(:), order(:)
+    integer :: c, i, k, earlier
+
+    allocate (id(0), table(0), row(0))
+    do c = 1, size(cards)
+      associate (cards_of_name => deck%card(cards(c)))
+        id = [id, nint(cards_of_name%value(1, :))]
+        table = [table, [(cards(c), i=1, cards_of_name%count)]]
+        row = [row, [(i, i=1, cards_of_name%count)]]
+      end associate
+    end do
+    order = sorted_order(id)
+    do k = 2, size(id)
+      i = order(k)
+      earlier = order(k - 1)
+      if (id(i) /= id(earlier)) cycle
+      if (.not. deck%card(table(i))%given(1, i - count(table(:i) /= table(i)))) cycle
+      call faults%add_error(deck%place(table(i), row(i), 1), deck%identity(table(i), row(i))// &
+                            ': the id is taken by '//deck%identity(table(earlier), row(earlier)), 'an id of its own')
+    end do
+  end subroutine check_unique
+
+  !> Position of the card that a field names; 0, and a fault, where there is none.
+  subroutine resolve(deck, card, i, column, index, wanted, faults, position)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: card, i            !! which table, which card of it
+    integer, intent(in) :: column             !! the field that holds the id
+    type(id_index), intent(in) :: index       !! of the cards that may be meant
+    character(len=*), intent(in) :: wanted    !! their name
+    type(diagnostics), intent(inout) :: faults
+    integer, intent(out) :: position
+
+    position = 0
+    if (.not. deck%card(card)%given(column, i)) return  ! the reader has said so
+    position = index%find(nint(deck%card(card)%value(column, i)))
+    if (position > 0 .or. .not. deck%card(card)%sound(i)) return
+    call faults%add_error(deck%place(card, i, column), deck%identity(card, i)//': field '// &
+                          text_of(deck%entry(card)%field(column)%number)//' ('// &
+                          trim(deck%card(card)%name(column))//'): there is no '//wanted//' '// &
+                          text_of(nint(deck%card(card)%value(column, i))), 'the id of a '//wanted)
+  end subroutine resolve
+end module epcont_model_reference

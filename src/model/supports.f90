@@ -1,0 +1,190 @@
+!> Supports, ties and reference freedoms from GRID PS, SPC, SPC1, RBE2 and SUPORT.
+module epcont_model_supports
+  use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: id_index
+  use epcont_base_text, only: text_of
+  use epcont_deck_deck, only: card_grid, card_rbe2, card_spc, card_spc1, card_suport, deck_type
+  use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_model_model, only: model_type
+  use epcont_model_reference, only: resolve
+  use epcont_model_sets, only: chosen_set
+  implicit none
+  private
+  public :: build_supports, build_ties, build_references
+
+contains
+
+  !> GRID PS, SPC and SPC1 of the chosen set.
+  subroutine build_supports(deck, nodes, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(id_index), intent(in) :: nodes
+    type(model_type), intent(inout) :: model
+    type(diagnostics), intent(inout) :: faults
+    integer :: i, k, node, set
+    integer, allocatable :: found(:)
+
+    allocate (model%held(2, model%nodes), source=.false.)
+    allocate (model%prescribed(2, model%nodes), source=0.0_wp)
+    associate (grid => deck%card(card_grid), spc => deck%card(card_spc), spc1 => deck%card(card_spc1))
+      do i = 1, grid%count
+        if (grid%given(grid%column('PS'), i)) &
+          call hold(deck%place(card_grid, i, grid%column('PS')), deck%identity(card_grid, i), i, &
+                    nint(grid%value(grid%column('PS'), i)), 0.0_wp, model, faults)
+      end do
+      call chosen_set(deck, [card_spc, card_spc1], deck%spc, deck%spc_place, 'SPC', faults, set)
+      do i = 1, spc%count
+        do k = 2, 5, 3
+          if (.not. spc%given(k, i)) cycle
+          call resolve(deck, card_spc, i, k, nodes, 'GRID', faults, node)
+          if (node == 0 .or. nint(spc%value(1, i)) /= set) cycle
+          call hold(deck%place(card_spc, i, k), deck%identity(card_spc, i), node, nint(spc%value(k + 1, i)), &
+                    spc%value(k + 2, i), model, faults)
+        end do
+      end do
+      do i = 1, spc1%count
+        do k = spc1%list_start(i), spc1%list_start(i + 1) - 1
+          found = nodes%within(spc1%list_from(k), spc1%list_to(k))
+          if (size(found) == 0) then
+            call faults%add_error(deck%list_place(card_spc1, k), deck%identity(card_spc1, i)//': there is no GRID '// &
+                                  range_text(spc1%list_from(k), spc1%list_to(k)), 'the id of a GRID')
+          end if
+          if (nint(spc1%value(1, i)) /= set) cycle
+          do node = 1, size(found)
+            call hold(deck%list_place(card_spc1, k), deck%identity(card_spc1, i), found(node), &
+                      nint(spc1%value(2, i)), 0.0_wp, model, faults)
+          end do
+        end do
+      end do
+    end associate
+  end subroutine build_supports
+
+  pure function range_text(first, last) result(text)
+    integer, intent(in) :: first, last
+    character(len=:), allocatable :: text
+
+    text = text_of(first)
+    if (last > first) text = text//' to '//text_of(last)
+  end function range_text
+
+  !> Hold the freedoms of a node that `digits` names.
+  subroutine hold(place, name, node, digits, displacement, model, faults)
+    type(place_type), intent(in) :: place
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: node, digits
+    real(wp), intent(in) :: displacement
+    type(model_type), intent(inout) :: model
+    type(diagnostics), intent(inout) :: faults
+    integer :: c
+
+    do c = 1, 2
+      if (.not. has_component(digits, c)) cycle
+      if (model%held(c, node)) then
+        if (model%prescribed(c, node) /= displacement) &
+          call faults%add_error(place, name//': direction '//text_of(c)//' of GRID '//text_of(model%node_id(node))// &
+                                ' is held at another displacement already', 'one displacement for each freedom')
+      end if
+      model%held(c, node) = .true.
+      model%prescribed(c, node) = displacement
+    end do
+  end subroutine hold
+
+  !> Whether the digits (12, 2, 123456) name component c.
+  pure logical function has_component(digits, c)
+    integer, intent(in) :: digits, c
+
+    has_component = index(text_of(digits), text_of(c)) > 0
+  end function has_component
+
+  !> RBE2: freedoms that follow a leader. Chains are followed to their end.
+  subroutine build_ties(deck, nodes, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(id_index), intent(in) :: nodes
+    type(model_type), intent(inout) :: model
+    type(diagnostics), intent(inout) :: faults
+    integer :: c, i, k, leader, node, steps
+
+    model%leader = spread([(i, i=1, model%nodes)], 1, 2)
+    associate (rbe2 => deck%card(card_rbe2))
+      do i = 1, rbe2%count
+        call resolve(deck, card_rbe2, i, 2, nodes, 'GRID', faults, leader)
+        do k = rbe2%list_start(i), rbe2%list_start(i + 1) - 1
+          node = nodes%find(rbe2%list_from(k))
+          if (node == 0) then
+            call faults%add_error(deck%list_place(card_rbe2, k), deck%identity(card_rbe2, i)//': there is no GRID '// &
+                                  text_of(rbe2%list_from(k)), 'the id of a GRID')
+          else if (leader > 0) then
+            do c = 1, 2
+              if (has_component(nint(rbe2%value(3, i)), c)) &
+                call tie(deck%list_place(card_rbe2, k), deck%identity(card_rbe2, i), c, node, leader, model, faults)
+            end do
+          end if
+        end do
+      end do
+    end associate
+    do node = 1, model%nodes
+      do c = 1, 2
+        do steps = 1, model%nodes
+          leader = model%leader(c, model%leader(c, node))
+          if (leader == model%leader(c, node)) exit
+          model%leader(c, node) = leader
+        end do
+      end do
+    end do
+  end subroutine build_ties
+
+  !> Tie component c of a node to its leader.
+  subroutine tie(place, name, c, node, leader, model, faults)
+    type(place_type), intent(in) :: place
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: c, node, leader
+    type(model_type), intent(inout) :: model
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: freedom
+    integer :: at
+
+    freedom = ': direction '//text_of(c)//' of GRID '//text_of(model%node_id(node))
+    at = leader
+    do while (model%leader(c, at) /= at .and. at /= node)
+      at = model%leader(c, at)
+    end do
+    if (at == node) then
+      call faults%add_error(place, name//freedom//' would follow itself', 'nodes that follow GN, without GN')
+    else if (model%leader(c, node) /= node) then
+      call faults%add_error(place, name//freedom//' follows another RBE2 already', 'one leader for each freedom')
+    else if (model%held(c, node)) then
+      call faults%add_error(place, name//freedom//' is held by a support too', &
+                            'the support at GN '//text_of(model%node_id(leader))//' instead')
+    else
+      model%leader(c, node) = leader
+    end if
+  end subroutine tie
+
+  !> SUPORT.
+  subroutine build_references(deck, nodes, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(id_index), intent(in) :: nodes
+    type(model_type), intent(inout) :: model
+    type(diagnostics), intent(inout) :: faults
+    integer :: c, i, k, node
+
+    allocate (model%reference(2, model%nodes), source=.false.)
+    associate (suport => deck%card(card_suport))
+      do i = 1, suport%count
+        do k = 1, 7, 2
+          if (.not. suport%given(k, i)) cycle
+          call resolve(deck, card_suport, i, k, nodes, 'GRID', faults, node)
+          if (node == 0) cycle
+          do c = 1, 2
+            if (.not. has_component(nint(suport%value(k + 1, i)), c)) cycle
+            if (model%held(c, model%leader(c, node)) .or. model%leader(c, node) /= node) then
+              call faults%add_error(deck%place(card_suport, i, k), deck%identity(card_suport, i)//': direction '// &
+                                    text_of(c)//' of GRID '//text_of(model%node_id(node))// &
+                                    ' is held by a support or follows an RBE2', 'a freedom that is free to move')
+            end if
+            model%reference(c, node) = .true.
+          end do
+        end do
+      end do
+    end associate
+  end subroutine build_references
+end module epcont_model_supports
