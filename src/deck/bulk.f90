@@ -1,0 +1,236 @@
+!> The bulk data: each card checked field by field against the catalogue, and stored in its table.
+module epcont_deck_bulk
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
+  use epcont_deck_card, only: card_fields, gather
+  use epcont_deck_catalogue, only: card_kinds, catalogue, parameters
+  use epcont_deck_complaint, only: add_fault, add_unknown, add_value_fault, field_text, identity
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_deck_entry, only: card_entry, field_entry, kind_word, number_of, slot_of
+  use epcont_deck_field, only: scan_sound, scan_word
+  use epcont_deck_id_list, only: read_list
+  use epcont_deck_source, only: source
+  use epcont_deck_spelling, only: likely_name
+  use epcont_deck_table, only: card_table, new_table
+  use epcont_deck_value, only: read_value
+  implicit none
+  private
+  public :: read_bulk
+
+contains
+
+  !> Read the cards from line `first` on into `table`, one element for each entry of the catalogue.
+  subroutine read_bulk(lines, first, table, faults)
+    type(source), intent(in) :: lines
+    integer, intent(in) :: first
+    type(card_table), allocatable, intent(out) :: table(:)
+    type(diagnostics), intent(inout) :: faults
+    type(card_entry) :: entry(card_kinds)
+    type(field_entry), allocatable :: parameter_entry(:)
+    type(card_fields) :: card
+    integer :: line, k, errors
+
+    entry = catalogue()
+    parameter_entry = parameters()
+    allocate (table(card_kinds))
+    do k = 1, card_kinds
+      table(k) = new_table(entry(k))
+    end do
+    call reserve(lines, first, entry, table)
+    k = 1
+    line = first
+    do while (line <= lines%count)
+      card%next = line + 1
+      if (.not. lines%blank(line)) then
+        errors = faults%error_count()
+        call gather(lines, line, card, faults)
+        call find_card(card%name, entry, k)
+        if (k == 0) then
+          if (card%sound) call add_unknown(lines, card, entry, faults)
+        else
+          call table(k)%add_card(line)
+          if (card%sound) call read_card(lines, card, entry(k), parameter_entry, table(k), faults)
+          table(k)%sound(table(k)%count) = faults%error_count() == errors
+        end if
+      end if
+      line = card%next
+    end do
+    do k = 1, card_kinds
+      call table(k)%finish()
+      call add_notes(lines, entry(k), table(k), faults)
+    end do
+  end subroutine read_bulk
+
+  !> Room in each table for the cards that seem to be there, so that a large deck need not move its tables about.
+  subroutine reserve(lines, first, entry, table)
+    type(source), intent(in) :: lines
+    integer, intent(in) :: first
+    type(card_entry), intent(in) :: entry(:)
+    type(card_table), intent(inout) :: table(:)
+    character(len=8) :: name
+    integer :: cards(size(entry))
+    integer :: line, k, cut
+
+    cards = 0
+    k = 1
+    do line = first, lines%count
+      if (lines%blank(line)) cycle
+      name = lines%text(lines%first(line):min(lines%last(line), lines%first(line) + 7))
+      if (name(1:1) < 'A') cycle
+      cut = scan(name, ',*')
+      if (cut > 0) name(cut:) = ''
+      call find_card(name, entry, k)
+      if (k > 0) cards(k) = cards(k) + 1
+    end do
+    do k = 1, size(entry)
+      call table(k)%reserve(cards(k))
+    end do
+  end subroutine reserve
+
+  !> The entry of a name, tried first where the last card had its; 0 where there is none.
+  pure subroutine find_card(name, entry, k)
+    character(len=8), intent(in) :: name
+    type(card_entry), intent(in) :: entry(:)
+    integer, intent(inout) :: k
+
+    if (k > 0) then
+      if (entry(k)%name == name) return
+    end if
+    do k = size(entry), 1, -1
+      if (entry(k)%name == name) return
+    end do
+  end subroutine find_card
+
+  !> Read one card into the last row of its table.
+  subroutine read_card(lines, card, entry, parameter_entry, table, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_entry), intent(in) :: entry
+    type(field_entry), intent(in) :: parameter_entry(:)
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    integer :: column, named
+
+    named = 0
+    if (entry%name == 'PARAM') call find_parameter(lines, card, parameter_entry, faults, named)
+    if (named < 0) return
+    do column = 1, size(entry%field)
+      if (named > 0 .and. column == 2) then
+        call read_field(lines, card, parameter_entry(named), column, table, faults)
+      else
+        call read_field(lines, card, entry%field(column), column, table, faults)
+      end if
+    end do
+    call check_blanks(lines, card, entry, faults)
+    if (entry%list_number > 0) call read_list(lines, card, entry, table, faults)
+  end subroutine read_card
+
+  !> Which PARAM it is; 0 where the name is no word, -1 (with a fault) where it is unknown.
+  subroutine find_parameter(lines, card, parameter_entry, faults, named)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(field_entry), intent(in) :: parameter_entry(:)
+    type(diagnostics), intent(inout) :: faults
+    integer, intent(out) :: named
+    character(len=8) :: word, names(size(parameter_entry))
+    character(len=:), allocatable :: remedy
+    integer :: outcome, i
+
+    named = 0
+    if (.not. card%filled(1)) return
+    call scan_word(lines%text(card%first(1):card%last(1)), word, outcome)
+    if (outcome /= scan_sound) return
+    do named = 1, size(parameter_entry)
+      if (parameter_entry(named)%name == word) return
+    end do
+    named = -1
+    names = parameter_entry%name
+    i = likely_name(word, names)
+    if (i > 0) then
+      remedy = 'did you mean '//trim(parameter_entry(i)%name)//'?'
+    else
+      remedy = 'epcont --cards PARAM lists the parameters'
+    end if
+    call faults%add_error(card%place(lines, 1), 'unknown parameter '//trim(word), remedy)
+  end subroutine find_parameter
+
+  !> Read one field into the last row of the table.
+  subroutine read_field(lines, card, entry, column, table, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(field_entry), intent(in) :: entry
+    integer, intent(in) :: column
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    real(wp) :: value
+    character(len=8) :: word
+    integer :: slot, outcome
+
+    slot = slot_of(entry%number)
+    if (.not. card%filled(slot)) then
+      if (table%same_as(column) > 0) table%value(column, table%count) = table%value(table%same_as(column), table%count)
+      if (needed(card, entry)) call add_fault(lines, card, entry, 'is blank', entry%allowed(), faults)
+      return
+    end if
+    call read_value(lines%text(card%first(slot):card%last(slot)), entry, value, word, outcome)
+    if (outcome == scan_sound) then
+      table%value(column, table%count) = value
+      if (entry%kind == kind_word) table%word(column, table%count) = word
+      table%given(column, table%count) = .true.
+    else
+      call add_value_fault(lines, card, slot, entry, outcome, faults)
+    end if
+    if (entry%used) return
+    table%noted(column) = table%noted(column) + 1
+    if (table%noted(column) == 1) table%noted_card(column) = table%count
+  end subroutine read_field
+
+  !> May the field not be blank?
+  pure logical function needed(card, entry)
+    type(card_fields), intent(in) :: card
+    type(field_entry), intent(in) :: entry
+
+    needed = entry%required
+    if (.not. needed .and. entry%with > 0) needed = card%filled(slot_of(entry%with))
+  end function needed
+
+  !> Fields that the catalogue does not know must be blank.
+  subroutine check_blanks(lines, card, entry, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_entry), intent(in) :: entry
+    type(diagnostics), intent(inout) :: faults
+    integer :: slot, last
+
+    last = card%count
+    if (entry%list_number > 0) last = min(last, slot_of(entry%list_number) - 1)
+    do slot = 1, last
+      if (card%last(slot) < card%first(slot)) cycle
+      if (slot <= size(entry%column_at)) then
+        if (entry%column_at(slot) > 0) cycle
+      end if
+      call faults%add_error(card%place(lines, slot), &
+                            identity(lines, card)//': '//field_text(number_of(slot), '')//' must be blank', &
+                            'blank; '//trim(entry%name)//' ends with field '//text_of(entry%last_number()))
+    end do
+  end subroutine check_blanks
+
+  !> List once each field that was filled and has no effect.
+  subroutine add_notes(lines, entry, table, faults)
+    type(source), intent(in) :: lines
+    type(card_entry), intent(in) :: entry
+    type(card_table), intent(in) :: table
+    type(diagnostics), intent(inout) :: faults
+    type(card_fields) :: card
+    type(diagnostics) :: unheard
+    integer :: column
+
+    do column = 1, size(table%noted)
+      if (table%noted(column) == 0) cycle
+      call gather(lines, table%line(table%noted_card(column)), card, unheard)
+      call faults%add_note(card%place(lines, slot_of(entry%field(column)%number)), trim(entry%name)//': '// &
+                           field_text(entry%field(column)%number, trim(entry%field(column)%name))// &
+                           ' has no effect (cards with it: '//text_of(table%noted(column))//')')
+    end do
+  end subroutine add_notes
+end module epcont_deck_bulk

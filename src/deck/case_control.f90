@@ -1,0 +1,234 @@
+!> The statements before BEGIN BULK: which sets are used, titles, and what output is wanted.
+module epcont_deck_case_control
+  use epcont_base_kinds, only: i8
+  use epcont_base_text, only: text_of, upper
+  use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_deck_entry, only: largest_id
+  use epcont_deck_field, only: scan_integer, scan_sound
+  use epcont_deck_source, only: source
+  use epcont_deck_spelling, only: likely_name
+  implicit none
+  private
+  public :: case_control, read_case_control
+
+  !> What the statements say.
+  type :: case_control
+    character(len=:), allocatable :: title, subtitle, label  !! empty where not given
+    integer :: solution = 0          !! SOL; 0: not given
+    integer :: spc = 0, load = 0     !! the sets chosen; 0: no choice
+    type(place_type) :: spc_place, load_place
+    logical :: echo = .false.
+    logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
+  end type case_control
+
+  character(len=*), parameter :: keyword(13) = [character(len=12) :: 'SOL', 'CEND', 'TITLE', 'SUBTITLE', 'LABEL', 'SPC', &
+                                                'LOAD', 'ECHO', 'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'SUBCASE', 'NLPARM']
+
+  !> One statement, cut into its parts. Columns count from the first of the line.
+  type :: statement
+    integer :: line = 0
+    character(len=:), allocatable :: text      !! the line
+    character(len=:), allocatable :: word      !! in capitals
+    type(place_type) :: word_place, option_place, value_place
+    character(len=:), allocatable :: value     !! behind `=`, or behind the word
+    logical :: has_option = .false., has_equals = .false.
+  end type statement
+
+contains
+
+  !> Read the statements up to BEGIN BULK. `bulk` is the first line behind it; without it, the whole file is
+  !! bulk data, and `bulk` is 1.
+  subroutine read_case_control(lines, control, bulk, faults)
+    type(source), intent(in) :: lines
+    type(case_control), intent(out) :: control
+    integer, intent(out) :: bulk
+    type(diagnostics), intent(inout) :: faults
+    logical :: stated(size(keyword))
+    integer :: line
+
+    control%title = ''
+    control%subtitle = ''
+    control%label = ''
+    bulk = behind_begin_bulk(lines)
+    stated = .false.
+    do line = 1, bulk - 2
+      if (.not. lines%blank(line)) call read_statement(cut(lines, line), control, stated, faults)
+    end do
+  end subroutine read_case_control
+
+  !> The line behind BEGIN BULK; 1 where there is none.
+  pure integer function behind_begin_bulk(lines) result(bulk)
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+    integer :: line
+
+    bulk = 1
+    do line = 1, lines%count
+      if (lines%last(line) < lines%first(line) + 9) cycle
+      if (scan(lines%text(lines%first(line):lines%first(line)), 'Bb ') == 0) cycle
+      text = upper(adjustl(lines%text(lines%first(line):lines%last(line))))
+      if (text(:6) /= 'BEGIN ') cycle
+      if (adjustl(text(6:)) == 'BULK') then
+        bulk = line + 1
+        return
+      end if
+    end do
+  end function behind_begin_bulk
+
+  !> Cut a line into word, option and value.
+  pure function cut(lines, line) result(parts)
+    type(source), intent(in) :: lines
+    integer, intent(in) :: line
+    type(statement) :: parts
+    integer :: first, last, at
+
+    parts%line = line
+    parts%text = lines%text(lines%first(line):lines%last(line))
+    first = verify(parts%text, ' ')
+    last = first + scan(parts%text(first:)//' ', ' =(') - 2
+    parts%word = upper(parts%text(first:last))
+    parts%word_place = place_type(line, first, max(first, last))
+    at = behind_blanks(parts%text, last + 1)
+    if (at <= len(parts%text)) parts%has_option = parts%text(at:at) == '('
+    if (parts%has_option) then
+      last = at + index(parts%text(at:), ')') - 1
+      if (last < at) last = len(parts%text)
+      parts%option_place = place_type(line, at, last)
+      at = behind_blanks(parts%text, last + 1)
+    end if
+    if (at <= len(parts%text)) parts%has_equals = parts%text(at:at) == '='
+    if (parts%has_equals) at = behind_blanks(parts%text, at + 1)
+    parts%value = parts%text(at:)
+    parts%value_place = place_type(line, at, max(at, len(parts%text)))
+  end function cut
+
+  !> The first column from `from` on that is not blank.
+  pure integer function behind_blanks(text, from) result(at)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: from
+
+    do at = from, len(text)
+      if (text(at:at) /= ' ') return
+    end do
+    at = len(text) + 1
+  end function behind_blanks
+
+  !> Take one statement.
+  subroutine read_statement(parts, control, stated, faults)
+    type(statement), intent(in) :: parts
+    type(case_control), intent(inout) :: control
+    logical, intent(inout) :: stated(:)
+    type(diagnostics), intent(inout) :: faults
+    integer :: k, unused
+
+    k = find(parts%word)
+    if (k == 0) then
+      call add_unknown(parts, faults)
+      return
+    end if
+    if (stated(k)) call faults%add_error(parts%word_place, parts%word//' is stated twice', once(parts%word))
+    stated(k) = .true.
+    if (parts%has_option) call faults%add_note(parts%option_place, parts%word//': options have no effect')
+    select case (parts%word)
+    case ('SOL')
+      call take_number(parts, control%solution, faults)
+    case ('CEND')
+      if (len(parts%value) > 0) call faults%add_error(parts%value_place, 'CEND takes no value', 'nothing here')
+    case ('TITLE')
+      control%title = parts%value
+    case ('SUBTITLE')
+      control%subtitle = parts%value
+    case ('LABEL')
+      control%label = parts%value
+    case ('SPC')
+      control%spc_place = parts%value_place
+      call take_number(parts, control%spc, faults)
+    case ('LOAD')
+      control%load_place = parts%value_place
+      call take_number(parts, control%load, faults)
+    case ('ECHO')
+      call take_choice(parts, 'UNSORT', control%echo, faults)
+    case ('DISPLACEMENT')
+      call take_choice(parts, 'ALL', control%displacement, faults)
+    case ('STRESS')
+      call take_choice(parts, 'ALL', control%stress, faults)
+    case ('SPCFORCES')
+      call take_choice(parts, 'ALL', control%spcforces, faults)
+    case ('SUBCASE')
+      call take_number(parts, unused, faults)
+    case ('NLPARM')
+      call take_number(parts, unused, faults)
+      call faults%add_note(parts%word_place, 'NLPARM has no effect')
+    end select
+  end subroutine read_statement
+
+  pure integer function find(word) result(k)
+    character(len=*), intent(in) :: word
+
+    do k = size(keyword), 1, -1
+      if (keyword(k) == word) return
+    end do
+  end function find
+
+  pure function once(word) result(remedy)
+    character(len=*), intent(in) :: word
+    character(len=:), allocatable :: remedy
+
+    remedy = 'one '//word
+    if (word == 'SUBCASE') remedy = 'one SUBCASE a deck'
+  end function once
+
+  subroutine add_unknown(parts, faults)
+    type(statement), intent(in) :: parts
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: remedy
+    integer :: k
+
+    remedy = 'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'
+    if (len(parts%word) > 0) then
+      k = likely_name(parts%word, keyword)
+      if (k > 0) remedy = 'did you mean '//trim(keyword(k))//'?'
+    end if
+    call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, remedy)
+  end subroutine add_unknown
+
+  !> The number of a statement such as `SPC = 1`.
+  subroutine take_number(parts, number, faults)
+    type(statement), intent(in) :: parts
+    integer, intent(inout) :: number
+    type(diagnostics), intent(inout) :: faults
+    integer(i8) :: value
+    integer :: outcome
+
+    call scan_integer(parts%value, value, outcome)
+    if (outcome == scan_sound .and. value > 0 .and. value <= largest_id) then
+      number = int(value)
+    else if (len(parts%value) == 0) then
+      call faults%add_error(parts%word_place, parts%word//' needs a number', number_remedy())
+    else
+      call faults%add_error(parts%value_place, parts%word//': not a number that can be used', number_remedy())
+    end if
+  end subroutine take_number
+
+  pure function number_remedy() result(remedy)
+    character(len=:), allocatable :: remedy
+
+    remedy = 'a whole number from 1 to '//text_of(largest_id)
+  end function number_remedy
+
+  !> A statement that takes NONE or one other word.
+  subroutine take_choice(parts, other, chosen, faults)
+    type(statement), intent(in) :: parts
+    character(len=*), intent(in) :: other
+    logical, intent(inout) :: chosen  !! the other word is stated
+    type(diagnostics), intent(inout) :: faults
+
+    if (upper(parts%value) == other .or. upper(parts%value) == 'NONE') then
+      chosen = upper(parts%value) == other
+    else if (len(parts%value) == 0) then
+      call faults%add_error(parts%word_place, parts%word//' needs a word', other//' or NONE')
+    else
+      call faults%add_error(parts%value_place, parts%word//': not a word known here', other//' or NONE')
+    end if
+  end subroutine take_choice
+end module epcont_deck_case_control

@@ -1,0 +1,289 @@
+!> THE table of cards and fields. The reader checks by it, and `epcont --cards` prints it: there is
+!> no other place that knows a column.
+module epcont_deck_catalogue
+  use epcont_base_kinds, only: wp
+  use epcont_deck_entry, only: any_field, card_entry, components_field, field_entry, id_field, integer_field, largest_id, &
+                               new_card, number_of, real_field, word_field
+  implicit none
+  private
+  public :: catalogue, parameters
+
+  !> The cards, by their place in the catalogue.
+  integer, parameter, public :: card_grid = 1, card_ctria3 = 2, card_pshell = 3, card_mat1 = 4, card_spc = 5, &
+                                card_spc1 = 6, card_force = 7, card_ploadx1 = 8, card_rbe2 = 9, card_suport = 10, &
+                                card_cord2r = 11, card_cgap = 12, card_pgap = 13, card_cbar = 14, card_param = 15
+  integer, parameter, public :: card_kinds = 15
+
+contains
+
+  !> All cards.
+  function catalogue() result(card)
+    type(card_entry) :: card(card_kinds)
+
+    card(card_grid) = grid()
+    card(card_ctria3) = ctria3()
+    card(card_pshell) = pshell()
+    card(card_mat1) = mat1()
+    card(card_spc) = spc()
+    card(card_spc1) = spc1()
+    card(card_force) = force()
+    card(card_ploadx1) = ploadx1()
+    card(card_rbe2) = rbe2()
+    card(card_suport) = suport()
+    card(card_cord2r) = cord2r()
+    card(card_cgap) = cgap()
+    card(card_pgap) = pgap()
+    card(card_cbar) = cbar()
+    card(card_param) = param()
+  end function catalogue
+
+  function grid() result(card)
+    type(card_entry) :: card
+
+    card = new_card('GRID', 'node')
+    call card%add(id_field(2, 'ID', 'node'))
+    call card%add(zero(3, 'CP', 'system of X1 to X3: the basic one'))
+    call card%add(real_field(4, 'X1', 'coordinate x', 'length', default=0.0_wp))
+    call card%add(real_field(5, 'X2', 'coordinate y', 'length', default=0.0_wp))
+    call card%add(real_field(6, 'X3', 'coordinate z; 0.0 in plane scenes', 'length', default=0.0_wp))
+    call card%add(zero(7, 'CD', 'system of the displacements: the basic one'))
+    call card%add(components_field(8, 'PS', 'permanent supports', required=.false.))
+  end function grid
+
+  function ctria3() result(card)
+    type(card_entry) :: card
+
+    card = new_card('CTRIA3', 'constant-strain triangle')
+    call card%add(id_field(2, 'EID', 'element'))
+    call card%add(id_field(3, 'PID', 'its PSHELL'))
+    call card%add(id_field(4, 'G1', 'first node, in either turning sense'))
+    call card%add(id_field(5, 'G2', 'second node'))
+    call card%add(id_field(6, 'G3', 'third node'))
+  end function ctria3
+
+  function pshell() result(card)
+    type(card_entry) :: card
+
+    card = new_card('PSHELL', 'plane section')
+    call card%add(id_field(2, 'PID', 'property'))
+    call card%add(id_field(3, 'MID1', 'its MAT1'))
+    call card%add(positive(real_field(4, 'T', 'thickness', 'length', required=.true.)))
+    call card%add(integer_field(5, 'MID2', '-1: plane strain; blank: as PARAM PLANE says', -1, -1))
+  end function pshell
+
+  function mat1() result(card)
+    type(card_entry) :: card
+    type(field_entry) :: ratio
+
+    card = new_card('MAT1', 'isotropic elastic material; two of E, G, NU')
+    call card%add(id_field(2, 'MID', 'material'))
+    call card%add(positive(real_field(3, 'E', 'Young''s modulus', 'stress')))
+    call card%add(positive(real_field(4, 'G', 'shear modulus', 'stress')))
+    ratio = real_field(5, 'NU', 'Poisson''s ratio', '')
+    ratio%lowest = 0.0_wp
+    ratio%highest = 0.5_wp
+    ratio%below_highest = .true.
+    ratio%reason = 'incompressible: the bulk modulus is infinite'
+    ratio%instead = '0.4999'
+    call card%add(ratio)
+    call card%add(noted(real_field(6, 'RHO', 'density', '')))
+    call card%add(noted(real_field(7, 'A', 'thermal expansion', '')))
+    call card%add(noted(real_field(8, 'TREF', 'reference temperature', '')))
+    call card%add(noted(real_field(9, 'GE', 'damping', '')))
+    call card%add(noted(real_field(12, 'ST', 'limit of tension', 'stress')))
+    call card%add(noted(real_field(13, 'SC', 'limit of compression', 'stress')))
+    call card%add(noted(real_field(14, 'SS', 'limit of shear', 'stress')))
+    call card%add(noted(integer_field(15, 'MCSID', 'material system', 0, largest_id)))
+  end function mat1
+
+  function spc() result(card)
+    type(card_entry) :: card
+
+    card = new_card('SPC', 'supports, with prescribed displacements')
+    call card%add(id_field(2, 'SID', 'set'))
+    call card%add(id_field(3, 'G1', 'node'))
+    call card%add(components_field(4, 'C1', 'directions', required=.true.))
+    call card%add(real_field(5, 'D1', 'displacement', 'length', default=0.0_wp))
+    call card%add(id_field(6, 'G2', 'second node', with=7))
+    call card%add(components_field(7, 'C2', 'directions', required=.false., with=6))
+    call card%add(real_field(8, 'D2', 'displacement', 'length', default=0.0_wp))
+  end function spc
+
+  function spc1() result(card)
+    type(card_entry) :: card
+
+    card = new_card('SPC1', 'supports')
+    call card%add(id_field(2, 'SID', 'set'))
+    call card%add(components_field(3, 'C', 'directions; 3 to 6 have no effect in plane scenes', required=.true.))
+    call card%add_list(4, 'G', 'nodes, or G1 THRU G2', has_ranges=.true.)
+  end function spc1
+
+  function force() result(card)
+    type(card_entry) :: card
+
+    card = new_card('FORCE', 'force F*N at a node')
+    call card%add(id_field(2, 'SID', 'set'))
+    call card%add(id_field(3, 'G', 'node'))
+    call card%add(zero(4, 'CID', 'system of N1 to N3: the basic one'))
+    call card%add(real_field(5, 'F', 'factor', 'force', required=.true.))
+    call card%add(real_field(6, 'N1', 'direction x', '', default=0.0_wp))
+    call card%add(real_field(7, 'N2', 'direction y', '', default=0.0_wp))
+    call card%add(real_field(8, 'N3', 'direction z; 0.0 in plane scenes', '', default=0.0_wp))
+  end function force
+
+  function ploadx1() result(card)
+    type(card_entry) :: card
+    type(field_entry) :: pressure
+
+    card = new_card('PLOADX1', 'pressure on the edge of an element')
+    call card%add(id_field(2, 'SID', 'set'))
+    call card%add(id_field(3, 'EID', 'element'))
+    call card%add(real_field(4, 'PA', 'pressure at GA, positive into the element', 'stress', required=.true.))
+    pressure = real_field(5, 'PB', 'pressure at GB', 'stress')
+    pressure%same_as = 4
+    call card%add(pressure)
+    call card%add(id_field(6, 'GA', 'corner at which the edge begins'))
+    call card%add(id_field(7, 'GB', 'corner at which it ends'))
+    call card%add(real_field(8, 'THETA', 'counter-clockwise from the inward normal', 'degree', default=0.0_wp))
+  end function ploadx1
+
+  function rbe2() result(card)
+    type(card_entry) :: card
+
+    card = new_card('RBE2', 'rigid platen: nodes that move as one')
+    call card%add(id_field(2, 'EID', 'element'))
+    call card%add(id_field(3, 'GN', 'node that leads'))
+    call card%add(components_field(4, 'CM', 'directions tied', required=.true.))
+    call card%add_list(5, 'GM', 'nodes that follow', has_ranges=.false.)
+  end function rbe2
+
+  function suport() result(card)
+    type(card_entry) :: card
+    character(len=*), parameter :: digit = '1234'
+    integer :: i, number
+
+    card = new_card('SUPORT', 'reference freedoms of free bodies, solved for: the approach')
+    do i = 1, len(digit)
+      number = 2*i
+      call card%add(id_field(number, 'ID'//digit(i:i), 'node', required=i == 1, with=number + 1))
+      call card%add(components_field(number + 1, 'C'//digit(i:i), 'directions', required=i == 1, with=number))
+    end do
+  end function suport
+
+  function cord2r() result(card)
+    type(card_entry) :: card
+    character(len=*), parameter :: point(3) = ['A', 'B', 'C'], digit(3) = ['1', '2', '3']
+    character(len=*), parameter :: meaning(3) = ['origin           ', 'point on z       ', 'point in x-z half']
+    integer :: i, j
+
+    card = new_card('CORD2R', 'rectangular coordinate system, for gap directions')
+    call card%add(id_field(2, 'CID', 'system'))
+    call card%add(zero(3, 'RID', 'system of the points: the basic one'))
+    do i = 1, 3
+      do j = 1, 3
+        call card%add(real_field(number_of(3*i + j - 1), point(i)//digit(j), trim(meaning(i)), 'length', default=0.0_wp))
+      end do
+    end do
+  end function cord2r
+
+  function cgap() result(card)
+    type(card_entry) :: card
+
+    card = new_card('CGAP', 'contact pair')
+    call card%add(id_field(2, 'EID', 'pair'))
+    call card%add(id_field(3, 'PID', 'its PGAP'))
+    call card%add(id_field(4, 'GA', 'node A'))
+    call card%add(id_field(5, 'GB', 'node B, pushed along the normal'))
+    call card%add(any_field(6, 'X1', 'orientation, or node G0'))
+    call card%add(noted(real_field(7, 'X2', 'orientation', '')))
+    call card%add(noted(real_field(8, 'X3', 'orientation', '')))
+    call card%add(integer_field(9, 'CID', 'system whose x is the normal; blank: from GA to GB', 0, largest_id))
+  end function cgap
+
+  function pgap() result(card)
+    type(card_entry) :: card
+
+    card = new_card('PGAP', 'property of contact pairs')
+    call card%add(id_field(2, 'PID', 'property'))
+    call card%add(real_field(3, 'U0', 'initial gap', 'length', default=0.0_wp))
+    call card%add(zero_real(4, 'F0', 'preload', 'there is no preload'))
+    call card%add(noted(real_field(5, 'KA', 'closed stiffness: contact is exact', '')))
+    call card%add(noted(real_field(6, 'KB', 'open stiffness', '')))
+    call card%add(noted(real_field(7, 'KT', 'tangential stiffness', '')))
+    call card%add(zero_real(8, 'MU1', 'static friction', 'there is no friction'))
+    call card%add(zero_real(9, 'MU2', 'kinetic friction', 'there is no friction'))
+    call card%add(noted(real_field(12, 'TMAX', 'largest penetration', '')))
+    call card%add(noted(real_field(13, 'MAR', 'largest adjustment', '')))
+    call card%add(noted(real_field(14, 'TRMIN', 'smallest penetration', '')))
+  end function pgap
+
+  function cbar() result(card)
+    type(card_entry) :: card
+    integer :: slot
+
+    card = new_card('CBAR', 'boundary line of a mesher: counted, no effect')
+    call card%add(noted(id_field(2, 'EID', 'element')))
+    call card%add(noted(id_field(3, 'PID', 'property, not looked up', required=.false.)))
+    call card%add(noted(id_field(4, 'GA', 'first node')))
+    call card%add(noted(id_field(5, 'GB', 'second node')))
+    do slot = 5, 16
+      call card%add(any_field(number_of(slot), '', 'anything'))
+    end do
+  end function cbar
+
+  function param() result(card)
+    type(card_entry) :: card
+
+    card = new_card('PARAM', 'a choice for the whole deck')
+    call card%add(word_field(2, 'NAME', 'parameter'))
+    call card%add(word_field(3, 'VALUE', 'its value'))
+  end function param
+
+  !> All PARAMs: the field VALUE for each NAME.
+  function parameters() result(field)
+    type(field_entry) :: field(4)
+
+    field(1) = word_field(3, 'PLANE', 'every PSHELL with blank MID2', choices='STRAIN STRESS')
+    field(2) = word_field(3, 'RULE', 'contact entry rule; default AUTO', choices='AUTO CONRY')
+    field(3) = word_field(3, 'GAPGEOM', 'YES adds the distance of the nodes to each gap; default NO', choices='NO YES')
+    field(4) = word_field(3, 'UNITS', 'printed with the results; nothing is converted')
+  end function parameters
+
+  !> A field that is zero or blank: there is nothing to choose.
+  function zero(number, name, meaning) result(field)
+    integer, intent(in) :: number
+    character(len=*), intent(in) :: name, meaning
+    type(field_entry) :: field
+
+    field = integer_field(number, name, meaning, 0, 0, default=0)
+  end function zero
+
+  function zero_real(number, name, meaning, reason) result(field)
+    integer, intent(in) :: number
+    character(len=*), intent(in) :: name, meaning, reason
+    type(field_entry) :: field
+
+    field = real_field(number, name, meaning, '', default=0.0_wp)
+    field%lowest = 0.0_wp
+    field%highest = 0.0_wp
+    field%reason = reason
+  end function zero_real
+
+  function positive(plain) result(field)
+    type(field_entry), intent(in) :: plain
+    type(field_entry) :: field
+
+    field = plain
+    field%lowest = 0.0_wp
+    field%above_lowest = .true.
+  end function positive
+
+  !> A field that is checked and has no effect.
+  function noted(plain) result(field)
+    type(field_entry), intent(in) :: plain
+    type(field_entry) :: field
+
+    field = plain
+    field%used = .false.
+  end function noted
+end module epcont_deck_catalogue

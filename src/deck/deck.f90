@@ -1,0 +1,144 @@
+!> A deck as the rest of the program sees it: what case control says, and a table of cards for each name.
+module epcont_deck_deck
+  use epcont_base_error, only: error_type
+  use epcont_base_text, only: text_of
+  use epcont_deck_bulk, only: read_bulk
+  use epcont_deck_card, only: card_fields, gather
+  use epcont_deck_case_control, only: case_control, read_case_control
+  use epcont_deck_catalogue, only: card_cbar, card_cgap, card_cord2r, card_ctria3, card_force, card_grid, card_kinds, &
+                                   card_mat1, card_param, card_pgap, card_ploadx1, card_pshell, card_rbe2, card_spc, &
+                                   card_spc1, card_suport, catalogue
+  use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_deck_entry, only: card_entry, slot_of
+  use epcont_deck_source, only: read_source, source
+  use epcont_deck_table, only: card_table
+  implicit none
+  private
+  public :: deck_type, card_table, read_deck
+  public :: card_cbar, card_cgap, card_cord2r, card_ctria3, card_force, card_grid, card_kinds, card_mat1, card_param, &
+            card_pgap, card_ploadx1, card_pshell, card_rbe2, card_spc, card_spc1, card_suport
+
+  !> All that a deck says: titles, sets chosen and output wanted, as case control has it, and the cards.
+  type, extends(case_control) :: deck_type
+    type(source) :: source                         !! its text
+    type(card_table), allocatable :: card(:)       !! its cards [card_kinds]
+    type(card_entry), allocatable :: entry(:)      !! what the catalogue says of each [card_kinds]
+  contains
+    procedure :: place
+    procedure :: list_place
+    procedure :: identity
+    procedure :: parameter_row
+    procedure :: parameter_word
+  end type deck_type
+
+contains
+
+  !> Read a deck. Faults in it are collected in `faults`; `error` is set where the file itself cannot be read.
+  subroutine read_deck(path, deck, faults, error)
+    character(len=*), intent(in) :: path
+    type(deck_type), intent(out) :: deck
+    type(diagnostics), intent(inout) :: faults
+    type(error_type), allocatable, intent(out) :: error
+    integer :: bulk
+
+    deck%entry = catalogue()
+    call read_source(path, deck%source, faults, error)
+    if (allocated(error)) return
+    call read_case_control(deck%source, deck%case_control, bulk, faults)
+    call read_bulk(deck%source, bulk, deck%card, faults)
+  end subroutine read_deck
+
+  !> Where a field of a card stands; the card is cut into fields once more to find out.
+  function place(self, card, i, field)
+    class(deck_type), intent(in) :: self
+    integer, intent(in) :: card   !! which table: card_grid, ...
+    integer, intent(in) :: i      !! which card of it
+    integer, intent(in) :: field  !! column in the table; 0: the name of the card
+    type(place_type) :: place
+
+    if (field == 0) then
+      place = slot_place(self, self%card(card)%line(i), 0)
+    else
+      place = slot_place(self, self%card(card)%line(i), slot_of(self%entry(card)%field(field)%number))
+    end if
+  end function place
+
+  !> Where an item of the open list of a card stands.
+  function list_place(self, card, k) result(place)
+    class(deck_type), intent(in) :: self
+    integer, intent(in) :: card  !! which table
+    integer, intent(in) :: k     !! which item of its lists
+    type(place_type) :: place
+    integer :: low, high, middle
+
+    associate (table => self%card(card))
+      low = 1
+      high = table%count
+      do while (low < high)
+        middle = high - (high - low)/2
+        if (table%list_start(middle) <= k) then
+          low = middle
+        else
+          high = middle - 1
+        end if
+      end do
+      place = slot_place(self, table%line(low), slot_of(table%list_field(k)))
+    end associate
+  end function list_place
+
+  !> Where a slot of the card that begins at `line` stands; slot 0 is the name.
+  function slot_place(self, line, slot) result(place)
+    class(deck_type), intent(in) :: self
+    integer, intent(in) :: line, slot
+    type(place_type) :: place
+    type(card_fields) :: card
+    type(diagnostics) :: unheard
+
+    call gather(self%source, line, card, unheard)
+    if (slot == 0) then
+      place = card%name_place(self%source)
+    else
+      place = card%place(self%source, slot)
+    end if
+  end function slot_place
+
+  !> The card as messages name it: `GRID 17`, `PARAM PLANE`.
+  pure function identity(self, card, i) result(text)
+    class(deck_type), intent(in) :: self
+    integer, intent(in) :: card, i  !! which table, which card of it
+    character(len=:), allocatable :: text
+
+    text = trim(self%entry(card)%name)
+    if (.not. self%card(card)%given(1, i)) return
+    if (card == card_param) then
+      text = text//' '//trim(self%card(card)%word(1, i))
+    else
+      text = text//' '//text_of(nint(self%card(card)%value(1, i)))
+    end if
+  end function identity
+
+  !> The first PARAM card of a name; 0 where there is none.
+  pure integer function parameter_row(self, name) result(row)
+    class(deck_type), intent(in) :: self
+    character(len=*), intent(in) :: name
+
+    do row = 1, self%card(card_param)%count
+      if (self%card(card_param)%word(1, row) == name) return
+    end do
+    row = 0
+  end function parameter_row
+
+  !> The word that a PARAM says; `default` where there is no such card.
+  pure function parameter_word(self, name, default) result(word)
+    class(deck_type), intent(in) :: self
+    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: default
+    character(len=8) :: word
+    integer :: row
+
+    word = default
+    row = self%parameter_row(name)
+    if (row == 0) return
+    if (self%card(card_param)%given(2, row)) word = self%card(card_param)%word(2, row)
+  end function parameter_word
+end module epcont_deck_deck

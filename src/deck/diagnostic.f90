@@ -1,0 +1,139 @@
+!> Faults of a deck: what is wrong, where, and what would be right. They are collected, so that one
+!> run reports them all; `epcont_deck_render` turns them into text.
+module epcont_deck_diagnostic
+  use epcont_base_sorting, only: sorted_order
+  implicit none
+  private
+  public :: place_type, diagnostic, diagnostics
+
+  integer, parameter, public :: severity_error = 1    !! the deck is rejected
+  integer, parameter, public :: severity_warning = 2  !! the deck is read, but look here
+  integer, parameter, public :: severity_note = 3     !! for the listing only
+
+  !> A stretch of columns of one line of the deck.
+  type :: place_type
+    integer :: line = 0   !! index into the lines of the source, in deck order; 0: the deck as a whole
+    integer :: first = 0  !! first column
+    integer :: last = 0   !! last column
+  end type place_type
+
+  !> One fault.
+  type :: diagnostic
+    integer :: severity = severity_error
+    type(place_type) :: place
+    character(len=:), allocatable :: what    !! `GRID 17: field 4 (X1) is not a real number`
+    character(len=:), allocatable :: remedy  !! `a real such as 1.5`; may be empty
+  end type diagnostic
+
+  !> The faults of one deck, in the order in which they were found.
+  type :: diagnostics
+    private
+    integer :: count = 0
+    integer :: counts(3) = 0  !! by severity
+    type(diagnostic), allocatable :: list(:)
+  contains
+    procedure :: add_error
+    procedure :: add_warning
+    procedure :: add_note
+    procedure :: error_count
+    procedure :: warning_count
+    procedure :: note_count
+    procedure :: in_deck_order
+    procedure :: item
+  end type diagnostics
+
+contains
+
+  !> An error: the deck is rejected.
+  subroutine add_error(self, place, what, remedy)
+    class(diagnostics), intent(inout) :: self
+    type(place_type), intent(in) :: place
+    character(len=*), intent(in) :: what, remedy
+
+    call add(self, diagnostic(severity_error, place, what, remedy))
+  end subroutine add_error
+
+  !> A warning: the deck is read all the same.
+  subroutine add_warning(self, place, what, remedy)
+    class(diagnostics), intent(inout) :: self
+    type(place_type), intent(in) :: place
+    character(len=*), intent(in) :: what, remedy
+
+    call add(self, diagnostic(severity_warning, place, what, remedy))
+  end subroutine add_warning
+
+  !> A note: something accepted without effect, or else worth a line in the listing.
+  subroutine add_note(self, place, what)
+    class(diagnostics), intent(inout) :: self
+    type(place_type), intent(in) :: place
+    character(len=*), intent(in) :: what
+
+    call add(self, diagnostic(severity_note, place, what, ''))
+  end subroutine add_note
+
+  subroutine add(self, fault)
+    type(diagnostics), intent(inout) :: self
+    type(diagnostic), intent(in) :: fault
+    type(diagnostic), allocatable :: longer(:)
+    integer :: i
+
+    if (.not. allocated(self%list)) allocate (self%list(16))
+    if (self%count == size(self%list)) then
+      allocate (longer(2*self%count))
+      do i = 1, self%count
+        longer(i)%severity = self%list(i)%severity
+        longer(i)%place = self%list(i)%place
+        call move_alloc(self%list(i)%what, longer(i)%what)
+        call move_alloc(self%list(i)%remedy, longer(i)%remedy)
+      end do
+      call move_alloc(longer, self%list)
+    end if
+    self%count = self%count + 1
+    self%list(self%count) = fault
+    self%counts(fault%severity) = self%counts(fault%severity) + 1
+  end subroutine add
+
+  pure integer function error_count(self)
+    class(diagnostics), intent(in) :: self
+
+    error_count = self%counts(severity_error)
+  end function error_count
+
+  pure integer function warning_count(self)
+    class(diagnostics), intent(in) :: self
+
+    warning_count = self%counts(severity_warning)
+  end function warning_count
+
+  pure integer function note_count(self)
+    class(diagnostics), intent(in) :: self
+
+    note_count = self%counts(severity_note)
+  end function note_count
+
+  !> The faults by line, then column, then arrival; those of the deck as a whole come last.
+  pure function in_deck_order(self) result(order)
+    class(diagnostics), intent(in) :: self
+    integer, allocatable :: order(:)
+    integer, allocatable :: line(:), column(:)
+    integer :: i
+
+    allocate (line(self%count), column(self%count))
+    do i = 1, self%count
+      line(i) = self%list(i)%place%line
+      if (line(i) == 0) line(i) = huge(1)
+      column(i) = self%list(i)%place%first
+    end do
+    order = sorted_order(column)
+    order = order(sorted_order(line(order)))
+  end function in_deck_order
+
+  !> The fault that arrived as number `i`.
+  pure function item(self, i) result(fault)
+    class(diagnostics), intent(in) :: self
+    integer, intent(in) :: i
+    type(diagnostic) :: fault
+
+    fault = self%list(i)
+  end function item
+end module epcont_deck_diagnostic

@@ -1,0 +1,231 @@
+!> The characters of one field as a number or a word, strictly: scanned first, converted only then.
+!>
+!> A READ of unchecked text would take `12 34`, `/`, `1e400`, `nan` or ten digits without complaint.
+module epcont_deck_field
+  use epcont_base_kinds, only: i8, wp
+  use epcont_base_text, only: text_of, upper
+  implicit none
+  private
+  public :: scan_integer, scan_real, scan_components, scan_word
+
+  !> What became of a scan.
+  integer, parameter, public :: scan_sound = 0      !! a value
+  integer, parameter, public :: scan_malformed = 1  !! not of the kind asked for
+  integer, parameter, public :: scan_no_point = 2   !! would be a real, but for the decimal point
+  integer, parameter, public :: scan_too_large = 3  !! beyond the largest number
+  integer, parameter, public :: scan_too_small = 4  !! a real that is not zero, but nearer to it than the least normal one
+  integer, parameter, public :: scan_too_long = 5   !! a word of more than eight characters
+
+  !> Decimal digits that certainly fit an integer of eight bytes.
+  integer, parameter :: most_digits = 18
+  !> All whole numbers up to this one are exact reals.
+  integer(i8), parameter :: exact_mantissa = 2_i8**53
+  !> Powers of ten that are exact reals: one product or quotient of two exact reals is rounded correctly.
+  integer, parameter :: exact_power = 22
+  real(wp), parameter :: power_of_ten(0:exact_power) = [ &
+    1.0e0_wp, 1.0e1_wp, 1.0e2_wp, 1.0e3_wp, 1.0e4_wp, 1.0e5_wp, 1.0e6_wp, 1.0e7_wp, 1.0e8_wp, 1.0e9_wp, &
+    1.0e10_wp, 1.0e11_wp, 1.0e12_wp, 1.0e13_wp, 1.0e14_wp, 1.0e15_wp, 1.0e16_wp, 1.0e17_wp, 1.0e18_wp, &
+    1.0e19_wp, 1.0e20_wp, 1.0e21_wp, 1.0e22_wp]
+  !> The largest real has 308 as decimal exponent, and these as its first 17 digits.
+  integer, parameter :: largest_exponent = 308
+  integer(i8), parameter :: largest_digits = 17976931348623157_i8
+  !> No exponent written in a field is followed further than this.
+  integer, parameter :: endless_exponent = 100000
+
+  !> The parts of a real as it is written: digits x 10**exponent.
+  type :: decimal
+    integer(i8) :: digits = 0      !! the first `most_digits` significant digits
+    integer :: significant = 0     !! significant digits, leading zeros not counted
+    integer :: fraction = 0        !! digits behind the point
+    integer :: exponent = 0        !! the exponent as written
+    integer :: mantissa_last = 0   !! last character of the mantissa
+    logical :: negative = .false.
+    logical :: point = .false.
+  end type decimal
+
+contains
+
+  !> A whole number: a sign, then digits, nothing else.
+  pure subroutine scan_integer(text, number, outcome)
+    character(len=*), intent(in) :: text  !! without blanks around it
+    integer(i8), intent(out) :: number
+    integer, intent(out) :: outcome       !! one of the outcomes above
+    integer :: at, first, digit, significant
+
+    number = 0
+    outcome = scan_malformed
+    first = 1
+    if (len(text) > 0) first = merge(2, 1, is_sign(text(1:1)))
+    if (first > len(text)) return
+    significant = 0
+    do at = first, len(text)
+      digit = iachar(text(at:at)) - iachar('0')
+      if (digit < 0 .or. digit > 9) return
+      if (significant > 0 .or. digit > 0) significant = significant + 1
+      if (significant <= most_digits) number = 10*number + digit
+    end do
+    if (text(1:1) == '-') number = -number
+    outcome = merge(scan_too_large, scan_sound, significant > most_digits)
+  end subroutine scan_integer
+
+  !> A real: `7.0`, `.7E1`, `0.7+1`, `7.-2`, `7.D0`. It has a decimal point, and is rounded correctly.
+  pure subroutine scan_real(text, number, outcome)
+    character(len=*), intent(in) :: text  !! without blanks around it
+    real(wp), intent(out) :: number
+    integer, intent(out) :: outcome       !! one of the outcomes above
+    type(decimal) :: parts
+    integer :: power
+
+    number = 0.0_wp
+    call take_apart(text, parts, outcome)
+    if (outcome /= scan_sound .or. parts%digits == 0) return
+    power = parts%exponent - parts%fraction
+    if (parts%significant <= most_digits .and. parts%digits <= exact_mantissa .and. abs(power) <= exact_power) then
+      number = real(parts%digits, wp)
+      if (power < 0) then
+        number = number/power_of_ten(-power)
+      else
+        number = number*power_of_ten(power)
+      end if
+      if (parts%negative) number = -number
+    else
+      call convert(text(:parts%mantissa_last), parts, power, number, outcome)
+    end if
+  end subroutine scan_real
+
+  !> The parts of a real; `outcome` says whether it is one.
+  pure subroutine take_apart(text, parts, outcome)
+    character(len=*), intent(in) :: text
+    type(decimal), intent(out) :: parts
+    integer, intent(out) :: outcome
+    integer :: at, digit, digits
+
+    outcome = scan_malformed
+    if (len(text) == 0) return
+    parts%negative = text(1:1) == '-'
+    digits = 0
+    do at = merge(2, 1, is_sign(text(1:1))), len(text)
+      digit = iachar(text(at:at)) - iachar('0')
+      if (digit >= 0 .and. digit <= 9) then
+        digits = digits + 1
+        if (parts%point) parts%fraction = parts%fraction + 1
+        if (parts%significant > 0 .or. digit > 0) parts%significant = parts%significant + 1
+        if (parts%significant <= most_digits) parts%digits = 10*parts%digits + digit
+      else if (text(at:at) == '.' .and. .not. parts%point) then
+        parts%point = .true.
+      else
+        exit
+      end if
+    end do
+    parts%mantissa_last = at - 1
+    if (digits == 0) return
+    if (at <= len(text)) then
+      call take_exponent(text(at:), parts%exponent, outcome)
+      if (outcome /= scan_sound) return
+    end if
+    outcome = merge(scan_sound, scan_no_point, parts%point)
+  end subroutine take_apart
+
+  !> The exponent of a real, from its letter or sign to the end of the field.
+  pure subroutine take_exponent(text, exponent, outcome)
+    character(len=*), intent(in) :: text
+    integer, intent(out) :: exponent
+    integer, intent(out) :: outcome
+    integer :: at, first, digit
+
+    exponent = 0
+    outcome = scan_malformed
+    first = 1
+    if (scan(text(1:1), 'EeDd') == 1) first = 2
+    if (first <= len(text)) then
+      if (is_sign(text(first:first))) first = first + 1
+    end if
+    if (first == 1 .or. first > len(text)) return
+    do at = first, len(text)
+      digit = iachar(text(at:at)) - iachar('0')
+      if (digit < 0 .or. digit > 9) return
+      exponent = min(10*exponent + digit, endless_exponent)
+    end do
+    if (text(first - 1:first - 1) == '-') exponent = -exponent
+    outcome = scan_sound
+  end subroutine take_exponent
+
+  !> The real of a mantissa with many digits or a large exponent, by way of READ. What would overflow is
+  !! kept away from READ, which would trap or give infinity.
+  pure subroutine convert(mantissa, parts, power, number, outcome)
+    character(len=*), intent(in) :: mantissa  !! checked digits with a point
+    type(decimal), intent(in) :: parts
+    integer, intent(in) :: power
+    real(wp), intent(out) :: number
+    integer, intent(out) :: outcome
+    character(len=len(mantissa) + 8) :: clean
+    integer :: leading, status
+
+    number = 0.0_wp
+    leading = power + parts%significant - 1
+    outcome = scan_too_large
+    if (leading > largest_exponent) return
+    if (leading == largest_exponent .and. first_digits(parts) > largest_digits) return
+    outcome = scan_too_small
+    if (leading < -largest_exponent) return
+    clean = mantissa//'E'//text_of(parts%exponent)
+    read (clean, *, iostat=status) number
+    if (status /= 0) outcome = scan_malformed
+    if (abs(number) >= tiny(number)) outcome = scan_sound
+  end subroutine convert
+
+  !> The first 17 significant digits, filled up with zeros.
+  pure integer(i8) function first_digits(parts)
+    type(decimal), intent(in) :: parts
+    integer :: have
+
+    have = min(parts%significant, most_digits)
+    if (have <= 17) then
+      first_digits = parts%digits*10_i8**(17 - have)
+    else
+      first_digits = parts%digits/10_i8**(have - 17)
+    end if
+  end function first_digits
+
+  !> Directions: digits from 1 to 6, each at most once, such as `12`.
+  pure subroutine scan_components(text, number, outcome)
+    character(len=*), intent(in) :: text  !! without blanks around it
+    integer(i8), intent(out) :: number
+    integer, intent(out) :: outcome
+    logical :: seen(6)
+    integer :: at, digit
+
+    number = 0
+    outcome = scan_malformed
+    seen = .false.
+    if (len(text) == 0) return
+    do at = 1, len(text)
+      digit = iachar(text(at:at)) - iachar('0')
+      if (digit < 1 .or. digit > 6) return
+      if (seen(digit)) return
+      seen(digit) = .true.
+      number = 10*number + digit
+    end do
+    outcome = scan_sound
+  end subroutine scan_components
+
+  !> A word: a letter, then other characters but blanks, eight in all.
+  pure subroutine scan_word(text, word, outcome)
+    character(len=*), intent(in) :: text  !! without blanks around it
+    character(len=8), intent(out) :: word
+    integer, intent(out) :: outcome
+
+    word = ''
+    outcome = scan_malformed
+    if (len(text) == 0) return
+    word = upper(text(:min(8, len(text))))
+    if (word(1:1) < 'A' .or. word(1:1) > 'Z' .or. index(text, ' ') > 0) return
+    outcome = merge(scan_too_long, scan_sound, len(text) > 8)
+  end subroutine scan_word
+
+  elemental logical function is_sign(letter)
+    character(len=1), intent(in) :: letter
+
+    is_sign = letter == '+' .or. letter == '-'
+  end function is_sign
+end module epcont_deck_field

@@ -1,0 +1,187 @@
+!> Faults of a deck as text: file, line and columns, the line itself, and what would be right.
+module epcont_deck_render
+  use epcont_base_text, only: plural, text_of
+  use epcont_deck_diagnostic, only: diagnostic, diagnostics, place_type, severity_error, severity_note, severity_warning
+  use epcont_deck_source, only: source
+  implicit none
+  private
+  public :: render, render_notes, printable
+
+  !> Errors shown, and as many warnings; of the others only the number.
+  integer, parameter :: most_shown = 50
+  !> Columns shown of a line of the deck.
+  integer, parameter :: width = 132
+  character(len=*), parameter :: newline = new_line('a')
+
+contains
+
+  !> The errors and warnings in deck order, each line of text ended by a newline; the last line counts them.
+  !! Empty where there are none.
+  pure function render(faults, lines) result(text)
+    type(diagnostics), intent(in) :: faults
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+    integer, allocatable :: order(:)
+    integer :: shown(2)
+    integer :: i
+    type(diagnostic) :: fault
+
+    text = ''
+    order = faults%in_deck_order()
+    shown = 0
+    do i = 1, size(order)
+      fault = faults%item(order(i))
+      if (fault%severity == severity_note) cycle
+      shown(fault%severity) = shown(fault%severity) + 1
+      if (shown(fault%severity) <= most_shown) text = text//paragraph(fault, lines)
+    end do
+    if (any(shown > 0)) text = text//lines%deck_name()//': '//tally(shown)//newline
+  end function render
+
+  !> The notes in deck order, one line each, for the listing: without the name of the deck, and of included files
+  !! the name as seen from it, so that it does not matter from where the deck was read.
+  pure function render_notes(faults, lines) result(text)
+    type(diagnostics), intent(in) :: faults
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+    integer, allocatable :: order(:)
+    integer :: i
+    type(diagnostic) :: fault
+
+    text = ''
+    order = faults%in_deck_order()
+    do i = 1, size(order)
+      fault = faults%item(order(i))
+      if (fault%severity /= severity_note) cycle
+      text = text//note_file(fault, lines)//columns(fault%place, lines)//printable(fault%what)//newline
+    end do
+  end function render_notes
+
+  !> `text` with every byte that is no printable ASCII character replaced by a question mark.
+  pure function printable(text)
+    character(len=*), intent(in) :: text
+    character(len=len(text)) :: printable
+    integer :: i
+
+    do i = 1, len(text)
+      printable(i:i) = text(i:i)
+      if (text(i:i) < ' ' .or. iachar(text(i:i)) > 126) printable(i:i) = '?'
+    end do
+  end function printable
+
+  !> `63 errors (50 shown), 1 warning`.
+  pure function tally(count) result(text)
+    integer, intent(in) :: count(2)  !! errors, warnings
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: noun(2) = ['error  ', 'warning']
+    integer :: i
+
+    text = ''
+    do i = 1, 2
+      if (count(i) == 0) cycle
+      if (len(text) > 0) text = text//', '
+      text = text//plural(count(i), trim(noun(i)))
+      if (count(i) > most_shown) text = text//' ('//text_of(most_shown)//' shown)'
+    end do
+  end function tally
+
+  !> One fault: heading, line of the deck, carets and remedy.
+  pure function paragraph(fault, lines) result(text)
+    type(diagnostic), intent(in) :: fault
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+
+    text = heading(fault, lines)//newline
+    if (fault%place%line > 0) then
+      text = text//excerpt(fault, lines)
+    else if (len(fault%remedy) > 0) then
+      text = text//'  '//fault%remedy//newline
+    end if
+  end function paragraph
+
+  !> `hertz.dat:41:25-32: GRID 17: field 4 (X1) is not a real number`.
+  pure function heading(fault, lines) result(text)
+    type(diagnostic), intent(in) :: fault
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+
+    associate (place => fault%place)
+      if (place%line == 0) then
+        text = lines%deck_name()//': '
+      else
+        text = lines%file_name(place%line)//':'//columns(place, lines)
+      end if
+    end associate
+    if (fault%severity == severity_warning) text = text//'warning: '
+    text = text//printable(fault%what)
+  end function heading
+
+  !> `41:25-32: `; empty for the deck as a whole.
+  pure function columns(place, lines) result(text)
+    type(place_type), intent(in) :: place
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (place%line == 0) return
+    text = text_of(lines%number(place%line))//':'//text_of(place%first)
+    if (place%last > place%first) text = text//'-'//text_of(place%last)
+    text = text//': '
+  end function columns
+
+  !> The included file that a note is about, and a colon.
+  pure function note_file(fault, lines) result(text)
+    type(diagnostic), intent(in) :: fault
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (fault%place%line == 0) return
+    if (lines%file(fault%place%line) == 1) return
+    text = lines%file_name(fault%place%line)//':'
+    if (index(text, deck_directory(lines)) == 1) text = text(len(deck_directory(lines)) + 1:)
+  end function note_file
+
+  !> The directory of the deck, with a slash at the end; empty where it was named without one.
+  pure function deck_directory(lines) result(directory)
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: directory
+
+    directory = lines%deck_name()
+    directory = directory(:index(directory, '/', back=.true.))
+  end function deck_directory
+
+  !> The line of the deck, and below it carets under the value (or the whole field, where that is blank).
+  !! Of a line too long to show, the part that holds the place.
+  pure function excerpt(fault, lines) result(text)
+    type(diagnostic), intent(in) :: fault
+    type(source), intent(in) :: lines
+    character(len=:), allocatable :: text
+    character(len=:), allocatable :: shown
+    integer :: left, first, last
+
+    left = 0
+    if (fault%place%last > width) left = max(0, min(fault%place%first - 1, fault%place%last - width))
+    shown = printable(lines%whole_line(fault%place%line, left + 1, width))
+    first = fault%place%first - left
+    last = min(fault%place%last - left, width)
+    call narrow(shown, first, last)
+    text = '  '//shown//newline//repeat(' ', first + 1)//repeat('^', last - first + 1)
+    if (len(fault%remedy) > 0) text = text//' '//printable(fault%remedy)
+    text = text//newline
+  end function excerpt
+
+  !> Leave out the blanks on either side of the value in the columns `first` to `last`, if there is one.
+  pure subroutine narrow(line, first, last)
+    character(len=*), intent(in) :: line
+    integer, intent(inout) :: first, last
+    integer :: from, to
+
+    from = first
+    to = min(last, len(line))
+    if (from > to) return
+    if (line(from:to) == '') return
+    last = from - 1 + len_trim(line(from:to))
+    first = from - 1 + verify(line(from:to), ' ')
+  end subroutine narrow
+end module epcont_deck_render

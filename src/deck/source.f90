@@ -1,0 +1,375 @@
+!> The text of a deck: its file and the files it includes, cut into lines in deck order.
+!>
+!> All files lie one after the other in one buffer; a line is a stretch of it. INCLUDE and ENDDATA are
+!> dealt with here, so that what reads the cards sees one run of lines.
+module epcont_deck_source
+  use epcont_base_error, only: error_type, raise, status_usage
+  use epcont_base_kinds, only: i8
+  use epcont_base_text, only: text_of, upper
+  use epcont_deck_diagnostic, only: diagnostics, place_type
+  implicit none
+  private
+  public :: source, read_source
+
+  !> How deep files may include files, the deck itself not counted.
+  integer, parameter :: deepest = 8
+  !> How many INCLUDE lines a deck may have: files that include each other twice would double at every depth.
+  integer, parameter :: most_files = 10000
+
+  !> One file of the deck.
+  type :: source_file
+    character(len=:), allocatable :: name  !! as the user gave it; an included one with the directory of its parent
+    integer :: parent = 0                  !! the file that includes it
+    integer :: first = 1                   !! its first character in the buffer
+    integer :: last = 0                    !! its last
+  end type source_file
+
+  !> The lines of a deck. The line `i` is `text(first(i):last(i))`, without comment and trailing blanks;
+  !> a line that INCLUDE or ENDDATA has used up is blank.
+  type :: source
+    character(len=:), allocatable :: text        !! all files
+    integer :: used = 0                          !! characters of `text` in use
+    integer :: count = 0                         !! number of lines
+    integer, allocatable :: first(:), last(:)    !! [count or more]
+    integer, allocatable :: number(:)            !! line number in its file [count or more]
+    integer, allocatable :: file(:)              !! its file [count or more]
+    type(source_file), allocatable :: files(:)   !! [files]
+  contains
+    procedure :: deck_name
+    procedure :: file_name
+    procedure :: whole_line
+    procedure :: blank
+    procedure :: columns
+  end type source
+
+contains
+
+  !> Read the deck at `path` with all that it includes.
+  !! Faults inside go to `faults`; `error` only where the deck itself cannot be read.
+  subroutine read_source(path, lines, faults, error)
+    character(len=*), intent(in) :: path
+    type(source), intent(out) :: lines
+    type(diagnostics), intent(inout) :: faults
+    type(error_type), allocatable, intent(out) :: error
+    character(len=:), allocatable :: trouble
+    logical :: ended
+
+    allocate (lines%files(0), lines%first(1024), lines%last(1024), lines%number(1024), lines%file(1024))
+    allocate (character(len=0) :: lines%text)
+    call load(lines, path, 0, trouble)
+    if (allocated(trouble)) then
+      call raise(error, status_usage, path//': '//trouble)
+      return
+    end if
+    call cut(lines, 1, faults, ended)
+    if (.not. ended) call faults%add_error(place_type(), 'ENDDATA is missing: the deck looks cut off', &
+                                           'ENDDATA as the last line')
+  end subroutine read_source
+
+  !> Append the bytes of a file to the buffer; `trouble` says why that cannot be done.
+  subroutine load(self, path, parent, trouble)
+    type(source), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    integer, intent(in) :: parent
+    character(len=:), allocatable, intent(out) :: trouble
+    integer(i8) :: bytes
+    integer :: unit, status
+    logical :: exists
+
+    inquire (file=path, exist=exists)
+    if (.not. exists) then
+      trouble = 'no such file'
+      return
+    end if
+    inquire (file=path//'/.', exist=exists)
+    if (exists) then
+      trouble = 'a directory, not a file'
+      return
+    end if
+    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=status)
+    if (status /= 0) then
+      trouble = 'cannot be opened for reading'
+      return
+    end if
+    inquire (unit=unit, size=bytes)
+    if (bytes < 0) then
+      trouble = 'not a file that can be read'
+    else if (self%used + bytes >= huge(1)) then
+      trouble = 'the deck is larger than 2 GiB'
+    else
+      call grow_text(self, self%used + int(bytes))
+      if (bytes > 0) read (unit, iostat=status) self%text(self%used + 1:self%used + int(bytes))
+      if (status /= 0) trouble = 'cannot be read'
+    end if
+    close (unit, iostat=status)
+    if (allocated(trouble)) return
+    call add_file(self, path, parent, self%used + int(bytes))
+  end subroutine load
+
+  !> Enter the file that has just been read, up to the character `last`.
+  subroutine add_file(self, path, parent, last)
+    type(source), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    integer, intent(in) :: parent, last
+    type(source_file), allocatable :: longer(:)
+
+    allocate (longer(size(self%files) + 1))
+    longer(:size(self%files)) = self%files
+    longer(size(longer)) = source_file(path, parent, self%used + 1, last)
+    call move_alloc(longer, self%files)
+    self%used = last
+  end subroutine add_file
+
+  !> Room for `length` characters. The first file gets just its size; included ones make the buffer double.
+  subroutine grow_text(self, length)
+    type(source), intent(inout) :: self
+    integer, intent(in) :: length
+    character(len=:), allocatable :: longer
+    integer(i8) :: wanted
+
+    if (length <= len(self%text)) return
+    wanted = length
+    if (self%used > 0) wanted = min(max(wanted, 2_i8*len(self%text)), int(huge(1), i8))
+    allocate (character(len=int(wanted)) :: longer)
+    longer(:self%used) = self%text(:self%used)
+    call move_alloc(longer, self%text)
+  end subroutine grow_text
+
+  !> Cut a file into lines and, where it includes another, that one too. `ended`: it had its ENDDATA.
+  recursive subroutine cut(self, file, faults, ended)
+    type(source), intent(inout) :: self
+    integer, intent(in) :: file
+    type(diagnostics), intent(inout) :: faults
+    logical, intent(out) :: ended
+    integer :: at, last, next, line, number
+
+    ended = .false.
+    at = self%files(file)%first
+    number = 0
+    do while (at <= self%files(file)%last .and. .not. ended)
+      number = number + 1
+      call find_end(self%text, at, self%files(file)%last, last, next)
+      call add_line(self, file, number, at, last)
+      line = self%count
+      select case (statement(self%text(at:last)))
+      case ('ENDDATA')
+        self%last(line) = at - 1
+        ended = .true.
+      case ('INCLUDE')
+        call include_file(self, line, faults)
+        self%last(line) = at - 1
+      end select
+      at = next
+    end do
+  end subroutine cut
+
+  !> The end of the line that begins at `first`: its last character that is neither comment nor blank, and
+  !! the first character of the next line.
+  pure subroutine find_end(text, first, end_of_file, last, next)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: first, end_of_file
+    integer, intent(out) :: last, next
+    integer :: at, comment
+
+    comment = 0
+    do at = first, end_of_file
+      if (text(at:at) > '$') cycle
+      if (text(at:at) == achar(10)) exit
+      if (text(at:at) == '$' .and. comment == 0) comment = at
+    end do
+    next = at + 1
+    last = at - 1
+    if (last >= first) then
+      if (text(last:last) == achar(13)) last = last - 1
+    end if
+    if (comment > 0) last = comment - 1
+    do while (last >= first)
+      if (text(last:last) /= ' ') exit
+      last = last - 1
+    end do
+  end subroutine find_end
+
+  !> INCLUDE or ENDDATA if the line is that statement, else blank.
+  pure function statement(line) result(word)
+    character(len=*), intent(in) :: line
+    character(len=7) :: word
+    integer :: at
+
+    word = ''
+    if (len(line) == 0) return
+    if (scan(line(1:1), 'IiEe ') == 0) return
+    at = max(verify(line, ' '), 1)
+    if (len(line) < at + 6) return
+    word = upper(line(at:at + 6))
+    if (word /= 'ENDDATA' .and. word /= 'INCLUDE') word = ''
+    if (word == '' .or. len(line) == at + 6) return
+    if (scan(upper(line(at + 7:at + 7)), 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789*') > 0) word = ''
+  end function statement
+
+  !> Read the file that the INCLUDE line `line` names, or say why not.
+  recursive subroutine include_file(self, line, faults)
+    type(source), intent(inout) :: self
+    integer, intent(in) :: line
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: path, trouble
+    type(place_type) :: place
+    integer :: parent
+    logical :: ended
+
+    call quoted_name(self, line, place, path)
+    if (.not. allocated(path)) then
+      call faults%add_error(place, 'INCLUDE needs the name of a file between quotes', 'INCLUDE ''file''')
+      return
+    end if
+    parent = self%file(line)
+    path = relative_to(self%files(parent)%name, path)
+    if (includes(self, parent, path)) then
+      call faults%add_error(place, 'INCLUDE: '//path//' includes itself', 'a file that does not lead back here')
+    else if (depth(self, parent) == deepest) then
+      call faults%add_error(place, 'INCLUDE: files are included more than '//text_of(deepest)//' deep', 'fewer levels')
+    else if (size(self%files) > most_files) then
+      call faults%add_error(place, 'INCLUDE: more than '//text_of(most_files)//' files', 'fewer files')
+    else
+      call load(self, path, parent, trouble)
+      if (allocated(trouble)) then
+        call faults%add_error(place, 'INCLUDE: '//path//': '//trouble, 'a name relative to the file of this line')
+      else
+        call cut(self, size(self%files), faults, ended)
+      end if
+    end if
+  end subroutine include_file
+
+  !> The name between the quotes of an INCLUDE line; not allocated where there is none.
+  subroutine quoted_name(self, line, place, name)
+    type(source), intent(in) :: self
+    integer, intent(in) :: line
+    type(place_type), intent(out) :: place  !! the name, or where it should be
+    character(len=:), allocatable, intent(out) :: name
+    character(len=:), allocatable :: text
+    integer :: from, to
+
+    text = self%text(self%first(line):self%last(line))
+    from = verify(text, ' ') + 7
+    if (from <= len(text)) then
+      if (verify(text(from:), ' ') > 0) from = from + verify(text(from:), ' ') - 1
+    end if
+    place = place_type(line, from, max(from, len(text)))
+    if (from >= len(text)) return
+    if (scan(text(from:from), '''"') == 0) return
+    to = from + index(text(from + 1:), text(from:from))
+    if (to /= len(text) .or. to == from + 1) return
+    if (verify(text(from + 1:to - 1), ' ') > 0) name = text(from + 1:to - 1)
+  end subroutine quoted_name
+
+  !> `name` as seen from the directory of `file`.
+  pure function relative_to(file, name) result(path)
+    character(len=*), intent(in) :: file, name
+    character(len=:), allocatable :: path
+
+    path = trim(name)
+    if (path(1:1) /= '/') path = file(:index(file, '/', back=.true.))//path
+  end function relative_to
+
+  !> Is `path` the file `file` or one that it is included by?
+  pure recursive logical function includes(self, file, path) result(yes)
+    type(source), intent(in) :: self
+    integer, intent(in) :: file
+    character(len=*), intent(in) :: path
+
+    yes = .false.
+    if (file == 0) return
+    yes = self%files(file)%name == path
+    if (.not. yes) yes = includes(self, self%files(file)%parent, path)
+  end function includes
+
+  !> How deep `file` is included; 0 for the deck itself.
+  pure recursive integer function depth(self, file) result(levels)
+    type(source), intent(in) :: self
+    integer, intent(in) :: file
+
+    levels = 0
+    if (self%files(file)%parent > 0) levels = 1 + depth(self, self%files(file)%parent)
+  end function depth
+
+  subroutine add_line(self, file, number, first, last)
+    type(source), intent(inout) :: self
+    integer, intent(in) :: file, number, first, last
+
+    if (self%count == size(self%first)) then
+      call double(self%first)
+      call double(self%last)
+      call double(self%number)
+      call double(self%file)
+    end if
+    self%count = self%count + 1
+    self%first(self%count) = first
+    self%last(self%count) = last
+    self%number(self%count) = number
+    self%file(self%count) = file
+  end subroutine add_line
+
+  subroutine double(list)
+    integer, allocatable, intent(inout) :: list(:)
+    integer, allocatable :: longer(:)
+
+    allocate (longer(2*size(list)))
+    longer(:size(list)) = list
+    call move_alloc(longer, list)
+  end subroutine double
+
+  !> The name of the deck as the user gave it.
+  pure function deck_name(self) result(name)
+    class(source), intent(in) :: self
+    character(len=:), allocatable :: name
+
+    name = self%files(1)%name
+  end function deck_name
+
+  !> The name of the file of a line.
+  pure function file_name(self, line) result(name)
+    class(source), intent(in) :: self
+    integer, intent(in) :: line
+    character(len=:), allocatable :: name
+
+    name = self%files(self%file(line))%name
+  end function file_name
+
+  !> A line as it stands in the file, comment and all, but no longer than `most` characters from `from` on.
+  pure function whole_line(self, line, from, most) result(text)
+    class(source), intent(in) :: self
+    integer, intent(in) :: line
+    integer, intent(in) :: from  !! first column wanted
+    integer, intent(in) :: most
+    character(len=:), allocatable :: text
+    integer :: last, end_of_file, column
+
+    last = self%first(line) - 1
+    end_of_file = self%files(self%file(line))%last
+    do column = 1, from + most - 1
+      if (last == end_of_file) exit
+      if (self%text(last + 1:last + 1) == achar(10)) exit
+      last = last + 1
+    end do
+    text = self%text(self%first(line) + from - 1:last)
+    if (len(text) == 0) return
+    if (text(len(text):) == achar(13)) text = text(:len(text) - 1)
+    text = trim(text)
+  end function whole_line
+
+  !> Is there nothing to read in a line?
+  pure logical function blank(self, line)
+    class(source), intent(in) :: self
+    integer, intent(in) :: line
+
+    blank = self%last(line) < self%first(line)
+  end function blank
+
+  !> The place of the characters `first` to `last` of the buffer, which are in `line`.
+  pure function columns(self, line, first, last) result(place)
+    class(source), intent(in) :: self
+    integer, intent(in) :: line, first, last
+    type(place_type) :: place
+
+    place = place_type(line, first - self%first(line) + 1, last - self%first(line) + 1)
+  end function columns
+end module epcont_deck_source

@@ -1,0 +1,66 @@
+!> The known name that a misspelt one was probably meant to be.
+module epcont_deck_spelling
+  implicit none
+  private
+  public :: likely_name
+
+contains
+
+  !> The name nearest to `word`: same first letter, and one slip away (two for words of more than five letters).
+  !! 0 where none is. Digits are no slips: CTRIA6 is not a misspelt CTRIA3.
+  pure integer function likely_name(word, names)
+    character(len=*), intent(in) :: word      !! in capitals
+    character(len=*), intent(in) :: names(:)
+    integer :: slips, least, i
+
+    likely_name = 0
+    least = merge(3, 2, len_trim(word) > 5)
+    do i = 1, size(names)
+      if (names(i)(1:1) /= word(1:1) .or. digits_of(names(i)) /= digits_of(word)) cycle
+      slips = distance(trim(word), trim(names(i)))
+      if (slips < least) then
+        least = slips
+        likely_name = i
+      end if
+    end do
+  end function likely_name
+
+  !> The digits of a word, in order.
+  pure function digits_of(word)
+    character(len=*), intent(in) :: word
+    character(len=8) :: digits_of
+    integer :: i
+
+    digits_of = ''
+    do i = 1, len(word)
+      if (scan(word(i:i), '0123456789') > 0) digits_of = trim(digits_of)//word(i:i)
+    end do
+  end function digits_of
+
+  !> Letters to insert, leave out, replace or exchange with their neighbour (Damerau, optimal string alignment).
+  pure integer function distance(a, b)
+    character(len=*), intent(in) :: a, b
+    integer :: slips(0:len(a), 0:len(b))
+    integer :: i, j
+
+    slips(:, 0) = [(i, i=0, len(a))]
+    slips(0, :) = [(j, j=0, len(b))]
+    do j = 1, len(b)
+      do i = 1, len(a)
+        slips(i, j) = min(slips(i - 1, j) + 1, slips(i, j - 1) + 1, &
+                          slips(i - 1, j - 1) + merge(0, 1, a(i:i) == b(j:j)))
+        if (exchanged(a(:i), b(:j))) slips(i, j) = min(slips(i, j), slips(max(i - 2, 0), max(j - 2, 0)) + 1)
+      end do
+    end do
+    distance = slips(len(a), len(b))
+  end function distance
+
+  !> Are the last two letters of `a` those of `b` in the other order?
+  pure logical function exchanged(a, b)
+    character(len=*), intent(in) :: a, b
+
+    exchanged = .false.
+    if (min(len(a), len(b)) < 2) return
+    exchanged = a(len(a):)//a(len(a) - 1:len(a) - 1) == b(len(b) - 1:)
+  end function exchanged
+end module epcont_deck_spelling

@@ -1,0 +1,15 @@
+# cmake -DFILE=x.pf -DCOMMAND=a;b -P expect_failure.cmake: the command must fail, and say what `! expect` lines of the file say
+# and nothing of what the `! expect-not` lines say.
+execute_process(COMMAND ${COMMAND} RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said)
+if(NOT status EQUAL 1)
+  message(FATAL_ERROR "${FILE}: status ${status} where 1 was expected\n${said}")
+endif()
+file(STRINGS "${FILE}" expectations REGEX "^! expect")
+foreach(expectation IN LISTS expectations)
+  string(REGEX MATCH "^! (expect-not|expect) (.*)$" matched "${expectation}")
+  set(kind "${CMAKE_MATCH_1}")
+  string(FIND "${said}" "${CMAKE_MATCH_2}" at)
+  if((kind STREQUAL "expect" AND at LESS 0) OR (kind STREQUAL "expect-not" AND NOT at LESS 0))
+    message(FATAL_ERROR "${FILE}: ${expectation}\n${said}")
+  endif()
+endforeach()
