@@ -212,13 +212,15 @@ contains
     type(contact_state), intent(inout) :: state
     type(contact_solution), intent(inout) :: solution
     logical, allocatable :: pressed(:)
+    real(wp) :: zero   !! force or gap that rounding leaves of none
 
+    zero = negligible*maxval([state%force, 1.0_wp])
     state%gap(state%basis%pairs) = 0.0_wp
-    solution%touching = state%gap <= negligible
+    solution%touching = state%gap <= zero
     where (solution%touching) state%gap = 0.0_wp
     where (state%force <= noise) state%force = 0.0_wp
     where (abs(state%approach) <= noise) state%approach = 0.0_wp
-    pressed = state%force > negligible
+    pressed = state%force > zero
     solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
     call share_equally(scaled, solution%indeterminate, state%force)
     solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)

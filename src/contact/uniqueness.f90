@@ -11,6 +11,8 @@ module epcont_contact_uniqueness
 
   !> Components of a null vector (largest about 1) up to this are zero.
   real(wp), parameter :: null_tolerance = 1.0e-7_wp
+  !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this is allowed for.
+  real(wp), parameter :: amplification = 100.0_wp
 
 contains
 
@@ -27,6 +29,7 @@ contains
     type(contact_basis) :: basis
     real(wp), allocatable :: answer(:, :), change(:, :), coupling(:, :), loose(:, :)
     integer, allocatable :: growing(:), idle(:)
+    real(wp) :: zero   !! part of M that is rounding
     integer :: k
 
     allocate (indeterminate(size(touching)), source=.false.)
@@ -39,9 +42,10 @@ contains
     call cholesky_solve(basis%factor, answer)
     call add_product(-1.0_wp, loose, answer, coupling)
 
-    growing = forces_that_can_grow(coupling, rank_tolerance(problem))
+    zero = amplification*rank_tolerance(problem)
+    growing = forces_that_can_grow(coupling, zero)
     indeterminate(idle(growing)) = .true.
-    loose = null_space(coupling(growing, growing), rank_tolerance(problem))
+    loose = null_space(coupling(growing, growing), zero)
     change = matmul(answer(:, growing), loose)
     indeterminate(basis%pairs) = [(any(abs(change(k, :)) > null_tolerance), k=1, size(change, 1))]
   end function find_indeterminate_forces
