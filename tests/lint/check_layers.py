@@ -14,7 +14,7 @@ SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "plas
 FILE_LINES, PROCEDURE_LINES, COLUMNS = 400, 80, 132
 
 USE = re.compile(r"\s*use\s+(epcont_(\w+?)(?:_\w+)?)\b(\s*,\s*only\s*:)?", re.IGNORECASE)
-OLD = re.compile(r"\s*(?:common\b|equivalence\b|entry\b|save\b)|.*(?:\bgo\s*to\s+\d|,\s*save\b)", re.IGNORECASE)
+OLD = re.compile(r"\s*(?:common\b|equivalence\b|entry\s+\w+\s*(?:\(|$)|save\b)|.*(?:\bgo\s*to\s+\d|,\s*save\b)", re.IGNORECASE)
 BEGIN = re.compile(r"\s*(?!end\b)(?:[\w*]+(?:\([^!]*?\))?\s+)*(?:subroutine|function)\s+(\w+)\s*(?:\(|$)", re.IGNORECASE)
 END = re.compile(r"\s*end\s*(?:subroutine|function)\b", re.IGNORECASE)
 STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
