@@ -188,11 +188,8 @@ contains
       pending = [pending(:i - 1), pending(i + 1:)]
       return
     end do
-    if (present(message)) then
-      call throw('nothing thrown with message "'//message//'"', line)
-    else
-      call throw('nothing thrown', line)
-    end if
+    call throw('nothing thrown', line)
+    if (present(message)) pending(size(pending))%message = 'nothing thrown with message "'//message//'"'
   end subroutine funit_assert_raised
 
   !> Report a failure; for test doubles of the code under test too.
@@ -252,37 +249,30 @@ contains
     type(value_type), intent(in) :: expected, actual
     character(len=*), intent(in) :: relation
     real(real64), intent(in) :: tolerance
+    integer :: order
 
     holds = .false.
     if (ieee_is_nan(expected%real) .or. ieee_is_nan(actual%real) .or. ieee_is_nan(tolerance)) return
     if (actual%sort == sort_real .and. expected%sort /= sort_logical) then
-      select case (relation)
-      case ('==')
-        holds = expected%real == actual%real
-        if (.not. holds) holds = abs(actual%real - expected%real) <= tolerance
-      case ('<')
-        holds = expected%real < actual%real
-      case ('<=')
-        holds = expected%real <= actual%real
-      case ('>')
-        holds = expected%real > actual%real
-      case ('>=')
-        holds = expected%real >= actual%real
-      end select
+      order = merge(-1, merge(0, 1, expected%real == actual%real), expected%real < actual%real)
+      if (order /= 0 .and. relation == '==') order = merge(0, order, abs(actual%real - expected%real) <= tolerance)
     else if (actual%sort == expected%sort) then
-      select case (relation)
-      case ('==')
-        holds = expected%whole == actual%whole
-      case ('<')
-        holds = expected%whole < actual%whole
-      case ('<=')
-        holds = expected%whole <= actual%whole
-      case ('>')
-        holds = expected%whole > actual%whole
-      case ('>=')
-        holds = expected%whole >= actual%whole
-      end select
+      order = merge(-1, merge(0, 1, expected%whole == actual%whole), expected%whole < actual%whole)
+    else
+      return
     end if
+    select case (relation)
+    case ('==')
+      holds = order == 0
+    case ('<')
+      holds = order < 0
+    case ('<=')
+      holds = order <= 0
+    case ('>')
+      holds = order > 0
+    case ('>=')
+      holds = order >= 0
+    end select
   end function holds
 
   !> Throw, and be true, unless the shapes are equal or `expected` is a scalar.

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""Check what no compiler checks: layers, names, sizes and habits of the sources (src/README.md), and the version.
+
+Prints `file:line: fault` for each fault; exit status 1 if there is any.
+"""
+import pathlib
+import re
+import sys
+
+LAYERS = ["base", "deck", "model", "element", "material", "linalg", "plan", "assembly", "flexibility", "contact",
+          "plasticity", "result", "certificate", "report", "analysis", "app"]   # analysis: src/analysis.f90
+# A certificate computed by the code it certifies is worth nothing.
+SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "plasticity"}}
+FILE_LINES, PROCEDURE_LINES, COLUMNS = 400, 80, 132
+
+USE = re.compile(r"\s*use\s+(epcont_(\w+?)(?:_\w+)?)\b(\s*,\s*only\s*:)?", re.IGNORECASE)
+OLD = re.compile(r"\s*(?:common\b|equivalence\b|entry\s+\w+\s*(?:\(|$)|save\b)|.*(?:\bgo\s*to\s+\d|,\s*save\b)", re.IGNORECASE)
+BEGIN = re.compile(r"\s*(?!end\b)(?:[\w*]+(?:\([^!]*?\))?\s+)*(?:subroutine|function)\s+(\w+)\s*(?:\(|$)", re.IGNORECASE)
+END = re.compile(r"\s*end\s*(?:subroutine|function)\b", re.IGNORECASE)
+STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
+
+
+def code_of(line):
+    """A line without strings and comment."""
+    return STRING.sub("''", line).partition("!")[0].rstrip()
+
+
+def procedures(lines):
+    """(name, first line, one past the last line) of each procedure."""
+    begun = []
+    for n, line in enumerate(lines):
+        code = code_of(line)
+        if END.match(code) and begun:
+            name, first = begun.pop()
+            yield name, first, n + 1
+        elif BEGIN.match(code):
+            begun.append((BEGIN.match(code)[1].lower(), n))
+
+
+def check_size(lines, most=FILE_LINES):
+    if len(lines) > most:
+        yield len(lines), f"more than {most} lines in a file"
+    for n, line in enumerate(lines, 1):
+        if len(line) > COLUMNS:
+            yield n, f"longer than {COLUMNS} columns"
+    for name, first, last in procedures(lines):
+        if last - first > PROCEDURE_LINES:
+            yield first + 1, f"{name} has more than {PROCEDURE_LINES} lines"
+
+
+def check_habits(lines):
+    code = [code_of(line).strip().lower() for line in lines]
+    if "implicit none" not in code:
+        yield 1, "no `implicit none`"
+    if any(line.startswith("module ") for line in code) and "private" not in code:
+        yield 1, "no bare `private`"
+    for n, line in enumerate(code, 1):
+        if OLD.match(line):
+            yield n, "an old habit: goto, common, equivalence, entry or save"
+
+
+def check_module(path, source, lines):
+    """Name, and uses of other layers."""
+    parts = path.relative_to(source).with_suffix("").parts
+    name, layer = "_".join(("epcont",) + parts), parts[0]
+    if layer not in LAYERS:
+        yield 1, f"{layer} is not a layer"
+        return
+    if parts != ("app", "main") and not re.search(rf"^module {name}$", "\n".join(lines), re.MULTILINE | re.IGNORECASE):
+        yield 1, f"the module is not named {name}"
+    for n, line in enumerate(lines, 1):
+        match = USE.match(line)
+        if not match:
+            continue
+        used = match[2].lower()
+        if used not in LAYERS or LAYERS.index(used) > LAYERS.index(layer) or used in SHUNNED.get(layer, ()):
+            yield n, f"{layer} may not use {match[1]}"
+        if not match[3]:
+            yield n, f"`use {match[1]}` without `only`"
+
+
+def check_asserts(lines):
+    """Each test asserts, itself or through a procedure of its file, or one named assert_... or check_..."""
+    bodies = {name: "\n".join(lines[first:last]).lower() for name, first, last in procedures(lines)}
+    asserting = set()
+    while True:
+        calls = "|".join(["assert_", "check_"] + [rf"{name}\b" for name in asserting])
+        found = {name for name, body in bodies.items() if re.search(rf"^\s*@assert|\bcall\s+(?:{calls})", body, re.MULTILINE)}
+        if found == asserting:
+            break
+        asserting = found
+    for name, first, _ in procedures(lines):
+        if any(line.strip().lower() == "@test" for line in lines[max(first - 1, 0):first]) and name not in asserting:
+            yield first + 1, f"{name} asserts nothing"
+
+
+def check_version(root):
+    built = re.search(r"project\(epcont VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text())
+    told = re.search(r"program_version = '([^']*)'", (root / "src/base/version.f90").read_text())
+    if not built or not told or built[1] != told[1]:
+        yield 1, "the version is not that of src/base/version.f90"
+
+
+def check(root):
+    """All faults, as (path, line, text)."""
+    for path in sorted((root / "src").rglob("*.f90")):
+        lines = path.read_text().splitlines()
+        for checks in (check_size(lines), check_habits(lines), check_module(path, root / "src", lines)):
+            yield from ((path, n, text) for n, text in checks)
+    for path in sorted((root / "tests").rglob("*.f90")):
+        lines = path.read_text().splitlines()
+        yield from ((path, n, text) for checks in (check_size(lines), check_habits(lines)) for n, text in checks)
+    for path in sorted((root / "tests").rglob("test_*.pf")):
+        lines = path.read_text().splitlines()
+        # A list of cases may be long.
+        yield from ((path, n, text) for checks in (check_size(lines, 2 * FILE_LINES), check_asserts(lines))
+                    for n, text in checks)
+    yield from ((root / "CMakeLists.txt", n, text) for n, text in check_version(root))
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parents[2]).resolve()
+    faults = [f"{path.relative_to(root)}:{n}: {text}" for path, n, text in check(root)]
+    print("\n".join(faults) or "no faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
