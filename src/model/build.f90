@@ -1,0 +1,59 @@
+!> From the cards of a deck to the scene.
+module epcont_model_build
+  use epcont_base_partition, only: new_partition, partition
+  use epcont_base_sorting, only: id_index
+  use epcont_deck_deck, only: card_cgap, card_ctria3, card_grid, card_rbe2, deck_type
+  use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_model_loads, only: build_loads
+  use epcont_model_mesh, only: build_elements, build_nodes, build_sections
+  use epcont_model_model, only: model_type
+  use epcont_model_pairs, only: build_pairs
+  use epcont_model_reference, only: check_unique, index_of_ids
+  use epcont_model_supports, only: build_references, build_supports, build_ties
+  implicit none
+  private
+  public :: build_model
+
+contains
+
+  !> Build the scene; whatever is wrong with it is added to `faults`, and the model serves only without errors.
+  subroutine build_model(deck, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(out) :: model
+    type(diagnostics), intent(inout) :: faults
+    type(id_index) :: nodes
+
+    call build_nodes(deck, model, faults)
+    nodes = index_of_ids(deck, card_grid)
+    call build_sections(deck, model, faults)
+    call build_elements(deck, nodes, model, faults)
+    call check_unique(deck, [card_ctria3, card_rbe2, card_cgap], faults)
+    call build_supports(deck, nodes, model, faults)
+    call build_ties(deck, nodes, model, faults)
+    call build_references(deck, nodes, model, faults)
+    call build_loads(deck, nodes, model, faults)
+    call build_pairs(deck, nodes, model, faults)
+    if (deck%card(card_ctria3)%count == 0 .and. faults%error_count() == 0) &
+      call faults%add_error(place_type(), 'the deck has no elements', 'CTRIA3 cards')
+    if (faults%error_count() == 0) call find_bodies(model)
+  end subroutine build_model
+
+  !> Bodies: nodes joined by elements or RBE2.
+  subroutine find_bodies(model)
+    type(model_type), intent(inout) :: model
+    type(partition) :: sets
+    integer :: c, i
+
+    sets = new_partition(model%nodes)
+    do i = 1, model%elements
+      call sets%join(model%corner(1, i), model%corner(2, i))
+      call sets%join(model%corner(1, i), model%corner(3, i))
+    end do
+    do i = 1, model%nodes
+      do c = 1, 2
+        call sets%join(i, model%leader(c, i))
+      end do
+    end do
+    call sets%numbers(model%body, model%bodies)
+  end subroutine find_bodies
+end module epcont_model_build

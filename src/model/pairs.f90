@@ -1,0 +1,143 @@
+!> Contact pairs from CGAP, PGAP and CORD2R.
+module epcont_model_pairs
+  use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: id_index
+  use epcont_base_text, only: short_real
+  use epcont_deck_deck, only: card_cgap, card_cord2r, card_pgap, deck_type
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_model, only: model_type
+  use epcont_model_reference, only: check_unique, index_of_ids, resolve
+  implicit none
+  private
+  public :: build_pairs
+
+  !> Nodes closer than this part of the nearest edge are at one place: they give no direction.
+  real(wp), parameter :: coincident = 1.0e-4_wp
+  !> A system's x-axis out of the plane by more than this is a fault.
+  real(wp), parameter :: flat = 1.0e-8_wp
+
+contains
+
+  subroutine build_pairs(deck, nodes, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(id_index), intent(in) :: nodes
+    type(model_type), intent(inout) :: model
+    type(diagnostics), intent(inout) :: faults
+    type(id_index) :: properties, systems
+    real(wp), allocatable :: axis(:, :), edge(:)
+    logical :: geometry
+    integer :: i, k, property
+
+    call check_unique(deck, [card_pgap], faults)
+    call check_unique(deck, [card_cord2r], faults)
+    call read_systems(deck, axis, faults)
+    properties = index_of_ids(deck, card_pgap)
+    systems = index_of_ids(deck, card_cord2r)
+    geometry = deck%parameter_word('GAPGEOM', 'NO') == 'YES'
+    associate (cgap => deck%card(card_cgap), pgap => deck%card(card_pgap))
+      model%pairs = cgap%count
+      model%pair_id = nint(cgap%value(1, :))
+      allocate (model%pair_node(2, cgap%count))
+      allocate (model%normal(2, cgap%count), model%initial_gap(cgap%count), source=0.0_wp)
+      edge = shortest_edge(model)
+      do i = 1, cgap%count
+        call resolve(deck, card_cgap, i, 2, properties, 'PGAP', faults, property)
+        do k = 1, 2
+          call resolve(deck, card_cgap, i, 2 + k, nodes, 'GRID', faults, model%pair_node(k, i))
+        end do
+        if (any(model%pair_node(:, i) == 0)) cycle
+        call find_normal(deck, i, systems, axis, edge, model, faults)
+        if (property > 0) model%initial_gap(i) = pgap%value(pgap%column('U0'), property)
+        if (geometry) model%initial_gap(i) = model%initial_gap(i) + dot_product(model%normal(:, i), &
+                                             model%x(:, model%pair_node(2, i)) - model%x(:, model%pair_node(1, i)))
+        if (model%initial_gap(i) < 0.0_wp .and. cgap%sound(i)) &
+          call faults%add_warning(deck%place(card_cgap, i, 1), deck%identity(card_cgap, i)//': the initial gap is '// &
+                                  short_real(model%initial_gap(i)), 'an overlap, to be closed by contact forces')
+      end do
+    end associate
+  end subroutine build_pairs
+
+  !> Normal of a pair: x-axis of its system, else from A to B.
+  subroutine find_normal(deck, i, systems, axis, edge, model, faults)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i
+    type(id_index), intent(in) :: systems
+    real(wp), intent(in) :: axis(:, :), edge(:)
+    type(model_type), intent(inout) :: model
+    type(diagnostics), intent(inout) :: faults
+    real(wp) :: between(2)
+    integer :: cid, system
+
+    cid = deck%card(card_cgap)%column('CID')
+    if (deck%card(card_cgap)%given(cid, i)) then
+      if (nint(deck%card(card_cgap)%value(cid, i)) == 0) then
+        model%normal(:, i) = [1.0_wp, 0.0_wp]
+        return
+      end if
+      call resolve(deck, card_cgap, i, cid, systems, 'CORD2R', faults, system)
+      if (system > 0) model%normal(:, i) = axis(:, system)
+      return
+    end if
+    associate (a => model%pair_node(1, i), b => model%pair_node(2, i))
+      between = model%x(:, b) - model%x(:, a)
+      if (a == b .or. norm2(between) <= coincident*min(edge(a), edge(b))) then
+        call faults%add_error(deck%place(card_cgap, i, cid), deck%identity(card_cgap, i)// &
+                              ': GA and GB are at one place and field 9 (CID) is blank: no direction', &
+                              'the id of a CORD2R whose x-axis is the normal')
+      else
+        model%normal(:, i) = between/norm2(between)
+      end if
+    end associate
+  end subroutine find_normal
+
+  !> Shortest edge at each node; 0 at nodes without elements, which say nothing of the mesh's size.
+  pure function shortest_edge(model) result(edge)
+    type(model_type), intent(in) :: model
+    real(wp), allocatable :: edge(:)
+    real(wp) :: length
+    integer :: a, b, e, k
+
+    allocate (edge(model%nodes), source=huge(1.0_wp))
+    do e = 1, model%elements
+      if (any(model%corner(:, e) == 0)) cycle
+      do k = 1, 3
+        a = model%corner(k, e)
+        b = model%corner(mod(k, 3) + 1, e)
+        length = norm2(model%x(:, a) - model%x(:, b))
+        edge([a, b]) = min(edge([a, b]), length)
+      end do
+    end do
+    where (edge == huge(1.0_wp)) edge = maxval(edge, mask=edge < huge(1.0_wp))
+    where (edge < 0.0_wp) edge = 0.0_wp
+  end function shortest_edge
+
+  !> x-axes of the CORD2R systems in the plane.
+  subroutine read_systems(deck, axis, faults)
+    type(deck_type), intent(in) :: deck
+    real(wp), allocatable, intent(out) :: axis(:, :)
+    type(diagnostics), intent(inout) :: faults
+    real(wp) :: x(3), z(3), to_c(3)
+    integer :: a, i
+
+    associate (card => deck%card(card_cord2r))
+      allocate (axis(2, card%count), source=0.0_wp)
+      a = card%column('A1')
+      do i = 1, card%count
+        if (.not. card%sound(i)) cycle
+        z = card%value(a + 3:a + 5, i) - card%value(a:a + 2, i)
+        to_c = card%value(a + 6:a + 8, i) - card%value(a:a + 2, i)
+        x = 0.0_wp
+        if (norm2(z) > 0.0_wp) x = to_c - z*(dot_product(z, to_c)/dot_product(z, z))
+        if (norm2(x) <= flat*norm2(to_c)) then
+          call faults%add_error(deck%place(card_cord2r, i, 1), deck%identity(card_cord2r, i)// &
+                                ': points A, B and C lie on one line: no x-axis', 'three points that span a plane')
+        else if (abs(x(3)) > flat*norm2(x)) then
+          call faults%add_error(deck%place(card_cord2r, i, 1), deck%identity(card_cord2r, i)// &
+                                ': its x-axis points off the x-y plane', 'point C in the plane, B - A along z')
+        else
+          axis(:, i) = x(:2)/norm2(x(:2))
+        end if
+      end do
+    end associate
+  end subroutine read_systems
+end module epcont_model_pairs
