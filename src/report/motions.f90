@@ -1,0 +1,84 @@
+!> Faults of free bodies in words, with the card that would hold them.
+module epcont_report_motions
+  use epcont_base_text, only: plural, short_real, text_of
+  use epcont_base_kinds, only: wp
+  use epcont_deck_deck, only: card_grid, deck_type
+  use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: motion_fault, motion_not_held, motion_too_many
+  implicit none
+  private
+  public :: report_motion_faults
+
+  !> A part that turns by less than this, against its largest displacement, only shifts.
+  real(wp), parameter :: no_turn = 1.0e-6_wp
+
+contains
+
+  subroutine report_motion_faults(deck, model, found, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(in) :: model
+    type(motion_fault), intent(in) :: found(:)
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: body
+    type(place_type) :: place
+    integer :: i
+
+    do i = 1, size(found)
+      associate (fault => found(i))
+        place = deck%place(card_grid, fault%node, 0)
+        body = 'the body of GRID '//text_of(model%node_id(fault%node))
+        if (fault%kind == motion_not_held) then
+          call faults%add_error(place, body//' is free to move: '//motion_list(model, fault), &
+                                'hold it by SPC1, or solve for the motion by '//suport_card(model, fault))
+        else if (fault%kind == motion_too_many) then
+          call faults%add_error(place, body//' has '//plural(fault%motions, 'free motion')//' and '// &
+                                plural(fault%references, 'SUPORT freedom'), 'as many SUPORT freedoms as free motions')
+        else
+          call faults%add_error(place, body//': its SUPORT freedoms hardly tell its free motions apart', &
+                                'SUPORT nodes farther from each other')
+        end if
+      end associate
+    end do
+  end subroutine report_motion_faults
+
+  !> The motions that nothing holds.
+  pure function motion_list(model, fault) result(text)
+    type(model_type), intent(in) :: model
+    type(motion_fault), intent(in) :: fault
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = ''
+    do k = 1, size(fault%freedom, 2)
+      if (k > 1) text = text//', '
+      if (fault%turn(k) > no_turn) then
+        text = text//'it turns, GRID '//text_of(model%node_id(fault%freedom(1, k)))//' moving along ('
+      else
+        text = text//'it shifts along ('
+      end if
+      text = text//component(fault%direction(1, k))//', '//component(fault%direction(2, k))//')'
+    end do
+  end function motion_list
+
+  !> A component of a unit vector, rounding taken off.
+  pure function component(value) result(text)
+    real(wp), intent(in) :: value
+    character(len=:), allocatable :: text
+
+    text = short_real(real(nint(value*1.0e4_wp), wp)*1.0e-4_wp)
+  end function component
+
+  !> The card to paste, in free field.
+  pure function suport_card(model, fault) result(text)
+    type(model_type), intent(in) :: model
+    type(motion_fault), intent(in) :: fault
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = 'SUPORT'
+    do k = 1, size(fault%freedom, 2)
+      text = text//','//text_of(model%node_id(fault%freedom(1, k)))//','//text_of(fault%freedom(2, k))
+    end do
+  end function suport_card
+end module epcont_report_motions

@@ -1,0 +1,51 @@
+!> Numbers as the listing and the tables print them.
+module epcont_report_number
+  use epcont_base_kinds, only: wp
+  implicit none
+  private
+  public :: column_number, rounding_number, full_number
+
+  !> A value below this part of its column's scale is rounding and prints as 0.0.
+  real(wp), parameter :: noise = 1.0e-12_wp
+
+contains
+
+  !> A number of a listing's column, six digits in 13 characters.
+  pure function column_number(value, scale) result(text)
+    real(wp), intent(in) :: value
+    real(wp), intent(in) :: scale  !! of the column: its largest magnitude
+    character(len=13) :: text
+
+    if (abs(value) <= noise*scale .or. value == 0.0_wp) then
+      text = '          0.0'
+    else if (abs(value) >= 0.999999e100_wp .or. abs(value) < 1.0e-99_wp) then
+      write (text, '(es13.5e3)') value
+    else
+      write (text, '(es13.5e2)') value
+    end if
+  end function column_number
+
+  !> A figure that is rounding in a valid answer: `< 1E-12`, else two digits.
+  pure function rounding_number(value) result(text)
+    real(wp), intent(in) :: value
+    character(len=:), allocatable :: text
+    character(len=12) :: buffer
+
+    if (value < noise) then
+      text = '< 1E-12'
+    else
+      write (buffer, '(es9.1e3)') value
+      text = trim(adjustl(buffer))
+    end if
+  end function rounding_number
+
+  !> A number in full precision: 17 digits.
+  pure function full_number(value) result(text)
+    real(wp), intent(in) :: value
+    character(len=:), allocatable :: text
+    character(len=26) :: buffer
+
+    write (buffer, '(es25.16e3)') merge(0.0_wp, value, value == 0.0_wp)  ! no negative zero
+    text = trim(adjustl(buffer))
+  end function full_number
+end module epcont_report_number

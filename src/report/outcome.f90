@@ -1,0 +1,93 @@
+!> What came of a run, in a word and a sentence.
+module epcont_report_outcome
+  use epcont_base_error, only: status_no_answer, status_numerical, status_valid
+  use epcont_base_text, only: text_of
+  use epcont_certificate_certificate, only: certificate_type
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
+  use epcont_result_answer, only: answer_type
+  implicit none
+  private
+  public :: outcome_type, judge
+
+  type :: outcome_type
+    integer :: status = status_valid            !! exit status
+    character(len=:), allocatable :: word       !! valid, no equilibrium, ...
+    character(len=:), allocatable :: sentence   !! empty where the answer is valid
+    logical :: has_answer = .false.             !! displacements and forces were found
+  end type outcome_type
+
+  character(len=*), parameter :: axis(2) = ['x', 'y']
+
+contains
+
+  !> Judge an answer.
+  pure function judge(model, motions, answer, certificate, singular) result(outcome)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(answer_type), intent(in) :: answer
+    type(certificate_type), intent(in) :: certificate
+    integer, intent(in) :: singular  !! body that could not be factored, or 0
+    type(outcome_type) :: outcome
+    integer :: k
+
+    outcome%sentence = ''
+    if (singular > 0) then
+      outcome%status = status_numerical
+      outcome%word = 'singular stiffness'
+      outcome%sentence = 'the stiffness of the body of GRID '//first_node(model, singular)// &
+                         ' cannot be factored: its elements differ too much in size or stiffness'
+    else if (answer%contact%state == contact_no_equilibrium) then
+      outcome%status = status_no_answer
+      outcome%word = 'no equilibrium'
+      k = maxloc(abs(answer%contact%escape), dim=1)
+      outcome%sentence = 'the body of GRID '//first_node(model, motions%body(k))// &
+                         ' moves off and no contact holds it: GRID '// &
+                         text_of(model%node_id(motions%node(k)))//' moves along '// &
+                         merge('-', '+', answer%contact%escape(k) < 0)//axis(motions%component(k))
+    else if (answer%contact%state == contact_overlap) then
+      outcome%status = status_no_answer
+      outcome%word = 'overlap'
+      outcome%sentence = 'pairs overlap and nothing can give way: CGAP'//names(model, answer%contact%overlapping)
+    else if (answer%contact%state /= contact_solved) then
+      outcome%status = status_numerical
+      outcome%word = 'contact not found'
+      outcome%sentence = 'no set of touching pairs passed the test: rounding has won (condition of the stiffness)'
+    else
+      outcome%has_answer = .true.
+      outcome%word = 'valid'
+      if (certificate%valid) return
+      outcome%status = status_numerical
+      outcome%word = 'not certified'
+      outcome%sentence = 'the certificate is beyond its tolerance: the figures are not to be trusted'
+    end if
+  end function judge
+
+  !> Id of the first node of a body.
+  pure function first_node(model, body) result(id)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: body
+    character(len=:), allocatable :: id
+
+    id = text_of(minval(model%node_id, mask=model%body == body))
+  end function first_node
+
+  !> Ids of the first pairs of a set.
+  pure function names(model, chosen) result(text)
+    type(model_type), intent(in) :: model
+    logical, intent(in) :: chosen(:)
+    character(len=:), allocatable :: text
+    integer, parameter :: most = 8
+    integer :: k, named
+
+    text = ''
+    named = 0
+    do k = 1, model%pairs
+      if (.not. chosen(k)) cycle
+      named = named + 1
+      if (named <= most) text = text//' '//text_of(model%pair_id(k))
+    end do
+    if (named > most) text = text//' and '//text_of(named - most)//' more'
+  end function names
+end module epcont_report_outcome

@@ -1,0 +1,184 @@
+!> Result tables in full precision, one value a column (CSV).
+module epcont_report_tables
+  use epcont_base_error, only: error_type
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
+  use epcont_certificate_certificate, only: certificate_type
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
+  use epcont_report_file, only: new_text_file, text_file
+  use epcont_report_number, only: full_number
+  use epcont_report_outcome, only: outcome_type
+  use epcont_result_answer, only: answer_type
+  use epcont_result_contact_line, only: contact_zone
+  implicit none
+  private
+  public :: write_summary, write_contact, write_zones, write_nodes, write_elements, write_history
+
+contains
+
+  !> key,value,unit.
+  subroutine write_summary(stem, model, motions, answer, certificate, outcome, error)
+    character(len=*), intent(in) :: stem
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(answer_type), intent(in) :: answer
+    type(certificate_type), intent(in) :: certificate
+    type(outcome_type), intent(in) :: outcome
+    type(error_type), allocatable, intent(out) :: error
+    type(text_file) :: file
+    integer :: k
+
+    call new_text_file(stem//'.summary.csv', file, error)
+    if (allocated(error)) return
+    call file%line('key,value,unit')
+    call file%line('status,'//outcome%word//',')
+    if (outcome%has_answer) then
+      if (model%pairs > 0) call put('max_pressure', max(0.0_wp, maxval(answer%pressure)), 'force/length2')
+      do k = 1, motions%count
+        call put('approach_'//text_of(model%node_id(motions%node(k)))//'_'//text_of(motions%component(k)), &
+                 answer%contact%approach(k), 'length')
+      end do
+      call put('total_contact_force', sum(answer%contact%force), 'force')
+      call file%line('pairs_in_contact,'//text_of(count(answer%contact%touching))//',')
+      call file%line('plastic_elements,0,')
+      call file%line('iterations,1,')
+      call file%line('pivots,'//text_of(answer%contact%pivots)//',')
+      call put('max_equivalent_stress', maxval(answer%equivalent_stress), 'force/length2')
+      call put('max_displacement', maxval(norm2(answer%displacement, dim=1)), 'length')
+      call put('equilibrium_residual', certificate%equilibrium, '')
+      call put('smallest_force', certificate%smallest_force, 'force')
+      call put('smallest_gap', certificate%smallest_gap, 'length')
+      call put('largest_force_gap_product', certificate%force_gap, 'force*length')
+      call put('stress_off_curve', certificate%off_curve, '')
+      call put('energy_balance', certificate%energy, '')
+      call put('condition', answer%condition, '')
+    end if
+    call file%finish(error)
+
+  contains
+
+    subroutine put(key, value, unit)
+      character(len=*), intent(in) :: key, unit
+      real(wp), intent(in) :: value
+
+      call file%line(key//','//full_number(value)//','//unit)
+    end subroutine put
+  end subroutine write_summary
+
+  !> One row a pair.
+  subroutine write_contact(stem, model, answer, error)
+    character(len=*), intent(in) :: stem
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    type(error_type), allocatable, intent(out) :: error
+    type(text_file) :: file
+    character(len=:), allocatable :: pressure
+    integer :: k
+
+    call new_text_file(stem//'.contact.csv', file, error)
+    if (allocated(error)) return
+    call file%line('pair,ga,gb,x,y,nx,ny,initial_gap,force,pressure,gap,status')
+    do k = 1, model%pairs
+      associate (a => model%pair_node(1, k), b => model%pair_node(2, k))
+        pressure = ''
+        if (answer%pressure(k) >= 0.0_wp) pressure = full_number(answer%pressure(k))
+        call file%line(text_of(model%pair_id(k))//','//text_of(model%node_id(a))//','//text_of(model%node_id(b))//','// &
+                       row([model%x(:, b), model%normal(:, k), model%initial_gap(k), answer%contact%force(k)])//','// &
+                       pressure//','//full_number(answer%contact%gap(k))//','// &
+                       trim(merge('touching', 'open    ', answer%contact%touching(k))))
+      end associate
+    end do
+    call file%finish(error)
+  end subroutine write_contact
+
+  !> One row a zone.
+  subroutine write_zones(stem, model, zones, error)
+    character(len=*), intent(in) :: stem
+    type(model_type), intent(in) :: model
+    type(contact_zone), intent(in) :: zones(:)
+    type(error_type), allocatable, intent(out) :: error
+    type(text_file) :: file
+    character(len=:), allocatable :: half_width
+    integer :: z
+
+    call new_text_file(stem//'.zones.csv', file, error)
+    if (allocated(error)) return
+    call file%line('zone,first_pair,last_pair,force,max_pressure,width_last_pair,half_width')
+    do z = 1, size(zones)
+      half_width = ''
+      if (zones(z)%half_width >= 0.0_wp) half_width = full_number(zones(z)%half_width)
+      call file%line(text_of(z)//','//text_of(model%pair_id(zones(z)%first))//','// &
+                     text_of(model%pair_id(zones(z)%last))//','// &
+                     row([zones(z)%force, zones(z)%max_pressure, zones(z)%half_width_pairs])//','//half_width)
+    end do
+    call file%finish(error)
+  end subroutine write_zones
+
+  !> One row a node.
+  subroutine write_nodes(stem, model, answer, error)
+    character(len=*), intent(in) :: stem
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    type(error_type), allocatable, intent(out) :: error
+    type(text_file) :: file
+    integer :: i
+
+    call new_text_file(stem//'.nodes.csv', file, error)
+    if (allocated(error)) return
+    call file%line('node,x,y,ux,uy,rx,ry')
+    do i = 1, model%nodes
+      call file%line(text_of(model%node_id(i))//','// &
+                     row([model%x(:, i), answer%displacement(:, i), answer%reaction(:, i)]))
+    end do
+    call file%finish(error)
+  end subroutine write_nodes
+
+  !> One row an element; x and y are its centre.
+  subroutine write_elements(stem, model, answer, error)
+    character(len=*), intent(in) :: stem
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    type(error_type), allocatable, intent(out) :: error
+    type(text_file) :: file
+    integer :: e
+
+    call new_text_file(stem//'.elements.csv', file, error)
+    if (allocated(error)) return
+    call file%line('element,x,y,sx,sy,sz,txy,equivalent_stress,equivalent_strain,secant_modulus,state')
+    do e = 1, model%elements
+      call file%line(text_of(model%element_id(e))//','// &
+                     row([sum(model%corners(e), dim=2)/3.0_wp, answer%stress(:, e), answer%equivalent_stress(e), &
+                          answer%equivalent_strain(e), model%young(model%section(e))])//',elastic')
+    end do
+    call file%finish(error)
+  end subroutine write_elements
+
+  !> One row a solve: an elastic scene has one.
+  subroutine write_history(stem, answer, certificate, error)
+    character(len=*), intent(in) :: stem
+    type(answer_type), intent(in) :: answer
+    type(certificate_type), intent(in) :: certificate
+    type(error_type), allocatable, intent(out) :: error
+    type(text_file) :: file
+
+    call new_text_file(stem//'.history.csv', file, error)
+    if (allocated(error)) return
+    call file%line('iteration,change,residual,pairs_in_contact,plastic_elements,pivots')
+    call file%line('1,'//row([1.0_wp, certificate%equilibrium])//','//text_of(count(answer%contact%touching))//',0,'// &
+                   text_of(answer%contact%pivots))
+    call file%finish(error)
+  end subroutine write_history
+
+  !> Numbers with commas between them.
+  pure function row(values) result(text)
+    real(wp), intent(in) :: values(:)
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = full_number(values(1))
+    do k = 2, size(values)
+      text = text//','//full_number(values(k))
+    end do
+  end function row
+end module epcont_report_tables
