@@ -1,0 +1,139 @@
+!> Stiffness of one body, assembled and factored: a band, and a border of the ties' free leaders.
+!>
+!>     K = [ K_bb  K_br ]   b: band,  r: border (few)
+!>         [ K_rb  K_rr ]
+!>
+!> The band is factored alone; the border follows by its Schur complement S = K_rr - K_rb W, W = K_bb^-1 K_br.
+module epcont_assembly_stiffness
+  use epcont_base_kinds, only: wp
+  use epcont_element_tria3, only: tria3_stiffness
+  use epcont_linalg_band, only: band_matrix, new_band_matrix
+  use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
+  use epcont_model_model, only: model_type
+  use epcont_plan_numbering, only: body_numbering
+  implicit none
+  private
+  public :: body_stiffness, assemble_body
+
+  type :: body_stiffness
+    type(band_matrix) :: band                 !! K_bb, then its factor
+    real(wp), allocatable :: coupling(:, :)   !! K_br, then W [band, border]
+    real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
+    real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot**2 over its diagonal entry
+    integer :: weakest = 0                    !! its equation
+  contains
+    procedure :: factor
+    procedure :: solve
+    procedure :: trailing_compliance
+  end type body_stiffness
+
+contains
+
+  !> Assemble the elements of a body. `settlement` receives the forces that prescribed displacements exert on the
+  !! free freedoms: minus K_fp u_p [force] [2, nodes].
+  pure subroutine assemble_body(model, equation, body, stiffness, settlement)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: equation(:, :)
+    type(body_numbering), intent(in) :: body
+    type(body_stiffness), intent(out) :: stiffness
+    real(wp), intent(inout) :: settlement(:, :)
+    real(wp) :: k(6, 6), forced(6)
+    integer :: e, i, node
+
+    stiffness%band = new_band_matrix(body%equations, body%half_bandwidth)
+    allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
+    do e = 1, size(body%element)
+      associate (element => body%element(e), corner => model%corner(:, body%element(e)))
+        k = tria3_stiffness(model%corners(element), model%material_matrix(element), &
+                            model%thickness(model%section(element)))
+        call add(k, reshape(equation(:, corner), [6]), stiffness)
+        do i = 1, 3
+          node = corner(i)
+          forced(2*i - 1) = model%prescribed(1, model%leader(1, node))
+          forced(2*i) = model%prescribed(2, model%leader(2, node))
+        end do
+        if (all(forced == 0.0_wp)) cycle
+        forced = matmul(k, forced)
+        do i = 1, 3
+          settlement(:, corner(i)) = settlement(:, corner(i)) - forced(2*i - 1:2*i)
+        end do
+      end associate
+    end do
+  end subroutine assemble_body
+
+  !> Add an element matrix to the band, the coupling and the border.
+  pure subroutine add(k, number, stiffness)
+    real(wp), intent(in) :: k(6, 6)
+    integer, intent(in) :: number(6)
+    type(body_stiffness), intent(inout) :: stiffness
+    integer :: i, j
+
+    do j = 1, 6
+      if (number(j) == 0) cycle
+      do i = 1, 6
+        if (number(i) == 0) cycle
+        if (number(i) >= number(j) .and. number(j) > 0) then
+          stiffness%band%entries(1 + number(i) - number(j), number(j)) = &
+            stiffness%band%entries(1 + number(i) - number(j), number(j)) + k(i, j)
+        else if (number(i) > 0 .and. number(j) < 0) then
+          stiffness%coupling(number(i), -number(j)) = stiffness%coupling(number(i), -number(j)) + k(i, j)
+        else if (number(i) < 0 .and. number(j) < 0) then
+          stiffness%schur(-number(i), -number(j)) = stiffness%schur(-number(i), -number(j)) + k(i, j)
+        end if
+      end do
+    end do
+  end subroutine add
+
+  !> Factor the band, then the Schur complement of the border.
+  pure subroutine factor(self)
+    class(body_stiffness), intent(inout) :: self
+    real(wp), allocatable :: coupled(:, :)
+    integer :: info
+
+    call self%band%factor(self%smallest_ratio, self%weakest)
+    if (self%smallest_ratio == 0.0_wp .or. size(self%schur) == 0) return
+    coupled = self%coupling
+    call self%band%solve(self%coupling)
+    self%schur = self%schur - matmul(transpose(coupled), self%coupling)
+    call cholesky_factor(self%schur, info)
+    if (info == 0) return
+    self%smallest_ratio = 0.0_wp
+    self%weakest = -info
+  end subroutine factor
+
+  !> Solve for one right-hand side, in place.
+  pure subroutine solve(self, band, border)
+    class(body_stiffness), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: band(:, :)     !! [band, 1]
+    real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
+
+    border = border - matmul(transpose(self%coupling), band)
+    call self%band%solve(band)
+    if (size(border) == 0) return
+    call cholesky_solve(self%schur, border)
+    band = band - matmul(self%coupling, border)
+  end subroutine solve
+
+  !> Inverse of K over its last band equations and the border, in this order: flexibility by inversion.
+  pure function trailing_compliance(self, count) result(compliance)
+    class(body_stiffness), intent(in) :: self
+    integer, intent(in) :: count                 !! last band equations wanted
+    real(wp), allocatable :: compliance(:, :)    !! [count + border, count + border]
+    real(wp), allocatable :: response(:, :), solved(:, :)
+    integer :: border, i
+
+    border = size(self%schur, 1)
+    allocate (compliance(count + border, count + border), source=0.0_wp)
+    compliance(:count, :count) = self%band%trailing_inverse(count)
+    if (border == 0) return
+    ! K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'
+    allocate (response(count + border, border), source=0.0_wp)
+    response(:count, :) = self%coupling(self%band%order - count + 1:, :)
+    do i = 1, border
+      response(count + i, i) = -1.0_wp
+    end do
+    solved = transpose(response)
+    call cholesky_solve(self%schur, solved)
+    compliance = compliance + matmul(response, solved)
+  end function trailing_compliance
+end module epcont_assembly_stiffness

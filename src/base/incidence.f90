@@ -1,0 +1,41 @@
+!> Which groups each member belongs to: a table of groups turned round.
+module epcont_base_incidence
+  implicit none
+  private
+  public :: incidence, new_incidence
+
+  !> Member i belongs to the groups group(start(i):start(i+1)-1), ascending.
+  type :: incidence
+    integer, allocatable :: start(:), group(:)
+  end type incidence
+
+contains
+
+  !> From the members of each group [any, groups].
+  pure function new_incidence(member, members) result(table)
+    integer, intent(in) :: member(:, :)
+    integer, intent(in) :: members   !! how many there are in all
+    type(incidence) :: table
+    integer :: g, k
+    integer, allocatable :: next(:)
+
+    allocate (table%start(members + 1), source=0)
+    allocate (table%group(size(member)))
+    do g = 1, size(member, 2)
+      do k = 1, size(member, 1)
+        table%start(member(k, g) + 1) = table%start(member(k, g) + 1) + 1
+      end do
+    end do
+    table%start(1) = 1
+    do k = 1, members
+      table%start(k + 1) = table%start(k) + table%start(k + 1)
+    end do
+    next = table%start
+    do g = 1, size(member, 2)
+      do k = 1, size(member, 1)
+        table%group(next(member(k, g))) = g
+        next(member(k, g)) = next(member(k, g)) + 1
+      end do
+    end do
+  end function new_incidence
+end module epcont_base_incidence

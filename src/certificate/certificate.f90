@@ -1,0 +1,185 @@
+!> Recomputes from displacements and forces alone whether they are an answer.
+!>
+!> Shares nothing with the solver: strains come from the gradient over the edges of each triangle, stresses from
+!> the two Lame moduli, nodal forces from the tractions on the edges.
+module epcont_certificate_certificate
+  use epcont_base_kinds, only: wp
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: certificate_type, certify
+
+  !> Largest value of each relative figure for an answer to be valid.
+  real(wp), parameter, public :: tolerance = 1.0e-9_wp
+
+  type :: certificate_type
+    real(wp) :: equilibrium = 0.0_wp      !! largest unbalanced nodal force / largest sum of element forces at a node
+    real(wp) :: smallest_force = 0.0_wp   !! [force]
+    real(wp) :: smallest_gap = 0.0_wp     !! [length]
+    real(wp) :: force_gap = 0.0_wp        !! largest |R gap| [force*length]
+    real(wp) :: off_curve = 0.0_wp        !! largest difference of a stress from its curve / largest stress
+    real(wp) :: energy = 0.0_wp           !! |work - 2 strain energy| / sum of all |terms|
+    real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
+    real(wp) :: length_scale = 1.0_wp     !! largest displacement or initial gap [length]
+    logical :: valid = .false.
+  end type certificate_type
+
+contains
+
+  pure subroutine certify(model, displacement, reaction, stress, force, certificate)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: displacement(:, :)  !! [2, nodes]
+    real(wp), intent(in) :: reaction(:, :)      !! [2, nodes]
+    real(wp), intent(in) :: stress(:, :)        !! xx, yy, zz, xy [4, elements]
+    real(wp), intent(in) :: force(:)            !! contact forces [pairs]
+    type(certificate_type), intent(out) :: certificate
+    real(wp), allocatable :: residual(:, :), element_force(:)
+    real(wp) :: stored, work, terms, largest_stress
+
+    allocate (residual(2, model%nodes), element_force(model%nodes), source=0.0_wp)
+    stored = 0.0_wp
+    largest_stress = 0.0_wp
+    call sum_elements(model, displacement, stress, residual, element_force, stored, largest_stress, certificate%off_curve)
+    certificate%off_curve = ratio(certificate%off_curve, largest_stress)
+    residual = residual - model%load - reaction
+    call check_pairs(model, displacement, force, residual, certificate)
+    call gather_ties(model, residual)
+    certificate%equilibrium = ratio(maxval(abs(residual)), max(maxval(element_force), maxval(abs(model%load)), &
+                                                               certificate%force_scale*merge(1, 0, any(force > 0.0_wp))))
+    work = sum(model%load*displacement) + sum(reaction*displacement)
+    terms = sum(abs(model%load*displacement)) + sum(abs(reaction*displacement)) + stored
+    call add_pair_work(model, displacement, force, work, terms)
+    certificate%energy = ratio(abs(work - stored), terms)
+    certificate%valid = certificate%equilibrium <= tolerance .and. certificate%off_curve <= tolerance &
+                        .and. certificate%energy <= tolerance &
+                        .and. certificate%smallest_force >= -tolerance*certificate%force_scale &
+                        .and. certificate%smallest_gap >= -tolerance*certificate%length_scale &
+                        .and. certificate%force_gap <= tolerance*certificate%force_scale*certificate%length_scale
+  end subroutine certify
+
+  !> a/b, 0 where both are 0.
+  pure real(wp) function ratio(a, b)
+    real(wp), intent(in) :: a, b
+
+    ratio = 0.0_wp
+    if (a > 0.0_wp) ratio = a/max(b, tiny(b))
+  end function ratio
+
+  !> Internal forces at the nodes, strain energy (twice), largest stress and its distance from the curve.
+  pure subroutine sum_elements(model, displacement, stress, internal, magnitude, stored, largest, off)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: displacement(:, :), stress(:, :)
+    real(wp), intent(inout) :: internal(:, :), magnitude(:), stored, largest, off
+    real(wp) :: strain(3), expected(4), force(2), edge(2), area
+    integer :: e, k, node
+
+    do e = 1, model%elements
+      associate (corner => model%corner(:, e), t => model%thickness(model%section(e)))
+        call strain_of(model%x(:, corner), displacement(:, corner), strain, area)
+        expected = lame_stress(model, model%section(e), strain)
+        off = max(off, maxval(abs(stress(:, e) - expected)))
+        largest = max(largest, maxval(abs(expected)))
+        stored = stored + t*area*(expected(1)*strain(1) + expected(2)*strain(2) + expected(4)*strain(3))
+        do k = 1, 3
+          ! Half of the traction on the two edges at a corner balances that on the edge across from it.
+          node = corner(k)
+          edge = model%x(:, corner(mod(k + 1, 3) + 1)) - model%x(:, corner(mod(k, 3) + 1))
+          force = -0.5_wp*t*[expected(1)*edge(2) - expected(4)*edge(1), expected(4)*edge(2) - expected(2)*edge(1)]
+          internal(:, node) = internal(:, node) + force
+          magnitude(node) = magnitude(node) + maxval(abs(force))
+        end do
+      end associate
+    end do
+  end subroutine sum_elements
+
+  !> Strain of a triangle from how its corners move against the first.
+  pure subroutine strain_of(x, u, strain, area)
+    real(wp), intent(in) :: x(2, 3), u(2, 3)
+    real(wp), intent(out) :: strain(3), area
+    real(wp) :: side(2, 2), moved(2, 2), gradient(2, 2), determinant
+
+    side = x(:, 2:3) - spread(x(:, 1), 2, 2)
+    moved = u(:, 2:3) - spread(u(:, 1), 2, 2)
+    determinant = side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1)
+    gradient(:, 1) = (moved(:, 1)*side(2, 2) - moved(:, 2)*side(2, 1))/determinant
+    gradient(:, 2) = (moved(:, 2)*side(1, 1) - moved(:, 1)*side(1, 2))/determinant
+    strain = [gradient(1, 1), gradient(2, 2), gradient(1, 2) + gradient(2, 1)]
+    area = 0.5_wp*determinant
+  end subroutine strain_of
+
+  !> Stress xx, yy, zz, xy of a strain by Lame's moduli.
+  pure function lame_stress(model, section, strain) result(stress)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: section
+    real(wp), intent(in) :: strain(3)
+    real(wp) :: stress(4)
+    real(wp) :: across, lambda, mu
+
+    associate (young => model%young(section), nu => model%poisson(section))
+      mu = young/(2.0_wp*(1.0_wp + nu))
+      lambda = 2.0_wp*mu*nu/(1.0_wp - 2.0_wp*nu)
+      across = 0.0_wp
+      if (.not. model%plane_strain(section)) across = -nu/(1.0_wp - nu)*(strain(1) + strain(2))
+      stress = lambda*(strain(1) + strain(2) + across) + 2.0_wp*mu*[strain(1), strain(2), across, 0.0_wp]
+      stress(4) = mu*strain(3)
+    end associate
+  end function lame_stress
+
+  !> Smallest force and gap, largest product; the pairs' forces are taken off the residual.
+  pure subroutine check_pairs(model, displacement, force, residual, certificate)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: displacement(:, :), force(:)
+    real(wp), intent(inout) :: residual(:, :)
+    type(certificate_type), intent(inout) :: certificate
+    real(wp) :: gap, moved
+    integer :: k
+
+    if (model%pairs == 0) return
+    certificate%smallest_force = minval(force)
+    certificate%smallest_gap = huge(1.0_wp)
+    certificate%force_scale = max(maxval(abs(force)), maxval(abs(model%load)), tiny(1.0_wp))
+    certificate%length_scale = max(maxval(abs(displacement)), maxval(abs(model%initial_gap)), tiny(1.0_wp))
+    do k = 1, model%pairs
+      associate (a => model%pair_node(1, k), b => model%pair_node(2, k), n => model%normal(:, k))
+        moved = sum(n*(displacement(:, b) - displacement(:, a)))
+        gap = model%initial_gap(k) + moved
+        certificate%smallest_gap = min(certificate%smallest_gap, gap)
+        certificate%force_gap = max(certificate%force_gap, abs(gap*force(k)))
+        residual(:, b) = residual(:, b) - force(k)*n
+        residual(:, a) = residual(:, a) + force(k)*n
+      end associate
+    end do
+  end subroutine check_pairs
+
+  !> Work of the contact forces on the displacements.
+  pure subroutine add_pair_work(model, displacement, force, work, terms)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: displacement(:, :), force(:)
+    real(wp), intent(inout) :: work, terms
+    real(wp) :: done
+    integer :: k
+
+    do k = 1, model%pairs
+      done = force(k)*sum(model%normal(:, k)*(displacement(:, model%pair_node(2, k)) - displacement(:, model%pair_node(1, k))))
+      work = work + done
+      terms = terms + abs(done)
+    end do
+  end subroutine add_pair_work
+
+  !> A tied freedom hands its forces to its leader.
+  pure subroutine gather_ties(model, residual)
+    type(model_type), intent(in) :: model
+    real(wp), intent(inout) :: residual(:, :)
+    integer :: c, node
+
+    do node = 1, model%nodes
+      do c = 1, 2
+        associate (leader => model%leader(c, node))
+          if (leader == node) cycle
+          residual(c, leader) = residual(c, leader) + residual(c, node)
+          residual(c, node) = 0.0_wp
+        end associate
+      end do
+    end do
+  end subroutine gather_ties
+end module epcont_certificate_certificate

@@ -1,0 +1,194 @@
+!> Numbers of the equations of each body: a narrow band, with the contact freedoms last.
+module epcont_plan_numbering
+  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_kinds, only: i8
+  use epcont_base_sorting, only: sorted_order
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: body_numbering, numbering_type, number_equations
+
+  !> One body's system of equations.
+  type :: body_numbering
+    integer, allocatable :: node(:)        !! its nodes, in the order of the equations
+    integer, allocatable :: element(:)     !! its elements
+    integer :: equations = 0               !! in the band
+    integer :: contact_equations = 0       !! of these the last, at nodes of pairs
+    integer :: half_bandwidth = 0
+    integer :: border = 0                  !! leaders of ties that nothing holds, kept out of the band
+  end type body_numbering
+
+  type :: numbering_type
+    !> Equation of each freedom in its body: positive in the band, negative in the border, 0 held. [2, nodes]
+    integer, allocatable :: equation(:, :)
+    type(body_numbering), allocatable :: body(:)
+  contains
+    procedure :: band_entries
+  end type numbering_type
+
+contains
+
+  !> Entries of all band matrices.
+  pure integer(i8) function band_entries(self)
+    class(numbering_type), intent(in) :: self
+
+    band_entries = sum(int(self%body%equations, i8)*(self%body%half_bandwidth + 1))
+  end function band_entries
+
+  pure function number_equations(model) result(numbering)
+    type(model_type), intent(in) :: model
+    type(numbering_type) :: numbering
+    type(incidence) :: around
+    integer, allocatable :: order(:), element_order(:), element_body(:)
+    logical, allocatable :: at_contact(:)
+    integer :: b, first, last, e_first, e_last
+
+    around = new_incidence(model%corner, model%nodes)
+    allocate (at_contact(model%nodes), source=.false.)
+    at_contact(reshape(model%pair_node, [2*model%pairs])) = .true.
+    order = sorted_order(model%body)
+    element_body = model%body(model%corner(1, :))
+    element_order = sorted_order(element_body)
+    allocate (numbering%body(model%bodies))
+    allocate (numbering%equation(2, model%nodes), source=0)
+    first = 1
+    e_first = 1
+    do b = 1, model%bodies
+      last = first - 1 + count_run(model%body(order(first:)), b)
+      e_last = e_first - 1 + count_run(element_body(element_order(e_first:)), b)
+      associate (body => numbering%body(b))
+        body%element = element_order(e_first:e_last)
+        body%node = contact_last_order(model, around, order(first:last), at_contact)
+        call number_body(model, at_contact, numbering%equation, body)
+      end associate
+      first = last + 1
+      e_first = e_last + 1
+    end do
+  end function number_equations
+
+  !> How many keys at the front equal `key`.
+  pure integer function count_run(keys, key)
+    integer, intent(in) :: keys(:), key
+
+    count_run = findloc(keys == key, .false., dim=1) - 1
+    if (count_run < 0) count_run = size(keys)
+  end function count_run
+
+  !> Reverse Cuthill-McKee order, its levels rooted at the contact nodes so that these come last. The roots
+  !! stand in the order of a first sweep from the body's far end, which runs along the contact.
+  pure function contact_last_order(model, around, nodes, at_contact) result(order)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: nodes(:)
+    logical, intent(in) :: at_contact(:)
+    integer, allocatable :: order(:)
+
+    order = sweep(model, around, nodes(:1), nodes)
+    order = sweep(model, around, order(size(order):), nodes)
+    order = sweep(model, around, order(size(order):), nodes)
+    if (any(at_contact(nodes))) order = sweep(model, around, pack(order, at_contact(order)), nodes)
+    order = order(size(order):1:-1)
+  end function contact_last_order
+
+  !> Breadth-first order from `roots`, at each node its new neighbours by their number of elements. Nodes that
+  !! elements do not join to the roots (an RBE2 does) start sweeps of their own.
+  pure function sweep(model, around, roots, nodes) result(order)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: roots(:), nodes(:)
+    integer, allocatable :: order(:)
+    integer, allocatable :: found(:)
+    logical, allocatable :: seen(:)
+    integer :: at, filled, first, k, n, next
+
+    allocate (order(size(nodes)), found(0))
+    allocate (seen(size(model%body)), source=.false.)
+    filled = size(roots)
+    order(:filled) = roots
+    seen(roots) = .true.
+    at = 0
+    next = 1
+    do while (at < size(nodes))
+      at = at + 1
+      if (at > filled) then
+        do while (seen(nodes(next)))
+          next = next + 1
+        end do
+        filled = at
+        order(at) = nodes(next)
+        seen(nodes(next)) = .true.
+      end if
+      n = order(at)
+      first = filled + 1
+      do k = around%start(n), around%start(n + 1) - 1
+        associate (corner => model%corner(:, around%group(k)))
+          call add_new(corner, seen, order, filled)
+        end associate
+      end do
+      if (filled > first) then
+        found = order(first:filled)
+        order(first:filled) = found(sorted_order(around%start(found + 1) - around%start(found)))
+      end if
+    end do
+
+  end function sweep
+
+  !> Put the corners not seen yet at the end of the order.
+  pure subroutine add_new(corner, seen, order, filled)
+    integer, intent(in) :: corner(:)
+    logical, intent(inout) :: seen(:)
+    integer, intent(inout) :: order(:), filled
+    integer :: c
+
+    do c = 1, size(corner)
+      if (seen(corner(c))) cycle
+      seen(corner(c)) = .true.
+      filled = filled + 1
+      order(filled) = corner(c)
+    end do
+  end subroutine add_new
+
+  !> Number the freedoms of one body along the order of its nodes. A tied freedom has its leader's number; a
+  !! leader that is free goes to the border, so that the band never sees a whole line of nodes on one freedom.
+  pure subroutine number_body(model, at_contact, equation, body)
+    type(model_type), intent(in) :: model
+    logical, intent(in) :: at_contact(:)
+    integer, intent(inout) :: equation(:, :)
+    type(body_numbering), intent(inout) :: body
+    integer :: c, e, i, node, before_contact
+    integer :: lowest, highest
+
+    do i = 1, size(body%node)
+      node = body%node(i)
+      do c = 1, 2
+        associate (leader => model%leader(c, node))
+          if (leader == node .or. model%held(c, leader) .or. model%reference(c, leader)) cycle
+          if (equation(c, leader) < 0) cycle
+          body%border = body%border + 1
+          equation(c, leader) = -body%border
+        end associate
+      end do
+    end do
+    before_contact = 0
+    do i = 1, size(body%node)
+      node = body%node(i)
+      do c = 1, 2
+        if (model%leader(c, node) /= node) then
+          equation(c, node) = equation(c, model%leader(c, node))
+        else if (.not. (model%held(c, node) .or. model%reference(c, node)) .and. equation(c, node) == 0) then
+          body%equations = body%equations + 1
+          equation(c, node) = body%equations
+        end if
+      end do
+      if (.not. at_contact(node)) before_contact = body%equations
+    end do
+    body%contact_equations = body%equations - before_contact
+    do e = 1, size(body%element)
+      associate (numbers => equation(:, model%corner(:, body%element(e))))
+        highest = maxval(numbers)
+        lowest = minval(numbers, mask=numbers > 0)
+        if (highest > 0) body%half_bandwidth = max(body%half_bandwidth, highest - lowest)
+      end associate
+    end do
+  end subroutine number_body
+end module epcont_plan_numbering

@@ -1,0 +1,127 @@
+!> Rigid parts of the bodies, as far as their free motions are concerned.
+!>
+!> Elements that share an edge turn as one; where parts share a single node they are hinged. A node without
+!> elements is a part that cannot turn.
+module epcont_plan_rigid_parts
+  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_kinds, only: wp
+  use epcont_base_partition, only: new_partition, partition
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: rigid_parts, find_rigid_parts
+
+  type :: rigid_parts
+    integer :: count = 0
+    integer, allocatable :: of_node(:)      !! a part of each node [nodes]
+    integer, allocatable :: body(:)         !! of each part [count]
+    logical, allocatable :: turns(:)        !! the part can turn [count]
+    integer, allocatable :: hinge(:, :)     !! node, part, other part of each hinge [3, hinges]
+    real(wp), allocatable :: centre(:, :)   !! of each body [length] [2, bodies]
+    real(wp), allocatable :: extent(:)      !! of each body, largest half width [length] [bodies]
+  contains
+    procedure :: row
+  end type rigid_parts
+
+contains
+
+  pure function find_rigid_parts(model) result(parts)
+    type(model_type), intent(in) :: model
+    type(rigid_parts) :: parts
+    type(incidence) :: around
+    integer, allocatable :: of_element(:)
+    integer :: e, hinges, i, k
+
+    around = new_incidence(model%corner, model%nodes)
+    call join_elements(model, around, of_element, parts%count)
+    allocate (parts%of_node(model%nodes), source=0)
+    do e = 1, model%elements
+      do k = 1, 3
+        if (parts%of_node(model%corner(k, e)) == 0) parts%of_node(model%corner(k, e)) = of_element(e)
+      end do
+    end do
+    allocate (parts%turns(parts%count), source=.true.)
+    do i = 1, model%nodes
+      if (parts%of_node(i) > 0) cycle
+      parts%count = parts%count + 1
+      parts%of_node(i) = parts%count
+    end do
+    parts%turns = [parts%turns, spread(.false., 1, parts%count - size(parts%turns))]
+    allocate (parts%body(parts%count))
+    parts%body(parts%of_node) = model%body
+    do e = 1, model%elements
+      parts%body(of_element(e)) = model%body(model%corner(1, e))
+    end do
+    allocate (parts%hinge(3, 3*model%elements))
+    hinges = 0
+    do i = 1, model%nodes
+      do k = around%start(i), around%start(i + 1) - 1
+        e = around%group(k)
+        if (of_element(e) == parts%of_node(i)) cycle
+        if (any(of_element(around%group(around%start(i):k - 1)) == of_element(e))) cycle
+        hinges = hinges + 1
+        parts%hinge(:, hinges) = [i, parts%of_node(i), of_element(e)]
+      end do
+    end do
+    parts%hinge = parts%hinge(:, :hinges)
+    call measure(model, parts)
+  end function find_rigid_parts
+
+  !> Number the sets of elements joined through edges.
+  pure subroutine join_elements(model, around, of_element, count)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, allocatable, intent(out) :: of_element(:)
+    integer, intent(out) :: count
+    type(partition) :: sets
+    integer :: e, j, k, neighbour, other
+
+    sets = new_partition(model%elements)
+    do e = 1, model%elements
+      do k = 1, 3
+        other = model%corner(mod(k, 3) + 1, e)
+        do j = around%start(model%corner(k, e)), around%start(model%corner(k, e) + 1) - 1
+          neighbour = around%group(j)
+          if (neighbour >= e) exit
+          if (any(model%corner(:, neighbour) == other)) call sets%join(e, neighbour)
+        end do
+      end do
+    end do
+    call sets%numbers(of_element, count)
+  end subroutine join_elements
+
+  !> Centre and extent of each body.
+  pure subroutine measure(model, parts)
+    type(model_type), intent(in) :: model
+    type(rigid_parts), intent(inout) :: parts
+    real(wp), allocatable :: low(:, :), high(:, :)
+    integer :: i
+
+    allocate (low(2, model%bodies), source=huge(1.0_wp))
+    allocate (high(2, model%bodies), source=-huge(1.0_wp))
+    do i = 1, model%nodes
+      low(:, model%body(i)) = min(low(:, model%body(i)), model%x(:, i))
+      high(:, model%body(i)) = max(high(:, model%body(i)), model%x(:, i))
+    end do
+    parts%centre = 0.5_wp*low + 0.5_wp*high
+    parts%extent = maxval(0.5_wp*high - 0.5_wp*low, dim=1)
+    where (parts%extent <= 0.0_wp) parts%extent = 1.0_wp
+  end subroutine measure
+
+  !> Displacement of component c at a place of a body by unit motions of the part it belongs to: along x, along
+  !! y, and a turn that moves the body's extent by one.
+  pure function row(self, model, node, c)
+    class(rigid_parts), intent(in) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: node, c
+    real(wp) :: row(3)
+
+    associate (b => model%body(node))
+      if (c == 1) then
+        row = [1.0_wp, 0.0_wp, -(model%x(2, node) - self%centre(2, b))/self%extent(b)]
+      else
+        row = [0.0_wp, 1.0_wp, (model%x(1, node) - self%centre(1, b))/self%extent(b)]
+      end if
+    end associate
+  end function row
+end module epcont_plan_rigid_parts
