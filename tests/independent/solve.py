@@ -128,18 +128,25 @@ def product(matrix, z):
 
 
 def tributary(model):
-    """Half the boundary edges that meet at each node, times thickness."""
-    edges = {}
+    """Half the boundary edges along the tangent (within 45 degrees) that meet at each pair's node, times thickness."""
+    owners = {}
     for k, c in enumerate(model.corner):
         for i in range(3):
-            edge = tuple(sorted((c[i], c[(i + 1) % 3])))
-            edges.setdefault(edge, []).append(k)
-    length = np.zeros(len(model.node))
-    pairs = set(model.ends.ravel())
-    for (a, b), owners in edges.items():
-        if len(owners) == 1 and a in pairs and b in pairs:
-            length[[a, b]] += np.linalg.norm(model.x[a] - model.x[b]) / 2 * model.section[model.property[owners[0]]][0]
-    return length
+            owners.setdefault(tuple(sorted((c[i], c[(i + 1) % 3]))), []).append(k)
+    around = {}
+    for (a, b), elements in owners.items():
+        if len(elements) == 1:
+            thickness = model.section[model.property[elements[0]]][0]
+            around.setdefault(a, []).append((b, thickness))
+            around.setdefault(b, []).append((a, thickness))
+    share = np.zeros(len(model.pair))
+    for k, (a, b) in enumerate(model.ends):
+        node = b if b in around else a
+        for other, thickness in around.get(node, []):
+            edge = model.x[other] - model.x[node]
+            if abs(edge @ model.normal[k]) <= np.sqrt(0.5) * np.linalg.norm(edge):
+                share[k] += thickness * np.linalg.norm(edge) / 2
+    return share
 
 
 def tables(problem, v, force, gap, touching):
@@ -153,7 +160,7 @@ def tables(problem, v, force, gap, touching):
     contact = []
     for k, pair in enumerate(model.pair):
         a, b = model.ends[k]
-        area = share[b] if share[b] > 0 else share[a]
+        area = share[k]
         contact.append([pair, model.node[a], model.node[b], *model.x[b], *model.normal[k], model.initial[k], force[k],
                         force[k] / area if area else 0.0, gap[k], "touching" if touching[k] else "open"])
     nodes = [[node, *model.x[i], *u[i], *reaction[i]] for i, node in enumerate(model.node)]
