@@ -1,0 +1,109 @@
+"""A reader of plane decks that has nothing in common with epcont's: small, large and free fields, INCLUDE, one case.
+
+It trusts the deck: whatever it does not understand raises DeckError, without place or remedy.
+"""
+import pathlib
+import re
+from dataclasses import dataclass, field
+
+KNOWN = {"GRID", "CTRIA3", "PSHELL", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1", "RBE2", "SUPORT", "CORD2R", "CGAP",
+         "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD"}
+
+
+class DeckError(Exception):
+    pass
+
+
+@dataclass
+class Deck:
+    case: dict = field(default_factory=dict)
+    cards: list = field(default_factory=list)
+
+    def of(self, name):
+        return [card for card in self.cards if card[0] == name]
+
+
+def lines_of(path, depth=0):
+    """Lines without comments, INCLUDE files in place; ENDDATA of an included file ends that file only."""
+    if depth > 8:
+        raise DeckError(f"INCLUDE too deep at {path}")
+    for line in pathlib.Path(path).read_text(encoding="latin-1").splitlines():
+        line = line.split("$")[0].rstrip()
+        if not line.strip():
+            continue
+        if line.strip().upper().startswith("INCLUDE"):
+            name = line.strip()[7:].strip().strip("'\"")
+            yield from lines_of(pathlib.Path(path).parent / name, depth + 1)
+        elif line.strip().upper() == "ENDDATA":
+            if depth == 0:
+                yield "ENDDATA"
+            return
+        else:
+            yield line.upper()
+
+
+def fields_of(line):
+    """(name field, data fields) of one line of bulk data."""
+    if "," in line:
+        parts = [part.strip() for part in line.split(",")]
+        return parts[0], (parts[1:9] + [""] * 8)[:4 if parts[0].endswith("*") or parts[0].startswith("*") else 8]
+    line = line.ljust(80)
+    name = line[:8].strip()
+    wide = 16 if "*" in name else 8
+    return name, [line[i:i + wide].strip() for i in range(8, 72, wide)]
+
+
+def read(path):
+    deck = Deck()
+    lines = list(lines_of(path))
+    if "ENDDATA" not in lines:
+        raise DeckError("no ENDDATA")
+    lines = lines[:lines.index("ENDDATA")]
+    begin = [i for i, line in enumerate(lines) if line.split()[:2] == ["BEGIN", "BULK"]]
+    if begin:
+        for line in lines[:begin[0]]:
+            match = re.match(r"\s*(SPC|LOAD)\s*=\s*(\d+)\s*$", line)
+            if match:
+                deck.case[match[1]] = int(match[2])
+        lines = lines[begin[0] + 1:]
+    for line in lines:
+        name, data = fields_of(line)
+        if name == "" or name[0] in "+*":
+            deck.cards[-1].extend(data)
+        else:
+            deck.cards.append([name.rstrip("*").strip()] + data)
+    for card in deck.cards:
+        if card[0] not in KNOWN:
+            raise DeckError(f"unknown card {card[0]}")
+    return deck
+
+
+def real(text, default=0.0):
+    if text == "":
+        return default
+    match = re.fullmatch(r"([+-]?[\d.]+)(?:[ED]?([+-]?\d+))?", text)
+    if not match or "." not in match[1]:
+        raise DeckError(f"not a real: {text}")
+    return float(match[1] + "e" + (match[2] or "0"))
+
+
+def integer(text, default=0):
+    return int(text) if text else default
+
+
+def ids(items):
+    """An open list of ids with THRU."""
+    items = [item for item in items if item]
+    found, i = [], 0
+    while i < len(items):
+        if i + 2 < len(items) and items[i + 1] == "THRU":
+            found += range(int(items[i]), int(items[i + 2]) + 1)
+            i += 3
+        else:
+            found.append(int(items[i]))
+            i += 1
+    return found
+
+
+def at(card, i):
+    return card[i] if i < len(card) else ""

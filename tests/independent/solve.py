@@ -1,0 +1,231 @@
+#!/usr/bin/env python3
+"""Solve an elastic contact deck by another method than epcont's and write tables of the same columns.
+
+    . tools/venv && python tests/independent/solve.py DECK... [-o DIRECTORY]
+
+One stiffness matrix of all bodies with the free motions left in it; a saddle-point matrix of displacements and contact
+forces, factored afresh (SuperLU) for every guess of the set of touching pairs. The guess: all pairs exchanged at once
+(primal-dual active set); where that goes round, one at a time, the first wrong one (Murty), with weak springs at the
+SUPORT freedoms until the set is found. The answer is solved without springs and refined.
+
+Exit status: 0 solved, 1 no equilibrium, 2 deck not understood.
+"""
+import argparse
+import csv
+import pathlib
+import sys
+import warnings
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spl
+
+from deck import DeckError, read
+from model import Model
+
+
+class NoEquilibrium(Exception):
+    pass
+
+
+class Problem:
+    def __init__(self, model):
+        self.model = model
+        self.full = model.stiffness()
+        self.k = (model.tie.T @ self.full @ model.tie).tocsc()
+        self.f = model.tie.T @ (model.force - self.full @ model.held)
+        self.n = (model.gap_matrix @ model.tie).tocsr()
+        self.g = model.initial + model.gap_matrix @ model.held
+        self.stiff = abs(self.k.diagonal()).max()
+        self.size = np.ptp(model.x, axis=0).max()
+        self.exchanges = 0
+
+    def springs(self, factor):
+        """Weak springs at the SUPORT freedoms."""
+        weak = np.zeros(self.k.shape[0])
+        for node, digit in self.model.support:
+            column = self.model.tie[2 * self.model.row[node] + digit - 1].indices
+            weak[column] = factor * self.stiff
+        return sp.diags(weak)
+
+    def solve(self, touching, spring=0.0):
+        """Displacements, forces of the touching pairs, gaps."""
+        active = np.flatnonzero(touching)
+        n = self.n[active]
+        k = self.k + self.springs(spring) if spring else self.k
+        scale = self.stiff
+        matrix = sp.bmat([[k, -n.T * scale], [-n * scale, None]], format="csc") if len(active) else k.tocsc()
+        right = np.concatenate([self.f, self.g[active] * scale])
+        self.exchanges += 1
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            try:
+                factor = spl.splu(matrix)
+            except (RuntimeError, Warning):
+                return None
+        z = factor.solve(right)
+        for _ in range(4):
+            rest = (right.astype(np.longdouble) - product(matrix, z)).astype(float)
+            z = z + factor.solve(rest)
+        if not np.all(np.isfinite(z)):
+            return None
+        v = z[:len(self.f)]
+        force = np.zeros(len(self.g))
+        force[active] = z[len(self.f):] * scale
+        gap = self.g + self.n @ v
+        gap[active] = 0.0
+        return v, force, gap
+
+    def wrong(self, touching, v, force, gap):
+        total = max(abs(force).max(initial=0), 1e-300)
+        reach = max(abs(self.g).max(initial=0), abs(v).max(initial=0), 1e-300)
+        return np.where(touching, force < -1e-11 * total, gap < -1e-11 * reach)
+
+    def find(self, spring, one_by_one, limit):
+        touching = np.ones(len(self.g), bool)
+        for _ in range(limit):
+            answer = self.solve(touching, spring)
+            if answer is None:
+                return None
+            wrong = self.wrong(touching, *answer)
+            if not wrong.any():
+                return touching, answer
+            if one_by_one:
+                touching[np.argmax(wrong)] ^= True
+            else:
+                touching = touching ^ wrong
+        return None
+
+    def answer(self):
+        found = self.find(0.0, False, 200) or self.find(1e-7, False, 200) or self.find(1e-7, True, 20 * len(self.g) + 200)
+        if found is None:
+            raise NoEquilibrium("no set of pairs found")
+        touching, answer = found
+        exact = self.solve(touching)
+        for _ in range(50):
+            if exact is None:
+                raise NoEquilibrium("a body moves away: singular without springs")
+            wrong = self.wrong(touching, *exact)
+            if not wrong.any():
+                break
+            touching = touching.copy()
+            touching[np.argmax(wrong)] ^= True
+            exact = self.solve(touching)
+        else:
+            raise NoEquilibrium("springs change the set of pairs")
+        v, force, gap = exact
+        if abs(v).max(initial=0) > 1e3 * self.size:
+            raise NoEquilibrium("displacements without bound")
+        return v, force, gap, touching
+
+
+def product(matrix, z):
+    """matrix @ z in extended precision."""
+    coo = matrix.tocoo()
+    result = np.zeros(matrix.shape[0], np.longdouble)
+    np.add.at(result, coo.row, coo.data.astype(np.longdouble) * z[coo.col])
+    return result
+
+
+def tributary(model):
+    """Half the boundary edges along the tangent (within 45 degrees) that meet at each pair's node, times thickness."""
+    owners = {}
+    for k, c in enumerate(model.corner):
+        for i in range(3):
+            owners.setdefault(tuple(sorted((c[i], c[(i + 1) % 3]))), []).append(k)
+    around = {}
+    for (a, b), elements in owners.items():
+        if len(elements) == 1:
+            thickness = model.section[model.property[elements[0]]][0]
+            around.setdefault(a, []).append((b, thickness))
+            around.setdefault(b, []).append((a, thickness))
+    share = np.zeros(len(model.pair))
+    for k, (a, b) in enumerate(model.ends):
+        node = b if b in around else a
+        for other, thickness in around.get(node, []):
+            edge = model.x[other] - model.x[node]
+            if abs(edge @ model.normal[k]) <= np.sqrt(0.5) * np.linalg.norm(edge):
+                share[k] += thickness * np.linalg.norm(edge) / 2
+    return share
+
+
+def tables(problem, v, force, gap, touching):
+    model = problem.model
+    u = model.tie @ v + model.held
+    inner = problem.full @ u
+    reaction = inner - model.force - model.gap_matrix.T @ force
+    reaction = np.where(model.is_held, reaction, 0.0).reshape(-1, 2)
+    u = u.reshape(-1, 2)
+    share = tributary(model)
+    contact = []
+    for k, pair in enumerate(model.pair):
+        a, b = model.ends[k]
+        area = share[k]
+        contact.append([pair, model.node[a], model.node[b], *model.x[b], *model.normal[k], model.initial[k], force[k],
+                        force[k] / area if area else 0.0, gap[k], "touching" if touching[k] else "open"])
+    nodes = [[node, *model.x[i], *u[i], *reaction[i]] for i, node in enumerate(model.node)]
+    elements = []
+    for k, element in enumerate(model.element):
+        _, d, nu = model.section[model.property[k]]
+        strain = model.strain_matrix[k] @ u[model.corner[k]].ravel()
+        sx, sy, txy = d @ strain
+        sz = nu * (sx + sy) if nu is not None else 0.0
+        mises = np.sqrt(((sx - sy) ** 2 + (sy - sz) ** 2 + (sz - sx) ** 2) / 2 + 3 * txy ** 2)
+        elements.append([element, *model.x[model.corner[k]].mean(axis=0), sx, sy, sz, txy, mises])
+    summary = [["status", "solved", ""],
+               ["max_pressure", max((row[9] for row in contact), default=0.0), ""],
+               ["total_contact_force", float(force.sum()), ""],
+               ["pairs_in_contact", int(touching.sum()), ""],
+               ["max_equivalent_stress", max((row[7] for row in elements), default=0.0), ""],
+               ["max_displacement", float(np.hypot(*u.T).max()), ""]]
+    for node, digit in model.support:
+        summary.append([f"approach_{node}_{digit}", u[model.row[node], digit - 1], ""])
+    return {"summary": (["key", "value", "unit"], summary),
+            "contact": ("pair ga gb x y nx ny initial_gap force pressure gap status".split(), contact),
+            "nodes": ("node x y ux uy rx ry".split(), nodes),
+            "elements": ("element x y sx sy sz txy equivalent_stress".split(), elements)}
+
+
+def text(value):
+    return f"{value:.17g}" if isinstance(value, float) else str(value)
+
+
+def solve(path):
+    problem = Problem(Model(read(path)))
+    return tables(problem, *problem.answer()), problem
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("decks", nargs="+", type=pathlib.Path)
+    parser.add_argument("-o", "--output", type=pathlib.Path)
+    options = parser.parse_args()
+    worst = 0
+    for path in options.decks:
+        try:
+            found, problem = solve(path)
+        except DeckError as error:
+            print(f"{path.stem}: deck: {error}")
+            worst = max(worst, 2)
+            continue
+        except NoEquilibrium as error:
+            print(f"{path.stem}: no equilibrium: {error}")
+            worst = max(worst, 1)
+            continue
+        summary = {row[0]: row[1] for row in found["summary"][1]}
+        last = [row for row in found["contact"][1] if row[11] == "touching"]
+        print(f"{path.stem}: p_max {summary['max_pressure']:.6g}, " +
+              ", ".join(f"{key} {value:.6g}" for key, value in summary.items() if key.startswith("approach")) +
+              f", {len(last)} of {len(found['contact'][1])} touching, {problem.exchanges} factorizations")
+        if options.output:
+            options.output.mkdir(parents=True, exist_ok=True)
+            for name, (header, rows) in found.items():
+                with open(options.output / f"{path.stem}.{name}.csv", "w", newline="", encoding="ascii") as file:
+                    writer = csv.writer(file, lineterminator="\n")
+                    writer.writerow(header)
+                    writer.writerows([[text(value) for value in row] for row in rows])
+    return worst
+
+
+if __name__ == "__main__":
+    sys.exit(main())
