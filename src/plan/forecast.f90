@@ -1,0 +1,39 @@
+!> Memory and work that a scene will take, from the numbering alone.
+module epcont_plan_forecast
+  use epcont_base_kinds, only: i8, wp
+  use epcont_model_model, only: model_type
+  use epcont_plan_numbering, only: numbering_type
+  implicit none
+  private
+  public :: forecast_type, forecast
+
+  type :: forecast_type
+    integer(i8) :: bytes = 0            !! of the matrices
+    real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
+  end type forecast_type
+
+contains
+
+  pure function forecast(model, numbering) result(expected)
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    type(forecast_type) :: expected
+    real(wp) :: band, contact, n
+    integer(i8) :: entries
+    integer :: b
+
+    entries = numbering%band_entries()
+    n = real(model%pairs, wp)
+    do b = 1, size(numbering%body)
+      associate (body => numbering%body(b))
+        band = real(body%half_bandwidth, wp)
+        contact = real(body%contact_equations, wp)
+        entries = entries + int(body%equations, i8)*body%border + int(body%contact_equations + body%border, i8)**2
+        expected%operations = expected%operations + body%equations*band*(band + 4.0_wp*body%border) + contact**3
+      end associate
+    end do
+    ! F, its scaled copy and the tableau; a pivot runs over the whole tableau, about one pivot a pair.
+    expected%bytes = 8_i8*(entries + 3_i8*int(model%pairs, i8)**2)
+    expected%operations = expected%operations + 2.0_wp*n**3
+  end function forecast
+end module epcont_plan_forecast

@@ -1,0 +1,308 @@
+!> The listing for people: ASCII, at most 132 columns, nothing in it that varies from run to run.
+module epcont_report_listing
+  use epcont_base_error, only: error_type
+  use epcont_base_kinds, only: i8, wp
+  use epcont_base_text, only: plural, short_real, text_of
+  use epcont_base_version, only: program_name, program_version
+  use epcont_certificate_certificate, only: certificate_tolerance => tolerance, certificate_type
+  use epcont_deck_deck, only: deck_type
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_deck_render, only: printable, render_notes
+  use epcont_model_model, only: model_type
+  use epcont_plan_forecast, only: forecast_type
+  use epcont_plan_free_motion, only: free_motions
+  use epcont_plan_numbering, only: numbering_type
+  use epcont_report_file, only: text_file
+  use epcont_report_number, only: column_number, rounding_number
+  use epcont_report_outcome, only: outcome_type
+  use epcont_result_answer, only: answer_type
+  use epcont_result_contact_line, only: contact_zone
+  implicit none
+  private
+  public :: list_deck, plan_text, list_outcome, list_contact, list_zones, list_nodes, list_elements, list_summary
+
+  character(len=1), parameter :: newline = new_line('a')
+
+contains
+
+  !> Title, what the deck holds, and what of it has no effect.
+  subroutine list_deck(file, deck, faults)
+    type(text_file), intent(in) :: file
+    type(deck_type), intent(in) :: deck
+    type(diagnostics), intent(in) :: faults
+    integer :: k
+
+    call file%line(program_name//' '//program_version//'   elastoplastic contact of plane bodies')
+    call file%line('')
+    if (len(deck%title) > 0) call file%line('  '//printable(deck%title))
+    if (len(deck%subtitle) > 0) call file%line('  '//printable(deck%subtitle))
+    if (len(deck%label) > 0) call file%line('  '//printable(deck%label))
+    call file%line('  units: '//trim(deck%parameter_word('UNITS', 'as the deck has them')))
+    call heading(file, 'DECK')
+    do k = 1, size(deck%card)
+      if (deck%card(k)%count > 0) &
+        call file%line('  '//deck%entry(k)%name//'  '//right(text_of(deck%card(k)%count), 9))
+    end do
+    call lines(file, render_notes(faults, deck%source))
+  end subroutine list_deck
+
+  !> What is modelled, what is not needed, and what it will take.
+  pure function plan_text(model, motions, numbering, expected) result(text)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(forecast_type), intent(in) :: expected
+    character(len=:), allocatable :: text
+    integer, parameter :: most = 20
+    integer :: b, k
+
+    text = newline//'PLAN'//newline
+    text = text//'  '//plural(model%nodes, 'node')//', '//plural(model%elements, 'element')//', '// &
+           plural(model%pairs, 'pair')//'; bodies: '//text_of(model%bodies)//newline
+    text = text//'  elastic material only: one solve, no iteration'//newline
+    if (model%pairs == 0) then
+      text = text//'  no pairs: no flexibility, no simplex'//newline
+    else
+      text = text//'  flexibility by inversion of the trailing block, simplex with contact entry rule (CONRY)'//newline
+    end if
+    do k = 1, min(most, motions%count)
+      text = text//'  free motion: GRID '//text_of(model%node_id(motions%node(k)))//' direction '// &
+             text_of(motions%component(k))//newline
+    end do
+    if (motions%count > most) text = text//'  and '//plural(motions%count - most, 'further free motion')//newline
+    text = text//newline//'   body  nodes  equations  half-bandwidth  contact equations  border  factorizations'//newline
+    do b = 1, min(most, model%bodies)
+      associate (body => numbering%body(b))
+        text = text//right(text_of(b), 7)//right(text_of(size(body%node)), 7)//right(text_of(body%equations), 11)// &
+               right(text_of(body%half_bandwidth), 16)//right(text_of(body%contact_equations), 19)// &
+               right(text_of(body%border), 8)//right(text_of(merge(1, 0, body%equations > 0)), 16)//newline
+      end associate
+    end do
+    if (model%bodies > most) text = text//'  and '//plural(model%bodies - most, 'further one')//newline
+    text = text//newline//'  memory for matrices '//text_of((expected%bytes + 999999_i8)/1000000_i8)//' MB, operations '// &
+           short_real(expected%operations)//newline
+  end function plan_text
+
+  !> What came of the run, where the answer is not valid.
+  subroutine list_outcome(file, outcome)
+    type(text_file), intent(in) :: file
+    type(outcome_type), intent(in) :: outcome
+
+    if (len(outcome%sentence) == 0) return
+    call file%line('')
+    call file%line('  *NOT VALID*  '//outcome%word//': '//outcome%sentence)
+  end subroutine list_outcome
+
+  !> Forces, pressures and gaps of the pairs, and the pivots that led to them.
+  subroutine list_contact(file, model, answer)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    character(len=13) :: pressure
+    real(wp) :: force_scale, gap_scale, pressure_scale
+    integer :: k
+
+    call heading(file, 'CONTACT')
+    call file%line('      pair       GA       GB            x            y        force     pressure          gap  state')
+    force_scale = maxval(abs(answer%contact%force))
+    gap_scale = max(maxval(abs(answer%contact%gap)), maxval(abs(answer%displacement)))
+    pressure_scale = maxval(answer%pressure)
+    do k = 1, model%pairs
+      pressure = '            -'
+      if (answer%pressure(k) >= 0.0_wp) pressure = column_number(answer%pressure(k), pressure_scale)
+      associate (b => model%pair_node(2, k))
+        call file%line(right(text_of(model%pair_id(k)), 10)//right(text_of(model%node_id(model%pair_node(1, k))), 9)// &
+                       right(text_of(model%node_id(b)), 9)//column_number(model%x(1, b), 0.0_wp)// &
+                       column_number(model%x(2, b), 0.0_wp)//column_number(answer%contact%force(k), force_scale)// &
+                       pressure//column_number(answer%contact%gap(k), gap_scale)// &
+                       merge('  touching', '  open    ', answer%contact%touching(k))// &
+                       merge(', force not unique', '                  ', answer%contact%indeterminate(k)))
+      end associate
+    end do
+    call file%line('')
+    call file%line('  '//plural(answer%contact%pivots, 'pivot')//', '//text_of(answer%contact%degenerate_pivots)//' degenerate')
+    call list_pivots(file, model, answer)
+  end subroutine list_contact
+
+  !> The first pivots.
+  subroutine list_pivots(file, model, answer)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    integer :: k
+
+    if (size(answer%contact%history) == 0) return
+    call file%line('     pivot          entered             left  load factor        ratio')
+    do k = 1, size(answer%contact%history)
+      associate (pivot => answer%contact%history(k))
+        call file%line(right(text_of(k), 10)//right(variable(model, pivot%entered), 17)//right(variable(model, pivot%left), 17)// &
+                       column_number(pivot%load_factor, 1.0_wp)//column_number(pivot%ratio, 1.0_wp))
+      end associate
+    end do
+    if (answer%contact%pivots > size(answer%contact%history)) &
+      call file%line('  and '//text_of(answer%contact%pivots - size(answer%contact%history))//' more')
+  end subroutine list_pivots
+
+  !> A variable of the simplex by the id of its pair.
+  pure function variable(model, code) result(text)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: code
+    character(len=:), allocatable :: text
+
+    if (code == 0) then
+      text = 'load'
+    else if (code > 0) then
+      text = 'force '//text_of(model%pair_id(code))
+    else
+      text = 'gap '//text_of(model%pair_id(-code))
+    end if
+  end function variable
+
+  !> Runs of touching pairs.
+  subroutine list_zones(file, model, zones)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(contact_zone), intent(in) :: zones(:)
+    integer :: z
+
+    call heading(file, 'ZONES')
+    call file%line('    zone first pair  last pair        force max pressure  to last pair   half-width')
+    do z = 1, size(zones)
+      associate (zone => zones(z))
+        call file%line(right(text_of(z), 8)//right(text_of(model%pair_id(zone%first)), 11)// &
+                       right(text_of(model%pair_id(zone%last)), 11)//column_number(zone%force, 0.0_wp)// &
+                       column_number(zone%max_pressure, 0.0_wp)//' '//column_number(zone%half_width_pairs, 0.0_wp)// &
+                       half_width_text(zone%half_width))
+      end associate
+    end do
+  end subroutine list_zones
+
+  pure function half_width_text(half_width) result(text)
+    real(wp), intent(in) :: half_width
+    character(len=13) :: text
+
+    text = '            -'
+    if (half_width >= 0.0_wp) text = column_number(half_width, 0.0_wp)
+  end function half_width_text
+
+  !> Displacements and reactions.
+  subroutine list_nodes(file, model, answer)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    real(wp) :: u, r
+    integer :: i
+
+    call heading(file, 'DISPLACEMENTS AND REACTIONS')
+    call file%line('      GRID            x            y           ux           uy           rx           ry')
+    u = maxval(abs(answer%displacement))
+    r = maxval(abs(answer%reaction))
+    do i = 1, model%nodes
+      call file%line(right(text_of(model%node_id(i)), 10)//column_number(model%x(1, i), 0.0_wp)// &
+                     column_number(model%x(2, i), 0.0_wp)//column_number(answer%displacement(1, i), u)// &
+                     column_number(answer%displacement(2, i), u)//column_number(answer%reaction(1, i), r)// &
+                     column_number(answer%reaction(2, i), r))
+    end do
+  end subroutine list_nodes
+
+  !> Stresses.
+  subroutine list_elements(file, model, answer)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    real(wp) :: s
+    integer :: e
+
+    call heading(file, 'STRESSES')
+    call file%line('   element           sx           sy           sz          txy   equivalent')
+    s = maxval(abs(answer%stress))
+    do e = 1, model%elements
+      call file%line(right(text_of(model%element_id(e)), 10)//column_number(answer%stress(1, e), s)// &
+                     column_number(answer%stress(2, e), s)//column_number(answer%stress(3, e), s)// &
+                     column_number(answer%stress(4, e), s)//column_number(answer%equivalent_stress(e), s))
+    end do
+  end subroutine list_elements
+
+  !> Summary, certificate and what the figures are worth.
+  subroutine list_summary(file, model, motions, answer, certificate, outcome)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(answer_type), intent(in) :: answer
+    type(certificate_type), intent(in) :: certificate
+    type(outcome_type), intent(in) :: outcome
+    integer :: k
+
+    call heading(file, 'SUMMARY')
+    if (model%pairs > 0) then
+      call figure(file, 'largest pressure', column_number(max(0.0_wp, maxval(answer%pressure)), 0.0_wp))
+      call figure(file, 'total contact force', column_number(sum(answer%contact%force), 0.0_wp))
+      call figure(file, 'pairs in contact', right(text_of(count(answer%contact%touching)), 13))
+    end if
+    do k = 1, motions%count
+      call figure(file, 'approach: GRID '//text_of(model%node_id(motions%node(k)))//' direction '// &
+                  text_of(motions%component(k)), column_number(answer%contact%approach(k), maxval(abs(answer%displacement))))
+      if (answer%contact%motion_free(k)) call file%line('    nothing resists or drives this motion: its value is a choice')
+    end do
+    call figure(file, 'largest equivalent stress', column_number(maxval(answer%equivalent_stress), 0.0_wp))
+    call figure(file, 'largest displacement', column_number(maxval(norm2(answer%displacement, dim=1)), 0.0_wp))
+    call figure(file, 'status', right(outcome%word, 13))
+    call heading(file, 'CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
+                 short_real(certificate_tolerance)//')')
+    call figure(file, 'equilibrium residual', right(rounding_number(certificate%equilibrium), 13))
+    call figure(file, 'most negative force, of the largest', &
+                right(rounding_number(max(0.0_wp, -certificate%smallest_force)/certificate%force_scale), 13))
+    call figure(file, 'most negative gap, of the largest length', &
+                right(rounding_number(max(0.0_wp, -certificate%smallest_gap)/certificate%length_scale), 13))
+    call figure(file, 'largest force times gap', &
+                right(rounding_number(certificate%force_gap/certificate%force_scale/certificate%length_scale), 13))
+    call figure(file, 'stress off the curve', right(rounding_number(certificate%off_curve), 13))
+    call figure(file, 'energy balance', right(rounding_number(certificate%energy), 13))
+    call heading(file, 'ACCURACY')
+    call figure(file, 'condition of the stiffness (1-norm)', right(short_real(answer%condition), 13))
+    call figure(file, 'digits that rounding leaves, at least', &
+                right(text_of(max(0, floor(-log10(answer%condition*epsilon(1.0_wp))))), 13))
+    call figure(file, 'linear residual', right(rounding_number(certificate%equilibrium), 13))
+  end subroutine list_summary
+
+  subroutine heading(file, text)
+    type(text_file), intent(in) :: file
+    character(len=*), intent(in) :: text
+
+    call file%line('')
+    call file%line(text)
+  end subroutine heading
+
+  subroutine figure(file, name, value)
+    type(text_file), intent(in) :: file
+    character(len=*), intent(in) :: name, value
+    character(len=44) :: label
+
+    label = name
+    call file%line('  '//label//value)
+  end subroutine figure
+
+  !> Lines that end in newlines.
+  subroutine lines(file, text)
+    type(text_file), intent(in) :: file
+    character(len=*), intent(in) :: text
+    integer :: from, to
+
+    from = 1
+    do while (from <= len(text))
+      to = index(text(from:), newline) + from - 1
+      if (to < from) to = len(text) + 1
+      call file%line('  '//text(from:to - 1))
+      from = to + 1
+    end do
+  end subroutine lines
+
+  !> Text at the right of `width` columns; wider text is kept whole.
+  pure function right(text, width) result(field)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: width
+    character(len=:), allocatable :: field
+
+    field = repeat(' ', max(0, width - len(text)))//text
+  end function right
+end module epcont_report_listing
