@@ -9,6 +9,7 @@ module epcont_assembly_stiffness
   use epcont_element_tria3, only: tria3_stiffness
   use epcont_linalg_band, only: band_matrix, new_band_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
+  use epcont_material_elasticity, only: material_matrix
   use epcont_model_model, only: model_type
   use epcont_plan_numbering, only: body_numbering
   implicit none
@@ -44,7 +45,7 @@ contains
     allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
     do e = 1, size(body%element)
       associate (element => body%element(e), corner => model%corner(:, body%element(e)))
-        k = tria3_stiffness(model%corners(element), model%material_matrix(element), &
+        k = tria3_stiffness(model%corners(element), material_matrix(model, element), &
                             model%thickness(model%section(element)))
         call add(k, reshape(equation(:, corner), [6]), stiffness)
         do i = 1, 3

@@ -1,19 +1,12 @@
 !> Three-node triangle of constant strain. Corners turn counter-clockwise.
 module epcont_element_tria3
+  use epcont_base_geometry, only: triangle_area
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: tria3_area, tria3_strain_matrix, tria3_stiffness
+  public :: tria3_strain_matrix, tria3_stiffness
 
 contains
-
-  !> Signed area: positive where the corners turn counter-clockwise [length**2].
-  pure function tria3_area(x) result(area)
-    real(wp), intent(in) :: x(2, 3)  !! corners
-    real(wp) :: area
-
-    area = 0.5_wp*((x(1, 2) - x(1, 1))*(x(2, 3) - x(2, 1)) - (x(1, 3) - x(1, 1))*(x(2, 2) - x(2, 1)))
-  end function tria3_area
 
   !> B of strain = B u: strain xx, yy, xy; u = (ux, uy) of each corner in turn [1/length] [3, 6].
   pure function tria3_strain_matrix(x) result(b)
@@ -23,7 +16,7 @@ contains
     real(wp) :: slope_x, slope_y, twice_area
     integer :: i
 
-    twice_area = 2.0_wp*tria3_area(x)
+    twice_area = 2.0_wp*triangle_area(x)
     b = 0.0_wp
     do i = 1, 3
       slope_x = (x(2, next(i)) - x(2, last(i)))/twice_area
@@ -44,6 +37,6 @@ contains
     real(wp) :: b(3, 6)
 
     b = tria3_strain_matrix(x)
-    k = thickness*tria3_area(x)*matmul(transpose(b), matmul(d, b))
+    k = thickness*triangle_area(x)*matmul(transpose(b), matmul(d, b))
   end function tria3_stiffness
 end module epcont_element_tria3

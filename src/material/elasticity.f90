@@ -1,9 +1,10 @@
 !> Isotropic linear elasticity in the plane.
 module epcont_material_elasticity
   use epcont_base_kinds, only: wp
+  use epcont_model_model, only: model_type
   implicit none
   private
-  public :: elastic_matrix, axial_stress, equivalent_stress
+  public :: elastic_matrix, material_matrix, axial_stress, equivalent_stress
 
 contains
 
@@ -23,6 +24,17 @@ contains
     normal = cross + 2.0_wp*shear
     d = reshape([normal, cross, 0.0_wp, cross, normal, 0.0_wp, 0.0_wp, 0.0_wp, shear], [3, 3])
   end function elastic_matrix
+
+  !> D of an element [stress] [3, 3].
+  pure function material_matrix(model, element) result(d)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element
+    real(wp) :: d(3, 3)
+
+    associate (s => model%section(element))
+      d = elastic_matrix(model%young(s), model%poisson(s), model%plane_strain(s))
+    end associate
+  end function material_matrix
 
   !> Stress across the plane: 0 in plane stress.
   pure function axial_stress(poisson, plane_strain, stress) result(across)

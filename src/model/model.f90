@@ -3,9 +3,8 @@
 !> Components come first in all arrays. Nodes, elements and pairs are known by their position; their ids
 !> of the deck serve for output alone.
 module epcont_model_model
+  use epcont_base_geometry, only: triangle_area
   use epcont_base_kinds, only: wp
-  use epcont_element_tria3, only: tria3_area
-  use epcont_material_elasticity, only: elastic_matrix
   implicit none
   private
   public :: model_type
@@ -34,7 +33,6 @@ module epcont_model_model
   contains
     procedure :: corners
     procedure :: area
-    procedure :: material_matrix
   end type model_type
 
 contains
@@ -53,17 +51,6 @@ contains
     integer, intent(in) :: element
     real(wp) :: area
 
-    area = tria3_area(self%corners(element))
+    area = triangle_area(self%corners(element))
   end function area
-
-  !> D of an element [3, 3].
-  pure function material_matrix(self, element) result(d)
-    class(model_type), intent(in) :: self
-    integer, intent(in) :: element
-    real(wp) :: d(3, 3)
-
-    associate (s => self%section(element))
-      d = elastic_matrix(self%young(s), self%poisson(s), self%plane_strain(s))
-    end associate
-  end function material_matrix
 end module epcont_model_model

@@ -2,7 +2,7 @@
 module epcont_model_pairs
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
-  use epcont_base_text, only: short_real
+  use epcont_base_text, only: short_real, text_of
   use epcont_deck_deck, only: card_cgap, card_cord2r, card_pgap, deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_model, only: model_type
@@ -50,12 +50,27 @@ contains
         if (property > 0) model%initial_gap(i) = pgap%value(pgap%column('U0'), property)
         if (geometry) model%initial_gap(i) = model%initial_gap(i) + dot_product(model%normal(:, i), &
                                              model%x(:, model%pair_node(2, i)) - model%x(:, model%pair_node(1, i)))
-        if (model%initial_gap(i) < 0.0_wp .and. cgap%sound(i)) &
-          call faults%add_warning(deck%place(card_cgap, i, 1), deck%identity(card_cgap, i)//': the initial gap is '// &
-                                  short_real(model%initial_gap(i)), 'an overlap, to be closed by contact forces')
       end do
     end associate
+    call warn_of_overlap(deck, model, faults)
   end subroutine build_pairs
+
+  !> One warning for all overlaps: shrink fits have many.
+  subroutine warn_of_overlap(deck, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(in) :: model
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: others
+    integer :: first, overlaps
+
+    overlaps = count(model%initial_gap < 0.0_wp)
+    if (overlaps == 0) return
+    first = findloc(model%initial_gap < 0.0_wp, .true., dim=1)
+    others = ''
+    if (overlaps > 1) others = '; '//text_of(overlaps)//' pairs overlap, by up to '//short_real(-minval(model%initial_gap))
+    call faults%add_warning(deck%place(card_cgap, first, 1), deck%identity(card_cgap, first)//': the initial gap is '// &
+                            short_real(model%initial_gap(first))//others, 'a gap of 0.0 or more, unless a fit is meant')
+  end subroutine warn_of_overlap
 
   !> Normal of a pair: x-axis of its system, else from A to B.
   subroutine find_normal(deck, i, systems, axis, edge, model, faults)

@@ -2,7 +2,7 @@
 module epcont_result_stresses
   use epcont_base_kinds, only: wp
   use epcont_element_tria3, only: tria3_strain_matrix
-  use epcont_material_elasticity, only: axial_stress, equivalent_stress
+  use epcont_material_elasticity, only: axial_stress, equivalent_stress, material_matrix
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
   implicit none
@@ -27,7 +27,7 @@ contains
     do e = 1, model%elements
       s = model%section(e)
       b = tria3_strain_matrix(model%corners(e))
-      stress = matmul(model%material_matrix(e), matmul(b, reshape(answer%displacement(:, model%corner(:, e)), [6])))
+      stress = matmul(material_matrix(model, e), matmul(b, reshape(answer%displacement(:, model%corner(:, e)), [6])))
       answer%stress(:, e) = [stress(1), stress(2), axial_stress(model%poisson(s), model%plane_strain(s), stress), stress(3)]
       answer%equivalent_stress(e) = equivalent_stress(stress, answer%stress(3, e))
       answer%equivalent_strain(e) = answer%equivalent_stress(e)/model%young(s)
