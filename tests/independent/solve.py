@@ -96,7 +96,18 @@ class Problem:
                 touching = touching ^ wrong
         return None
 
+    def check_free(self):
+        """DeckError if a motion stays free even with the SUPORT freedoms held."""
+        k = self.k + self.springs(1.0)
+        try:
+            pivots = abs(spl.splu(k.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0).U.diagonal())
+        except RuntimeError:
+            pivots = np.zeros(1)
+        if len(pivots) and pivots.min() <= 1e-11 * abs(self.k.diagonal()).min():
+            raise DeckError("a body is free to move and has no SUPORT")
+
     def answer(self):
+        self.check_free()
         found = self.find(0.0, False, 200) or self.find(1e-7, False, 200) or self.find(1e-7, True, 20 * len(self.g) + 200)
         if found is None:
             raise NoEquilibrium("no set of pairs found")

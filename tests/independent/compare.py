@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""Run epcont and the independent program on decks and compare their tables.
+
+    . tools/venv && python tests/independent/compare.py build/release/epcont input/*/*.dat
+
+Differences are relative to the largest of their kind: forces and reactions to the largest of them, gaps, displacements
+and approaches to the largest displacement or initial gap, stresses to the largest stress, pressures to the largest.
+
+Exit status: 0 all agree, 1 some do not, 2 usage.
+"""
+import argparse
+import csv
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+from deck import DeckError
+from solve import NoEquilibrium, solve
+
+KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
+                     "place": ["x", "y"]},
+         "nodes": {"length": ["ux", "uy"], "force": ["rx", "ry"], "place": ["x", "y"]},
+         "elements": {"stress": ["sx", "sy", "sz", "txy", "equivalent_stress"], "place": ["x", "y"]}}
+
+
+def read(path):
+    with open(path, newline="", encoding="ascii") as file:
+        return list(csv.DictReader(file))
+
+
+def compare(found, directory, stem):
+    """(kind, relative difference, where) of every kind of number, and the faults of structure."""
+    worst, faults, pieces = {}, [], {}
+    for name, kinds in KINDS.items():
+        header, rows = found[name]
+        theirs = {row[header[0]]: row for row in read(directory / f"{stem}.{name}.csv")}
+        if {str(row[0]) for row in rows} != set(theirs):
+            faults.append(f"{name}: not the same {header[0]}s")
+            continue
+        for kind, columns in kinds.items():
+            for column in columns:
+                at = header.index(column)
+                for row in rows:
+                    told = theirs[str(row[0])][column]
+                    if told:
+                        pieces.setdefault(kind, []).append((row[at], float(told), f"{name} {row[0]} {column}"))
+        if name == "contact":
+            for row in rows:
+                if theirs[str(row[0])]["status"] != row[11] and max(abs(row[8]), abs(row[10])) > 0:
+                    faults.append(f"pair {row[0]}: {row[11]} here, {theirs[str(row[0])]['status']} there")
+    summary = {row["key"]: row["value"] for row in read(directory / f"{stem}.summary.csv")}
+    for key, value, _ in found["summary"][1]:
+        kind = {"max_pressure": "pressure", "total_contact_force": "force", "max_equivalent_stress": "stress",
+                "max_displacement": "length"}.get(key, "length" if key.startswith("approach") else None)
+        if kind and key not in summary:
+            faults.append(f"summary: no {key}")
+        elif kind:
+            pieces.setdefault(kind, []).append((value, float(summary[key]), f"summary {key}"))
+    for kind, values in pieces.items():
+        ours, told = np.array([v[0] for v in values]), np.array([v[1] for v in values])
+        scale = abs(ours).max() or 1.0
+        difference = abs(ours - told) / scale
+        difference[~np.isfinite(difference)] = np.inf
+        k = int(difference.argmax())
+        worst[kind] = (difference[k], values[k][2])
+    return worst, faults
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("decks", nargs="+", type=pathlib.Path)
+    parser.add_argument("--tolerance", type=float, default=1e-8)
+    options = parser.parse_args()
+    bad = 0
+    for path in options.decks:
+        with tempfile.TemporaryDirectory() as place:
+            run = subprocess.run([options.program.resolve(), path, "-o", place, "--tables", "all"], capture_output=True,
+                                 text=True, check=False)
+            expected = 0
+            try:
+                found, _ = solve(path)
+            except NoEquilibrium:
+                expected = 1
+            except DeckError:
+                expected = 2
+            if run.returncode != expected:
+                print(f"{path}: exit status {run.returncode}, expected {expected}\n{run.stdout}{run.stderr}")
+                bad += 1
+                continue
+            if expected:
+                print(f"{path}: both refuse ({expected})")
+                continue
+            worst, faults = compare(found, pathlib.Path(place), path.stem)
+        wrong = [f"{kind} {value:.1e} at {where}" for kind, (value, where) in worst.items() if not value <= options.tolerance]
+        print(f"{path}: " + ("; ".join(faults[:3] + wrong) if faults or wrong else
+                             ", ".join(f"{kind} {value:.0e}" for kind, (value, _) in worst.items())))
+        bad += bool(faults or wrong)
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
