@@ -41,20 +41,23 @@ contains
     text = trim(buffer)
   end function text_of_long
 
-  !> A real with four significant digits, for messages: `0.01250`, `1.250E-07`.
+  !> A real with four significant digits, for messages: `0.01250`, `210.0`, `1.250E-07`.
   pure function short_real(number) result(text)
     real(wp), intent(in) :: number
     character(len=:), allocatable :: text
-    character(len=24) :: buffer
-    real(wp) :: size
+    character(len=24) :: buffer, shape
+    integer :: decimals
 
-    size = abs(number)
     if (number == 0.0_wp) then
       buffer = '0.0'
-    else if (size >= 1.0e-3_wp .and. size < 9999.5_wp) then
-      write (buffer, '(g0.4)') number
-    else
+    else if (abs(number) >= 1.0e-3_wp .and. abs(number) < 9999.5_wp) then
+      decimals = max(1, 3 - floor(log10(abs(number))))
+      write (shape, '(a, i0, a)') '(f20.', decimals, ')'
+      write (buffer, shape) number
+    else if (abs(number) >= 1.0e100_wp .or. abs(number) < 1.0e-99_wp) then
       write (buffer, '(es12.3e3)') number
+    else
+      write (buffer, '(es12.3e2)') number
     end if
     text = trim(adjustl(buffer))
   end function short_real
