@@ -7,7 +7,7 @@ module epcont_linalg_lapack
   implicit none
   private
   public :: dgemm, dgemv, dsymv, dsyrk, dtrsm
-  public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs, dpbcon
+  public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs, dlacn2
   public :: dgetrf, dgetrs, dgeqp3, dorgqr, dgesvd, dsyev
 
   ! BLAS
@@ -123,16 +123,13 @@ module epcont_linalg_lapack
       integer, intent(out) :: info
     end subroutine dpbtrs
 
-    !> Reciprocal condition number from the factor of dpbtrf
-    pure subroutine dpbcon(uplo, n, kd, ab, ldab, anorm, rcond, work, iwork, info)
+    !> One step of the estimate of the 1-norm of an operator, by reverse communication
+    pure subroutine dlacn2(n, v, x, isgn, est, kase, isave)
       import :: wp
-      character(len=1), intent(in) :: uplo
-      integer, intent(in) :: n, kd, ldab
-      real(wp), intent(in) :: ab(ldab, *)
-      real(wp), intent(in) :: anorm
-      real(wp), intent(out) :: rcond, work(*)
-      integer, intent(out) :: iwork(*), info
-    end subroutine dpbcon
+      integer, intent(in) :: n
+      real(wp), intent(inout) :: v(*), x(*), est
+      integer, intent(inout) :: isgn(*), kase, isave(3)
+    end subroutine dlacn2
 
     !> Eigenvalues, ascending, and eigenvectors of a symmetric matrix
     pure subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
