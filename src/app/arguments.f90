@@ -29,9 +29,11 @@ contains
     type(arguments_type), intent(out) :: arguments
     type(error_type), allocatable, intent(out) :: error
     character(len=:), allocatable :: value, word
-    integer :: i, status
+    type(word_type), allocatable :: found(:)
+    integer :: decks, i, status
 
-    allocate (arguments%deck(0))
+    allocate (found(command_argument_count()))
+    decks = 0
     arguments%directory = ''
     arguments%card = ''
     i = 0
@@ -76,9 +78,12 @@ contains
           call raise(error, status_usage, word//': no such option; epcont --help lists them')
           return
         end if
-        arguments%deck = [arguments%deck, word_type(word)]
+        decks = decks + 1
+        found(decks)%text = word
       end select
     end do
+    allocate (arguments%deck(decks))
+    arguments%deck = found(:decks)
     call check(arguments, error)
   end subroutine read_arguments
 
