@@ -42,6 +42,7 @@ contains
           call resolve(deck, card_ploadx1, i, pressure%column('GA') + k - 1, nodes, 'GRID', faults, node(k))
         end do
         if (element == 0 .or. any(node == 0) .or. nint(pressure%value(1, i)) /= set) cycle
+        if (any(model%corner(:, element) == 0)) cycle  ! said of the element
         if (node(1) == node(2) .or. count(model%corner(:, element) == node(1)) + &
             count(model%corner(:, element) == node(2)) /= 2) then
           call faults%add_error(deck%place(card_ploadx1, i, pressure%column('GA')), deck%identity(card_ploadx1, i)// &
