@@ -25,18 +25,20 @@ contains
     end if
   end function column_number
 
-  !> A figure that is rounding in a valid answer: `< 1E-12`, else two digits.
+  !> A figure that is rounding in a valid answer, as the power of ten it is below, since rounding differs
+  !! between builds: `< 1E-12` at the least. What is no rounding has two digits.
   pure function rounding_number(value) result(text)
     real(wp), intent(in) :: value
     character(len=:), allocatable :: text
+    real(wp), parameter :: rounding = 1.0e-9_wp
     character(len=12) :: buffer
 
-    if (value < noise) then
-      text = '< 1E-12'
+    if (value < rounding) then
+      write (buffer, '(a, i0)') '< 1E', ceiling(log10(max(value, 0.999_wp*noise)))
     else
       write (buffer, '(es9.1e3)') value
-      text = trim(adjustl(buffer))
     end if
+    text = trim(adjustl(buffer))
   end function rounding_number
 
   !> A number in full precision: 17 digits.
