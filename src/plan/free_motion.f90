@@ -28,7 +28,7 @@ module epcont_plan_free_motion
     integer :: motions = 0, references = 0    !! free motions, SUPORT freedoms
     integer, allocatable :: freedom(:, :)     !! node, component that would hold each motion not held [2, any]
     real(wp), allocatable :: direction(:, :)  !! motion of that node [2, any]
-    real(wp), allocatable :: turn(:)          !! and how far its part turns with it, as part of it [any]
+    real(wp), allocatable :: turn(:)          !! how differently the nodes of its part move; 0: it shifts [any]
   end type motion_fault
 
   !> The free motions of all bodies.
@@ -223,7 +223,8 @@ contains
     type(motion_fault), intent(inout) :: fault
     real(wp), allocatable :: motion(:, :), size_of(:, :)
     real(wp) :: best
-    integer :: at(2), i, j, k, m
+    logical, allocatable :: same_part(:)
+    integer :: at(2), i, j, k, m, node
 
     m = size(loose, 2)
     allocate (motion(2*size(nodes), m), fault%freedom(2, m), fault%direction(2, m), fault%turn(m))
@@ -240,14 +241,22 @@ contains
       i = at(1)
       j = k + at(2) - 1
       motion(:, [k, j]) = motion(:, [j, k])
-      fault%freedom(:, k) = [nodes((i + 1)/2), 2 - mod(i, 2)]
-      fault%direction(:, k) = motion(2*((i + 1)/2) - 1:2*((i + 1)/2), k)/norm2(motion(2*((i + 1)/2) - 1:2*((i + 1)/2), k))
-      fault%turn(k) = maxval(motion(1::2, k)) - minval(motion(1::2, k)) + maxval(motion(2::2, k)) - minval(motion(2::2, k))
-      fault%turn(k) = fault%turn(k)/abs(motion(i, k))
       motion(:, k) = motion(:, k)/motion(i, k)
+      node = (i + 1)/2
+      fault%freedom(:, k) = [nodes(node), 2 - mod(i, 2)]
+      fault%direction(:, k) = motion(2*node - 1:2*node, k)/norm2(motion(2*node - 1:2*node, k))
+      same_part = column(parts%of_node(nodes)) == column(parts%of_node(nodes(node)))
+      fault%turn(k) = spread_of(pack(motion(1::2, k), same_part)) + spread_of(pack(motion(2::2, k), same_part))
       do j = 1, m
         if (j /= k) motion(:, j) = motion(:, j) - motion(i, j)*motion(:, k)
       end do
     end do
   end subroutine suggest
+
+  !> Largest value less smallest.
+  pure real(wp) function spread_of(values)
+    real(wp), intent(in) :: values(:)
+
+    spread_of = maxval(values) - minval(values)
+  end function spread_of
 end module epcont_plan_free_motion
