@@ -40,7 +40,7 @@ contains
       i = order(k)
       earlier = order(k - 1)
       if (id(i) /= id(earlier)) cycle
-      if (.not. deck%card(table(i))%given(1, i - count(table(:i) /= table(i)))) cycle
+      if (.not. deck%card(table(i))%given(1, row(i))) cycle
       call faults%add_error(deck%place(table(i), row(i), 1), deck%identity(table(i), row(i))// &
                             ': the id is taken by '//deck%identity(table(earlier), row(earlier)), 'an id of its own')
     end do

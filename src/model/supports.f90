@@ -4,13 +4,15 @@ module epcont_model_supports
   use epcont_base_sorting, only: id_index
   use epcont_base_text, only: text_of
   use epcont_deck_deck, only: card_grid, card_rbe2, card_spc, card_spc1, card_suport, deck_type
-  use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_model, only: model_type
   use epcont_model_reference, only: resolve
   use epcont_model_sets, only: chosen_set
   implicit none
   private
   public :: build_supports, build_ties, build_references
+
+  character(len=*), parameter :: one_displacement = 'one displacement for each freedom'
 
 contains
 
@@ -20,16 +22,15 @@ contains
     type(id_index), intent(in) :: nodes
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
-    integer :: i, k, node, set
+    integer :: conflict, i, k, node, ps, set
     integer, allocatable :: found(:)
 
     allocate (model%held(2, model%nodes), source=.false.)
     allocate (model%prescribed(2, model%nodes), source=0.0_wp)
     associate (grid => deck%card(card_grid), spc => deck%card(card_spc), spc1 => deck%card(card_spc1))
+      ps = grid%column('PS')
       do i = 1, grid%count
-        if (grid%given(grid%column('PS'), i)) &
-          call hold(deck%place(card_grid, i, grid%column('PS')), deck%identity(card_grid, i), i, &
-                    nint(grid%value(grid%column('PS'), i)), 0.0_wp, model, faults)
+        if (grid%given(ps, i)) call hold(i, nint(grid%value(ps, i)), 0.0_wp, model, conflict)
       end do
       call chosen_set(deck, [card_spc, card_spc1], deck%spc, deck%spc_place, 'SPC', faults, set)
       do i = 1, spc%count
@@ -37,8 +38,9 @@ contains
           if (.not. spc%given(k, i)) cycle
           call resolve(deck, card_spc, i, k, nodes, 'GRID', faults, node)
           if (node == 0 .or. nint(spc%value(1, i)) /= set) cycle
-          call hold(deck%place(card_spc, i, k), deck%identity(card_spc, i), node, nint(spc%value(k + 1, i)), &
-                    spc%value(k + 2, i), model, faults)
+          call hold(node, nint(spc%value(k + 1, i)), spc%value(k + 2, i), model, conflict)
+          if (conflict > 0) call faults%add_error(deck%place(card_spc, i, k), &
+                                 deck%identity(card_spc, i)//conflict_text(model, node, conflict), one_displacement)
         end do
       end do
       do i = 1, spc1%count
@@ -50,8 +52,9 @@ contains
           end if
           if (nint(spc1%value(1, i)) /= set) cycle
           do node = 1, size(found)
-            call hold(deck%list_place(card_spc1, k), deck%identity(card_spc1, i), found(node), &
-                      nint(spc1%value(2, i)), 0.0_wp, model, faults)
+            call hold(found(node), nint(spc1%value(2, i)), 0.0_wp, model, conflict)
+            if (conflict > 0) call faults%add_error(deck%list_place(card_spc1, k), &
+                                   deck%identity(card_spc1, i)//conflict_text(model, found(node), conflict), one_displacement)
           end do
         end do
       end do
@@ -66,27 +69,31 @@ contains
     if (last > first) text = text//' to '//text_of(last)
   end function range_text
 
-  !> Hold the freedoms of a node that `digits` names.
-  subroutine hold(place, name, node, digits, displacement, model, faults)
-    type(place_type), intent(in) :: place
-    character(len=*), intent(in) :: name
+  !> Hold the freedoms of a node that `digits` names. `conflict` is a direction that is held at another
+  !! displacement already, 0 where there is none.
+  pure subroutine hold(node, digits, displacement, model, conflict)
     integer, intent(in) :: node, digits
     real(wp), intent(in) :: displacement
     type(model_type), intent(inout) :: model
-    type(diagnostics), intent(inout) :: faults
+    integer, intent(out) :: conflict
     integer :: c
 
+    conflict = 0
     do c = 1, 2
       if (.not. has_component(digits, c)) cycle
-      if (model%held(c, node)) then
-        if (model%prescribed(c, node) /= displacement) &
-          call faults%add_error(place, name//': direction '//text_of(c)//' of GRID '//text_of(model%node_id(node))// &
-                                ' is held at another displacement already', 'one displacement for each freedom')
-      end if
+      if (model%held(c, node) .and. model%prescribed(c, node) /= displacement) conflict = c
       model%held(c, node) = .true.
       model%prescribed(c, node) = displacement
     end do
   end subroutine hold
+
+  pure function conflict_text(model, node, c) result(text)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: node, c
+    character(len=:), allocatable :: text
+
+    text = ': direction '//text_of(c)//' of GRID '//text_of(model%node_id(node))//' is held at another displacement already'
+  end function conflict_text
 
   !> Whether the digits (12, 2, 123456) name component c.
   pure logical function has_component(digits, c)
@@ -101,6 +108,7 @@ contains
     type(id_index), intent(in) :: nodes
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: objection, remedy
     integer :: c, i, k, leader, node, steps
 
     model%leader = spread([(i, i=1, model%nodes)], 1, 2)
@@ -114,8 +122,12 @@ contains
                                   text_of(rbe2%list_from(k)), 'the id of a GRID')
           else if (leader > 0) then
             do c = 1, 2
+              objection = ''
               if (has_component(nint(rbe2%value(3, i)), c)) &
-                call tie(deck%list_place(card_rbe2, k), deck%identity(card_rbe2, i), c, node, leader, model, faults)
+                call tie(c, node, leader, model, objection, remedy)
+              if (len(objection) > 0) call faults%add_error(deck%list_place(card_rbe2, k), deck%identity(card_rbe2, i)// &
+                                           ': direction '//text_of(c)//' of GRID '//text_of(model%node_id(node))//objection, &
+                                           remedy)
             end do
           end if
         end do
@@ -132,28 +144,28 @@ contains
     end do
   end subroutine build_ties
 
-  !> Tie component c of a node to its leader.
-  subroutine tie(place, name, c, node, leader, model, faults)
-    type(place_type), intent(in) :: place
-    character(len=*), intent(in) :: name
+  !> Tie component c of a node to its leader; `objection` says why that cannot be, or is empty.
+  pure subroutine tie(c, node, leader, model, objection, remedy)
     integer, intent(in) :: c, node, leader
     type(model_type), intent(inout) :: model
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: freedom
+    character(len=:), allocatable, intent(out) :: objection, remedy
     integer :: at
 
-    freedom = ': direction '//text_of(c)//' of GRID '//text_of(model%node_id(node))
     at = leader
     do while (model%leader(c, at) /= at .and. at /= node)
       at = model%leader(c, at)
     end do
+    objection = ''
+    remedy = ''
     if (at == node) then
-      call faults%add_error(place, name//freedom//' would follow itself', 'nodes that follow GN, without GN')
+      objection = ' would follow itself'
+      remedy = 'nodes that follow GN, without GN'
     else if (model%leader(c, node) /= node) then
-      call faults%add_error(place, name//freedom//' follows another RBE2 already', 'one leader for each freedom')
+      objection = ' follows another RBE2 already'
+      remedy = 'one leader for each freedom'
     else if (model%held(c, node)) then
-      call faults%add_error(place, name//freedom//' is held by a support too', &
-                            'the support at GN '//text_of(model%node_id(leader))//' instead')
+      objection = ' is held by a support too'
+      remedy = 'the support at GN '//text_of(model%node_id(leader))//' instead'
     else
       model%leader(c, node) = leader
     end if
