@@ -7,10 +7,10 @@ A mesh file as Gmsh writes it (GRID, CBAR, CTRIA3, ENDDATA; no BEGIN BULK) is in
 deck with everything else. Pressure 10 at every pair, whatever the mesh and the digits of its coordinates.
 
 In large field Gmsh 4.13 writes coordinates by %.9G: a whole number has no decimal point (`3`, `0`), which no reader of
-NASTRAN decks takes for a real. `gmsh_large_raw.bdf` is kept as it came; `gmsh_large.bdf` has the points put in.
+NASTRAN decks takes for a real. `gmsh_large_raw.bdf` is kept as it came; `gmsh_large.bdf` has the points put in (`tools/mend_gmsh`).
 """
 import pathlib
-import re
+import subprocess
 import sys
 
 import gmsh
@@ -18,6 +18,7 @@ import gmsh
 from solve import solve
 
 CASES = pathlib.Path(__file__).resolve().parent / "cases"
+MEND = CASES.parents[2] / "tools" / "mend_gmsh"
 FORMATS = {0: "free", 1: "small", 2: "large"}
 LOWER, UPPER = 1, 2
 EXACT = -10.0 * (0.84 * 2.0 / 1000.0 + 0.91 * 2.0 / 3000.0)
@@ -63,18 +64,6 @@ def case(lines, mesh):
     return "\n".join(deck + ["PGAP,21,0.0", f"INCLUDE '{mesh}'", "ENDDATA", ""])
 
 
-def with_points(text):
-    """Large-field GRIDs whose coordinates all have a decimal point."""
-    lines = text.splitlines()
-    for k, line in enumerate(lines):
-        first, places = (5, (40, 56)) if line.startswith("GRID*") else (1, (8,)) if line.startswith("*") else (0, ())
-        for place in places if first else ():
-            cell = re.sub(r"^(-?\d+)(?=E|$)", r"\1.", line[place:place + 16].strip())
-            line = line[:place] + cell.ljust(16) + line[place + 16:]
-        lines[k] = line.rstrip()
-    return "\n".join(lines) + "\n"
-
-
 def main():
     bad = 0
     CASES.mkdir(exist_ok=True)
@@ -88,7 +77,7 @@ def main():
         if name == "large":
             raw = mesh.with_name("gmsh_large_raw.bdf")
             mesh.replace(raw)
-            mesh.write_text(with_points(raw.read_text(encoding="ascii")), encoding="ascii")
+            subprocess.run([sys.executable, MEND, raw, "-o", mesh], check=True)
         deck = CASES / f"gmsh_{name}.dat"
         deck.write_text(case(lines, mesh.name), encoding="ascii")
         found, _ = solve(deck)
