@@ -7,7 +7,7 @@ module epcont_deck_bulk
   use epcont_deck_complaint, only: add_fault, add_unknown, add_value_fault, field_text, identity
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_entry, only: card_entry, field_entry, kind_word, number_of, slot_of
-  use epcont_deck_field, only: scan_sound, scan_word
+  use epcont_deck_field, only: scan_no_point, scan_sound, scan_word
   use epcont_deck_id_list, only: read_list
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: likely_name
@@ -173,6 +173,7 @@ contains
       return
     end if
     call read_value(lines%text(card%first(slot):card%last(slot)), entry, value, word, outcome)
+    if (outcome == scan_no_point .and. entry%point_optional .and. card%is_large(slot)) outcome = scan_sound
     if (outcome == scan_sound) then
       table%value(column, table%count) = value
       if (entry%kind == kind_word) table%word(column, table%count) = word

@@ -35,11 +35,20 @@ module epcont_deck_card
     logical, private :: half_open = .false.      !! the last line was the first half of a large-field row
   contains
     procedure :: filled
+    procedure :: is_large
     procedure :: place
     procedure :: name_place
   end type card_fields
 
 contains
+
+  !> Whether a slot is a large field of a fixed line: sixteen columns.
+  pure logical function is_large(self, slot)
+    class(card_fields), intent(in) :: self
+    integer, intent(in) :: slot
+
+    is_large = self%right(slot) - self%left(slot) == 15
+  end function is_large
 
   !> Collect the card that begins at `line`, which is not blank, with its continuations.
   subroutine gather(lines, line, card, faults)

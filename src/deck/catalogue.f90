@@ -43,12 +43,22 @@ contains
     card = new_card('GRID', 'node')
     call card%add(id_field(2, 'ID', 'node'))
     call card%add(zero(3, 'CP', 'system of X1 to X3: the basic one'))
-    call card%add(real_field(4, 'X1', 'coordinate x', 'length', default=0.0_wp))
-    call card%add(real_field(5, 'X2', 'coordinate y', 'length', default=0.0_wp))
-    call card%add(real_field(6, 'X3', 'coordinate z; 0.0 in plane scenes', 'length', default=0.0_wp))
+    call card%add(coordinate(4, 'X1', 'coordinate x'))
+    call card%add(coordinate(5, 'X2', 'coordinate y'))
+    call card%add(coordinate(6, 'X3', 'coordinate z; 0.0 in plane scenes'))
     call card%add(zero(7, 'CD', 'system of the displacements: the basic one'))
     call card%add(components_field(8, 'PS', 'permanent supports', required=.false.))
   end function grid
+
+  !> A coordinate. Gmsh writes them in large field by %.9G of C: 3.0 is `3`, 1.0E-5 is `1E-05`.
+  function coordinate(number, name, meaning) result(field)
+    integer, intent(in) :: number
+    character(len=*), intent(in) :: name, meaning
+    type(field_entry) :: field
+
+    field = real_field(number, name, meaning, 'length', default=0.0_wp)
+    field%point_optional = .true.
+  end function coordinate
 
   function ctria3() result(card)
     type(card_entry) :: card

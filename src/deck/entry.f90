@@ -27,6 +27,7 @@ module epcont_deck_entry
     real(wp) :: default = 0.0_wp       !! the value of a blank field
     logical :: has_default = .false.   !! false: a blank has a meaning of its own
     real(wp) :: lowest = -huge(1.0_wp), highest = huge(1.0_wp)
+    logical :: point_optional = .false.  !! in large field a real without a decimal point serves too
     logical :: above_lowest = .false., below_highest = .false.  !! the limit itself is out of range
     character(len=:), allocatable :: choices  !! the words allowed, with blanks between; any if not allocated
     character(len=:), allocatable :: unit

@@ -71,14 +71,14 @@ contains
   !> A real: `7.0`, `.7E1`, `0.7+1`, `7.-2`, `7.D0`. It has a decimal point, and is rounded correctly.
   pure subroutine scan_real(text, number, outcome)
     character(len=*), intent(in) :: text  !! without blanks around it
-    real(wp), intent(out) :: number
+    real(wp), intent(out) :: number       !! also where only the point is missing
     integer, intent(out) :: outcome       !! one of the outcomes above
     type(decimal) :: parts
     integer :: power
 
     number = 0.0_wp
     call take_apart(text, parts, outcome)
-    if (outcome /= scan_sound .or. parts%digits == 0) return
+    if (all(outcome /= [scan_sound, scan_no_point]) .or. parts%digits == 0) return
     power = parts%exponent - parts%fraction
     if (parts%significant <= most_digits .and. parts%digits <= exact_mantissa .and. abs(power) <= exact_power) then
       number = real(parts%digits, wp)
@@ -91,6 +91,7 @@ contains
     else
       call convert(text(:parts%mantissa_last), parts, power, number, outcome)
     end if
+    if (outcome == scan_sound .and. .not. parts%point) outcome = scan_no_point
   end subroutine scan_real
 
   !> The parts of a real; `outcome` says whether it is one.

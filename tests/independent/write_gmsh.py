@@ -6,11 +6,10 @@
 A mesh file as Gmsh writes it (GRID, CBAR, CTRIA3, ENDDATA; no BEGIN BULK) is included, as the last card but ENDDATA, in a
 deck with everything else. Pressure 10 at every pair, whatever the mesh and the digits of its coordinates.
 
-In large field Gmsh 4.13 writes coordinates by %.9G: a whole number has no decimal point (`3`, `0`), which no reader of
-NASTRAN decks takes for a real. `gmsh_large_raw.bdf` is kept as it came; `gmsh_large.bdf` has the points put in (`tools/mend_gmsh`).
+In large field Gmsh 4.13 writes coordinates by %.9G: a whole number has no decimal point (`3`, `0`). epcont takes that in
+the coordinates of a large-field GRID, and nowhere else.
 """
 import pathlib
-import subprocess
 import sys
 
 import gmsh
@@ -18,7 +17,6 @@ import gmsh
 from solve import solve
 
 CASES = pathlib.Path(__file__).resolve().parent / "cases"
-MEND = CASES.parents[2] / "tools" / "mend_gmsh"
 FORMATS = {0: "free", 1: "small", 2: "large"}
 LOWER, UPPER = 1, 2
 EXACT = -10.0 * (0.84 * 2.0 / 1000.0 + 0.91 * 2.0 / 3000.0)
@@ -74,10 +72,6 @@ def main():
         gmsh.option.setNumber("Mesh.BdfFieldFormat", number)
         mesh = CASES / f"gmsh_{name}.bdf"
         gmsh.write(str(mesh))
-        if name == "large":
-            raw = mesh.with_name("gmsh_large_raw.bdf")
-            mesh.replace(raw)
-            subprocess.run([sys.executable, MEND, raw, "-o", mesh], check=True)
         deck = CASES / f"gmsh_{name}.dat"
         deck.write_text(case(lines, mesh.name), encoding="ascii")
         found, _ = solve(deck)
