@@ -82,7 +82,7 @@ def real(text, default=0.0):
     if text == "":
         return default
     match = re.fullmatch(r"([+-]?[\d.]+)(?:[ED]?([+-]?\d+))?", text)
-    if not match or "." not in match[1]:
+    if not match:
         raise DeckError(f"not a real: {text}")
     return float(match[1] + "e" + (match[2] or "0"))
 

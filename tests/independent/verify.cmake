@@ -1,0 +1,10 @@
+# Runs PROGRAM on DECK with all tables, then VERIFY on what it wrote.
+file(MAKE_DIRECTORY "${OUTPUT}")
+execute_process(COMMAND "${PROGRAM}" "${DECK}" -o "${OUTPUT}" --tables all --quiet RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${DECK}: exit status ${status}")
+endif()
+execute_process(COMMAND "${PYTHON}" "${VERIFY}" "${DECK}" "${OUTPUT}" --quiet RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${DECK}: the certificate recomputed from the tables does not agree")
+endif()
