@@ -14,6 +14,7 @@ module epcont_app_driver
   use epcont_model_model, only: model_type
   use epcont_plan_forecast, only: forecast, forecast_type
   use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_report_file, only: new_text_file, text_file
   use epcont_report_listing, only: list_contact, list_deck, list_elements, list_nodes, list_outcome, list_summary, &
@@ -41,6 +42,7 @@ contains
     type(model_type) :: model
     type(free_motions) :: motions
     type(numbering_type) :: numbering
+    type(iteration_plan) :: iteration
     type(forecast_type) :: expected
     type(answer_type) :: answer
     type(certificate_type) :: certificate
@@ -57,6 +59,7 @@ contains
         return
       end if
       numbering = number_equations(model)
+      iteration = plan_iteration(model)
       expected = forecast(model, numbering)
       if (arguments%plan) then
         write (output_unit, '(a)', advance='no') stem_of(path)//plan_text(model, motions, numbering, expected)
@@ -66,7 +69,7 @@ contains
         call raise(error, status_usage, path//': its matrices need '//text_of(expected%bytes/1000000_i8)// &
                    ' MB: --memory GB allows it')
       else
-        call analyse(model, motions, numbering, answer, certificate, singular)
+        call analyse(model, motions, numbering, iteration, answer, certificate, singular)
         outcome = judge(model, motions, answer, certificate, singular)
         status = outcome%status
         call write_results(path, arguments, deck, model, motions, answer, certificate, outcome, faults, &
@@ -142,7 +145,7 @@ contains
     if (.not. outcome%has_answer) return
     if (.not. allocated(error)) call write_contact(stem, model, answer, error)
     if (.not. allocated(error)) call write_zones(stem, model, zones, error)
-    if (.not. allocated(error)) call write_history(stem, answer, certificate, error)
+    if (.not. allocated(error)) call write_history(stem, answer, error)
     if (.not. allocated(error) .and. nodes) call write_nodes(stem, model, answer, error)
     if (.not. allocated(error) .and. elements) call write_elements(stem, model, answer, error)
   end subroutine write_results

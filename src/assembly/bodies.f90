@@ -6,46 +6,66 @@ module epcont_assembly_bodies
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: factored_bodies, factor_bodies
+  public :: factored_bodies, new_bodies
 
   type :: factored_bodies
     type(body_stiffness), allocatable :: body(:)
     real(wp), allocatable :: settlement(:, :)  !! forces of prescribed displacements on free freedoms [2, nodes]
-    real(wp) :: condition = 1.0_wp             !! largest estimate over the bodies
   contains
+    procedure :: factor_body
     procedure :: displacements
+    procedure :: condition
   end type factored_bodies
 
 contains
 
-  !> Assemble and factor all bodies. `singular` is the first body whose factor failed, 0 where none did.
-  pure subroutine factor_bodies(model, numbering, bodies, singular)
+  !> Bodies with room for their factors.
+  pure function new_bodies(model) result(bodies)
     type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(factored_bodies), intent(out) :: bodies
-    integer, intent(out) :: singular
-    integer :: b
+    type(factored_bodies) :: bodies
 
-    singular = 0
     allocate (bodies%body(model%bodies))
     allocate (bodies%settlement(2, model%nodes), source=0.0_wp)
-    do b = 1, model%bodies
-      call assemble_body(model, numbering%equation, numbering%body(b), bodies%body(b), bodies%settlement)
-      call bodies%body(b)%factor()
-      if (bodies%body(b)%smallest_ratio <= epsilon(1.0_wp)) then
-        singular = b
-        return
-      end if
-      bodies%condition = max(bodies%condition, bodies%body(b)%band%condition())
-    end do
-  end subroutine factor_bodies
+  end function new_bodies
 
-  !> Displacements under nodal forces and the prescribed displacements, SUPORT freedoms at zero [2, nodes].
-  pure function displacements(self, model, numbering, force) result(u)
+  !> Assemble and factor one body, afresh if it was before. `sound` is false where the factor failed.
+  pure subroutine factor_body(self, model, matrix, numbering, b, sound)
+    class(factored_bodies), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: matrix(:, :, :)   !! of the material of each element [stress] [3, 3, elements]
+    type(numbering_type), intent(in) :: numbering
+    integer, intent(in) :: b
+    logical, intent(out) :: sound
+    integer :: i
+
+    associate (node => numbering%body(b)%node)
+      do i = 1, size(node)
+        self%settlement(:, node(i)) = 0.0_wp
+      end do
+    end associate
+    call assemble_body(model, matrix, numbering%equation, numbering%body(b), self%body(b), self%settlement)
+    call self%body(b)%factor()
+    sound = self%body(b)%smallest_ratio > epsilon(1.0_wp)
+  end subroutine factor_body
+
+  !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies.
+  pure real(wp) function condition(self)
+    class(factored_bodies), intent(in) :: self
+    integer :: b
+
+    condition = 1.0_wp
+    do b = 1, size(self%body)
+      condition = max(condition, self%body(b)%band%condition())
+    end do
+  end function condition
+
+  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero [2, nodes].
+  pure function displacements(self, model, numbering, force, part) result(u)
     class(factored_bodies), intent(in) :: self
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     real(wp), intent(in) :: force(:, :)  !! [2, nodes]
+    real(wp), intent(in) :: part         !! of the prescribed displacements
     real(wp), allocatable :: u(:, :)
     real(wp), allocatable :: band(:, :), border(:, :)
     real(wp) :: total
@@ -59,7 +79,7 @@ contains
           node = body%node(i)
           do c = 1, 2
             number = numbering%equation(c, node)
-            total = force(c, node) + self%settlement(c, node)
+            total = force(c, node) + part*self%settlement(c, node)
             if (number > 0) band(number, 1) = band(number, 1) + total
             if (number < 0) border(-number, 1) = border(-number, 1) + total
           end do
@@ -74,7 +94,7 @@ contains
             else if (number < 0) then
               u(c, node) = border(-number, 1)
             else
-              u(c, node) = model%prescribed(c, model%leader(c, node))
+              u(c, node) = part*model%prescribed(c, model%leader(c, node))
             end if
           end do
         end do

@@ -9,7 +9,6 @@ module epcont_assembly_stiffness
   use epcont_element_tria3, only: tria3_stiffness
   use epcont_linalg_band, only: band_matrix, new_band_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
-  use epcont_material_elasticity, only: material_matrix
   use epcont_model_model, only: model_type
   use epcont_plan_numbering, only: body_numbering
   implicit none
@@ -30,10 +29,11 @@ module epcont_assembly_stiffness
 
 contains
 
-  !> Assemble the elements of a body. `settlement` receives the forces that prescribed displacements exert on the
+  !> Assemble the elements of a body, each with its material matrix [3, 3, elements]. `settlement` receives the forces that prescribed displacements exert on the
   !! free freedoms: minus K_fp u_p [force] [2, nodes].
-  pure subroutine assemble_body(model, equation, body, stiffness, settlement)
+  pure subroutine assemble_body(model, matrix, equation, body, stiffness, settlement)
     type(model_type), intent(in) :: model
+    real(wp), intent(in) :: matrix(:, :, :)
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
     type(body_stiffness), intent(out) :: stiffness
@@ -45,8 +45,7 @@ contains
     allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
     do e = 1, size(body%element)
       associate (element => body%element(e), corner => model%corner(:, body%element(e)))
-        k = tria3_stiffness(model%corners(element), material_matrix(model, element), &
-                            model%thickness(model%section(element)))
+        k = tria3_stiffness(model%corners(element), matrix(:, :, element), model%thickness(model%section(element)))
         call add(k, reshape(equation(:, corner), [6]), stiffness)
         do i = 1, 3
           node = corner(i)

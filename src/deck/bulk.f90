@@ -9,6 +9,7 @@ module epcont_deck_bulk
   use epcont_deck_entry, only: card_entry, field_entry, kind_word, number_of, slot_of
   use epcont_deck_field, only: scan_no_point, scan_sound, scan_word
   use epcont_deck_id_list, only: read_list
+  use epcont_deck_point_list, only: read_points
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: likely_name
   use epcont_deck_table, only: card_table, new_table
@@ -122,7 +123,11 @@ contains
       end if
     end do
     call check_blanks(lines, card, entry, faults)
-    if (entry%list_number > 0) call read_list(lines, card, entry, table, faults)
+    if (entry%has_points) then
+      call read_points(lines, card, entry, table, faults)
+    else if (entry%list_number > 0) then
+      call read_list(lines, card, entry, table, faults)
+    end if
   end subroutine read_card
 
   !> Which PARAM it is; 0 where the name is no word, -1 (with a fault) where it is unknown.

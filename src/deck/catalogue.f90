@@ -11,8 +11,9 @@ module epcont_deck_catalogue
   !> The cards, by their place in the catalogue.
   integer, parameter, public :: card_grid = 1, card_ctria3 = 2, card_pshell = 3, card_mat1 = 4, card_spc = 5, &
                                 card_spc1 = 6, card_force = 7, card_ploadx1 = 8, card_rbe2 = 9, card_suport = 10, &
-                                card_cord2r = 11, card_cgap = 12, card_pgap = 13, card_cbar = 14, card_param = 15
-  integer, parameter, public :: card_kinds = 15
+                                card_cord2r = 11, card_cgap = 12, card_pgap = 13, card_cbar = 14, card_param = 15, &
+                                card_mats1 = 16, card_tables1 = 17
+  integer, parameter, public :: card_kinds = 17
 
 contains
 
@@ -35,6 +36,8 @@ contains
     card(card_pgap) = pgap()
     card(card_cbar) = cbar()
     card(card_param) = param()
+    card(card_mats1) = mats1()
+    card(card_tables1) = tables1()
   end function catalogue
 
   function grid() result(card)
@@ -105,6 +108,30 @@ contains
     call card%add(noted(real_field(14, 'SS', 'limit of shear', 'stress')))
     call card%add(noted(integer_field(15, 'MCSID', 'material system', 0, largest_id)))
   end function mat1
+
+  function mats1() result(card)
+    type(card_entry) :: card
+    type(field_entry) :: slope
+
+    card = new_card('MATS1', 'yielding of a MAT1: von Mises, total theory')
+    call card%add(id_field(2, 'MID', 'its MAT1'))
+    call card%add(id_field(3, 'TID', 'its TABLES1; blank: bilinear from LIMIT1 and H', required=.false.))
+    call card%add(word_field(4, 'TYPE', 'both are taken as total theory', choices='PLASTIC NLELAST'))
+    slope = real_field(5, 'H', 'stress over plastic strain beyond LIMIT1; blank with TID', 'stress', default=0.0_wp)
+    slope%lowest = 0.0_wp
+    call card%add(slope)
+    call card%add(integer_field(6, 'YF', 'yield criterion: 1, von Mises', 1, 1, default=1))
+    call card%add(integer_field(7, 'HR', 'hardening rule: 1', 1, 1, default=1))
+    call card%add(positive(real_field(8, 'LIMIT1', 'yield stress; with TID that of its second point', 'stress')))
+  end function mats1
+
+  function tables1() result(card)
+    type(card_entry) :: card
+
+    card = new_card('TABLES1', 'uniaxial curve of stress over total strain')
+    call card%add(id_field(2, 'TID', 'table'))
+    call card%add_points(12, 'strain and stress of each point: 0.0 0.0, the yield point, and on; ENDT behind the last')
+  end function tables1
 
   function spc() result(card)
     type(card_entry) :: card
@@ -251,12 +278,22 @@ contains
 
   !> All PARAMs: the field VALUE for each NAME.
   function parameters() result(field)
-    type(field_entry) :: field(4)
+    type(field_entry) :: field(9)
 
     field(1) = word_field(3, 'PLANE', 'every PSHELL with blank MID2', choices='STRAIN STRESS')
     field(2) = word_field(3, 'RULE', 'contact entry rule; default AUTO', choices='AUTO CONRY')
     field(3) = word_field(3, 'GAPGEOM', 'YES adds the distance of the nodes to each gap; default NO', choices='NO YES')
     field(4) = word_field(3, 'UNITS', 'printed with the results; nothing is converted')
+    field(5) = word_field(3, 'METHOD', 'plastic iteration; default AUTO', choices='AUTO SECANT MODSEC INISTR NEWTON')
+    field(6) = positive(real_field(3, 'TOL', 'largest change of a displacement, of the largest, that ends the iteration;'// &
+                                   ' default 0.01, for NEWTON 1.E-8', ''))
+    field(6)%highest = 1.0_wp
+    field(6)%below_highest = .true.
+    field(7) = integer_field(3, 'MAXIT', 'iterations of a load step; default 100', 1, 100000)
+    field(8) = word_field(3, 'MUP', 'Poisson''s ratio in the equivalent strain: exact, or formula (2-4); default EXACT', &
+                          choices='EXACT PAPER')
+    field(9) = integer_field(3, 'NLOAD', 'load steps; default 1', 1, 10000)
+    field%required = .true.
   end function parameters
 
   !> A field that is zero or blank: there is nothing to choose.

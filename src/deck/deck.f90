@@ -1,13 +1,14 @@
 !> A deck as the rest of the program sees it: what case control says, and a table of cards for each name.
 module epcont_deck_deck
   use epcont_base_error, only: error_type
+  use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_deck_bulk, only: read_bulk
   use epcont_deck_card, only: card_fields, gather
   use epcont_deck_case_control, only: case_control, read_case_control
   use epcont_deck_catalogue, only: card_cbar, card_cgap, card_cord2r, card_ctria3, card_force, card_grid, card_kinds, &
-                                   card_mat1, card_param, card_pgap, card_ploadx1, card_pshell, card_rbe2, card_spc, &
-                                   card_spc1, card_suport, catalogue
+                                   card_mat1, card_mats1, card_param, card_pgap, card_ploadx1, card_pshell, card_rbe2, &
+                                   card_spc, card_spc1, card_suport, card_tables1, catalogue
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_entry, only: card_entry, slot_of
   use epcont_deck_source, only: read_source, source
@@ -15,8 +16,8 @@ module epcont_deck_deck
   implicit none
   private
   public :: deck_type, card_table, read_deck
-  public :: card_cbar, card_cgap, card_cord2r, card_ctria3, card_force, card_grid, card_kinds, card_mat1, card_param, &
-            card_pgap, card_ploadx1, card_pshell, card_rbe2, card_spc, card_spc1, card_suport
+  public :: card_cbar, card_cgap, card_cord2r, card_ctria3, card_force, card_grid, card_kinds, card_mat1, card_mats1, &
+            card_param, card_pgap, card_ploadx1, card_pshell, card_rbe2, card_spc, card_spc1, card_suport, card_tables1
 
   !> All that a deck says: titles, sets chosen and output wanted, as case control has it, and the cards.
   type, extends(case_control) :: deck_type
@@ -29,6 +30,7 @@ module epcont_deck_deck
     procedure :: identity
     procedure :: parameter_row
     procedure :: parameter_word
+    procedure :: parameter_value
   end type deck_type
 
 contains
@@ -141,4 +143,18 @@ contains
     if (row == 0) return
     if (self%card(card_param)%given(2, row)) word = self%card(card_param)%word(2, row)
   end function parameter_word
+
+  !> The number that a PARAM says; `default` where there is no such card.
+  pure function parameter_value(self, name, default) result(value)
+    class(deck_type), intent(in) :: self
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: default
+    real(wp) :: value
+    integer :: row
+
+    value = default
+    row = self%parameter_row(name)
+    if (row == 0) return
+    if (self%card(card_param)%given(2, row)) value = self%card(card_param)%value(2, row)
+  end function parameter_value
 end module epcont_deck_deck

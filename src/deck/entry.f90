@@ -39,7 +39,7 @@ module epcont_deck_entry
     procedure :: choices_text
   end type field_entry
 
-  !> A card: its fields, and after them perhaps a list of ids that is open at the end.
+  !> A card: its fields, and after them perhaps a list, of ids or of points, that is open at the end.
   type :: card_entry
     character(len=8) :: name = ''
     character(len=:), allocatable :: meaning
@@ -47,11 +47,13 @@ module epcont_deck_entry
     integer, allocatable :: column_at(:)         !! by slot: the index into `field`; 0 where the field must be blank
     integer :: list_number = 0                   !! where the list begins; 0: there is none
     logical :: has_ranges = .false.              !! the list may hold `G1 THRU G2`
+    logical :: has_points = .false.              !! the list is of points `X1 Y1 X2 Y2 .. ENDT`, not of ids
     character(len=:), allocatable :: list_name, list_meaning
     logical :: has_words = .false.
   contains
     procedure :: add
     procedure :: add_list
+    procedure :: add_points
     procedure :: column
     procedure :: last_number
     procedure :: field_name
@@ -111,6 +113,18 @@ contains
     self%has_ranges = has_ranges
   end subroutine add_list
 
+  !> End the card with a list of points from position `number` on: `X1 Y1 X2 Y2 .. ENDT`.
+  subroutine add_points(self, number, meaning)
+    class(card_entry), intent(inout) :: self
+    integer, intent(in) :: number
+    character(len=*), intent(in) :: meaning
+
+    self%list_number = number
+    self%list_name = ''
+    self%list_meaning = meaning
+    self%has_points = .true.
+  end subroutine add_points
+
   !> The index of a field by its name; 0 where the card has none of that name.
   pure integer function column(self, name)
     class(card_entry), intent(in) :: self
@@ -139,7 +153,10 @@ contains
 
     name = ''
     slot = slot_of(number)
-    if (self%list_number > 0 .and. number >= self%list_number) then
+    if (self%has_points .and. number >= self%list_number) then
+      slot = slot - slot_of(self%list_number)
+      name = merge('X', 'Y', mod(slot, 2) == 0)//text_of(slot/2 + 1)
+    else if (self%list_number > 0 .and. number >= self%list_number) then
       name = self%list_name//text_of(slot - slot_of(self%list_number) + 1)
     else if (slot <= size(self%column_at)) then
       if (self%column_at(slot) > 0) name = trim(self%field(self%column_at(slot))%name)

@@ -46,7 +46,10 @@ contains
     do slot = 1, last_slot(entry)
       text = text//field_text(entry, slot)
     end do
-    if (entry%list_number > 0) then
+    if (entry%has_points) then
+      slot = slot_of(entry%list_number)
+      text = text//row(text_of(entry%list_number)//'..', columns(slot), 'X1 ..', 'real', 'none', 'used', entry%list_meaning)
+    else if (entry%list_number > 0) then
       slot = slot_of(entry%list_number)
       text = text//row(text_of(entry%list_number)//'..', columns(slot), entry%list_name//'1..', 'integer', 'none', 'used', &
                        entry%list_meaning//', as many as needed: each a whole number from 1 to 99999999')

@@ -21,9 +21,10 @@ module epcont_deck_table
     integer, allocatable :: line(:)                    !! where the card begins [count]
     integer, allocatable :: noted(:)                   !! how often each field without effect is filled [columns]
     integer, allocatable :: noted_card(:)              !! the first card in which it is [columns]
-    !> Open lists of ids: card i has the items list_start(i) to list_start(i+1)-1, each the ids
-    !! list_from to list_to. [count + 1], [items]
+    !> Open lists: card i has the items list_start(i) to list_start(i+1)-1, each the ids list_from to list_to, or
+    !! the point list_point. [count + 1], [items], [2, items]
     integer, allocatable :: list_start(:), list_from(:), list_to(:)
+    real(wp), allocatable :: list_point(:, :)
     integer, allocatable :: list_field(:)              !! position of each item in its card [items]
     integer :: items = 0                               !! in all lists
   contains
@@ -31,6 +32,7 @@ module epcont_deck_table
     procedure :: reserve
     procedure :: add_card
     procedure :: add_item
+    procedure :: add_point
     procedure :: finish
   end type card_table
 
@@ -52,7 +54,7 @@ contains
     allocate (table%noted(columns), table%noted_card(columns), source=0)
     allocate (table%list_start(1), source=1)
     allocate (table%value(columns, 0), table%given(columns, 0), table%sound(0), table%line(0))
-    allocate (table%list_from(0), table%list_to(0), table%list_field(0))
+    allocate (table%list_from(0), table%list_to(0), table%list_field(0), table%list_point(2, 0))
     if (entry%has_words) allocate (table%word(columns, 0))
   end function new_table
 
@@ -120,6 +122,16 @@ contains
     self%list_field(self%items) = field
     self%list_start(self%count + 1) = self%items + 1
   end subroutine add_item
+
+  !> Add a point to the list of the last card. Such lists are short and few: the array grows with each.
+  subroutine add_point(self, point, field)
+    class(card_table), intent(inout) :: self
+    real(wp), intent(in) :: point(2)
+    integer, intent(in) :: field     !! position of its first number in the card
+
+    call self%add_item(0, 0, field)
+    self%list_point = reshape([self%list_point, point], [2, self%items])
+  end subroutine add_point
 
   !> Cut the arrays to size.
   subroutine finish(self)

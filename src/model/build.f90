@@ -4,6 +4,7 @@ module epcont_model_build
   use epcont_base_sorting, only: id_index
   use epcont_deck_deck, only: card_cgap, card_ctria3, card_grid, card_rbe2, deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_model_choices, only: build_controls
   use epcont_model_loads, only: build_loads
   use epcont_model_mesh, only: build_elements, build_nodes, build_sections
   use epcont_model_model, only: model_type
@@ -33,6 +34,7 @@ contains
     call build_references(deck, nodes, model, faults)
     call build_loads(deck, nodes, model, faults)
     call build_pairs(deck, nodes, model, faults)
+    call build_controls(deck, model, faults)
     if (deck%card(card_ctria3)%count == 0 .and. faults%error_count() == 0) &
       call faults%add_error(place_type(), 'the deck has no elements', 'CTRIA3 cards')
     if (faults%error_count() == 0) call find_bodies(model)

@@ -5,6 +5,7 @@ module epcont_model_mesh
   use epcont_base_text, only: short_real, text_of
   use epcont_deck_deck, only: card_ctria3, card_grid, card_mat1, card_param, card_pshell, deck_type
   use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_materials, only: material_card, read_materials
   use epcont_model_model, only: model_type
   use epcont_model_reference, only: check_unique, index_of_ids, resolve
   implicit none
@@ -40,29 +41,30 @@ contains
     end associate
   end subroutine build_nodes
 
-  !> PSHELL with its MAT1.
+  !> PSHELL with its material.
   subroutine build_sections(deck, model, faults)
     type(deck_type), intent(in) :: deck
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
     type(id_index) :: materials
-    real(wp), allocatable :: young(:), poisson(:)
+    type(material_card), allocatable :: card(:)
     integer :: i, material, mid2, plane
 
-    call check_unique(deck, [card_mat1], faults)
-    call read_materials(deck, young, poisson, faults)
+    call read_materials(deck, card, faults)
     materials = index_of_ids(deck, card_mat1)
     plane = deck%parameter_row('PLANE')
     associate (shell => deck%card(card_pshell))
       allocate (model%thickness(shell%count), model%young(shell%count), model%poisson(shell%count), source=1.0_wp)
       allocate (model%plane_strain(shell%count), source=.true.)
+      allocate (model%curve(shell%count))
       model%thickness = shell%value(shell%column('T'), :)
       mid2 = shell%column('MID2')
       do i = 1, shell%count
         call resolve(deck, card_pshell, i, shell%column('MID1'), materials, 'MAT1', faults, material)
         if (material > 0) then
-          model%young(i) = young(material)
-          model%poisson(i) = poisson(material)
+          model%young(i) = card(material)%young
+          model%poisson(i) = card(material)%poisson
+          model%curve(i) = card(material)%curve
         end if
         if (plane > 0) model%plane_strain(i) = deck%card(card_param)%word(2, plane) == 'STRAIN'
         if (.not. shell%sound(i)) cycle
@@ -77,45 +79,6 @@ contains
       end do
     end associate
   end subroutine build_sections
-
-  !> MAT1: E and NU from two of E, G, NU.
-  subroutine read_materials(deck, young, poisson, faults)
-    type(deck_type), intent(in) :: deck
-    real(wp), allocatable, intent(out) :: young(:), poisson(:)
-    type(diagnostics), intent(inout) :: faults
-    real(wp) :: shear
-    integer :: e, g, i, nu
-
-    associate (card => deck%card(card_mat1))
-      e = card%column('E')
-      g = card%column('G')
-      nu = card%column('NU')
-      allocate (young(card%count), poisson(card%count))
-      do i = 1, card%count
-        young(i) = card%value(e, i)
-        poisson(i) = card%value(nu, i)
-        shear = card%value(g, i)
-        if (.not. card%sound(i)) then
-          young(i) = 1.0_wp
-          poisson(i) = 0.0_wp
-        else if (count(card%given([e, g, nu], i)) < 2) then
-          call faults%add_error(deck%place(card_mat1, i, e), deck%identity(card_mat1, i)// &
-                                ': of E, G and NU two are needed', 'E and NU, say')
-        else if (.not. card%given(nu, i)) then
-          poisson(i) = young(i)/(2.0_wp*shear) - 1.0_wp
-          if (poisson(i) < 0.0_wp .or. poisson(i) >= 0.5_wp) &
-            call faults%add_error(deck%place(card_mat1, i, g), deck%identity(card_mat1, i)//': E and G give NU = '// &
-                                  short_real(poisson(i)), '0 <= NU < 0.5: G above E/3, up to E/2')
-        else if (.not. card%given(e, i)) then
-          young(i) = 2.0_wp*shear*(1.0_wp + poisson(i))
-        else if (card%given(g, i)) then
-          if (abs(shear*2.0_wp*(1.0_wp + poisson(i)) - young(i)) > 1.0e-3_wp*young(i)) &
-            call faults%add_error(deck%place(card_mat1, i, g), deck%identity(card_mat1, i)// &
-                                  ': G is not E/(2(1 + NU))', 'a blank G')
-        end if
-      end do
-    end associate
-  end subroutine read_materials
 
   !> CTRIA3, turned counter-clockwise.
   subroutine build_elements(deck, nodes, model, faults)

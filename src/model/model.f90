@@ -5,6 +5,7 @@
 module epcont_model_model
   use epcont_base_geometry, only: triangle_area
   use epcont_base_kinds, only: wp
+  use epcont_model_controls, only: controls_type, uniaxial_curve
   implicit none
   private
   public :: model_type
@@ -20,6 +21,8 @@ module epcont_model_model
     logical, allocatable :: plane_strain(:)     !! else plane stress [sections]
     real(wp), allocatable :: young(:)           !! [stress] [sections]
     real(wp), allocatable :: poisson(:)         !! [sections]
+    type(uniaxial_curve), allocatable :: curve(:)  !! how each section yields, if it does [sections]
+    type(controls_type) :: controls             !! of the plastic iteration
     logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
     real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
     integer, allocatable :: leader(:, :)        !! node whose displacement the freedom shares: itself if not tied [2, nodes]
@@ -33,6 +36,7 @@ module epcont_model_model
   contains
     procedure :: corners
     procedure :: area
+    procedure :: can_yield
   end type model_type
 
 contains
@@ -53,4 +57,13 @@ contains
 
     area = triangle_area(self%corners(element))
   end function area
+
+  !> Can an element yield?
+  pure function can_yield(self, element)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: element
+    logical :: can_yield
+
+    can_yield = allocated(self%curve(self%section(element))%strain)
+  end function can_yield
 end module epcont_model_model

@@ -41,9 +41,9 @@ contains
       end do
       call put('total_contact_force', sum(answer%contact%force), 'force')
       call file%line('pairs_in_contact,'//text_of(count(answer%contact%touching))//',')
-      call file%line('plastic_elements,0,')
-      call file%line('iterations,1,')
-      call file%line('pivots,'//text_of(answer%contact%pivots)//',')
+      call file%line('plastic_elements,'//text_of(count(answer%plastic))//',')
+      call file%line('iterations,'//text_of(size(answer%history))//',')
+      call file%line('pivots,'//text_of(sum(answer%history%pivots))//',')
       call put('max_equivalent_stress', maxval(answer%equivalent_stress), 'force/length2')
       call put('max_displacement', maxval(norm2(answer%displacement, dim=1)), 'length')
       call put('equilibrium_residual', certificate%equilibrium, '')
@@ -149,24 +149,29 @@ contains
     do e = 1, model%elements
       call file%line(text_of(model%element_id(e))//','// &
                      row([sum(model%corners(e), dim=2)/3.0_wp, answer%stress(:, e), answer%equivalent_stress(e), &
-                          answer%equivalent_strain(e), model%young(model%section(e))])//',elastic')
+                          answer%equivalent_strain(e), answer%secant_modulus(e)])//','// &
+                     trim(merge('plastic', 'elastic', answer%plastic(e))))
     end do
     call file%finish(error)
   end subroutine write_elements
 
-  !> One row a solve: an elastic scene has one.
-  subroutine write_history(stem, answer, certificate, error)
+  !> One row a solve.
+  subroutine write_history(stem, answer, error)
     character(len=*), intent(in) :: stem
     type(answer_type), intent(in) :: answer
-    type(certificate_type), intent(in) :: certificate
     type(error_type), allocatable, intent(out) :: error
     type(text_file) :: file
+    integer :: k
 
     call new_text_file(stem//'.history.csv', file, error)
     if (allocated(error)) return
-    call file%line('iteration,change,residual,pairs_in_contact,plastic_elements,pivots')
-    call file%line('1,'//row([1.0_wp, certificate%equilibrium])//','//text_of(count(answer%contact%touching))//',0,'// &
-                   text_of(answer%contact%pivots))
+    call file%line('iteration,change,residual,pairs_in_contact,plastic_elements,pivots,load_factor')
+    do k = 1, size(answer%history)
+      associate (now => answer%history(k))
+        call file%line(text_of(k)//','//row([now%change, now%residual])//','//text_of(now%touching)//','// &
+                       text_of(now%yielded)//','//text_of(now%pivots)//','//full_number(now%load_factor))
+      end associate
+    end do
     call file%finish(error)
   end subroutine write_history
 

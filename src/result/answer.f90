@@ -1,7 +1,8 @@
-!> The answer to a scene: displacements, contact and stresses.
+!> The answer to a scene: displacements, contact and stresses, and how they were found.
 module epcont_result_answer
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solution
+  use epcont_plasticity_iteration, only: iteration_record
   implicit none
   private
   public :: answer_type
@@ -11,9 +12,17 @@ module epcont_result_answer
     real(wp), allocatable :: reaction(:, :)          !! of the supports [force] [2, nodes]
     real(wp), allocatable :: stress(:, :)            !! xx, yy, zz, xy [stress] [4, elements]
     real(wp), allocatable :: equivalent_stress(:)    !! von Mises [stress] [elements]
-    real(wp), allocatable :: equivalent_strain(:)    !! [elements]
+    real(wp), allocatable :: equivalent_strain(:)    !! (2-2) [elements]
+    real(wp), allocatable :: secant_modulus(:)       !! E' of the curve at that strain [stress] [elements]
+    logical, allocatable :: plastic(:)               !! beyond the yield point [elements]
+    logical, allocatable :: beyond(:)                !! beyond the last point of the material's table [elements]
     type(contact_solution) :: contact
     real(wp), allocatable :: pressure(:)             !! at the pairs; negative: no boundary there [stress] [pairs]
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
+    type(iteration_record), allocatable :: history(:)  !! every solve
+    logical :: converged = .false.                   !! all of the load, to the tolerance of the iteration
+    real(wp) :: load_factor = 1.0_wp                 !! part of the loads for which this is
+    integer :: unloaded = 0                          !! elements whose strain fell, after yielding, as the load grew
+    integer :: first_unloaded = 0                    !! one of them
   end type answer_type
 end module epcont_result_answer

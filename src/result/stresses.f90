@@ -1,9 +1,12 @@
-!> Stresses of the elements and reactions of the supports, from the displacements.
+!> Stresses of the elements and reactions of the supports.
 module epcont_result_stresses
+  use epcont_assembly_fields, only: nodal_forces
   use epcont_base_kinds, only: wp
-  use epcont_element_tria3, only: tria3_strain_matrix
-  use epcont_material_elasticity, only: axial_stress, equivalent_stress, material_matrix
+  use epcont_material_curve, only: material_type, section_materials
+  use epcont_material_elasticity, only: equivalent_stress
+  use epcont_material_total_theory, only: respond, response_type
   use epcont_model_model, only: model_type
+  use epcont_plasticity_state, only: scene_state
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -11,38 +14,56 @@ module epcont_result_stresses
 
 contains
 
-  !> Fill in stresses, equivalent stress and strain, and reactions. `applied` are the nodal forces of loads and
-  !! pairs [2, nodes].
-  pure subroutine recover_stresses(model, applied, answer)
+  !> Fill in stresses, strains, moduli and reactions. `applied` are the nodal forces of loads and pairs [2, nodes].
+  pure subroutine recover_stresses(model, state, applied, answer)
     type(model_type), intent(in) :: model
+    type(scene_state), intent(in) :: state
     real(wp), intent(in) :: applied(:, :)
     type(answer_type), intent(inout) :: answer
-    real(wp), allocatable :: unbalanced(:, :)
-    real(wp) :: b(3, 6), stress(3), force(6)
-    integer :: c, e, k, node, s
+    type(material_type), allocatable :: material(:)
+    type(response_type) :: response
+    real(wp) :: across
+    integer :: e
 
+    material = section_materials(model)
     allocate (answer%stress(4, model%elements), answer%equivalent_stress(model%elements))
-    allocate (answer%equivalent_strain(model%elements))
-    unbalanced = -applied
+    allocate (answer%equivalent_strain(model%elements), answer%secant_modulus(model%elements))
+    allocate (answer%plastic(model%elements), answer%beyond(model%elements))
     do e = 1, model%elements
-      s = model%section(e)
-      b = tria3_strain_matrix(model%corners(e))
-      stress = matmul(material_matrix(model, e), matmul(b, reshape(answer%displacement(:, model%corner(:, e)), [6])))
-      answer%stress(:, e) = [stress(1), stress(2), axial_stress(model%poisson(s), model%plane_strain(s), stress), stress(3)]
-      answer%equivalent_stress(e) = equivalent_stress(stress, answer%stress(3, e))
-      answer%equivalent_strain(e) = answer%equivalent_stress(e)/model%young(s)
-      force = model%thickness(s)*model%area(e)*matmul(transpose(b), stress)
-      do k = 1, 3
-        unbalanced(:, model%corner(k, e)) = unbalanced(:, model%corner(k, e)) + force(2*k - 1:2*k)
-      end do
+      associate (m => material(model%section(e)), strain => state%strain(:, e), stress => state%stress(:, e))
+        ! The mean stress is elastic whatever the iteration has left open.
+        across = 0.0_wp
+        if (m%plane_strain) across = 3.0_wp*m%bulk*(strain(1) + strain(2)) - stress(1) - stress(2)
+        answer%stress(:, e) = [stress(1), stress(2), across, stress(3)]
+        answer%equivalent_stress(e) = equivalent_stress(answer%stress(:, e))
+        response = respond(m, strain)
+        answer%equivalent_strain(e) = response%e*(1.0_wp + m%shift*response%curve%modulus)
+        answer%secant_modulus(e) = m%young
+        if (response%curve%yielded) answer%secant_modulus(e) = 1.0_wp/(1.0_wp/response%curve%modulus + m%shift)
+        answer%plastic(e) = response%curve%yielded
+        answer%beyond(e) = response%curve%beyond
+      end associate
     end do
-    allocate (answer%reaction(2, model%nodes), source=0.0_wp)
+    answer%reaction = reactions(model, state, applied)
+  end subroutine recover_stresses
+
+  !> What the supports must hold [force] [2, nodes].
+  pure function reactions(model, state, applied) result(reaction)
+    type(model_type), intent(in) :: model
+    type(scene_state), intent(in) :: state
+    real(wp), intent(in) :: applied(:, :)
+    real(wp), allocatable :: reaction(:, :)
+    real(wp), allocatable :: force(:, :)
+    integer :: c, node
+
+    call nodal_forces(model, state%stress, force)
+    allocate (reaction(2, model%nodes), source=0.0_wp)
     do node = 1, model%nodes
       do c = 1, 2
         associate (leader => model%leader(c, node))
-          if (model%held(c, leader)) answer%reaction(c, leader) = answer%reaction(c, leader) + unbalanced(c, node)
+          if (model%held(c, leader)) reaction(c, leader) = reaction(c, leader) + force(c, node) - applied(c, node)
         end associate
       end do
     end do
-  end subroutine recover_stresses
+  end function reactions
 end module epcont_result_stresses

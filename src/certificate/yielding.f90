@@ -1,0 +1,120 @@
+!> The stress that belongs to a strain, from the paper's equations as they stand: the uniaxial curve over total strain,
+!> Poisson's ratio mu of the secant body, and bisection for the equivalent strain. The solver shifts the curve instead.
+module epcont_certificate_yielding
+  use epcont_base_kinds, only: wp
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: stress_on_curve
+
+  !> Halvings that leave nothing of an interval.
+  integer, parameter :: halvings = 60
+
+contains
+
+  !> Stress xx, yy, zz, xy of a strain xx, yy, xy (engineering) [stress].
+  pure function stress_on_curve(model, section, strain) result(stress)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: section
+    real(wp), intent(in) :: strain(3)
+    real(wp) :: stress(4)
+    real(wp) :: across, lambda, mu, secant, shear
+
+    associate (young => model%young(section), nu => model%poisson(section))
+      secant = young
+      mu = nu
+      if (allocated(model%curve(section)%strain)) call find_secant(model, section, strain, secant, mu)
+      across = strain_across(model%plane_strain(section), mu, strain)
+      ! E_D/3 of (2-5) is the shear modulus, E/(1 - 2 nu) of (2-6) three times the bulk modulus.
+      shear = young/(3.0_wp*young/secant - (1.0_wp - 2.0_wp*nu))
+      lambda = young/(3.0_wp*(1.0_wp - 2.0_wp*nu)) - 2.0_wp/3.0_wp*shear
+      stress = lambda*(strain(1) + strain(2) + across) + 2.0_wp*shear*[strain(1), strain(2), across, 0.0_wp]
+      if (.not. model%plane_strain(section)) stress(3) = 0.0_wp
+      stress(4) = shear*strain(3)
+    end associate
+  end function stress_on_curve
+
+  !> E' = sigma_i/eps_i of the curve, and mu: that with which eps_i of the strain is eps_i of the curve.
+  pure subroutine find_secant(model, section, strain, secant, mu)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: section
+    real(wp), intent(in) :: strain(3)
+    real(wp), intent(inout) :: secant, mu   !! the elastic ones, which stay below yield
+    real(wp) :: low, high, middle, stress
+    integer :: k
+
+    associate (curve => model%curve(section), young => model%young(section), nu => model%poisson(section))
+      low = curve%strain(2)
+      high = low
+      if (excess(low) <= 0.0_wp) return
+      do while (excess(high) > 0.0_wp)
+        high = 2.0_wp*high
+      end do
+      do k = 1, halvings
+        middle = 0.5_wp*(low + high)
+        if (excess(middle) > 0.0_wp) then
+          low = middle
+        else
+          high = middle
+        end if
+      end do
+      stress = stress_at(curve%strain, curve%stress, low)
+      secant = stress/low
+      mu = poisson_ratio(low)
+    end associate
+
+  contains
+
+    !> The strain's eps_i, taken with the mu of a point of the curve, beyond that point.
+    pure real(wp) function excess(total)
+      real(wp), intent(in) :: total
+
+      associate (ratio => poisson_ratio(total))
+        excess = equivalent_strain(strain, strain_across(model%plane_strain(section), ratio, strain), ratio) - total
+      end associate
+    end function excess
+
+    !> Exact for a secant body, or (2-4).
+    pure real(wp) function poisson_ratio(total)
+      real(wp), intent(in) :: total
+
+      associate (curve => model%curve(section), young => model%young(section), nu => model%poisson(section))
+        if (model%controls%paper_ratio) then
+          poisson_ratio = 0.5_wp - (0.5_wp - nu)*curve%stress(2)/stress_at(curve%strain, curve%stress, total)
+        else
+          poisson_ratio = 0.5_wp - (0.5_wp - nu)*stress_at(curve%strain, curve%stress, total)/total/young
+        end if
+      end associate
+    end function poisson_ratio
+  end subroutine find_secant
+
+  !> Equivalent strain (2-2).
+  pure real(wp) function equivalent_strain(strain, across, mu)
+    real(wp), intent(in) :: strain(3), across, mu
+
+    equivalent_strain = sqrt(0.5_wp*((strain(1) - strain(2))**2 + (strain(2) - across)**2 + (across - strain(1))**2) &
+                             + 0.75_wp*strain(3)**2)/(1.0_wp + mu)
+  end function equivalent_strain
+
+  !> Strain across the plane: 0, or that of a secant body without stress there.
+  pure real(wp) function strain_across(plane_strain, mu, strain)
+    logical, intent(in) :: plane_strain
+    real(wp), intent(in) :: mu, strain(3)
+
+    strain_across = 0.0_wp
+    if (.not. plane_strain) strain_across = -mu/(1.0_wp - mu)*(strain(1) + strain(2))
+  end function strain_across
+
+  !> Stress of the uniaxial curve at a total strain; the last slope goes on.
+  pure real(wp) function stress_at(strain, stress, total)
+    real(wp), intent(in) :: strain(:), stress(:), total
+    integer :: k
+
+    k = 2
+    do while (k < size(strain))
+      if (strain(k) >= total) exit
+      k = k + 1
+    end do
+    stress_at = stress(k) + (stress(k) - stress(k - 1))/(strain(k) - strain(k - 1))*(total - strain(k))
+  end function stress_at
+end module epcont_certificate_yielding

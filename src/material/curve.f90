@@ -1,0 +1,144 @@
+!> Equivalent stress over deviatoric equivalent strain, of a material with a piecewise linear uniaxial curve.
+!>
+!> With e = sqrt(2/3 e_ij e_ij) and the mean stress elastic, a uniaxial state of total strain eps and stress sigma has
+!> e = eps - (1 - 2 nu) sigma/(3E): its points, so shifted, give sigma_i = curve(e) for every kind of deformation
+!> (MUP EXACT). MUP PAPER takes Poisson's ratio (2-4) in the equivalent strain eps_i instead, which makes
+!> e = eps_i (1 - (1 - 2 nu) sigma_s/(3 sigma_i)): a quadratic for eps_i on each segment.
+module epcont_material_curve
+  use epcont_base_kinds, only: wp
+  use epcont_material_elasticity, only: bulk_modulus, shear_modulus
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: material_type, curve_value, section_materials
+
+  !> The material of a section.
+  type :: material_type
+    real(wp) :: young = 1.0_wp              !! E [stress]
+    real(wp) :: bulk = 1.0_wp               !! K [stress]
+    real(wp) :: shear = 1.0_wp              !! G [stress]
+    real(wp) :: shift = 0.0_wp              !! (1 - 2 nu)/(3E): eps_i = e + shift*sigma_i
+    logical :: plane_strain = .true.        !! else plane stress
+    logical :: yields = .false.
+    logical :: paper_ratio = .false.        !! MUP PAPER
+    logical :: ends = .false.               !! beyond the last point there is no table
+    ! From the yield point on; the last slope goes on without end:
+    real(wp), allocatable :: deviatoric(:)  !! e at the points [points]
+    real(wp), allocatable :: total(:)       !! eps at the points [points]
+    real(wp), allocatable :: stress(:)      !! [stress] [points]
+    real(wp), allocatable :: slope(:)       !! d sigma/d e behind each point [stress] [points]
+    real(wp), allocatable :: total_slope(:) !! d sigma/d eps behind each point [stress] [points]
+  contains
+    procedure :: at_strain
+  end type material_type
+
+  !> The curve at a strain.
+  type :: curve_value
+    real(wp) :: modulus = 1.0_wp   !! E_D = 3 G of a secant body: equivalent stress over e [stress]
+    real(wp) :: slope = 1.0_wp     !! d sigma_i/d e [stress]; not for MUP PAPER
+    logical :: yielded = .false.   !! beyond the yield point
+    logical :: beyond = .false.    !! beyond the last point of a table
+  end type curve_value
+
+contains
+
+  !> The materials of all sections.
+  pure function section_materials(model) result(material)
+    type(model_type), intent(in) :: model
+    type(material_type), allocatable :: material(:)
+    integer :: s
+
+    allocate (material(size(model%young)))
+    do s = 1, size(material)
+      material(s)%young = model%young(s)
+      material(s)%bulk = bulk_modulus(model%young(s), model%poisson(s))
+      material(s)%shear = shear_modulus(model%young(s), model%poisson(s))
+      material(s)%shift = (1.0_wp - 2.0_wp*model%poisson(s))/(3.0_wp*model%young(s))
+      material(s)%plane_strain = model%plane_strain(s)
+      material(s)%yields = allocated(model%curve(s)%strain)
+      if (.not. material(s)%yields) cycle
+      material(s)%paper_ratio = model%controls%paper_ratio
+      material(s)%ends = model%curve(s)%ends
+      call shift_curve(model%curve(s)%strain, model%curve(s)%stress, material(s))
+    end do
+  end function section_materials
+
+  !> The curve over e, from that over total strain.
+  pure subroutine shift_curve(strain, stress, material)
+    real(wp), intent(in) :: strain(:), stress(:)   !! from (0, 0) on
+    type(material_type), intent(inout) :: material
+    real(wp), allocatable :: rise(:), width(:)
+    integer :: n
+
+    n = size(strain)
+    rise = stress(3:) - stress(2:n - 1)
+    width = strain(3:) - strain(2:n - 1)
+    material%total = strain(2:)
+    material%stress = stress(2:)
+    material%deviatoric = strain(2:) - material%shift*stress(2:)
+    if (material%paper_ratio) material%deviatoric = strain(2:)*(1.0_wp - material%young*material%shift*stress(2)/stress(2:))
+    material%total_slope = [rise/width, rise(n - 2)/width(n - 2)]
+    material%slope = [rise/(width - material%shift*rise), rise(n - 2)/(width(n - 2) - material%shift*rise(n - 2))]
+  end subroutine shift_curve
+
+  !> The curve at a deviatoric equivalent strain.
+  pure function at_strain(self, e) result(point)
+    class(material_type), intent(in) :: self
+    real(wp), intent(in) :: e
+    type(curve_value) :: point
+    real(wp) :: secant
+    integer :: k
+
+    point%modulus = 3.0_wp*self%shear
+    point%slope = point%modulus
+    if (.not. self%yields) return
+    if (e <= self%deviatoric(1)) return
+    point%yielded = .true.
+    k = segment(self%deviatoric, e)
+    point%beyond = self%ends .and. k == size(self%deviatoric)
+    if (self%paper_ratio) then
+      secant = paper_secant(self, k, e)
+      point%modulus = self%young/(self%young/secant - self%young*self%shift)  ! (2-5)
+    else
+      point%modulus = (self%stress(k) + self%slope(k)*(e - self%deviatoric(k)))/e
+      point%slope = self%slope(k)
+    end if
+  end function at_strain
+
+  !> The last point at or below a strain; the first of them is.
+  pure integer function segment(strain, e)
+    real(wp), intent(in) :: strain(:), e
+    integer :: high, middle
+
+    segment = 1
+    high = size(strain)
+    do while (segment < high)
+      middle = high - (high - segment)/2
+      if (strain(middle) <= e) then
+        segment = middle
+      else
+        high = middle - 1
+      end if
+    end do
+  end function segment
+
+  !> E' = sigma_i/eps_i with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 + (a - c - b e) eps = e a.
+  pure real(wp) function paper_secant(self, k, e)
+    class(material_type), intent(in) :: self
+    integer, intent(in) :: k
+    real(wp), intent(in) :: e
+    real(wp) :: a, b, c, half, strain
+
+    b = self%total_slope(k)
+    a = self%stress(k) - b*self%total(k)
+    c = self%young*self%shift*self%stress(1)
+    half = 0.5_wp*(a - c - b*e)
+    ! The positive root, written so that nothing cancels for b = 0.
+    if (half > 0.0_wp) then
+      strain = e*a/(half + sqrt(half**2 + b*e*a))
+    else
+      strain = (sqrt(half**2 + b*e*a) - half)/b
+    end if
+    paper_secant = a/strain + b
+  end function paper_secant
+end module epcont_material_curve

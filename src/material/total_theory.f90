@@ -1,0 +1,123 @@
+!> Deformation (Hencky, "total") theory: deviators of stress and strain are proportional, mean parts elastic.
+!>
+!>     stress = K theta + (2 E_D/3) deviatoric strain,   E_D = sigma_i/e on the curve        (2-5), (2-6)
+!>
+!> Vectors of four components are xx, yy, zz, xy, with the tensor's shear strain.
+module epcont_material_total_theory
+  use epcont_base_kinds, only: wp
+  use epcont_material_curve, only: curve_value, material_type
+  use epcont_material_elasticity, only: isotropic_matrix
+  implicit none
+  private
+  public :: response_type, respond, secant_matrix, tangent_matrix
+
+  !> Steps for the strain across a plane-stress sheet; bisection alone would end after some 60.
+  integer, parameter :: most_steps = 100
+
+  !> What the material is at a strain.
+  type :: response_type
+    real(wp) :: stress(4) = 0.0_wp       !! [stress]
+    real(wp) :: deviator(4) = 0.0_wp     !! of the strain
+    real(wp) :: e = 0.0_wp               !! deviatoric equivalent strain
+    type(curve_value) :: curve
+  end type response_type
+
+contains
+
+  !> Stress and moduli at a strain.
+  pure function respond(material, strain) result(response)
+    type(material_type), intent(in) :: material
+    real(wp), intent(in) :: strain(3)      !! xx, yy, xy (engineering)
+    type(response_type) :: response
+    real(wp) :: across
+
+    across = 0.0_wp
+    if (.not. material%plane_strain) across = strain_across(material, strain)
+    response = respond_in_space(material, strain, across)
+    if (.not. material%plane_strain) response%stress(3) = 0.0_wp
+  end function respond
+
+  !> Stress and moduli at a strain with its part across the plane.
+  pure function respond_in_space(material, strain, across) result(response)
+    type(material_type), intent(in) :: material
+    real(wp), intent(in) :: strain(3), across
+    type(response_type) :: response
+    real(wp) :: mean
+
+    mean = (strain(1) + strain(2) + across)/3.0_wp
+    response%deviator = [strain(1) - mean, strain(2) - mean, across - mean, 0.5_wp*strain(3)]
+    response%e = sqrt((sum(response%deviator**2) + response%deviator(4)**2)*2.0_wp/3.0_wp)
+    response%curve = material%at_strain(response%e)
+    response%stress = 2.0_wp/3.0_wp*response%curve%modulus*response%deviator
+    response%stress(:3) = response%stress(:3) + 3.0_wp*material%bulk*mean
+  end function respond_in_space
+
+  !> The strain across a sheet in plane stress, where the stress across vanishes. That stress rises with the strain,
+  !! and has its zero between that of the elastic sheet and that of constant volume.
+  pure function strain_across(material, strain) result(across)
+    type(material_type), intent(in) :: material
+    real(wp), intent(in) :: strain(3)
+    real(wp) :: across
+    type(response_type) :: response
+    real(wp) :: elastic, low, high, next, rate
+    integer :: step
+
+    elastic = -(material%bulk - 2.0_wp*material%shear/3.0_wp)/(material%bulk + 4.0_wp*material%shear/3.0_wp)
+    across = elastic*(strain(1) + strain(2))
+    if (.not. material%yields) return
+    low = min(across, -(strain(1) + strain(2)))
+    high = max(across, -(strain(1) + strain(2)))
+    do step = 1, most_steps
+      response = respond_in_space(material, strain, across)
+      if (.not. response%curve%yielded .and. step == 1) return
+      if (response%stress(3) == 0.0_wp) return
+      if (response%stress(3) > 0.0_wp) high = across
+      if (response%stress(3) < 0.0_wp) low = across
+      rate = material%bulk + 4.0_wp/9.0_wp*response%curve%modulus
+      if (.not. material%paper_ratio) rate = rate + radial_stiffness(response)*response%deviator(3)**2
+      next = across - response%stress(3)/rate
+      if (next <= low .or. next >= high) next = 0.5_wp*(low + high)
+      if (abs(next - across) <= epsilon(1.0_wp)*abs(next)) return
+      across = next
+    end do
+  end function strain_across
+
+  !> What the tangent has less than the secant along the deviator: (4/9) (h - E_D)/e**2 [stress].
+  pure real(wp) function radial_stiffness(response)
+    type(response_type), intent(in) :: response
+
+    radial_stiffness = 0.0_wp
+    if (response%curve%yielded) &
+      radial_stiffness = 4.0_wp/9.0_wp*(response%curve%slope - response%curve%modulus)/response%e**2
+  end function radial_stiffness
+
+  !> D of stress = D strain (2-8) [stress] [3, 3].
+  pure function secant_matrix(material, response) result(d)
+    type(material_type), intent(in) :: material
+    type(response_type), intent(in) :: response
+    real(wp) :: d(3, 3)
+
+    d = isotropic_matrix(material%bulk, response%curve%modulus/3.0_wp, material%plane_strain)
+  end function secant_matrix
+
+  !> D of d stress = D d strain, the consistent tangent [stress] [3, 3].
+  pure function tangent_matrix(material, response) result(d)
+    type(material_type), intent(in) :: material
+    type(response_type), intent(in) :: response
+    real(wp) :: d(3, 3)
+    real(wp) :: across(3), radial, thickening
+    real(wp) :: v(3)
+
+    radial = radial_stiffness(response)
+    v = response%deviator([1, 2, 4])
+    d = isotropic_matrix(material%bulk, response%curve%modulus/3.0_wp, .true.) &
+        + radial*spread(v, 2, 3)*spread(v, 1, 3)
+    if (material%plane_strain) return
+    ! Stress across is zero: its strain is eliminated.
+    across = material%bulk - 2.0_wp/9.0_wp*response%curve%modulus
+    across(3) = 0.0_wp
+    across = across + radial*response%deviator(3)*v
+    thickening = material%bulk + 4.0_wp/9.0_wp*response%curve%modulus + radial*response%deviator(3)**2
+    d = d - spread(across, 2, 3)*spread(across, 1, 3)/thickening
+  end function tangent_matrix
+end module epcont_material_total_theory

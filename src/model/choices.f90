@@ -1,0 +1,42 @@
+!> What the PARAMs choose for the plastic iteration, and whether the scene allows it.
+module epcont_model_choices
+  use epcont_base_kinds, only: wp
+  use epcont_deck_deck, only: card_param, card_pshell, deck_type
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_controls, only: method_name, method_newton
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: build_controls
+
+contains
+
+  subroutine build_controls(deck, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(inout) :: model
+    type(diagnostics), intent(inout) :: faults
+    character(len=8) :: word
+    integer :: k, row, s
+
+    word = deck%parameter_word('METHOD', 'AUTO')
+    do k = lbound(method_name, 1), ubound(method_name, 1)
+      if (method_name(k) == word) model%controls%method = k
+    end do
+    model%controls%tolerance = deck%parameter_value('TOL', 0.0_wp)
+    model%controls%most_iterations = nint(deck%parameter_value('MAXIT', 100.0_wp))
+    model%controls%load_steps = nint(deck%parameter_value('NLOAD', 1.0_wp))
+    model%controls%paper_ratio = deck%parameter_word('MUP', 'EXACT') == 'PAPER'
+    if (.not. model%controls%paper_ratio) return
+
+    row = deck%parameter_row('MUP')
+    if (model%controls%method == method_newton) &
+      call faults%add_error(deck%place(card_param, row, 2), 'PARAM MUP: PAPER does not go with METHOD NEWTON', &
+                            'METHOD SECANT, MODSEC or INISTR, or MUP EXACT')
+    do s = 1, size(model%curve)
+      if (model%plane_strain(s) .or. .not. allocated(model%curve(s)%strain)) cycle
+      call faults%add_error(deck%place(card_param, row, 2), 'PARAM MUP: PAPER is for plane strain, and '// &
+                            deck%identity(card_pshell, s)//' is in plane stress', 'MUP EXACT')
+      return
+    end do
+  end subroutine build_controls
+end module epcont_model_choices

@@ -1,0 +1,28 @@
+!> What the deck asks of the plastic iteration.
+module epcont_model_controls
+  use epcont_base_kinds, only: wp
+  implicit none
+  private
+  public :: controls_type, uniaxial_curve
+
+  !> PARAM METHOD.
+  integer, parameter, public :: method_auto = 0, method_secant = 1, method_modsec = 2, method_inistr = 3, method_newton = 4
+  !> Their names in a deck, from method_auto on.
+  character(len=*), parameter, public :: method_name(0:4) = ['AUTO  ', 'SECANT', 'MODSEC', 'INISTR', 'NEWTON']
+
+  type :: controls_type
+    integer :: method = method_auto    !! one of the above
+    real(wp) :: tolerance = 0.0_wp     !! PARAM TOL; 0: that of the method
+    integer :: most_iterations = 100   !! of a load step
+    integer :: load_steps = 1
+    logical :: paper_ratio = .false.   !! PARAM MUP PAPER: Poisson's ratio (2-4) in the equivalent strain
+  end type controls_type
+
+  !> Uniaxial curve of a material that yields: total strain and stress, from (0, 0) over the yield point on. Beyond
+  !! the last point its last slope goes on. Not allocated: the material does not yield.
+  type :: uniaxial_curve
+    real(wp), allocatable :: strain(:)   !! [points]
+    real(wp), allocatable :: stress(:)   !! [stress] [points]
+    logical :: ends = .false.            !! the last point is the end of a table, not of a line without end
+  end type uniaxial_curve
+end module epcont_model_controls

@@ -1,0 +1,41 @@
+!> Which plastic iteration this scene gets, and why.
+module epcont_plan_iteration_plan
+  use epcont_base_kinds, only: wp
+  use epcont_model_controls, only: method_auto, method_newton, method_secant
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: iteration_plan, plan_iteration
+
+  !> TOL of NEWTON, which gets there in a step or two more, and of the methods that pay for every digit.
+  real(wp), parameter :: newton_tolerance = 1.0e-8_wp, secant_tolerance = 0.01_wp
+
+  type :: iteration_plan
+    logical :: yields = .false.            !! there is something that can yield; else there is no iteration
+    logical, allocatable :: body(:)        !! which bodies can [bodies]
+    integer :: method = method_secant
+    logical :: chosen_here = .false.       !! the deck leaves the method to us
+    real(wp) :: tolerance = 0.0_wp         !! largest change that ends the iteration
+  end type iteration_plan
+
+contains
+
+  pure function plan_iteration(model) result(plan)
+    type(model_type), intent(in) :: model
+    type(iteration_plan) :: plan
+    integer :: e
+
+    allocate (plan%body(model%bodies), source=.false.)
+    do e = 1, model%elements
+      if (model%can_yield(e)) plan%body(model%body(model%corner(1, e))) = .true.
+    end do
+    plan%yields = any(plan%body)
+    plan%chosen_here = model%controls%method == method_auto
+    plan%method = model%controls%method
+    ! NEWTON has no tangent for MUP PAPER, which is there to follow the paper: by its own method, then.
+    if (plan%chosen_here) plan%method = merge(method_secant, method_newton, model%controls%paper_ratio)
+    plan%tolerance = model%controls%tolerance
+    if (plan%tolerance == 0.0_wp) &
+      plan%tolerance = merge(newton_tolerance, secant_tolerance, plan%method == method_newton)
+  end function plan_iteration
+end module epcont_plan_iteration_plan

@@ -1,0 +1,240 @@
+!> The loop of the plastic iteration; it knows nothing of the method that it drives.
+module epcont_plasticity_iteration
+  use epcont_assembly_fields, only: nodal_forces
+  use epcont_base_kinds, only: wp
+  use epcont_contact_problem, only: contact_solved
+  use epcont_material_curve, only: material_type, section_materials
+  use epcont_material_linear_law, only: elastic_law, linear_law
+  use epcont_material_total_theory, only: respond, response_type
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
+  use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_numbering, only: numbering_type
+  use epcont_plasticity_linear_scene, only: linear_scene, new_linear_scene
+  use epcont_plasticity_method, only: plastic_method
+  use epcont_plasticity_state, only: scene_state
+  implicit none
+  private
+  public :: plastic_run, iteration_record, follow_loads
+
+  !> A strain that falls by less than this part of it stays.
+  real(wp), parameter :: least_fall = 1.0e-6_wp
+
+  !> One solve.
+  type :: iteration_record
+    real(wp) :: load_factor = 1.0_wp   !! part of the loads it is for
+    integer :: iteration = 0           !! its number in its load step
+    real(wp) :: change = 0.0_wp        !! largest change of a displacement / largest displacement
+    real(wp) :: force_change = 0.0_wp  !! largest change of a contact force / largest contact force
+    real(wp) :: residual = 0.0_wp      !! largest nodal force of the stresses off the curve / largest sum of element forces
+    integer :: touching = 0            !! pairs
+    integer :: yielded = 0             !! elements
+    integer :: pivots = 0
+  end type iteration_record
+
+  !> What came of the loads, and how.
+  type :: plastic_run
+    type(scene_state) :: state             !! the answer, or what came nearest to one
+    real(wp) :: load_factor = 0.0_wp       !! part of the loads that `state` carries
+    logical :: converged = .false.         !! all loads, to the tolerance
+    integer :: singular = 0                !! body that could not be factored
+    real(wp) :: condition = 1.0_wp         !! of the last stiffness, estimated in the 1-norm
+    type(iteration_record), allocatable :: history(:)
+    integer :: unloaded = 0                !! elements whose strain fell from one load step to the next, after yielding
+    integer :: first_unloaded = 0          !! one of them
+  end type plastic_run
+
+  !> What the loop works on.
+  type :: loop_type
+    real(wp) :: tolerance = 0.0_wp                    !! largest change that ends the iteration
+    type(material_type), allocatable :: material(:)   !! [sections]
+    type(linear_scene) :: scene
+    type(linear_law) :: law
+    type(scene_state) :: about                        !! the state that the law is about
+    integer :: yielded = 0                            !! elements that yield there
+    logical, allocatable :: touching(:)               !! the last contact set: the next simplex starts from it [pairs]
+    real(wp), allocatable :: force(:)                 !! the last contact forces [force] [pairs]
+    logical :: stiff = .false.                        !! the scene has been factored
+  end type loop_type
+
+contains
+
+  !> Load by load to the answer.
+  subroutine follow_loads(model, motions, numbering, plan, method, run)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(iteration_plan), intent(in) :: plan
+    class(plastic_method), intent(inout) :: method
+    type(plastic_run), intent(out) :: run
+    type(loop_type) :: loop
+    type(scene_state) :: state
+    real(wp), allocatable :: strained(:)
+    real(wp) :: part
+    logical :: converged
+    integer :: step
+
+    call begin(model, motions, plan, loop)
+    allocate (run%history(0), strained(model%elements))
+    strained = 0.0_wp
+    do step = 1, model%controls%load_steps
+      part = real(step, wp)/model%controls%load_steps
+      call iterate(model, motions, numbering, method, part, loop, run, state, converged)
+      if (run%singular > 0) return
+      ! Of a load that was not carried nothing is kept, if one was before.
+      if (converged .or. step == 1 .or. state%contact%state /= contact_solved) run%state = state
+      if (state%contact%state /= contact_solved) return
+      if (converged .or. step == 1) run%load_factor = part
+      if (.not. converged) exit
+      call find_unloaded(model, loop, strained, run)
+    end do
+    run%converged = converged
+    run%condition = loop%scene%bodies%condition()
+  end subroutine follow_loads
+
+  subroutine begin(model, motions, plan, loop)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(iteration_plan), intent(in) :: plan
+    type(loop_type), intent(out) :: loop
+
+    loop%tolerance = plan%tolerance
+    loop%scene = new_linear_scene(model, motions, plan%body)
+    loop%material = section_materials(model)
+    loop%law = elastic_law(model, loop%material)
+    allocate (loop%about%displacement(2, model%nodes), loop%about%strain(3, model%elements), source=0.0_wp)
+    allocate (loop%force(model%pairs), source=0.0_wp)
+  end subroutine begin
+
+  !> Iterate at one load. `state` is the last, or if that is not converged the one nearest to equilibrium.
+  subroutine iterate(model, motions, numbering, method, part, loop, run, state, converged)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    class(plastic_method), intent(inout) :: method
+    real(wp), intent(in) :: part
+    type(loop_type), intent(inout) :: loop
+    type(plastic_run), intent(inout) :: run
+    type(scene_state), intent(out) :: state
+    logical, intent(out) :: converged
+    type(scene_state) :: found
+    type(iteration_record) :: now
+    real(wp) :: least_residual
+    integer :: iteration
+
+    converged = .false.
+    least_residual = huge(1.0_wp)
+    call method%restart()
+    do iteration = 1, model%controls%most_iterations
+      call set_law(model, numbering, method, loop, run%singular)
+      if (run%singular > 0) return
+      call loop%scene%solve(model, motions, numbering, loop%law, part, loop%touching, found)
+      if (found%contact%state /= contact_solved) then
+        state = found
+        return
+      end if
+      now%load_factor = part
+      now%iteration = iteration
+      call measure(model, loop, found, now)
+      run%history = [run%history, now]
+      converged = is_over(method, loop, now)
+      if (now%residual <= least_residual .or. converged) state = found
+      least_residual = min(least_residual, now%residual)
+      loop%touching = found%contact%touching
+      loop%force = found%contact%force
+      loop%yielded = now%yielded
+      call method%advance(model, loop%material, part, found, loop%about)
+      if (converged) return
+    end do
+  end subroutine iterate
+
+  !> The law about the last state, and the stiffness for it. `singular` is a body without any that can be factored.
+  subroutine set_law(model, numbering, method, loop, singular)
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    class(plastic_method), intent(inout) :: method
+    type(loop_type), intent(inout) :: loop
+    integer, intent(out) :: singular
+    logical :: possible
+
+    singular = 0
+    call method%linearise(model, loop%material, loop%about%strain, loop%law)
+    if (loop%stiff .and. method%keeps_stiffness) return
+    do
+      call loop%scene%set_stiffness(model, numbering, loop%law%matrix, singular)
+      loop%stiff = .true.
+      if (singular == 0) return
+      call method%stiffen(model, loop%material, loop%about%strain, loop%law, possible)
+      if (.not. possible) return
+    end do
+  end subroutine set_law
+
+  !> How far the state found is from the last, and its stresses from the curve.
+  pure subroutine measure(model, loop, found, now)
+    type(model_type), intent(in) :: model
+    type(loop_type), intent(in) :: loop
+    type(scene_state), intent(in) :: found
+    type(iteration_record), intent(inout) :: now
+    type(response_type) :: response
+    real(wp), allocatable :: force(:, :), magnitude(:), off(:, :)
+    integer :: e
+
+    now%change = ratio(maxval(abs(found%displacement - loop%about%displacement)), maxval(abs(found%displacement)))
+    now%force_change = 0.0_wp
+    if (model%pairs > 0) now%force_change = ratio(maxval(abs(found%contact%force - loop%force)), maxval(found%contact%force))
+    now%touching = count(found%contact%touching)
+    now%pivots = found%contact%pivots
+    now%yielded = 0
+    allocate (off(3, model%elements), source=0.0_wp)
+    do e = 1, model%elements
+      associate (m => loop%material(model%section(e)))
+        if (.not. m%yields) cycle
+        response = respond(m, found%strain(:, e))
+        if (response%curve%yielded) now%yielded = now%yielded + 1
+        off(:, e) = found%stress(:, e) - response%stress([1, 2, 4])
+      end associate
+    end do
+    now%residual = 0.0_wp
+    if (now%yielded + loop%yielded == 0) return
+    call nodal_forces(model, found%stress, force, magnitude)
+    call nodal_forces(model, off, force)
+    now%residual = ratio(maxval(abs(force)), maxval(magnitude))
+  end subroutine measure
+
+  !> a/b, 0 where both are 0.
+  pure real(wp) function ratio(a, b)
+    real(wp), intent(in) :: a, b
+
+    ratio = 0.0_wp
+    if (a > 0.0_wp) ratio = a/max(b, tiny(b))
+  end function ratio
+
+  !> Is the iteration over? Where nothing has yielded, the first solve was exact.
+  pure logical function is_over(method, loop, now)
+    class(plastic_method), intent(in) :: method
+    type(loop_type), intent(in) :: loop
+    type(iteration_record), intent(in) :: now
+
+    is_over = now%yielded + loop%yielded == 0
+    if (now%change <= loop%tolerance) is_over = is_over .or. .not. method%needs_residual .or. now%residual <= loop%tolerance
+  end function is_over
+
+  !> Elements beyond yield whose strain falls as the load grows: total theory takes them back along the curve.
+  pure subroutine find_unloaded(model, loop, strained, run)
+    type(model_type), intent(in) :: model
+    type(loop_type), intent(in) :: loop
+    real(wp), intent(inout) :: strained(:)    !! e of the elements that yielded in the last load step, else 0 [elements]
+    type(plastic_run), intent(inout) :: run
+    type(response_type) :: response
+    integer :: e
+
+    do e = 1, model%elements
+      response = respond(loop%material(model%section(e)), run%state%strain(:, e))
+      if (response%e < (1.0_wp - max(loop%tolerance, least_fall))*strained(e)) then
+        run%unloaded = run%unloaded + 1
+        if (run%first_unloaded == 0) run%first_unloaded = e
+      end if
+      strained(e) = merge(response%e, 0.0_wp, response%curve%yielded)
+    end do
+  end subroutine find_unloaded
+end module epcont_plasticity_iteration

@@ -1,0 +1,137 @@
+!> The scene with a linear law of the material, its contact solved exactly: one step of every iteration, and all of
+!> an elastic analysis.
+module epcont_plasticity_linear_scene
+  use epcont_assembly_bodies, only: factored_bodies, new_bodies
+  use epcont_assembly_fields, only: element_strains, nodal_forces
+  use epcont_base_kinds, only: wp
+  use epcont_contact_problem, only: contact_problem, contact_solved
+  use epcont_contact_simplex, only: solve_contact
+  use epcont_flexibility_flexibility, only: add_body_flexibility, gap_opening, motion_columns, motion_resultants, &
+                                            pair_forces
+  use epcont_material_linear_law, only: linear_law
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
+  use epcont_plan_numbering, only: numbering_type
+  use epcont_plasticity_state, only: scene_state
+  implicit none
+  private
+  public :: linear_scene, new_linear_scene
+
+  type :: linear_scene
+    type(factored_bodies) :: bodies
+    type(contact_problem) :: problem
+    logical, allocatable :: yields(:)                !! the body has elements that can yield [bodies]
+    real(wp), allocatable :: lasting_flexibility(:, :)  !! of the bodies that cannot, factored once [pairs, pairs]
+    real(wp), allocatable :: resultant(:)            !! of all loads along the free motions [motions]
+  contains
+    procedure :: set_stiffness
+    procedure :: solve
+  end type linear_scene
+
+contains
+
+  !> What does not change with the law.
+  pure function new_linear_scene(model, motions, yields) result(scene)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    logical, intent(in) :: yields(:)   !! the body has elements that can yield [bodies]
+    type(linear_scene) :: scene
+
+    scene%bodies = new_bodies(model)
+    scene%yields = yields
+    scene%problem%initial_gap = model%initial_gap
+    scene%problem%motion = motion_columns(model, motions)
+    scene%resultant = motion_resultants(model, motions)
+  end function new_linear_scene
+
+  !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield. `singular` is
+  !! a body whose stiffness could not be factored, 0 where all could.
+  pure subroutine set_stiffness(self, model, numbering, matrix, singular)
+    class(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    real(wp), intent(in) :: matrix(:, :, :)      !! of each element's law [stress] [3, 3, elements]
+    integer, intent(out) :: singular
+    logical :: first, sound
+    integer :: b
+
+    first = .not. allocated(self%lasting_flexibility)
+    singular = 0
+    do b = 1, model%bodies
+      if (.not. (first .or. self%yields(b))) cycle
+      call self%bodies%factor_body(model, matrix, numbering, b, sound)
+      if (sound) cycle
+      singular = b
+      return
+    end do
+    if (first) then
+      allocate (self%lasting_flexibility(model%pairs, model%pairs), source=0.0_wp)
+      call add_flexibility(.not. self%yields, self%lasting_flexibility)
+    end if
+    self%problem%flexibility = self%lasting_flexibility
+    call add_flexibility(self%yields, self%problem%flexibility)
+
+  contains
+
+    pure subroutine add_flexibility(chosen, flexibility)
+      logical, intent(in) :: chosen(:)
+      real(wp), intent(inout) :: flexibility(:, :)
+      integer :: k
+
+      do k = 1, model%bodies
+        if (chosen(k)) call add_body_flexibility(model, numbering, k, self%bodies%body(k), flexibility)
+      end do
+    end subroutine add_flexibility
+  end subroutine set_stiffness
+
+  !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without contact
+  !! equilibrium (`state%contact%state`) there are no displacements.
+  pure subroutine solve(self, model, motions, numbering, law, part, start, state)
+    class(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(linear_law), intent(in) :: law
+    real(wp), intent(in) :: part
+    logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
+    type(scene_state), intent(inout) :: state
+    real(wp), allocatable :: force(:, :)
+
+    if (any(law%initial_stress /= 0.0_wp)) then
+      call nodal_forces(model, law%initial_stress, force)
+      force = part*model%load - force
+    else
+      force = part*model%load
+    end if
+    self%problem%load_gap = gap_opening(model, self%bodies%displacements(model, numbering, force, part))
+    self%problem%resultant = part*self%resultant
+    if (allocated(start)) then
+      call solve_contact(self%problem, state%contact, start)
+    else
+      call solve_contact(self%problem, state%contact)
+    end if
+    if (state%contact%state /= contact_solved) return
+
+    force = force + pair_forces(model, state%contact%force)
+    state%displacement = self%bodies%displacements(model, numbering, force, part)
+    ! The strains come before the rigid motion, whose digits they have no need of.
+    state%strain = element_strains(model, state%displacement)
+    state%stress = law%stress(state%strain)
+    call add_motions(model, motions, state)
+  end subroutine solve
+
+  !> Add the rigid motions to the displacements.
+  pure subroutine add_motions(model, motions, state)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(scene_state), intent(inout) :: state
+    integer :: k, node
+
+    do k = 1, motions%count
+      do node = 1, model%nodes
+        state%displacement(:, node) = state%displacement(:, node) &
+                                      + state%contact%approach(k)*motions%displacement(model, node, k)
+      end do
+    end do
+  end subroutine add_motions
+end module epcont_plasticity_linear_scene

@@ -1,0 +1,63 @@
+!> What the loop asks of an iteration method: a linear law about a state, and from what that law finds the next state.
+module epcont_plasticity_method
+  use epcont_base_kinds, only: wp
+  use epcont_material_curve, only: material_type
+  use epcont_material_linear_law, only: linear_law
+  use epcont_model_model, only: model_type
+  use epcont_plasticity_state, only: scene_state
+  implicit none
+  private
+  public :: plastic_method
+
+  type, abstract :: plastic_method
+    logical :: keeps_stiffness = .false.   !! the matrices of the law stay elastic: factors and flexibility serve again
+    logical :: needs_residual = .false.    !! a small change ends the iteration only together with a small residual
+  contains
+    procedure :: restart
+    procedure(linearise_about), deferred :: linearise
+    procedure :: stiffen
+    procedure(advance_from), deferred :: advance
+  end type plastic_method
+
+  abstract interface
+    !> The law about a state of strain, for the elements that can yield; that of the others stays as it is.
+    pure subroutine linearise_about(self, model, material, strain, law)
+      import :: linear_law, material_type, model_type, plastic_method, wp
+      class(plastic_method), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(material_type), intent(in) :: material(:)   !! [sections]
+      real(wp), intent(in) :: strain(:, :)             !! [3, elements]
+      type(linear_law), intent(inout) :: law
+    end subroutine linearise_about
+
+    !> The state to linearise about next, when the law about `about` has led to `found`.
+    pure subroutine advance_from(self, model, material, part, found, about)
+      import :: material_type, model_type, plastic_method, scene_state, wp
+      class(plastic_method), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(material_type), intent(in) :: material(:)
+      real(wp), intent(in) :: part                     !! of the loads
+      type(scene_state), intent(in) :: found
+      type(scene_state), intent(inout) :: about        !! displacement and strain
+    end subroutine advance_from
+  end interface
+
+contains
+
+  !> Forget what was learnt: another load step begins.
+  pure subroutine restart(self)
+    class(plastic_method), intent(inout) :: self
+  end subroutine restart
+
+  !> Another law, where a stiffness made of the last could not be factored. Most methods have none.
+  pure subroutine stiffen(self, model, material, strain, law, possible)
+    class(plastic_method), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: strain(:, :)
+    type(linear_law), intent(inout) :: law
+    logical, intent(out) :: possible
+
+    possible = .false.
+  end subroutine stiffen
+end module epcont_plasticity_method

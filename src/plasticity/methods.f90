@@ -1,0 +1,32 @@
+!> The methods by their names in the deck.
+module epcont_plasticity_methods
+  use epcont_model_controls, only: method_inistr, method_modsec, method_newton
+  use epcont_plasticity_initial_stress, only: initial_stress_method
+  use epcont_plasticity_method, only: plastic_method
+  use epcont_plasticity_modified_secant, only: modified_secant_method
+  use epcont_plasticity_newton, only: newton_method
+  use epcont_plasticity_secant, only: secant_method
+  implicit none
+  private
+  public :: new_method
+
+contains
+
+  function new_method(kind) result(method)
+    integer, intent(in) :: kind
+    class(plastic_method), allocatable :: method
+
+    select case (kind)
+    case (method_modsec)
+      allocate (modified_secant_method :: method)
+    case (method_inistr)
+      allocate (initial_stress_method :: method)
+      method%keeps_stiffness = .true.
+    case (method_newton)
+      allocate (newton_method :: method)
+      method%needs_residual = .true.
+    case default
+      allocate (secant_method :: method)
+    end select
+  end function new_method
+end module epcont_plasticity_methods

@@ -1,0 +1,176 @@
+!> METHOD NEWTON: consistent tangent, contact exact in each step, line search on the energy.
+!>
+!> Total theory makes the scene a convex minimisation: each step is a direction in which the energy falls, and all
+!> points along it satisfy supports and contact, since both its ends do. The search looks for the zero of the slope
+!> (f_int - f).d, since differences of the energy itself drown in rounding.
+module epcont_plasticity_newton
+  use epcont_assembly_fields, only: element_volumes
+  use epcont_base_kinds, only: wp
+  use epcont_material_curve, only: material_type
+  use epcont_material_linear_law, only: linear_law
+  use epcont_material_total_theory, only: respond, response_type, secant_matrix, tangent_matrix
+  use epcont_model_model, only: model_type
+  use epcont_plasticity_method, only: plastic_method
+  use epcont_plasticity_state, only: scene_state
+  implicit none
+  private
+  public :: newton_method
+
+  !> Parts of the secant matrix mixed into a tangent that could not be factored, tried one after the other.
+  real(wp), parameter :: blends(4) = [1.0e-6_wp, 1.0e-4_wp, 1.0e-2_wp, 1.0_wp]
+  !> A step serves in full when the slope at its end is at most this part of that at its beginning.
+  real(wp), parameter :: flat_enough = 0.5_wp
+  !> The search ends when the slope is at most this part of that at the beginning.
+  real(wp), parameter :: found_enough = 0.1_wp
+  !> Slopes evaluated in one search.
+  integer, parameter :: most_slopes = 30
+  !> A slope below this part of the sum of its terms is rounding.
+  real(wp), parameter :: noise = 1.0e3_wp*epsilon(1.0_wp)
+
+  type, extends(plastic_method) :: newton_method
+    logical :: takes_full_step = .true.   !! prescribed displacements and overlaps go in with the first step
+    integer :: blend = 0                  !! which of `blends`; 0: none
+  contains
+    procedure :: restart
+    procedure :: linearise
+    procedure :: stiffen
+    procedure :: advance
+  end type newton_method
+
+contains
+
+  pure subroutine restart(self)
+    class(newton_method), intent(inout) :: self
+
+    self%takes_full_step = .true.
+  end subroutine restart
+
+  !> Tangents: stress(strain) + D_t (d strain).
+  pure subroutine linearise(self, model, material, strain, law)
+    class(newton_method), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: strain(:, :)
+    type(linear_law), intent(inout) :: law
+
+    self%blend = 0
+    call set_law(model, material, strain, 0.0_wp, law)
+  end subroutine linearise
+
+  !> D_t + w (D_secant - D_t): a flat curve makes D_t semidefinite.
+  pure subroutine stiffen(self, model, material, strain, law, possible)
+    class(newton_method), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: strain(:, :)
+    type(linear_law), intent(inout) :: law
+    logical, intent(out) :: possible
+
+    possible = self%blend < size(blends)
+    if (.not. possible) return
+    self%blend = self%blend + 1
+    call set_law(model, material, strain, blends(self%blend), law)
+  end subroutine stiffen
+
+  pure subroutine set_law(model, material, strain, blend, law)
+    type(model_type), intent(in) :: model
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: strain(:, :)
+    real(wp), intent(in) :: blend
+    type(linear_law), intent(inout) :: law
+    type(response_type) :: response
+    integer :: e
+
+    do e = 1, model%elements
+      associate (m => material(model%section(e)))
+        if (.not. m%yields) cycle
+        response = respond(m, strain(:, e))
+        law%initial_stress(:, e) = 0.0_wp
+        law%matrix(:, :, e) = secant_matrix(m, response)
+        if (.not. response%curve%yielded) cycle
+        law%matrix(:, :, e) = blend*law%matrix(:, :, e) + (1.0_wp - blend)*tangent_matrix(m, response)
+        law%initial_stress(:, e) = response%stress([1, 2, 4]) - matmul(law%matrix(:, :, e), strain(:, e))
+      end associate
+    end do
+  end subroutine set_law
+
+  !> Go along the step as far as the energy falls.
+  pure subroutine advance(self, model, material, part, found, about)
+    class(newton_method), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: part
+    type(scene_state), intent(in) :: found
+    type(scene_state), intent(inout) :: about
+    real(wp) :: length
+
+    length = 1.0_wp
+    if (.not. self%takes_full_step) length = step_length(model, material, part, about, found)
+    self%takes_full_step = .false.
+    about%displacement = about%displacement + length*(found%displacement - about%displacement)
+    about%strain = about%strain + length*(found%strain - about%strain)
+    if (length < 1.0_wp) return
+    about%displacement = found%displacement
+    about%strain = found%strain
+  end subroutine advance
+
+  !> The zero of the slope of the energy, from 0 to 1: regula falsi of Illinois.
+  pure real(wp) function step_length(model, material, part, about, found)
+    type(model_type), intent(in) :: model
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: part
+    type(scene_state), intent(in) :: about, found
+    real(wp), allocatable :: along(:, :), volume(:)
+    real(wp) :: begin, low, high, slope, slope_low, slope_high, terms, work, work_terms
+    integer :: k, side
+
+    step_length = 1.0_wp
+    along = found%strain - about%strain
+    volume = element_volumes(model)
+    work = part*sum(model%load*(found%displacement - about%displacement))
+    work_terms = part*sum(abs(model%load*(found%displacement - about%displacement)))
+    call find_slope(0.0_wp, begin, terms)
+    call find_slope(1.0_wp, slope_high, terms)
+    if (begin >= -noise*terms .or. slope_high <= -flat_enough*begin) return
+    low = 0.0_wp
+    high = 1.0_wp
+    slope_low = begin
+    side = 0
+    do k = 1, most_slopes
+      step_length = (low*slope_high - high*slope_low)/(slope_high - slope_low)
+      call find_slope(step_length, slope, terms)
+      if (abs(slope) <= -found_enough*begin) return
+      if (slope > 0.0_wp) then
+        high = step_length
+        slope_high = slope
+        if (side > 0) slope_low = 0.5_wp*slope_low
+        side = 1
+      else
+        low = step_length
+        slope_low = slope
+        if (side < 0) slope_high = 0.5_wp*slope_high
+        side = -1
+      end if
+    end do
+
+  contains
+
+    !> (f_int - f).d at a length, and the sum of the magnitudes of its terms.
+    pure subroutine find_slope(length, value, magnitude)
+      real(wp), intent(in) :: length
+      real(wp), intent(out) :: value, magnitude
+      type(response_type) :: response
+      real(wp) :: term
+      integer :: e
+
+      value = -work
+      magnitude = work_terms
+      do e = 1, model%elements
+        response = respond(material(model%section(e)), about%strain(:, e) + length*along(:, e))
+        term = volume(e)*dot_product(response%stress([1, 2, 4]), along(:, e))
+        value = value + term
+        magnitude = magnitude + abs(term)
+      end do
+    end subroutine find_slope
+  end function step_length
+end module epcont_plasticity_newton

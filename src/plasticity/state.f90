@@ -1,0 +1,15 @@
+!> What a linear step finds: displacements, stresses in equilibrium, contact.
+module epcont_plasticity_state
+  use epcont_base_kinds, only: wp
+  use epcont_contact_problem, only: contact_solution
+  implicit none
+  private
+  public :: scene_state
+
+  type :: scene_state
+    real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), allocatable :: strain(:, :)         !! xx, yy, xy (engineering) [3, elements]
+    real(wp), allocatable :: stress(:, :)         !! xx, yy, xy, in equilibrium [stress] [3, elements]
+    type(contact_solution) :: contact
+  end type scene_state
+end module epcont_plasticity_state
