@@ -47,7 +47,8 @@ contains
     call recover_stresses(model, run%state, load + pair_forces(model, answer%contact%force), answer)
     line = find_contact_line(model)
     answer%pressure = merge(answer%contact%force/max(line%tributary, tiny(1.0_wp)), -1.0_wp, line%tributary > 0.0_wp)
-    call certify(model, load, answer%displacement, answer%reaction, answer%stress, answer%contact%force, certificate)
+    call certify(model, load, plan%off_curve, answer%displacement, answer%reaction, answer%stress, answer%contact%force, &
+                 certificate)
   end subroutine analyse
 
   !> What the loop has found, and how.
@@ -58,6 +59,7 @@ contains
     answer%displacement = run%state%displacement
     answer%history = run%history
     answer%converged = run%converged
+    answer%runs_away = run%runs_away
     answer%load_factor = run%load_factor
     answer%condition = run%condition
     answer%unloaded = run%unloaded

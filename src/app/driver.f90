@@ -18,10 +18,12 @@ module epcont_app_driver
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_report_file, only: new_text_file, text_file
   use epcont_report_listing, only: list_contact, list_deck, list_elements, list_nodes, list_outcome, list_summary, &
-                                   list_zones, plan_text
+                                   list_zones
+  use epcont_report_iterations, only: list_iterations
   use epcont_report_motions, only: report_motion_faults
   use epcont_report_number, only: column_number
   use epcont_report_outcome, only: judge, outcome_type
+  use epcont_report_plan, only: plan_text
   use epcont_report_tables, only: write_contact, write_elements, write_history, write_nodes, write_summary, write_zones
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_zone, find_contact_line, find_zones
@@ -62,7 +64,7 @@ contains
       iteration = plan_iteration(model)
       expected = forecast(model, numbering)
       if (arguments%plan) then
-        write (output_unit, '(a)', advance='no') stem_of(path)//plan_text(model, motions, numbering, expected)
+        write (output_unit, '(a)', advance='no') stem_of(path)//plan_text(model, motions, iteration, numbering, expected)
         return
       end if
       if (real(expected%bytes, wp) > 1.0e9_wp*arguments%memory) then
@@ -73,7 +75,7 @@ contains
         outcome = judge(model, motions, answer, certificate, singular)
         status = outcome%status
         call write_results(path, arguments, deck, model, motions, answer, certificate, outcome, faults, &
-                           plan_text(model, motions, numbering, expected), error)
+                           plan_text(model, motions, iteration, numbering, expected), error)
       end if
     end if
     if (allocated(error)) then
@@ -131,6 +133,7 @@ contains
     call list_outcome(file, outcome)
     if (outcome%has_answer) then
       allocate (zones(0))
+      call list_iterations(file, model, answer)
       if (model%pairs > 0) then
         zones = find_zones(model, find_contact_line(model), answer%contact%touching, answer%contact%force, answer%pressure)
         call list_contact(file, model, answer)

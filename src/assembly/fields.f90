@@ -34,27 +34,22 @@ contains
     end do
   end function element_volumes
 
-  !> Forces that nodes must exert on the elements to hold their stresses [force] [2, nodes]. `magnitude` is the sum
-  !! of what the elements at a node ask for, each by its larger component [force] [nodes].
-  pure subroutine nodal_forces(model, stress, force, magnitude)
+  !> Forces that nodes must exert on the elements to hold their stresses [force] [2, nodes].
+  pure function nodal_forces(model, stress) result(force)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: stress(:, :)         !! xx, yy, xy [stress] [3, elements]
-    real(wp), allocatable, intent(out) :: force(:, :)
-    real(wp), allocatable, intent(out), optional :: magnitude(:)
+    real(wp), allocatable :: force(:, :)
     real(wp), allocatable :: volume(:)
     real(wp) :: part(2, 3)
-    integer :: e, k, node
+    integer :: e, k
 
     volume = element_volumes(model)
     allocate (force(2, model%nodes), source=0.0_wp)
-    if (present(magnitude)) allocate (magnitude(model%nodes), source=0.0_wp)
     do e = 1, model%elements
       part = reshape(volume(e)*matmul(stress(:, e), tria3_strain_matrix(model%corners(e))), [2, 3])
       do k = 1, 3
-        node = model%corner(k, e)
-        force(:, node) = force(:, node) + part(:, k)
-        if (present(magnitude)) magnitude(node) = magnitude(node) + maxval(abs(part(:, k)))
+        force(:, model%corner(k, e)) = force(:, model%corner(k, e)) + part(:, k)
       end do
     end do
-  end subroutine nodal_forces
+  end function nodal_forces
 end module epcont_assembly_fields

@@ -29,8 +29,8 @@ module epcont_assembly_stiffness
 
 contains
 
-  !> Assemble the elements of a body, each with its material matrix [3, 3, elements]. `settlement` receives the forces that prescribed displacements exert on the
-  !! free freedoms: minus K_fp u_p [force] [2, nodes].
+  !> Assemble the elements of a body, each with its material matrix [3, 3, elements]. `settlement` receives the forces
+  !! that prescribed displacements exert on the free freedoms: minus K_fp u_p [force] [2, nodes].
   pure subroutine assemble_body(model, matrix, equation, body, stiffness, settlement)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: matrix(:, :, :)

@@ -37,6 +37,7 @@ module epcont_model_model
     procedure :: corners
     procedure :: area
     procedure :: can_yield
+    procedure :: has_flat_curve
   end type model_type
 
 contains
@@ -66,4 +67,18 @@ contains
 
     can_yield = allocated(self%curve(self%section(element))%strain)
   end function can_yield
+
+  !> Does a section's curve end in a flat line? Then there may be loads that nothing carries.
+  pure function has_flat_curve(self) result(flat)
+    class(model_type), intent(in) :: self
+    logical :: flat
+    integer :: n, s
+
+    flat = .false.
+    do s = 1, size(self%curve)
+      if (.not. allocated(self%curve(s)%stress)) cycle
+      n = size(self%curve(s)%stress)
+      flat = flat .or. self%curve(s)%stress(n) <= self%curve(s)%stress(n - 1)
+    end do
+  end function has_flat_curve
 end module epcont_model_model

@@ -10,12 +10,17 @@ module epcont_plan_iteration_plan
   !> TOL of NEWTON, which gets there in a step or two more, and of the methods that pay for every digit.
   real(wp), parameter :: newton_tolerance = 1.0e-8_wp, secant_tolerance = 0.01_wp
 
+  !> The methods but NEWTON stop by the change of displacements, as the paper does. Where a travel or a slender body
+  !! hides the strains in it, stresses may still be far off: they may be by no more than this times TOL.
+  real(wp), parameter :: looseness = 10.0_wp
+
   type :: iteration_plan
     logical :: yields = .false.            !! there is something that can yield; else there is no iteration
     logical, allocatable :: body(:)        !! which bodies can [bodies]
     integer :: method = method_secant
     logical :: chosen_here = .false.       !! the deck leaves the method to us
-    real(wp) :: tolerance = 0.0_wp         !! largest change that ends the iteration
+    real(wp) :: tolerance = 0.0_wp         !! largest change of a displacement that ends the iteration
+    real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
   end type iteration_plan
 
 contains
@@ -37,5 +42,6 @@ contains
     plan%tolerance = model%controls%tolerance
     if (plan%tolerance == 0.0_wp) &
       plan%tolerance = merge(newton_tolerance, secant_tolerance, plan%method == method_newton)
+    plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, plan%method == method_newton)
   end function plan_iteration
 end module epcont_plan_iteration_plan

@@ -1,6 +1,5 @@
 !> The loop of the plastic iteration; it knows nothing of the method that it drives.
 module epcont_plasticity_iteration
-  use epcont_assembly_fields, only: nodal_forces
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solved
   use epcont_material_curve, only: material_type, section_materials
@@ -17,6 +16,8 @@ module epcont_plasticity_iteration
   private
   public :: plastic_run, iteration_record, follow_loads
 
+  !> Displacements so many times those of the first solve, with a flat curve: nothing carries the load.
+  real(wp), parameter :: far_away = 1.0e4_wp
   !> A strain that falls by less than this part of it stays.
   real(wp), parameter :: least_fall = 1.0e-6_wp
 
@@ -26,7 +27,7 @@ module epcont_plasticity_iteration
     integer :: iteration = 0           !! its number in its load step
     real(wp) :: change = 0.0_wp        !! largest change of a displacement / largest displacement
     real(wp) :: force_change = 0.0_wp  !! largest change of a contact force / largest contact force
-    real(wp) :: residual = 0.0_wp      !! largest nodal force of the stresses off the curve / largest sum of element forces
+    real(wp) :: residual = 0.0_wp      !! largest distance of a stress from its curve / largest stress
     integer :: touching = 0            !! pairs
     integer :: yielded = 0             !! elements
     integer :: pivots = 0
@@ -37,6 +38,7 @@ module epcont_plasticity_iteration
     type(scene_state) :: state             !! the answer, or what came nearest to one
     real(wp) :: load_factor = 0.0_wp       !! part of the loads that `state` carries
     logical :: converged = .false.         !! all loads, to the tolerance
+    logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
     integer :: singular = 0                !! body that could not be factored
     real(wp) :: condition = 1.0_wp         !! of the last stiffness, estimated in the 1-norm
     type(iteration_record), allocatable :: history(:)
@@ -46,7 +48,7 @@ module epcont_plasticity_iteration
 
   !> What the loop works on.
   type :: loop_type
-    real(wp) :: tolerance = 0.0_wp                    !! largest change that ends the iteration
+    type(iteration_plan) :: plan
     type(material_type), allocatable :: material(:)   !! [sections]
     type(linear_scene) :: scene
     type(linear_law) :: law
@@ -98,7 +100,7 @@ contains
     type(iteration_plan), intent(in) :: plan
     type(loop_type), intent(out) :: loop
 
-    loop%tolerance = plan%tolerance
+    loop%plan = plan
     loop%scene = new_linear_scene(model, motions, plan%body)
     loop%material = section_materials(model)
     loop%law = elastic_law(model, loop%material)
@@ -119,7 +121,7 @@ contains
     logical, intent(out) :: converged
     type(scene_state) :: found
     type(iteration_record) :: now
-    real(wp) :: least_residual
+    real(wp) :: farthest, least_residual
     integer :: iteration
 
     converged = .false.
@@ -137,7 +139,7 @@ contains
       now%iteration = iteration
       call measure(model, loop, found, now)
       run%history = [run%history, now]
-      converged = is_over(method, loop, now)
+      converged = is_over(loop, now)
       if (now%residual <= least_residual .or. converged) state = found
       least_residual = min(least_residual, now%residual)
       loop%touching = found%contact%touching
@@ -145,6 +147,9 @@ contains
       loop%yielded = now%yielded
       call method%advance(model, loop%material, part, found, loop%about)
       if (converged) return
+      if (iteration == 1) farthest = far_away*maxval(abs(found%displacement))
+      run%runs_away = model%has_flat_curve() .and. maxval(abs(found%displacement)) > farthest
+      if (run%runs_away) return
     end do
   end subroutine iterate
 
@@ -169,14 +174,15 @@ contains
     end do
   end subroutine set_law
 
-  !> How far the state found is from the last, and its stresses from the curve.
+  !> How far the state found is from the last, and its stresses from the curve. Equilibrium and contact are exact in
+  !! each solve: that distance is all that is left of the scene's equations.
   pure subroutine measure(model, loop, found, now)
     type(model_type), intent(in) :: model
     type(loop_type), intent(in) :: loop
     type(scene_state), intent(in) :: found
     type(iteration_record), intent(inout) :: now
     type(response_type) :: response
-    real(wp), allocatable :: force(:, :), magnitude(:), off(:, :)
+    real(wp) :: off
     integer :: e
 
     now%change = ratio(maxval(abs(found%displacement - loop%about%displacement)), maxval(abs(found%displacement)))
@@ -185,20 +191,16 @@ contains
     now%touching = count(found%contact%touching)
     now%pivots = found%contact%pivots
     now%yielded = 0
-    allocate (off(3, model%elements), source=0.0_wp)
+    off = 0.0_wp
     do e = 1, model%elements
       associate (m => loop%material(model%section(e)))
         if (.not. m%yields) cycle
         response = respond(m, found%strain(:, e))
         if (response%curve%yielded) now%yielded = now%yielded + 1
-        off(:, e) = found%stress(:, e) - response%stress([1, 2, 4])
+        off = max(off, maxval(abs(found%stress(:, e) - response%stress([1, 2, 4]))))
       end associate
     end do
-    now%residual = 0.0_wp
-    if (now%yielded + loop%yielded == 0) return
-    call nodal_forces(model, found%stress, force, magnitude)
-    call nodal_forces(model, off, force)
-    now%residual = ratio(maxval(abs(force)), maxval(magnitude))
+    now%residual = ratio(off, maxval(abs(found%stress)))
   end subroutine measure
 
   !> a/b, 0 where both are 0.
@@ -210,13 +212,12 @@ contains
   end function ratio
 
   !> Is the iteration over? Where nothing has yielded, the first solve was exact.
-  pure logical function is_over(method, loop, now)
-    class(plastic_method), intent(in) :: method
+  pure logical function is_over(loop, now)
     type(loop_type), intent(in) :: loop
     type(iteration_record), intent(in) :: now
 
     is_over = now%yielded + loop%yielded == 0
-    if (now%change <= loop%tolerance) is_over = is_over .or. .not. method%needs_residual .or. now%residual <= loop%tolerance
+    if (now%change <= loop%plan%tolerance) is_over = is_over .or. now%residual <= loop%plan%off_curve
   end function is_over
 
   !> Elements beyond yield whose strain falls as the load grows: total theory takes them back along the curve.
@@ -230,7 +231,7 @@ contains
 
     do e = 1, model%elements
       response = respond(loop%material(model%section(e)), run%state%strain(:, e))
-      if (response%e < (1.0_wp - max(loop%tolerance, least_fall))*strained(e)) then
+      if (response%e < (1.0_wp - max(loop%plan%tolerance, least_fall))*strained(e)) then
         run%unloaded = run%unloaded + 1
         if (run%first_unloaded == 0) run%first_unloaded = e
       end if

@@ -97,12 +97,8 @@ contains
     type(scene_state), intent(inout) :: state
     real(wp), allocatable :: force(:, :)
 
-    if (any(law%initial_stress /= 0.0_wp)) then
-      call nodal_forces(model, law%initial_stress, force)
-      force = part*model%load - force
-    else
-      force = part*model%load
-    end if
+    force = part*model%load
+    if (any(law%initial_stress /= 0.0_wp)) force = force - nodal_forces(model, law%initial_stress)
     self%problem%load_gap = gap_opening(model, self%bodies%displacements(model, numbering, force, part))
     self%problem%resultant = part*self%resultant
     if (allocated(start)) then

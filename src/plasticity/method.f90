@@ -11,7 +11,6 @@ module epcont_plasticity_method
 
   type, abstract :: plastic_method
     logical :: keeps_stiffness = .false.   !! the matrices of the law stay elastic: factors and flexibility serve again
-    logical :: needs_residual = .false.    !! a small change ends the iteration only together with a small residual
   contains
     procedure :: restart
     procedure(linearise_about), deferred :: linearise

@@ -24,7 +24,6 @@ contains
       method%keeps_stiffness = .true.
     case (method_newton)
       allocate (newton_method :: method)
-      method%needs_residual = .true.
     case default
       allocate (secant_method :: method)
     end select

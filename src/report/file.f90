@@ -7,9 +7,9 @@ module epcont_report_file
   public :: text_file, new_text_file, make_directory
 
   type :: text_file
-    private
-    integer :: unit = -1
-    character(len=:), allocatable :: path
+    character(len=:), allocatable :: mark          !! stands behind each heading; empty where the answer is valid
+    integer, private :: unit = -1
+    character(len=:), allocatable, private :: path
   contains
     procedure :: line
     procedure :: finish
@@ -46,6 +46,7 @@ contains
     integer :: status
 
     file%path = path
+    file%mark = ''
     open (newunit=file%unit, file=path//'.part', status='replace', action='write', iostat=status)
     if (status /= 0) call raise(error, status_usage, path//': cannot be written: a directory that is there, writable')
   end subroutine new_text_file

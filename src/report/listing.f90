@@ -1,7 +1,7 @@
 !> The listing for people: ASCII, at most 132 columns, nothing in it that varies from run to run.
 module epcont_report_listing
   use epcont_base_error, only: error_type
-  use epcont_base_kinds, only: i8, wp
+  use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_base_version, only: program_name, program_version
   use epcont_certificate_certificate, only: certificate_tolerance => tolerance, certificate_type
@@ -9,19 +9,17 @@ module epcont_report_listing
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: printable, render_notes
   use epcont_model_model, only: model_type
-  use epcont_plan_forecast, only: forecast_type
   use epcont_plan_free_motion, only: free_motions
-  use epcont_plan_numbering, only: numbering_type
   use epcont_report_file, only: text_file
+  use epcont_report_iterations, only: list_iteration_error
+  use epcont_report_layout, only: figure, heading, lines, right
   use epcont_report_number, only: column_number, rounding_number
   use epcont_report_outcome, only: outcome_type
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_zone
   implicit none
   private
-  public :: list_deck, plan_text, list_outcome, list_contact, list_zones, list_nodes, list_elements, list_summary
-
-  character(len=1), parameter :: newline = new_line('a')
+  public :: list_deck, list_outcome, list_contact, list_zones, list_nodes, list_elements, list_summary
 
 contains
 
@@ -46,52 +44,33 @@ contains
     call lines(file, render_notes(faults, deck%source))
   end subroutine list_deck
 
-  !> What is modelled, what is not needed, and what it will take.
-  pure function plan_text(model, motions, numbering, expected) result(text)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
-    type(forecast_type), intent(in) :: expected
-    character(len=:), allocatable :: text
-    integer, parameter :: most = 20
-    integer :: b, k
-
-    text = newline//'PLAN'//newline
-    text = text//'  '//plural(model%nodes, 'node')//', '//plural(model%elements, 'element')//', '// &
-           plural(model%pairs, 'pair')//'; bodies: '//text_of(model%bodies)//newline
-    text = text//'  elastic material only: one solve, no iteration'//newline
-    if (model%pairs == 0) then
-      text = text//'  no pairs: no flexibility, no simplex'//newline
-    else
-      text = text//'  flexibility by inversion of the trailing block, simplex with contact entry rule (CONRY)'//newline
-    end if
-    do k = 1, min(most, motions%count)
-      text = text//'  free motion: GRID '//text_of(model%node_id(motions%node(k)))//' direction '// &
-             text_of(motions%component(k))//newline
-    end do
-    if (motions%count > most) text = text//'  and '//plural(motions%count - most, 'further free motion')//newline
-    text = text//newline//'   body  nodes  equations  half-bandwidth  contact equations  border  factorizations'//newline
-    do b = 1, min(most, model%bodies)
-      associate (body => numbering%body(b))
-        text = text//right(text_of(b), 7)//right(text_of(size(body%node)), 7)//right(text_of(body%equations), 11)// &
-               right(text_of(body%half_bandwidth), 16)//right(text_of(body%contact_equations), 19)// &
-               right(text_of(body%border), 8)//right(text_of(merge(1, 0, body%equations > 0)), 16)//newline
-      end associate
-    end do
-    if (model%bodies > most) text = text//'  and '//plural(model%bodies - most, 'further one')//newline
-    text = text//newline//'  memory for matrices '//text_of((expected%bytes + 999999_i8)/1000000_i8)//' MB, operations '// &
-           short_real(expected%operations)//newline
-  end function plan_text
-
   !> What came of the run, where the answer is not valid.
   subroutine list_outcome(file, outcome)
-    type(text_file), intent(in) :: file
+    type(text_file), intent(inout) :: file
     type(outcome_type), intent(in) :: outcome
 
     if (len(outcome%sentence) == 0) return
     call file%line('')
-    call file%line('  *NOT VALID*  '//outcome%word//': '//outcome%sentence)
+    file%mark = '  *NOT VALID: '//outcome%word//'*'
+    call wrap(file, '  *NOT VALID*  '//outcome%word//': '//outcome%sentence)
   end subroutine list_outcome
+
+  !> Text on lines of at most 132 columns.
+  subroutine wrap(file, text)
+    type(text_file), intent(in) :: file
+    character(len=*), intent(in) :: text
+    integer, parameter :: columns = 132
+    integer :: from, to
+
+    from = 1
+    do while (len(text) - from >= columns - 4)
+      to = from + index(text(from:from + columns - 4), ' ', back=.true.) - 1
+      if (to <= from) to = from + columns - 4
+      call file%line(repeat(' ', merge(4, 0, from > 1))//text(from:to))
+      from = to + 1
+    end do
+    call file%line(repeat(' ', merge(4, 0, from > 1))//text(from:))
+  end subroutine wrap
 
   !> Forces, pressures and gaps of the pairs, and the pivots that led to them.
   subroutine list_contact(file, model, answer)
@@ -214,12 +193,14 @@ contains
     integer :: e
 
     call heading(file, 'STRESSES')
-    call file%line('   element           sx           sy           sz          txy   equivalent')
+    call file%line('   element           sx           sy           sz          txy   equivalent       strain       secant  state')
     s = maxval(abs(answer%stress))
     do e = 1, model%elements
       call file%line(right(text_of(model%element_id(e)), 10)//column_number(answer%stress(1, e), s)// &
                      column_number(answer%stress(2, e), s)//column_number(answer%stress(3, e), s)// &
-                     column_number(answer%stress(4, e), s)//column_number(answer%equivalent_stress(e), s))
+                     column_number(answer%stress(4, e), s)//column_number(answer%equivalent_stress(e), s)// &
+                     column_number(answer%equivalent_strain(e), maxval(answer%equivalent_strain))// &
+                     column_number(answer%secant_modulus(e), 0.0_wp)//merge('  plastic', '  elastic', answer%plastic(e)))
     end do
   end subroutine list_elements
 
@@ -244,6 +225,7 @@ contains
                   text_of(motions%component(k)), column_number(answer%contact%approach(k), maxval(abs(answer%displacement))))
       if (answer%contact%motion_free(k)) call file%line('    nothing resists or drives this motion: its value is a choice')
     end do
+    if (any(answer%plastic)) call figure(file, 'elements beyond the yield point', right(text_of(count(answer%plastic)), 13))
     call figure(file, 'largest equivalent stress', column_number(maxval(answer%equivalent_stress), 0.0_wp))
     call figure(file, 'largest displacement', column_number(maxval(norm2(answer%displacement, dim=1)), 0.0_wp))
     call figure(file, 'status', right(outcome%word, 13))
@@ -259,50 +241,10 @@ contains
     call figure(file, 'stress off the curve', right(rounding_number(certificate%off_curve), 13))
     call figure(file, 'energy balance', right(rounding_number(certificate%energy), 13))
     call heading(file, 'ACCURACY')
+    if (size(answer%history) > 1) call list_iteration_error(file, model, answer)
     call figure(file, 'condition of the stiffness (1-norm)', right(short_real(answer%condition), 13))
     call figure(file, 'digits that rounding leaves, at least', &
                 right(text_of(max(0, floor(-log10(answer%condition*epsilon(1.0_wp))))), 13))
     call figure(file, 'linear residual', right(rounding_number(certificate%equilibrium), 13))
   end subroutine list_summary
-
-  subroutine heading(file, text)
-    type(text_file), intent(in) :: file
-    character(len=*), intent(in) :: text
-
-    call file%line('')
-    call file%line(text)
-  end subroutine heading
-
-  subroutine figure(file, name, value)
-    type(text_file), intent(in) :: file
-    character(len=*), intent(in) :: name, value
-    character(len=44) :: label
-
-    label = name
-    call file%line('  '//label//value)
-  end subroutine figure
-
-  !> Lines that end in newlines.
-  subroutine lines(file, text)
-    type(text_file), intent(in) :: file
-    character(len=*), intent(in) :: text
-    integer :: from, to
-
-    from = 1
-    do while (from <= len(text))
-      to = index(text(from:), newline) + from - 1
-      if (to < from) to = len(text) + 1
-      call file%line('  '//text(from:to - 1))
-      from = to + 1
-    end do
-  end subroutine lines
-
-  !> Text at the right of `width` columns; wider text is kept whole.
-  pure function right(text, width) result(field)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: width
-    character(len=:), allocatable :: field
-
-    field = repeat(' ', max(0, width - len(text)))//text
-  end function right
 end module epcont_report_listing

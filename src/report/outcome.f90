@@ -1,7 +1,7 @@
 !> What came of a run, in a word and a sentence.
 module epcont_report_outcome
   use epcont_base_error, only: status_no_answer, status_numerical, status_valid
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: plural, short_real, text_of
   use epcont_certificate_certificate, only: certificate_type
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_model, only: model_type
@@ -57,12 +57,37 @@ contains
     else
       outcome%has_answer = .true.
       outcome%word = 'valid'
-      if (certificate%valid) return
+      if (answer%converged .and. certificate%valid) return
+      if (.not. answer%converged .and. certificate%balanced) then
+        outcome%status = status_no_answer
+        outcome%word = 'not converged'
+        outcome%sentence = unconverged(model, answer)
+        return
+      end if
       outcome%status = status_numerical
       outcome%word = 'not certified'
       outcome%sentence = 'the certificate is beyond its tolerance: the figures are not to be trusted'
     end if
   end function judge
+
+  !> An iteration that was given up, in words.
+  pure function unconverged(model, answer) result(text)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    character(len=:), allocatable :: text
+    integer :: n
+
+    n = size(answer%history)
+    text = 'at load factor '//short_real(answer%history(n)%load_factor)//' '
+    if (answer%runs_away) then
+      text = text//'the displacements grow without end: it is more than a material with a flat curve can carry (limit load)'
+    else
+      text = text//plural(answer%history(n)%iteration, 'iteration')//' leave a change of '// &
+             short_real(answer%history(n)%change)//' of the largest displacement (PARAM MAXIT, METHOD)'
+    end if
+    if (answer%load_factor < answer%history(n)%load_factor) &
+      text = text//'; what follows is for load factor '//short_real(answer%load_factor)//', the largest that converged'
+  end function unconverged
 
   !> Id of the first node of a body.
   pure function first_node(model, body) result(id)

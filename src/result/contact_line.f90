@@ -13,7 +13,9 @@ module epcont_result_contact_line
 
   !> The pairs as a line along the boundary.
   type :: contact_line
-    real(wp), allocatable :: tributary(:)   !! area of each pair: half of its edges times thickness; 0: no edges [pairs]
+    !> Area of each pair: half of its edges, as seen along the normal, times thickness; 0: no edges. A pressure on
+    !! the edges exerts along the normal what it would on that area. [pairs]
+    real(wp), allocatable :: tributary(:)
     integer, allocatable :: neighbour(:, :) !! pairs at the other ends of its edges, 0: none [2, pairs]
     integer, allocatable :: node(:)         !! of the boundary at each pair: B, or A where B has no elements [pairs]
     logical, allocatable :: mirrored(:)     !! the pair is on a line of symmetry [pairs]
@@ -61,7 +63,7 @@ contains
             if (other == node .or. shared(model, around, node, other)) cycle
             edge = model%x(:, other) - model%x(:, node)
             if (abs(dot_product(edge, n)) > along_tangent*norm2(edge)) cycle
-            line%tributary(pair) = line%tributary(pair) + 0.5_wp*norm2(edge)*model%thickness(model%section(e))
+            line%tributary(pair) = line%tributary(pair) + 0.5_wp*abs(edge(1)*n(2) - edge(2)*n(1))*model%thickness(model%section(e))
             slot = slot + 1
             if (slot <= 2) line%neighbour(slot, pair) = pair_at(other)
           end do

@@ -56,7 +56,7 @@ contains
     real(wp), allocatable :: force(:, :)
     integer :: c, node
 
-    call nodal_forces(model, state%stress, force)
+    force = nodal_forces(model, state%stress)
     allocate (reaction(2, model%nodes), source=0.0_wp)
     do node = 1, model%nodes
       do c = 1, 2

@@ -1,0 +1,118 @@
+!> The plan in words: what is modelled, what is not needed, and what it will take.
+module epcont_report_plan
+  use epcont_base_kinds, only: i8
+  use epcont_base_text, only: plural, short_real, text_of
+  use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton
+  use epcont_model_model, only: model_type
+  use epcont_plan_forecast, only: forecast_type
+  use epcont_plan_free_motion, only: free_motions
+  use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_numbering, only: body_numbering, numbering_type
+  use epcont_report_layout, only: newline, right
+  implicit none
+  private
+  public :: plan_text
+
+  !> Free motions, and bodies, that are told of one by one.
+  integer, parameter :: most = 20
+
+contains
+
+  pure function plan_text(model, motions, iteration, numbering, expected) result(text)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(iteration_plan), intent(in) :: iteration
+    type(numbering_type), intent(in) :: numbering
+    type(forecast_type), intent(in) :: expected
+    character(len=:), allocatable :: text
+    integer :: b, k
+
+    text = newline//'PLAN'//newline
+    text = text//'  '//plural(model%nodes, 'node')//', '//plural(model%elements, 'element')//', '// &
+           plural(model%pairs, 'pair')//'; bodies: '//text_of(model%bodies)//newline
+    text = text//iteration_text(model, iteration)
+    if (model%pairs == 0) then
+      text = text//'  no pairs: no flexibility, no simplex'//newline
+    else
+      text = text//'  flexibility by inversion of the trailing block, simplex with contact entry rule (CONRY)'//newline
+    end if
+    do k = 1, min(most, motions%count)
+      text = text//'  free motion: GRID '//text_of(model%node_id(motions%node(k)))//' direction '// &
+             text_of(motions%component(k))//newline
+    end do
+    if (motions%count > most) text = text//'  and '//plural(motions%count - most, 'further free motion')//newline
+    text = text//newline//'   body  nodes  equations  half-bandwidth  contact equations  border  factorizations'//newline
+    do b = 1, min(most, model%bodies)
+      associate (body => numbering%body(b))
+        text = text//right(text_of(b), 7)//right(text_of(size(body%node)), 7)//right(text_of(body%equations), 11)// &
+               right(text_of(body%half_bandwidth), 16)//right(text_of(body%contact_equations), 19)// &
+               right(text_of(body%border), 8)//right(factorizations(iteration, body, b), 16)//newline
+      end associate
+    end do
+    if (model%bodies > most) text = text//'  and '//plural(model%bodies - most, 'further one')//newline
+    text = text//newline//'  memory for matrices '//text_of((expected%bytes + 999999_i8)/1000000_i8)//' MB, operations '// &
+           short_real(expected%operations)//trim(merge(' a solve', '        ', iteration%yields))//newline
+  end function plan_text
+
+  !> How often a body is factored.
+  pure function factorizations(iteration, body, b) result(text)
+    type(iteration_plan), intent(in) :: iteration
+    type(body_numbering), intent(in) :: body
+    integer, intent(in) :: b
+    character(len=:), allocatable :: text
+
+    text = '1'
+    if (iteration%body(b) .and. iteration%method /= method_inistr) text = 'each iteration'
+    if (body%equations == 0) text = '0'
+  end function factorizations
+
+  !> Whether the scene can yield, and how that is iterated.
+  pure function iteration_text(model, iteration) result(text)
+    type(model_type), intent(in) :: model
+    type(iteration_plan), intent(in) :: iteration
+    character(len=:), allocatable :: text
+
+    if (.not. iteration%yields) then
+      text = '  elastic material only: one solve, no iteration'//newline
+      return
+    end if
+    text = '  total theory of plasticity; bodies that can yield: '//text_of(count(iteration%body))//newline
+    text = text//'  iteration '//trim(method_name(iteration%method))//': '//what_it_does(iteration)//newline
+    if (iteration%chosen_here) text = text//'    chosen here (AUTO): '//why(iteration)//newline
+    text = text//'    until no displacement changes by more than '//short_real(iteration%tolerance)// &
+           ' of the largest, and no stress is off its curve'//newline//'    by more than '// &
+           short_real(iteration%off_curve)//' of the largest; at most '// &
+           plural(model%controls%most_iterations, 'iteration')//newline
+    if (model%controls%load_steps > 1) &
+      text = text//'  '//plural(model%controls%load_steps, 'load step')//'; elastic unloading is not modelled'//newline
+    if (model%controls%paper_ratio) &
+      text = text//'  MUP PAPER: Poisson''s ratio in the equivalent strain by formula (2-4)'//newline
+  end function iteration_text
+
+  pure function what_it_does(iteration) result(text)
+    type(iteration_plan), intent(in) :: iteration
+    character(len=:), allocatable :: text
+
+    select case (iteration%method)
+    case (method_newton)
+      text = 'consistent tangents, contact exact in each step, line search on the energy'
+    case (method_modsec)
+      text = 'secant moduli from that mixture of the last strains which changes least (Anderson)'
+    case (method_inistr)
+      text = 'elastic stiffness, factored once; plastic stresses as initial stresses, mixed (Anderson)'
+    case default
+      text = 'all load each time, secant moduli from the last strains'
+    end select
+  end function what_it_does
+
+  pure function why(iteration) result(text)
+    type(iteration_plan), intent(in) :: iteration
+    character(len=:), allocatable :: text
+
+    if (iteration%method == method_newton) then
+      text = 'it needs the fewest factorizations'
+    else
+      text = 'the method of the paper, as MUP PAPER has no tangent for NEWTON'
+    end if
+  end function why
+end module epcont_report_plan

@@ -1,0 +1,42 @@
+!> A model of sections that yield, without a mesh, and strains to try them with.
+module yielding_model
+  use epcont_base_kinds, only: wp
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: new_yielding_model, strain_path
+
+  !> Sections: five points in plane strain and in plane stress, flat in both, nearly incompressible, elastic.
+  integer, parameter, public :: sections = 6
+
+contains
+
+  pure function new_yielding_model(paper_ratio) result(model)
+    logical, intent(in) :: paper_ratio
+    type(model_type) :: model
+    integer :: s
+
+    model%young = [200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp]
+    model%poisson = [0.3_wp, 0.3_wp, 0.25_wp, 0.25_wp, 0.4999_wp, 0.3_wp]
+    model%plane_strain = [.true., .false., .true., .false., .true., .true.]
+    allocate (model%curve(sections))
+    do s = 1, 2
+      model%curve(s)%strain = [0.0_wp, 0.005_wp, 0.01_wp, 0.02_wp, 0.05_wp]
+      model%curve(s)%stress = [0.0_wp, 1.0_wp, 1.4_wp, 1.6_wp, 1.9_wp]
+      model%curve(s)%ends = .true.
+    end do
+    do s = 3, 5
+      model%curve(s)%strain = [0.0_wp, 0.005_wp, 0.01_wp]
+      model%curve(s)%stress = [0.0_wp, 1.0_wp, 1.0_wp]
+    end do
+    model%controls%paper_ratio = paper_ratio
+  end function new_yielding_model
+
+  !> Strains of all directions and sizes, from elastic to 50 times yield.
+  pure function strain_path(k) result(strain)
+    integer, intent(in) :: k   !! 1 to 200, say
+    real(wp) :: strain(3)
+
+    strain = 0.001_wp*1.03_wp**k*[cos(0.7_wp*k), sin(1.3_wp*k), 1.5_wp*cos(2.1_wp*k + 1.0_wp)]
+  end function strain_path
+end module yielding_model
