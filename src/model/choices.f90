@@ -18,6 +18,7 @@ contains
     character(len=8) :: word
     integer :: k, row, s
 
+    call check_once(deck, faults)
     word = deck%parameter_word('METHOD', 'AUTO')
     do k = lbound(method_name, 1), ubound(method_name, 1)
       if (method_name(k) == word) model%controls%method = k
@@ -39,4 +40,19 @@ contains
       return
     end do
   end subroutine build_controls
+
+  !> Each PARAM stands once: of two, one would be ignored.
+  subroutine check_once(deck, faults)
+    type(deck_type), intent(in) :: deck
+    type(diagnostics), intent(inout) :: faults
+    integer :: row
+
+    associate (param => deck%card(card_param))
+      do row = 2, param%count
+        if (.not. any(param%word(1, :row - 1) == param%word(1, row)) .or. param%word(1, row) == '') cycle
+        call faults%add_error(deck%place(card_param, row, 1), deck%identity(card_param, row)//' is there twice', &
+                              'one of the two')
+      end do
+    end associate
+  end subroutine check_once
 end module epcont_model_choices

@@ -1,0 +1,54 @@
+!> Scenes solved from decks that are written in a line.
+module solved_scene
+  use epcont_analysis, only: analyse
+  use epcont_base_error, only: error_type
+  use epcont_certificate_certificate, only: certificate_type
+  use epcont_deck_deck, only: deck_type, read_deck
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_build, only: build_model
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_plan_iteration_plan, only: plan_iteration
+  use epcont_plan_numbering, only: number_equations
+  use epcont_result_answer, only: answer_type
+  implicit none
+  private
+  public :: scene, solve
+
+  character(len=*), parameter :: path = 'scene.dat'
+
+  type :: scene
+    type(model_type) :: model
+    type(answer_type) :: answer
+    type(certificate_type) :: certificate
+    integer :: singular = 0
+  end type scene
+
+contains
+
+  !> Solve a deck whose lines end in bars.
+  subroutine solve(cards, solved)
+    character(len=*), intent(in) :: cards
+    type(scene), intent(out) :: solved
+    type(deck_type) :: deck
+    type(diagnostics) :: faults
+    type(error_type), allocatable :: error
+    type(free_motions) :: motions
+    type(motion_fault), allocatable :: loose(:)
+    character(len=:), allocatable :: text
+    integer :: i, unit
+
+    text = cards//'ENDDATA|'
+    do i = 1, len(text)
+      if (text(i:i) == '|') text(i:i) = new_line('a')
+    end do
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='replace')
+    write (unit) text
+    close (unit)
+    call read_deck(path, deck, faults, error)
+    call build_model(deck, solved%model, faults)
+    call find_free_motions(solved%model, motions, loose)
+    call analyse(solved%model, motions, number_equations(solved%model), plan_iteration(solved%model), &
+                 solved%answer, solved%certificate, solved%singular)
+  end subroutine solve
+end module solved_scene

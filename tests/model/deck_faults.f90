@@ -1,0 +1,56 @@
+!> What the program says of a deck that is written in a line.
+module deck_faults
+  use epcont_base_error, only: error_type
+  use epcont_deck_deck, only: deck_type, read_deck
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_deck_render, only: render
+  use epcont_model_build, only: build_model
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_report_motions, only: report_motion_faults
+  implicit none
+  private
+  public :: faults_of
+
+  character(len=*), parameter :: path = 'bad.dat'
+  character(len=1), parameter :: newline = new_line('a')
+
+contains
+
+  !> What is said of a deck, its lines ended by bars; the lines of the answer are, too.
+  function faults_of(cards) result(words)
+    character(len=*), intent(in) :: cards
+    character(len=:), allocatable :: words
+    type(deck_type) :: deck
+    type(diagnostics) :: faults
+    type(error_type), allocatable :: error
+    type(model_type) :: model
+    type(free_motions) :: motions
+    type(motion_fault), allocatable :: loose(:)
+    integer :: unit
+
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='replace')
+    write (unit) replaced(cards//'ENDDATA|', '|', newline)
+    close (unit)
+    call read_deck(path, deck, faults, error)
+    call build_model(deck, model, faults)
+    if (faults%error_count() == 0) then
+      call find_free_motions(model, motions, loose)
+      call report_motion_faults(deck, model, loose, faults)
+    end if
+    words = replaced(render(faults, deck%source), newline, '|')
+  end function faults_of
+
+  !> A text with one character for another.
+  pure function replaced(text, old, new) result(other)
+    character(len=*), intent(in) :: text
+    character(len=1), intent(in) :: old, new
+    character(len=len(text)) :: other
+    integer :: i
+
+    other = text
+    do i = 1, len(text)
+      if (text(i:i) == old) other(i:i) = new
+    end do
+  end function replaced
+end module deck_faults
