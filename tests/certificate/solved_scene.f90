@@ -48,6 +48,7 @@ contains
     call read_deck(path, deck, faults, error)
     call build_model(deck, solved%model, faults)
     call find_free_motions(solved%model, motions, loose)
+    if (faults%error_count() + size(loose) > 0) error stop 'solved_scene: the deck is not sound'
     call analyse(solved%model, motions, number_equations(solved%model), plan_iteration(solved%model), &
                  solved%answer, solved%certificate, solved%singular)
   end subroutine solve
