@@ -18,6 +18,8 @@ module epcont_plasticity_iteration
 
   !> Displacements so many times those of the first solve, with a flat curve: nothing carries the load.
   real(wp), parameter :: far_away = 1.0e4_wp
+  !> Stresses this near to their curves, of the largest stress, are on them but for rounding.
+  real(wp), parameter, public :: rounding = 1.0e-10_wp
   !> A strain that falls by less than this part of it stays.
   real(wp), parameter :: least_fall = 1.0e-6_wp
 
@@ -139,7 +141,7 @@ contains
       now%iteration = iteration
       call measure(model, loop, found, now)
       run%history = [run%history, now]
-      converged = is_over(loop, now)
+      converged = is_over(loop, run%history)
       if (now%residual <= least_residual .or. converged) state = found
       least_residual = min(least_residual, now%residual)
       loop%touching = found%contact%touching
@@ -211,13 +213,19 @@ contains
     if (a > 0.0_wp) ratio = a/max(b, tiny(b))
   end function ratio
 
-  !> Is the iteration over? Where nothing has yielded, the first solve was exact.
-  pure logical function is_over(loop, now)
+  !> Is the iteration over? Where nothing has yielded, the first solve was exact; and where stresses are on their curves
+  !! to rounding while the changes fall no more, rounding allows no smaller ones.
+  pure logical function is_over(loop, history)
     type(loop_type), intent(in) :: loop
-    type(iteration_record), intent(in) :: now
+    type(iteration_record), intent(in) :: history(:)   !! to this iteration
+    integer :: n
 
-    is_over = now%yielded + loop%yielded == 0
-    if (now%change <= loop%plan%tolerance) is_over = is_over .or. now%residual <= loop%plan%off_curve
+    n = size(history)
+    associate (now => history(n))
+      is_over = now%yielded + loop%yielded == 0
+      if (now%change <= loop%plan%tolerance) is_over = is_over .or. now%residual <= loop%plan%off_curve
+      if (now%iteration > 3 .and. now%residual <= rounding) is_over = is_over .or. now%change >= history(n - 2)%change
+    end associate
   end function is_over
 
   !> Elements beyond yield whose strain falls as the load grows: total theory takes them back along the curve.

@@ -58,7 +58,7 @@ contains
       outcome%has_answer = .true.
       outcome%word = 'valid'
       if (answer%converged .and. certificate%valid) return
-      if (.not. answer%converged .and. certificate%balanced) then
+      if (.not. answer%converged .and. (certificate%balanced .or. answer%runs_away)) then
         outcome%status = status_no_answer
         outcome%word = 'not converged'
         outcome%sentence = unconverged(model, answer)

@@ -1,7 +1,7 @@
 !> How far a stopped iteration still is from where it goes.
 module epcont_result_iteration_error
   use epcont_base_kinds, only: wp
-  use epcont_plasticity_iteration, only: iteration_record
+  use epcont_plasticity_iteration, only: iteration_record, rounding
   implicit none
   private
   public :: iteration_error, estimate_iteration_error
@@ -26,6 +26,10 @@ contains
     if (m < 2) return
     error%displacement = still_to_come(history(n - m + 1:n)%change)
     error%force = still_to_come(history(n - m + 1:n)%force_change)
+    if (history(n)%residual > rounding) return
+    ! What changes now is rounding, of that size.
+    if (error%displacement < 0.0_wp) error%displacement = history(n)%change
+    if (error%force < 0.0_wp) error%force = history(n)%force_change
   end function estimate_iteration_error
 
   !> Sum of the changes to come, if each is the last one times the rate observed: a change of 1 % in a slow iteration
