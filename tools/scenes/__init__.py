@@ -1,0 +1,1 @@
+"""Scenes from a few parameters, for tools/decks."""

@@ -1,0 +1,175 @@
+"""Scenes that yield."""
+from .deck import Deck
+from .elastic import flat_punch
+from .mesh import Mesh, block, first_free, graded, rings, without_unused
+
+
+def grid(xs, ys):
+    """Cells of two triangles, the diagonal turned in every other one."""
+    n = len(xs)
+    triangle = []
+    for j in range(len(ys) - 1):
+        for i in range(n - 1):
+            a, b, c, d = j * n + i, j * n + i + 1, (j + 1) * n + i + 1, (j + 1) * n + i
+            triangle += [(a, b, c), (a, c, d)] if (i + j) % 2 else [(a, b, d), (b, c, d)]
+    return Mesh([(x, y) for y in ys for x in xs], triangle, {"bottom": list(range(n)), "top": list(range(n * (len(ys) - 1), n * len(ys)))})
+
+
+def tube(title, known, pressure, young, stress, hardening, nu=0.3, inner=100.0, outer=200.0, parts=20):
+    """Thick tube under inner pressure, plane strain, one quarter."""
+    around = parts * 6 // 5
+    flat = grid([float(i) for i in range(around + 1)], [float(j) for j in range(parts + 1)])
+    ring = rings([inner + (outer - inner) * j / parts for j in range(parts + 1)], around)
+    mesh = Mesh(ring.point, [(a, c, b) for a, b, c in flat.triangle], ring.line)
+    deck = Deck(title, [
+        f"A thick tube, radii {inner:g} and {outer:g}, inner pressure {pressure:g}, plane strain, total theory; one quarter, "
+        f"{parts} x {around} squares of two triangles. Nothing touches: no flexibility, no simplex.", known], from_geometry=False)
+    deck.nodes(mesh)
+    deck.triangles(mesh, 1)
+    deck.material(1, young, nu)
+    deck.yields(1, stress, hardening)
+    deck.hold(1, mesh.on(0, 0.0))
+    deck.hold(2, mesh.on(1, 0.0))
+    deck.press(mesh, mesh.line["inner"], pressure)
+    return deck
+
+
+def tube_flat(pressure, answer, parts=20):
+    return tube("THICK TUBE, NO HARDENING", "E = 210, nu = 0.3, yield stress 0.24, flat curve. Known answer: " + answer +
+                "; first yield at 0.1037503, limit load 0.1920906.", pressure, 210.0, 0.24, 0.0, parts=parts)
+
+
+def tube_hardening(parts=20):
+    return tube("THICK TUBE, HARDENING", "E = 210000, nu = 0.3, yield stress 240, Et = 21000. Known answer: u(a) 0.154232, u(b) "
+                "0.0957301, plastic radius 126.535.", 150.0, 210000.0, 240.0, 21000.0 / 0.9, parts=parts)
+
+
+def bar():
+    """A bar pulled in plane stress along a curve of five points."""
+    mesh = grid([0.0, 1.0, 2.0, 3.0, 4.0], [0.0, 0.5, 1.0])
+    deck = Deck("BAR IN TENSION", [
+        "A bar, 4 x 1, pulled by 330 in plane stress, on a curve of five points (E = 200000; yield 250).",
+        "Known answer: stress 330 everywhere; strain 0.01 + (330 - 320)/(380 - 320) 0.04 = 0.0166667, of which the curve's "
+        "points are (0.01, 320) and (0.05, 380); end displacement 0.0666667; Poisson's ratio of the secant body 0.5 - (0.5 - "
+        "0.3) E'/E = 0.4802, E' = 19800: sideways strain -0.00800333."], strain=False, from_geometry=False)
+    deck.nodes(mesh)
+    deck.triangles(mesh, 1)
+    deck.material(1, 200000.0, 0.3)
+    deck.follows(1, [(0.0, 0.0), (0.00125, 250.0), (0.004, 290.0), (0.01, 320.0), (0.05, 380.0)])
+    deck.hold(1, mesh.on(0, 0.0))
+    deck.hold(2, mesh.line["bottom"])
+    end = mesh.on(0, 4.0)
+    deck.press(mesh, end, -330.0)
+    return deck
+
+
+def one_element():
+    """Squares of two triangles in a state of uniform strain, sy = 0."""
+    deck = Deck("UNIFORM STRAIN", [
+        "Three squares of two triangles, plane strain, pulled in x and free in y: sx = 300 and 350 with Et = 21000, sx = 275 "
+        "with a flat curve. E = 210000, nu = 0.3, yield stress 240.",
+        "Known answers, sx -> ex, ey, sz: 300 -> 2.13574758E-3, -1.34364875E-3, 115.851885; 350 -> 3.93080718E-3, "
+        "-2.97684146E-3, 150.832007; 275 -> 2.05328221E-3, -1.32411241E-3, 107.814145 (limit 277.128). Squares have side 1: "
+        "strains are the displacements of nodes 3, 13, 23."], from_geometry=False)
+    deck.card("PARAM", "TOL", "1.E-10")
+    square = block([0.0, 1.0], [0.0, 1.0])
+    for k, (pull, hardening) in enumerate([(300.0, 21000.0 / 0.9), (350.0, 21000.0 / 0.9), (275.0, 0.0)]):
+        first = 10 * k + 1
+        shifted = Mesh([(x + 2.0 * k, y) for x, y in square.point], [(0, 1, 2), (0, 2, 3)], {})
+        shifted.point = [shifted.point[i] for i in (0, 1, 3, 2)]
+        deck.nodes(shifted, first)
+        deck.triangles(shifted, k + 1, first=first, first_node=first)
+        deck.material(k + 1, 210000.0, 0.3)
+        deck.yields(k + 1, 240.0, hardening)
+        deck.hold(1, [0, 3], first)
+        deck.hold(2, [0, 1], first)
+        deck.press(shifted, [1, 2], -pull, first, first)
+    return deck
+
+
+def cook(n=24, stress=None):
+    """Cook's membrane: a tapered panel, sheared at its end."""
+    flat = grid([i / n for i in range(n + 1)], [j / n for j in range(n + 1)])
+    point = [(48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s)) for s, t in flat.point]
+    mesh = Mesh(point, flat.triangle, flat.line)
+    words = ["Cook's membrane: a panel 48 long, 44 high at its held end and 16 at the other, where a shear of 1 in all pulls it "
+             "up. Plane stress, E = 1, nu = 1/3."]
+    if stress:
+        words.append(f"Bilinear, yield stress {stress:g}, H = 0.05. No closed form: the answer is compared with an independent program.")
+    else:
+        words.append("Known answer (converged, elastic): 23.964 up at the middle of the end, 25.165 at its upper corner. Linear "
+                     "triangles come near it slowly.")
+    deck = Deck("COOK'S MEMBRANE" + (", YIELDING" if stress else ""), words, strain=False, from_geometry=False)
+    deck.nodes(mesh)
+    deck.triangles(mesh, 1)
+    deck.material(1, 1.0, 1.0 / 3.0)
+    if stress:
+        deck.yields(1, stress, 0.05)
+    deck.hold(12, mesh.on(0, 0.0))
+    deck.press(mesh, mesh.on(0, 48.0), 1.0 / 16.0, theta=-90.0)
+    return deck
+
+
+def punch_limit(stress, steps=1):
+    """The flat punch on a block with a flat curve."""
+    deck = flat_punch(young=1.0e5)
+    if steps == 1:
+        deck.title = "RIGID FLAT PUNCH NEAR THE LIMIT LOAD"
+        deck.words = ["The rigid flat punch on a block that yields without hardening: near the limit load of this mesh.",
+                      f"Yield stress {stress:g}, mean pressure 100: {100 / stress:.3f} times it. Fully plastic flow of a half "
+                      "plane begins at (2 + pi)/sqrt(3) = 2.968 times; linear triangles cannot flow without change of volume, "
+                      "and this mesh carries 5.29 times (found by load steps)."]
+    else:
+        deck.title = "RIGID FLAT PUNCH BEYOND THE LIMIT LOAD"
+        deck.words = [f"The rigid flat punch on a block that yields without hardening (yield stress {stress:g}), under more than it "
+                      f"carries, in {steps} load steps. The run says so, shows the last load that was carried, and ends with exit status 1."]
+        deck.card("PARAM", "NLOAD", steps)
+    deck.yields(1, stress, 0.0)
+    return deck
+
+
+def insert_joint(clearance=0.01, load=90.0, finest=0.4):
+    """The paper's second scene: a tongue in a socket, bent by a load at its end."""
+    half = graded(finest, 1.3, 14.0)
+    overlap = [-28.0 + x for x in half] + [-x for x in reversed(half[:-1])]
+    outside = [x for x in graded(finest, 1.3, 30.0)[1:]]
+    across = [-4.0, -3.5, -2.5, -1.0, 1.0, 2.5, 3.5, 4.0]
+    tongue = block(overlap + outside, across)
+    wall = graded(0.5, 1.5, 8.0)
+    inner = 4.0 + clearance
+    rows = [-inner - w for w in reversed(wall)] + [-2.0, 0.0, 2.0] + [inner + w for w in wall]
+    columns = [-40.0, -37.5, -35.0, -32.5, -30.0, -29.0] + overlap
+    whole = block(columns, rows)
+    middle = [(sum(whole.point[i][0] for i in c) / 3, sum(whole.point[i][1] for i in c) / 3) for c in whole.triangle]
+    socket = without_unused(whole.point, [c for c, (x, y) in zip(whole.triangle, middle) if x < -30.0 or abs(y) > inner], {})
+    deck = Deck("INSERT JOINT: A TONGUE IN A SOCKET", [
+        f"A steel tongue, 8 high, sits 28 deep in a socket with a clearance of {clearance:g} above and below, and is bent by "
+        f"{load:g} a mm at its end, 30 outside. Only contact holds it: up and down, and against turning (two free motions, two "
+        "SUPORT freedoms); a support at its middle keeps it from sliding out. Pairs on both faces.",
+        "Bilinear, E = 210000, yield stress 240, H = 4000. It touches below at the mouth and above at its inner end; statics of "
+        "the two resultants: twice the load and more at the mouth, the rest at the end. Both edges are sharp: pressures there grow "
+        "with the mesh."], from_geometry=True)
+    free = first_free(tongue, socket)
+    first = free + 1
+    deck.remark("Tongue")
+    deck.nodes(tongue)
+    deck.triangles(tongue, 1)
+    deck.remark("Socket")
+    deck.nodes(socket, first)
+    deck.triangles(socket, 2, first=first, first_node=first)
+    for number in (1, 2):
+        deck.material(number, 210000.0, 0.3)
+        deck.yields(number, 240.0, 4000.0)
+    deck.hold(12, socket.on(0, -40.0), first)
+    middle = next(i for i, (x, y) in enumerate(tongue.point) if abs(x) < 1e-9 and y == -1.0)
+    deck.hold(1, [middle])
+    end = tongue.on(0, 30.0)
+    deck.card("SUPORT", 1 + tongue.on(0, -28.0)[0], 2, 1 + end[0], 2)
+    for node in end:
+        deck.card("FORCE", 1, 1 + node, 0, load / len(end), 0.0, -1.0, 0.0)
+    deck.upward()
+    at = {(round(x, 6), round(y, 6)): i for i, (x, y) in enumerate(socket.point)}
+    below = [(first + at[round(tongue.point[i][0], 6), round(-inner, 6)], 1 + i) for i in tongue.line["bottom"] if tongue.point[i][0] < 1e-9]
+    above = [(1 + i, first + at[round(tongue.point[i][0], 6), round(inner, 6)]) for i in tongue.line["top"] if tongue.point[i][0] < 1e-9]
+    deck.pairs(10 * free + 1, below + above, 21)
+    return deck
