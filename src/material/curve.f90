@@ -35,6 +35,7 @@ module epcont_material_curve
   !> The curve at a strain.
   type :: curve_value
     real(wp) :: modulus = 1.0_wp   !! E_D = 3 G of a secant body: equivalent stress over e [stress]
+    real(wp) :: total = 0.0_wp     !! equivalent strain eps_i (2-2)
     real(wp) :: slope = 1.0_wp     !! d sigma_i/d e [stress]; not for MUP PAPER
     logical :: yielded = .false.   !! beyond the yield point
     logical :: beyond = .false.    !! beyond the last point of a table
@@ -91,17 +92,19 @@ contains
 
     point%modulus = 3.0_wp*self%shear
     point%slope = point%modulus
+    point%total = e*(1.0_wp + self%shift*point%modulus)
     if (.not. self%yields) return
     if (e <= self%deviatoric(1)) return
     point%yielded = .true.
     k = segment(self%deviatoric, e)
     point%beyond = self%ends .and. k == size(self%deviatoric)
     if (self%paper_ratio) then
-      secant = paper_secant(self, k, e)
+      call find_paper_secant(self, k, e, point%total, secant)
       point%modulus = self%young/(self%young/secant - self%young*self%shift)  ! (2-5)
     else
       point%modulus = (self%stress(k) + self%slope(k)*(e - self%deviatoric(k)))/e
       point%slope = self%slope(k)
+      point%total = e*(1.0_wp + self%shift*point%modulus)
     end if
   end function at_strain
 
@@ -122,12 +125,13 @@ contains
     end do
   end function segment
 
-  !> E' = sigma_i/eps_i with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 + (a - c - b e) eps = e a.
-  pure real(wp) function paper_secant(self, k, e)
+  !> eps_i, and E' = sigma_i/eps_i, with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 + (a - c - b e) eps = e a.
+  pure subroutine find_paper_secant(self, k, e, strain, secant)
     class(material_type), intent(in) :: self
     integer, intent(in) :: k
     real(wp), intent(in) :: e
-    real(wp) :: a, b, c, half, strain
+    real(wp), intent(out) :: strain, secant
+    real(wp) :: a, b, c, half
 
     b = self%total_slope(k)
     a = self%stress(k) - b*self%total(k)
@@ -139,6 +143,6 @@ contains
     else
       strain = (sqrt(half**2 + b*e*a) - half)/b
     end if
-    paper_secant = a/strain + b
-  end function paper_secant
+    secant = a/strain + b
+  end subroutine find_paper_secant
 end module epcont_material_curve

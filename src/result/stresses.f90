@@ -37,7 +37,7 @@ contains
         answer%stress(:, e) = [stress(1), stress(2), across, stress(3)]
         answer%equivalent_stress(e) = equivalent_stress(answer%stress(:, e))
         response = respond(m, strain)
-        answer%equivalent_strain(e) = response%e*(1.0_wp + m%shift*response%curve%modulus)
+        answer%equivalent_strain(e) = response%curve%total
         answer%secant_modulus(e) = m%young
         if (response%curve%yielded) answer%secant_modulus(e) = 1.0_wp/(1.0_wp/response%curve%modulus + m%shift)
         answer%plastic(e) = response%curve%yielded

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass, field
 
 KNOWN = {"GRID", "CTRIA3", "PSHELL", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1", "RBE2", "SUPORT", "CORD2R", "CGAP",
-         "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD"}
+         "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1"}
 
 
 class DeckError(Exception):

@@ -3,6 +3,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from deck import DeckError, at, ids, integer, real
+from yielding import Law, bilinear
 
 
 class Model:
@@ -29,13 +30,32 @@ class Model:
             e = 2 * g * (1 + nu) if e is None else e
             nu = e / (2 * g) - 1 if nu is None else nu
             matrices[int(card[1])] = (e, nu)
+        curves = self.curves(matrices)
+        paper = self.parameter.get("MUP") == "PAPER"
         self.section = {}
         for card in self.deck.of("PSHELL"):
             strain = at(card, 4) == "-1" or self.parameter.get("PLANE") == "STRAIN"
             if not strain and self.parameter.get("PLANE") != "STRESS":
                 raise DeckError("neither plane strain nor plane stress")
             e, nu = matrices[int(card[2])]
-            self.section[int(card[1])] = (real(card[3]), elasticity(e, nu, strain), nu if strain else None)
+            self.section[int(card[1])] = (real(card[3]), Law(e, nu, strain, curves.get(int(card[2])), paper))
+
+    def curves(self, matrices):
+        """Uniaxial curves by the ids of their MAT1; a table's yield strain is its yield stress over E."""
+        tables = {}
+        for card in self.deck.of("TABLES1"):
+            numbers = [real(text) for text in card[9:card.index("ENDT")]]
+            tables[int(card[1])] = np.array(numbers[0::2]), np.array(numbers[1::2])
+        curves = {}
+        for card in self.deck.of("MATS1"):
+            young = matrices[int(card[1])][0]
+            if at(card, 2):
+                strain, stress = tables[int(card[2])]
+                strain[1] = stress[1] / young
+                curves[int(card[1])] = strain.copy(), stress
+            else:
+                curves[int(card[1])] = bilinear(young, real(card[7]), real(at(card, 4)))
+        return curves
 
     def triangles(self):
         cards = self.deck.of("CTRIA3")
@@ -48,24 +68,49 @@ class Model:
         self.corner[turned] = self.corner[turned][:, ::-1]
         self.area = abs(twice) / 2
 
-    def stiffness(self):
-        n = 2 * len(self.node)
-        rows, columns, values = [], [], []
         self.strain_matrix = np.zeros((len(self.element), 3, 6))
-        for k, c in enumerate(self.corner):
-            thickness, d, _ = self.section[self.property[k]]
-            x, y = self.x[c, 0], self.x[c, 1]
-            for i in range(3):
-                j, m = (i + 1) % 3, (i + 2) % 3
-                b, a = y[j] - y[m], x[m] - x[j]
-                self.strain_matrix[k, :, 2 * i:2 * i + 2] = np.array([[b, 0], [0, a], [a, b]]) / (2 * self.area[k])
-            matrix = self.strain_matrix[k].T @ d @ self.strain_matrix[k] * self.area[k] * thickness
-            freedom = np.array([2 * c, 2 * c + 1]).T.ravel()
-            rows.append(np.repeat(freedom, 6))
-            columns.append(np.tile(freedom, 6))
-            values.append(matrix.ravel())
-        join = (lambda a: np.concatenate(a) if a else np.zeros(0))
-        return sp.csr_matrix((join(values), (join(rows).astype(int), join(columns).astype(int))), shape=(n, n))
+        x, y = self.x[self.corner, 0], self.x[self.corner, 1]
+        for i in range(3):
+            j, m = (i + 1) % 3, (i + 2) % 3
+            slope_x, slope_y = (y[:, j] - y[:, m]) / (2 * self.area), (x[:, m] - x[:, j]) / (2 * self.area)
+            self.strain_matrix[:, 0, 2 * i] = self.strain_matrix[:, 2, 2 * i + 1] = slope_x
+            self.strain_matrix[:, 1, 2 * i + 1] = self.strain_matrix[:, 2, 2 * i] = slope_y
+        self.volume = self.area * np.array([self.section[p][0] for p in self.property])
+        self.freedom = np.stack([2 * self.corner, 2 * self.corner + 1], axis=2).reshape(-1, 6)
+        self.groups = [(law, np.flatnonzero([p == q for p in self.property])) for q, (_, law) in self.section.items()]
+
+    def of_elements(self, name, strain, *shape):
+        """What the law of each element's section says of its strain."""
+        values = np.zeros((len(strain),) + shape)
+        for law, members in self.groups:
+            if len(members):
+                values[members] = getattr(law, name)(strain[members])
+        return values
+
+    def respond(self, strain):
+        """Stress [n, 4], equivalent strain, secant modulus and state of all elements."""
+        stress, total, secant = np.zeros((len(strain), 4)), np.zeros(len(strain)), np.zeros(len(strain))
+        plastic = np.zeros(len(strain), bool)
+        for law, members in self.groups:
+            if len(members):
+                stress[members], total[members], secant[members], plastic[members] = law.respond(strain[members])
+        return stress, total, secant, plastic
+
+    def strains(self, u):
+        return np.einsum("eij,ej->ei", self.strain_matrix, u[self.freedom])
+
+    def nodal(self, stress):
+        """Nodal forces that hold stresses xx yy xy."""
+        force = np.zeros(2 * len(self.node))
+        np.add.at(force, self.freedom, np.einsum("e,eij,ei->ej", self.volume, self.strain_matrix, stress))
+        return force
+
+    def stiffness(self, d):
+        """Of material matrices [n, 3, 3]."""
+        n = 2 * len(self.node)
+        values = np.einsum("e,eki,ekl,elj->eij", self.volume, self.strain_matrix, d, self.strain_matrix)
+        rows, columns = np.repeat(self.freedom, 6, axis=1), np.tile(self.freedom, (1, 6))
+        return sp.csr_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=(n, n))
 
     def chosen(self, kind, cards):
         sets = {int(card[1]) for card in cards}
@@ -163,13 +208,6 @@ class Model:
         inward = turn @ inward * self.section[self.property[k]][0]
         self.force[2 * a:2 * a + 2] += inward * (2 * pa + pb) / 6
         self.force[2 * b:2 * b + 2] += inward * (pa + 2 * pb) / 6
-
-
-def elasticity(e, nu, strain):
-    if strain:
-        f = e / (1 + nu) / (1 - 2 * nu)
-        return f * np.array([[1 - nu, nu, 0], [nu, 1 - nu, 0], [0, 0, (1 - 2 * nu) / 2]])
-    return e / (1 - nu * nu) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
 
 
 def first_axis(numbers):

@@ -8,6 +8,9 @@ forces, factored afresh (SuperLU) for every guess of the set of touching pairs. 
 (primal-dual active set); where that goes round, one at a time, the first wrong one (Murty), with weak springs at the
 SUPORT freedoms until the set is found. The answer is solved without springs and refined.
 
+Yielding (yielding.py): secant steps, each with its contact, until they settle; then Newton with tangents by
+differences, halved where the residual grows. Both go on to rounding, whatever METHOD and TOL the deck has.
+
 Exit status: 0 solved, 1 no equilibrium, 2 deck not understood.
 """
 import argparse
@@ -24,6 +27,11 @@ from deck import DeckError, read
 from model import Model
 
 
+#: Secant steps end at this change of the displacements; so many are tried, and growth by this factor is flight.
+SETTLED, SECANT_STEPS, FAR = 1e-4, 2000, 1e3
+NEWTON_STEPS = 60
+
+
 class NoEquilibrium(Exception):
     pass
 
@@ -31,13 +39,20 @@ class NoEquilibrium(Exception):
 class Problem:
     def __init__(self, model):
         self.model = model
-        self.full = model.stiffness()
-        self.k = (model.tie.T @ self.full @ model.tie).tocsc()
-        self.f = model.tie.T @ (model.force - self.full @ model.held)
         self.n = (model.gap_matrix @ model.tie).tocsr()
         self.g = model.initial + model.gap_matrix @ model.held
-        self.stiff = abs(self.k.diagonal()).max()
         self.exchanges = 0
+        self.u = np.zeros(2 * len(model.node))
+        nothing = np.zeros((len(model.element), 3))
+        self.linearise(model.of_elements("secant_matrix", nothing, 3, 3), nothing)
+        self.stiff = abs(self.k.diagonal()).max()
+
+    def linearise(self, d, initial):
+        """Stress = d strain + initial in all elements."""
+        model = self.model
+        self.full = model.stiffness(d)
+        self.k = (model.tie.T @ self.full @ model.tie).tocsc()
+        self.f = model.tie.T @ (model.force - model.nodal(initial) - self.full @ model.held)
 
     def springs(self, factor):
         """Weak springs at the SUPORT freedoms."""
@@ -107,6 +122,53 @@ class Problem:
 
     def answer(self):
         self.check_free()
+        found = self.linear_answer()
+        if any(law.curve is not None for law, _ in self.model.groups):
+            found = self.yielding_answer(found)
+        return found
+
+    def move(self, found):
+        return self.model.tie @ found[0] + self.model.held
+
+    def off_curve(self, u, force):
+        """Largest unbalanced force at a free freedom, of the stresses on the curve."""
+        model = self.model
+        stress = model.respond(model.strains(u))[0][:, [0, 1, 3]]
+        rest = model.tie.T @ (model.nodal(stress) - model.force - model.gap_matrix.T @ force)
+        scale = np.zeros(2 * len(model.node))
+        np.add.at(scale, model.freedom, abs(np.einsum("e,eij,ei->ej", model.volume, model.strain_matrix, stress)))
+        return abs(rest).max(initial=0.0) / scale.max()
+
+    def yielding_answer(self, found):
+        model = self.model
+        u = self.move(found)
+        for _ in range(SECANT_STEPS):
+            before = u
+            self.linearise(model.of_elements("secant_matrix", model.strains(u), 3, 3), np.zeros((len(model.element), 3)))
+            found = self.linear_answer()
+            u = self.move(found)
+            if abs(u).max() > FAR * abs(before).max() or not np.isfinite(u).all():
+                raise NoEquilibrium("displacements without bound")
+            if abs(u - before).max() <= SETTLED * abs(u).max():
+                break
+        else:
+            raise NoEquilibrium("secant steps do not settle: limit load")
+        residual = self.off_curve(u, found[1])
+        for _ in range(NEWTON_STEPS):
+            strain = model.strains(u)
+            d = model.of_elements("tangent", strain, 3, 3)
+            self.linearise(d, model.respond(strain)[0][:, [0, 1, 3]] - np.einsum("eij,ej->ei", d, strain))
+            found = self.linear_answer()
+            step, length = self.move(found) - u, 1.0
+            while self.off_curve(u + length * step, found[1]) > max(residual, 1e-11) and length > 1e-3:
+                length /= 2
+            u = u + length * step
+            residual = self.off_curve(u, found[1])
+            if abs(step).max() <= 1e-12 * abs(u).max() or (residual < 1e-13 and abs(step).max() <= 1e-9 * abs(u).max()):
+                return found
+        raise NoEquilibrium(f"Newton does not end: residual {residual:.1e}")
+
+    def linear_answer(self):
         found = self.find(0.0, False, 200) or self.find(1e-7, False, 200) or self.find(1e-7, True, 20 * len(self.g) + 200)
         if found is None:
             raise NoEquilibrium("no set of pairs found")
@@ -140,7 +202,8 @@ def product(matrix, z):
 
 
 def tributary(model):
-    """Half the boundary edges along the tangent (within 45 degrees) that meet at each pair's node, times thickness."""
+    """Half the boundary edges along the tangent (within 45 degrees) that meet at each pair's node, as seen along the
+    normal, times thickness."""
     owners = {}
     for k, c in enumerate(model.corner):
         for i in range(3):
@@ -157,15 +220,15 @@ def tributary(model):
         for other, thickness in around.get(node, []):
             edge = model.x[other] - model.x[node]
             if abs(edge @ model.normal[k]) <= np.sqrt(0.5) * np.linalg.norm(edge):
-                share[k] += thickness * np.linalg.norm(edge) / 2
+                share[k] += thickness * abs(edge[0] * model.normal[k][1] - edge[1] * model.normal[k][0]) / 2
     return share
 
 
 def tables(problem, v, force, gap, touching):
     model = problem.model
     u = model.tie @ v + model.held
-    inner = problem.full @ u
-    reaction = inner - model.force - model.gap_matrix.T @ force
+    stress, total, secant, plastic = model.respond(model.strains(u))
+    reaction = model.nodal(stress[:, [0, 1, 3]]) - model.force - model.gap_matrix.T @ force
     reaction = np.where(model.is_held, reaction, 0.0).reshape(-1, 2)
     u = u.reshape(-1, 2)
     share = tributary(model)
@@ -178,16 +241,16 @@ def tables(problem, v, force, gap, touching):
     nodes = [[node, *model.x[i], *u[i], *reaction[i]] for i, node in enumerate(model.node)]
     elements = []
     for k, element in enumerate(model.element):
-        _, d, nu = model.section[model.property[k]]
-        strain = model.strain_matrix[k] @ u[model.corner[k]].ravel()
-        sx, sy, txy = d @ strain
-        sz = nu * (sx + sy) if nu is not None else 0.0
+        sx, sy, sz, txy = stress[k]
         mises = np.sqrt(((sx - sy) ** 2 + (sy - sz) ** 2 + (sz - sx) ** 2) / 2 + 3 * txy ** 2)
-        elements.append([element, *model.x[model.corner[k]].mean(axis=0), sx, sy, sz, txy, mises])
-    summary = [["status", "solved", ""],
-               ["max_pressure", max((row[9] for row in contact), default=0.0), ""],
-               ["total_contact_force", float(force.sum()), ""],
+        elements.append([element, *model.x[model.corner[k]].mean(axis=0), sx, sy, sz, txy, mises, total[k], secant[k],
+                         "plastic" if plastic[k] else "elastic"])
+    summary = [["status", "solved", ""]]
+    if contact:
+        summary.append(["max_pressure", max(row[9] for row in contact), ""])
+    summary += [["total_contact_force", float(force.sum()), ""],
                ["pairs_in_contact", int(touching.sum()), ""],
+               ["plastic_elements", int(plastic.sum()), ""],
                ["max_equivalent_stress", max((row[7] for row in elements), default=0.0), ""],
                ["max_displacement", float(np.hypot(*u.T).max()), ""]]
     for node, digit in model.support:
@@ -195,7 +258,7 @@ def tables(problem, v, force, gap, touching):
     return {"summary": (["key", "value", "unit"], summary),
             "contact": ("pair ga gb x y nx ny initial_gap force pressure gap status".split(), contact),
             "nodes": ("node x y ux uy rx ry".split(), nodes),
-            "elements": ("element x y sx sy sz txy equivalent_stress".split(), elements)}
+            "elements": ("element x y sx sy sz txy equivalent_stress equivalent_strain secant_modulus state".split(), elements)}
 
 
 def text(value):
@@ -226,7 +289,7 @@ def main():
             continue
         summary = {row[0]: row[1] for row in found["summary"][1]}
         last = [row for row in found["contact"][1] if row[11] == "touching"]
-        print(f"{path.stem}: p_max {summary['max_pressure']:.6g}, " +
+        print(f"{path.stem}: p_max {summary.get('max_pressure', 0.0):.6g}, " +
               ", ".join(f"{key} {value:.6g}" for key, value in summary.items() if key.startswith("approach")) +
               f", {len(last)} of {len(found['contact'][1])} touching, {problem.exchanges} factorizations")
         if options.output:

@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""Write random scenes that yield: stacks of up to four blocks, and tongues in sockets held by contact alone.
+
+    . tools/venv && python tests/independent/write_random.py DIRECTORY [-n 40] [--seed 1]
+    python tests/independent/compare.py build/release/epcont DIRECTORY/*.dat --tolerance 1e-7
+
+Each block has a material of its own: elastic, bilinear, flat, or a curve of five points; plane strain or plane stress;
+meshes with random places, gaps, loads and prescribed displacements. Not kept: the seed makes them again.
+"""
+import argparse
+import pathlib
+import random
+
+
+class Scene:
+    def __init__(self, rng, strain):
+        self.rng, self.lines, self.nodes, self.elements, self.pairs, self.materials = rng, [], 0, 0, 0, 0
+        self.lines.append(f"PARAM,PLANE,{'STRAIN' if strain else 'STRESS'}")
+        self.lines += ["PARAM,GAPGEOM,YES", "CORD2R,1,,0.0,0.0,0.0,0.0,0.0,1.0,+", "+,0.0,1.0,0.0", "PGAP,1,0.0"]
+
+    def add(self, *fields):
+        self.lines.append(",".join(f"{f:.12G}" + ("" if "." in f"{f:.12G}" else ".0" if "E" not in f"{f:.12G}" else "")
+                                   if isinstance(f, float) else str(f) for f in fields))
+
+    def material(self, scale=1.0):
+        """A section of thickness 0.5 to 2 on a random material; returns its number."""
+        self.materials += 1
+        rng, number = self.rng, self.materials
+        young, nu, stress = rng.uniform(0.5, 3.0) * 1e3, rng.uniform(0.0, 0.45), rng.uniform(0.7, 1.5) * scale
+        self.add("PSHELL", number, number, rng.uniform(0.5, 2.0))
+        self.add("MAT1", number, young, "", nu)
+        kind = rng.choice(["elastic", "bilinear", "flat", "curve", "curve"])
+        if kind in ("bilinear", "flat"):
+            self.add("MATS1", number, "", "PLASTIC", young * rng.uniform(0.01, 0.3) if kind == "bilinear" else 0.0, 1, 1, stress)
+        elif kind == "curve":
+            strain, points = stress / young, [(0.0, 0.0), (stress / young, stress)]
+            for _ in range(3):
+                step = strain * rng.uniform(0.5, 3.0)
+                points.append((points[-1][0] + step, points[-1][1] + step * young * rng.uniform(0.0, 0.4)))
+            self.add("MATS1", number, number, "PLASTIC", "", 1, 1, stress)
+            numbers = [value for point in points for value in point]
+            self.add("TABLES1", number, *[""] * 6)
+            for i in range(0, 10, 8):
+                self.add("", *numbers[i:i + 8], *(["ENDT"] if i == 8 else []))
+        return number
+
+    def grid(self, xs, ys, section, keep=lambda x, y: True):
+        """Nodes by (column, row)."""
+        at = {}
+        cells = [(i, j) for i in range(len(xs) - 1) for j in range(len(ys) - 1)
+                 if keep((xs[i] + xs[i + 1]) / 2, (ys[j] + ys[j + 1]) / 2)]
+        for i, j in sorted({(i + a, j + b) for i, j in cells for a in (0, 1) for b in (0, 1)}):
+            self.nodes += 1
+            at[i, j] = self.nodes
+            self.add("GRID", self.nodes, "", float(xs[i]), float(ys[j]))
+        for i, j in cells:
+            a, b, c, d = at[i, j], at[i + 1, j], at[i + 1, j + 1], at[i, j + 1]
+            for corners in ((a, b, c), (a, c, d)) if self.rng.random() < 0.5 else ((a, b, d), (b, c, d)):
+                self.elements += 1
+                self.add("CTRIA3", self.elements, section, *corners)
+        return at
+
+    def pair(self, a, b):
+        self.pairs += 1
+        self.add("CGAP", 100000 + self.pairs, 1, a, b, "", "", "", 1)
+
+    def text(self):
+        return "\n".join(["BEGIN BULK"] + self.lines + ["ENDDATA", ""])
+
+
+def places(rng, low, high, parts):
+    steps = [rng.uniform(0.6, 1.4) for _ in range(parts)]
+    found = [low]
+    for step in steps:
+        found.append(found[-1] + (high - low) * step / sum(steps))
+    found[-1] = high
+    return found
+
+
+def stack(rng):
+    """Blocks on each other; the lowest stands on held nodes."""
+    scene = Scene(rng, rng.random() < 0.6)
+    columns = rng.randint(3, 7)
+    xs = places(rng, 0.0, 3.0, columns)
+    below, y = None, 0.0
+    for k in range(rng.randint(1, 3) + 1):
+        height = rng.uniform(0.5, 1.5)
+        rows = rng.randint(2, 4)
+        at = scene.grid(xs, places(rng, y, y + height, rows), scene.material())
+        scene.add("SPC1", 1, 1, *[at[0, j] for j in range(rows + 1)][:6])
+        if below is None:
+            for i in range(columns + 1):
+                scene.add("SPC1", 1, 2, at[i, 0])
+        else:
+            for i in range(columns + 1):
+                scene.pair(below[i], at[i, 0])
+            scene.add("SUPORT", at[rng.randint(0, columns), rows], 2)
+        below = [at[i, rows] for i in range(columns + 1)]
+        y += height + rng.choice([0.0, 0.0, 0.0002, 0.001])
+    total = rng.uniform(0.6, 2.2)
+    for i in range(columns + 1):
+        scene.add("FORCE", 1, below[i], 0, total * 3.0 / (columns + 1) * rng.uniform(0.2, 1.8), rng.uniform(-0.05, 0.2), -1.0)
+    return scene
+
+
+def tongue(rng):
+    """A slender block in a slot with clearance, its turning and sinking held by the pairs alone."""
+    scene = Scene(rng, rng.random() < 0.6)
+    clearance = rng.choice([0.0, 0.0005, 0.002])
+    columns = rng.randint(5, 9)
+    inside, outside = places(rng, 0.0, 3.0, columns), places(rng, 3.0, 6.0, 4)[1:]
+    slot = rng.randint(2, 3)
+    at = scene.grid(inside + outside, places(rng, -0.5, 0.5, slot), scene.material())
+    half = 0.5 + clearance
+    rows = places(rng, -half - 1.0, -half, 2) + places(rng, half, half + 1.0, 2)
+    socket = scene.grid([-1.5, -0.7] + inside, rows, scene.material(), lambda x, y: x < -0.7 or abs(y) > half)
+    for j in range(6):
+        scene.add("SPC1", 1, 12, socket[0, j])
+    for i in range(columns + 1):
+        scene.pair(socket[i + 2, 2], at[i, 0])
+        scene.pair(at[i, slot], socket[i + 2, 3])
+    last = columns + len(outside)
+    scene.add("SPC1", 1, 1, at[columns, 1])
+    scene.add("SUPORT", at[0, 0], 2, at[last, 0], 2)
+    scene.add("FORCE", 1, at[last, 0], 0, rng.uniform(0.03, 0.12), rng.uniform(-0.3, 0.3), rng.choice([-1.0, 1.0]))
+    return scene
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("directory", type=pathlib.Path)
+    parser.add_argument("-n", "--number", type=int, default=40)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    options.directory.mkdir(parents=True, exist_ok=True)
+    for k in range(options.number):
+        rng = random.Random(f"{options.seed} {k}")
+        scene = (tongue if k % 3 == 2 else stack)(rng)
+        (options.directory / f"scene{k:03}.dat").write_text(scene.text(), encoding="ascii")
+
+
+if __name__ == "__main__":
+    main()
