@@ -28,6 +28,7 @@ module epcont_certificate_certificate
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
     real(wp) :: gap_rounding = 0.0_wp     !! rounding of the gaps of pressed pairs, from their travel [length]
+    real(wp) :: curve_tolerance = tolerance  !! largest `off_curve` of a valid answer: what the iteration was asked for
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
     logical :: valid = .false.            !! that one too
   end type certificate_type
@@ -70,7 +71,8 @@ contains
                            .and. certificate%smallest_gap >= -exact &
                            .and. certificate%force_gap <= exact*certificate%force_scale &
                            .and. certificate%gap_rounding <= largest_rounding*certificate%length_scale
-    certificate%valid = certificate%balanced .and. certificate%off_curve <= max(tolerance, curve_tolerance)
+    certificate%curve_tolerance = max(tolerance, curve_tolerance)
+    certificate%valid = certificate%balanced .and. certificate%off_curve <= certificate%curve_tolerance
   end subroutine certify
 
   !> a/b, 0 where both are 0.

@@ -42,6 +42,6 @@ contains
     plan%tolerance = model%controls%tolerance
     if (plan%tolerance == 0.0_wp) &
       plan%tolerance = merge(newton_tolerance, secant_tolerance, plan%method == method_newton)
-    plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, plan%method == method_newton)
+    if (plan%yields) plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, plan%method == method_newton)
   end function plan_iteration
 end module epcont_plan_iteration_plan

@@ -239,6 +239,8 @@ contains
     call figure(file, 'largest force times gap', &
                 right(rounding_number(certificate%force_gap/certificate%force_scale/certificate%length_scale), 13))
     call figure(file, 'stress off the curve', right(rounding_number(certificate%off_curve), 13))
+    if (certificate%curve_tolerance > certificate_tolerance) &
+      call figure(file, 'of which the iteration may leave', right(short_real(certificate%curve_tolerance), 13))
     call figure(file, 'energy balance', right(rounding_number(certificate%energy), 13))
     call heading(file, 'ACCURACY')
     if (size(answer%history) > 1) call list_iteration_error(file, model, answer)
