@@ -171,42 +171,52 @@ contains
     real(wp), intent(in) :: strain(:), stress(:), young
     integer, intent(out) :: wrong
     character(len=:), allocatable, intent(out) :: what, remedy
-    real(wp) :: before
 
     if (size(strain) < 3) then
       wrong = size(strain) + 1
       what = 'has '//text_of(size(strain))//' points'
       remedy = 'at least 3: 0.0 0.0, the yield point, and one beyond it'
-      return
+    else if (strain(1) /= 0.0_wp .or. stress(1) /= 0.0_wp) then
+      wrong = 1
+      what = 'the first point is not 0.0, 0.0'
+      remedy = 'a curve from the origin'
+    else if (stress(2) <= 0.0_wp .or. abs(strain(2) - stress(2)/young) > same_strain*abs(stress(2)/young)) then
+      wrong = 2
+      what = 'the yield point (the second one) is not on the elastic line of the MAT1'
+      remedy = 'strain = stress/E within 1 %'
+      if (stress(2) > 0.0_wp) remedy = 'strain '//short_real(stress(2)/young)//', stress/E, within 1 %'
+    else
+      call check_beyond_yield([stress(2)/young, strain(3:)], stress(2:), young, wrong, what, remedy)
+      if (wrong > 0) then
+        wrong = wrong + 1
+        what = 'point '//text_of(wrong)//': '//what
+      end if
     end if
-    do wrong = 1, size(strain)
-      if (wrong == 1) then
-        if (strain(1) == 0.0_wp .and. stress(1) == 0.0_wp) cycle
-        what = 'the first point is not 0.0, 0.0'
-        remedy = 'a curve from the origin'
-      else if (wrong == 2) then
-        if (stress(2) > 0.0_wp .and. abs(strain(2) - stress(2)/young) <= same_strain*(stress(2)/young)) cycle
-        what = 'the yield point (the second one) is not on the elastic line of the MAT1'
-        remedy = 'strain = stress/E within 1 %'
-        if (stress(2) > 0.0_wp) remedy = 'strain '//short_real(stress(2)/young)//', stress/E, within 1 %'
+  end subroutine check_table
+
+  !> The first point behind the yield point that cannot be, and why; 0 where all can.
+  pure subroutine check_beyond_yield(strain, stress, young, wrong, what, remedy)
+    real(wp), intent(in) :: strain(:), stress(:), young   !! from the yield point on
+    integer, intent(out) :: wrong
+    character(len=:), allocatable, intent(out) :: what, remedy
+    integer :: k
+
+    do k = 1, size(strain) - 1
+      wrong = k + 1
+      if (strain(k + 1) <= strain(k)) then
+        what = 'the strain does not rise'
+        remedy = 'more than '//short_real(strain(k))
+      else if (stress(k + 1) < stress(k)) then
+        what = 'the stress falls (softening)'
+        remedy = 'at least '//short_real(stress(k))
+      else if (stress(k + 1) - stress(k) > young*(strain(k + 1) - strain(k))) then
+        what = 'steeper than the elastic line of the MAT1'
+        remedy = 'a slope of at most E'
       else
-        before = strain(wrong - 1)
-        if (wrong == 3) before = max(before, stress(2)/young)
-        if (strain(wrong) <= before) then
-          what = 'point '//text_of(wrong)//': the strain does not rise'
-          remedy = 'more than '//short_real(before)
-        else if (stress(wrong) < stress(wrong - 1)) then
-          what = 'point '//text_of(wrong)//': the stress falls (softening)'
-          remedy = 'at least '//short_real(stress(wrong - 1))
-        else
-          if (wrong == 3) before = stress(2)/young
-          if (stress(wrong) - stress(wrong - 1) <= young*(strain(wrong) - before)) cycle
-          what = 'point '//text_of(wrong)//': steeper than the elastic line of the MAT1'
-          remedy = 'a slope of at most E'
-        end if
+        cycle
       end if
       return
     end do
     wrong = 0
-  end subroutine check_table
+  end subroutine check_beyond_yield
 end module epcont_model_materials

@@ -42,7 +42,7 @@ module epcont_plasticity_iteration
     logical :: converged = .false.         !! all loads, to the tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
     integer :: singular = 0                !! body that could not be factored
-    real(wp) :: condition = 1.0_wp         !! of the last stiffness, estimated in the 1-norm
+    real(wp) :: condition = 1.0_wp         !! of its stiffness, estimated in the 1-norm
     type(iteration_record), allocatable :: history(:)
     integer :: unloaded = 0                !! elements whose strain fell from one load step to the next, after yielding
     integer :: first_unloaded = 0          !! one of them
@@ -88,12 +88,14 @@ contains
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) run%state = state
       if (state%contact%state /= contact_solved) return
-      if (converged .or. step == 1) run%load_factor = part
+      if (converged .or. step == 1) then
+        run%load_factor = part
+        run%condition = loop%scene%bodies%condition()
+      end if
       if (.not. converged) exit
       call find_unloaded(model, loop, strained, run)
     end do
     run%converged = converged
-    run%condition = loop%scene%bodies%condition()
   end subroutine follow_loads
 
   subroutine begin(model, motions, plan, loop)

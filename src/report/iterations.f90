@@ -58,7 +58,7 @@ contains
     type(answer_type), intent(in) :: answer
     type(iteration_error) :: error
 
-    error = estimate_iteration_error(answer%history)
+    error = estimate_iteration_error(answer%history, answer%load_factor)
     call figure(file, 'iteration error, of the largest displacement', right(error_text(error%displacement), 13))
     if (model%pairs > 0) &
       call figure(file, 'iteration error, of the largest force', right(error_text(error%force), 13))

@@ -57,7 +57,7 @@ contains
       call put('energy_balance', certificate%energy, '')
       call put('condition', answer%condition, '')
       call put('load_factor', answer%load_factor, '')
-      error_left = estimate_iteration_error(answer%history)
+      error_left = estimate_iteration_error(answer%history, answer%load_factor)
       call put('iteration_error_displacement', error_left%displacement, '')
       call put('iteration_error_force', error_left%force, '')
     end if

@@ -14,22 +14,26 @@ module epcont_result_iteration_error
 
 contains
 
-  !> From the changes of the last load step.
-  pure function estimate_iteration_error(history) result(error)
+  !> From the changes at one load.
+  pure function estimate_iteration_error(history, load_factor) result(error)
     type(iteration_record), intent(in) :: history(:)
+    real(wp), intent(in) :: load_factor
     type(iteration_error) :: error
-    integer :: n, m
+    type(iteration_record), allocatable :: step(:)
+    real(wp), allocatable :: change(:)
+    integer :: n
 
-    n = size(history)
-    if (n == 0) return
-    m = history(n)%iteration
-    if (m < 2) return
-    error%displacement = still_to_come(history(n - m + 1:n)%change)
-    error%force = still_to_come(history(n - m + 1:n)%force_change)
-    if (history(n)%residual > rounding) return
+    step = pack(history, history%load_factor == load_factor)
+    n = size(step)
+    if (n < 2) return
+    change = step%change
+    error%displacement = still_to_come(change)
+    change = step%force_change
+    error%force = still_to_come(change)
+    if (step(n)%residual > rounding) return
     ! What changes now is rounding, of that size.
-    if (error%displacement < 0.0_wp) error%displacement = history(n)%change
-    if (error%force < 0.0_wp) error%force = history(n)%force_change
+    if (error%displacement < 0.0_wp) error%displacement = step(n)%change
+    if (error%force < 0.0_wp) error%force = step(n)%force_change
   end function estimate_iteration_error
 
   !> Sum of the changes to come, if each is the last one times the rate observed: a change of 1 % in a slow iteration
