@@ -13,7 +13,7 @@ module solved_scene
   use epcont_result_answer, only: answer_type
   implicit none
   private
-  public :: scene, solve
+  public :: scene, solve, solve_file
 
   character(len=*), parameter :: path = 'scene.dat'
 
@@ -30,11 +30,6 @@ contains
   subroutine solve(cards, solved)
     character(len=*), intent(in) :: cards
     type(scene), intent(out) :: solved
-    type(deck_type) :: deck
-    type(diagnostics) :: faults
-    type(error_type), allocatable :: error
-    type(free_motions) :: motions
-    type(motion_fault), allocatable :: loose(:)
     character(len=:), allocatable :: text
     integer :: i, unit
 
@@ -45,11 +40,24 @@ contains
     open (newunit=unit, file=path, access='stream', form='unformatted', status='replace')
     write (unit) text
     close (unit)
+    call solve_file(path, solved)
+  end subroutine solve
+
+  !> Solve a deck.
+  subroutine solve_file(path, solved)
+    character(len=*), intent(in) :: path
+    type(scene), intent(out) :: solved
+    type(deck_type) :: deck
+    type(diagnostics) :: faults
+    type(error_type), allocatable :: error
+    type(free_motions) :: motions
+    type(motion_fault), allocatable :: loose(:)
+
     call read_deck(path, deck, faults, error)
     call build_model(deck, solved%model, faults)
     call find_free_motions(solved%model, motions, loose)
     if (faults%error_count() + size(loose) > 0) error stop 'solved_scene: the deck is not sound'
     call analyse(solved%model, motions, number_equations(solved%model), plan_iteration(solved%model), &
                  solved%answer, solved%certificate, solved%singular)
-  end subroutine solve
+  end subroutine solve_file
 end module solved_scene
