@@ -17,6 +17,7 @@ module epcont_plan_iteration_plan
   type :: iteration_plan
     logical :: yields = .false.            !! there is something that can yield; else there is no iteration
     logical, allocatable :: body(:)        !! which bodies can [bodies]
+    integer :: load_steps = 1              !! more than one only where something can yield
     integer :: method = method_secant
     logical :: chosen_here = .false.       !! the deck leaves the method to us
     real(wp) :: tolerance = 0.0_wp         !! largest change of a displacement that ends the iteration
@@ -35,6 +36,7 @@ contains
       if (model%can_yield(e)) plan%body(model%body(model%corner(1, e))) = .true.
     end do
     plan%yields = any(plan%body)
+    if (plan%yields) plan%load_steps = model%controls%load_steps
     plan%chosen_here = model%controls%method == method_auto
     plan%method = model%controls%method
     ! NEWTON has no tangent for MUP PAPER, which is there to follow the paper: by its own method, then.

@@ -59,6 +59,7 @@ module epcont_plasticity_iteration
     logical, allocatable :: touching(:)               !! the last contact set: the next simplex starts from it [pairs]
     real(wp), allocatable :: force(:)                 !! the last contact forces [force] [pairs]
     logical :: stiff = .false.                        !! the scene has been factored
+    logical :: elastic = .false.                      !! with the law of a state that has not yielded
   end type loop_type
 
 contains
@@ -81,8 +82,8 @@ contains
     call begin(model, motions, plan, loop)
     allocate (run%history(0), strained(model%elements))
     strained = 0.0_wp
-    do step = 1, model%controls%load_steps
-      part = real(step, wp)/model%controls%load_steps
+    do step = 1, plan%load_steps
+      part = real(step, wp)/plan%load_steps
       call iterate(model, motions, numbering, method, part, loop, run, state, converged)
       if (run%singular > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
@@ -168,7 +169,8 @@ contains
 
     singular = 0
     call method%linearise(model, loop%material, loop%about%strain, loop%law)
-    if (loop%stiff .and. method%keeps_stiffness) return
+    if (loop%stiff .and. (method%keeps_stiffness .or. loop%elastic .and. loop%yielded == 0)) return
+    loop%elastic = loop%yielded == 0
     do
       call loop%scene%set_stiffness(model, numbering, loop%law%matrix, singular)
       loop%stiff = .true.

@@ -99,7 +99,8 @@ contains
       end associate
     end do
     call file%line('')
-    call file%line('  '//plural(answer%contact%pivots, 'pivot')//', '//text_of(answer%contact%degenerate_pivots)//' degenerate')
+    call file%line('  '//plural(answer%contact%pivots, 'pivot')//', '//text_of(answer%contact%degenerate_pivots)//' degenerate'// &
+                   trim(merge(', in the last solve', '                   ', size(answer%history) > 1)))
     call list_pivots(file, model, answer)
   end subroutine list_contact
 

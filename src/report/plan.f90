@@ -83,8 +83,8 @@ contains
            ' of the largest, and no stress is off its curve'//newline//'    by more than '// &
            short_real(iteration%off_curve)//' of the largest; at most '// &
            plural(model%controls%most_iterations, 'iteration')//newline
-    if (model%controls%load_steps > 1) &
-      text = text//'  '//plural(model%controls%load_steps, 'load step')//'; elastic unloading is not modelled'//newline
+    if (iteration%load_steps > 1) &
+      text = text//'  '//plural(iteration%load_steps, 'load step')//'; elastic unloading is not modelled'//newline
     if (model%controls%paper_ratio) &
       text = text//'  MUP PAPER: Poisson''s ratio in the equivalent strain by formula (2-4)'//newline
   end function iteration_text
