@@ -58,6 +58,7 @@ contains
 
     answer%displacement = run%state%displacement
     answer%history = run%history
+    answer%factorizations = run%factorizations
     answer%converged = run%converged
     answer%runs_away = run%runs_away
     answer%load_factor = run%load_factor

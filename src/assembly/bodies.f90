@@ -10,6 +10,7 @@ module epcont_assembly_bodies
 
   type :: factored_bodies
     type(body_stiffness), allocatable :: body(:)
+    integer :: factorizations = 0              !! done so far, of bodies that have equations
     real(wp), allocatable :: settlement(:, :)  !! forces of prescribed displacements on free freedoms [2, nodes]
   contains
     procedure :: factor_body
@@ -45,6 +46,7 @@ contains
     end associate
     call assemble_body(model, matrix, numbering%equation, numbering%body(b), self%body(b), self%settlement)
     call self%body(b)%factor()
+    if (numbering%body(b)%equations > 0) self%factorizations = self%factorizations + 1
     sound = self%body(b)%smallest_ratio > epsilon(1.0_wp)
   end subroutine factor_body
 

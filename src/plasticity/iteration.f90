@@ -42,6 +42,7 @@ module epcont_plasticity_iteration
     logical :: converged = .false.         !! all loads, to the tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
     integer :: singular = 0                !! body that could not be factored
+    integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of its stiffness, estimated in the 1-norm
     type(iteration_record), allocatable :: history(:)
     integer :: unloaded = 0                !! elements whose strain fell from one load step to the next, after yielding
@@ -85,6 +86,7 @@ contains
     do step = 1, plan%load_steps
       part = real(step, wp)/plan%load_steps
       call iterate(model, motions, numbering, method, part, loop, run, state, converged)
+      run%factorizations = loop%scene%bodies%factorizations
       if (run%singular > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) run%state = state

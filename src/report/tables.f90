@@ -45,6 +45,7 @@ contains
       call file%line('pairs_in_contact,'//text_of(count(answer%contact%touching))//',')
       call file%line('plastic_elements,'//text_of(count(answer%plastic))//',')
       call file%line('iterations,'//text_of(size(answer%history))//',')
+      call file%line('factorizations,'//text_of(answer%factorizations)//',')
       call file%line('pivots,'//text_of(sum(answer%history%pivots))//',')
       call put('max_equivalent_stress', maxval(answer%equivalent_stress), 'force/length2')
       call put('max_displacement', maxval(norm2(answer%displacement, dim=1)), 'length')

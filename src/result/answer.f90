@@ -20,6 +20,7 @@ module epcont_result_answer
     real(wp), allocatable :: pressure(:)             !! at the pairs; negative: no boundary there [stress] [pairs]
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
     type(iteration_record), allocatable :: history(:)  !! every solve
+    integer :: factorizations = 0                    !! of bodies
     logical :: converged = .false.                   !! all of the load, to the tolerance of the iteration
     logical :: runs_away = .false.                   !! no equilibrium: the displacements grow without end
     real(wp) :: load_factor = 1.0_wp                 !! part of the loads for which this is

@@ -55,8 +55,9 @@ contains
 
     call read_deck(path, deck, faults, error)
     call build_model(deck, solved%model, faults)
+    if (faults%error_count() > 0) error stop 'solved_scene: the deck is not sound'
     call find_free_motions(solved%model, motions, loose)
-    if (faults%error_count() + size(loose) > 0) error stop 'solved_scene: the deck is not sound'
+    if (size(loose) > 0) error stop 'solved_scene: a body is loose'
     call analyse(solved%model, motions, number_equations(solved%model), plan_iteration(solved%model), &
                  solved%answer, solved%certificate, solved%singular)
   end subroutine solve_file
