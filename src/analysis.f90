@@ -10,7 +10,7 @@ module epcont_analysis
   use epcont_plan_numbering, only: numbering_type
   use epcont_plasticity_iteration, only: follow_loads, plastic_run
   use epcont_plasticity_method, only: plastic_method
-  use epcont_plasticity_methods, only: new_method
+  use epcont_plasticity_methods, only: choose_method
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line, find_contact_line
   use epcont_result_stresses, only: recover_stresses
@@ -35,7 +35,7 @@ contains
     type(contact_line) :: line
     real(wp), allocatable :: load(:, :)
 
-    method = new_method(plan%method)
+    call choose_method(plan%method, method)
     call follow_loads(model, motions, numbering, plan, method, run)
     singular = run%singular
     if (singular > 0) return

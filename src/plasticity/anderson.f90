@@ -16,19 +16,14 @@ module epcont_plasticity_anderson
   !> A step that is the others' mixture but for this part of it tells nothing new.
   real(wp), parameter :: dependent = 1.0e-10_wp
 
-  !> A step: the change of g - x, and that of g.
-  type :: step_type
-    real(wp), allocatable :: rest(:, :)           !! of g - x, strains [3, elements]
-    real(wp), allocatable :: strain(:, :)         !! of g [3, elements]
-    real(wp), allocatable :: displacement(:, :)   !! of g [2, nodes]
-  end type step_type
-
   type :: anderson_mixer
-    integer :: steps = 0                          !! remembered
+    integer :: steps = 0                               !! remembered
     logical :: begun = .false.
-    type(step_type) :: step(memory)               !! the latest first
-    type(step_type) :: last                       !! the last g - x and g themselves
-    real(wp), allocatable :: weight(:)            !! of each element in the norm [elements]
+    real(wp), allocatable :: weight(:)                 !! of each element in the norm [elements]
+    ! The last strains of g - x, and g.
+    real(wp), allocatable :: rest(:, :), strain(:, :), displacement(:, :)
+    ! How they changed in the last steps, the latest first [., ., memory].
+    real(wp), allocatable :: rest_step(:, :, :), strain_step(:, :, :), displacement_step(:, :, :)
   contains
     procedure :: forget
     procedure :: mix
@@ -49,69 +44,74 @@ contains
     type(model_type), intent(in) :: model
     type(scene_state), intent(in) :: found
     type(scene_state), intent(inout) :: about
-    type(step_type) :: now
     real(wp) :: share(memory)
     integer :: k
 
-    if (.not. allocated(self%weight)) self%weight = element_volumes(model)*model%young(model%section)
-    now%rest = found%strain - about%strain
-    now%strain = found%strain
-    now%displacement = found%displacement
-    if (self%begun) call remember(self, now)
+    if (.not. allocated(self%weight)) then
+      self%weight = element_volumes(model)*model%young(model%section)
+      allocate (self%rest_step(3, model%elements, memory), self%strain_step(3, model%elements, memory))
+      allocate (self%displacement_step(2, model%nodes, memory))
+    end if
+    if (self%begun) call remember(self, found%strain - about%strain, found)
     self%begun = .true.
-    self%last = now
+    self%rest = found%strain - about%strain
+    self%strain = found%strain
+    self%displacement = found%displacement
     share = best_shares(self)
     about%displacement = found%displacement
     about%strain = found%strain
     do k = 1, self%steps
-      about%displacement = about%displacement - share(k)*self%step(k)%displacement
-      about%strain = about%strain - share(k)*self%step(k)%strain
+      about%displacement = about%displacement - share(k)*self%displacement_step(:, :, k)
+      about%strain = about%strain - share(k)*self%strain_step(:, :, k)
     end do
   end subroutine mix
 
-  !> Add the step from the last x to this one.
-  pure subroutine remember(self, now)
+  !> Add the step from the last x, with its g, to this one.
+  pure subroutine remember(self, rest, found)
     class(anderson_mixer), intent(inout) :: self
-    type(step_type), intent(in) :: now
+    real(wp), intent(in) :: rest(:, :)
+    type(scene_state), intent(in) :: found
     integer :: k
 
-    if (product_of(self, now%rest, now%rest) > growth_limit**2*product_of(self, self%last%rest, self%last%rest)) then
+    if (product_of(self, rest, rest) > growth_limit**2*product_of(self, self%rest, self%rest)) then
       self%steps = 0
       return
     end if
     self%steps = min(memory, self%steps + 1)
     do k = self%steps, 2, -1
-      self%step(k) = self%step(k - 1)
+      self%rest_step(:, :, k) = self%rest_step(:, :, k - 1)
+      self%strain_step(:, :, k) = self%strain_step(:, :, k - 1)
+      self%displacement_step(:, :, k) = self%displacement_step(:, :, k - 1)
     end do
-    self%step(1)%rest = now%rest - self%last%rest
-    self%step(1)%strain = now%strain - self%last%strain
-    self%step(1)%displacement = now%displacement - self%last%displacement
+    self%rest_step(:, :, 1) = rest - self%rest
+    self%strain_step(:, :, 1) = found%strain - self%strain
+    self%displacement_step(:, :, 1) = found%displacement - self%displacement
   end subroutine remember
 
   !> Shares of the steps that make the last g - x least: least squares by Gram and Schmidt.
   pure function best_shares(self) result(share)
     type(anderson_mixer), intent(in) :: self
     real(wp) :: share(memory)
-    type(step_type) :: unit(memory)
+    real(wp), allocatable :: unit(:, :, :)
     real(wp) :: factor(memory, memory), length
     integer :: j, k
 
     share = 0.0_wp
     factor = 0.0_wp
+    unit = self%rest_step(:, :, :self%steps)
     do k = 1, self%steps
-      unit(k)%rest = self%step(k)%rest
-      length = sqrt(product_of(self, unit(k)%rest, unit(k)%rest))
+      length = sqrt(product_of(self, unit(:, :, k), unit(:, :, k)))
       do j = 1, k - 1
-        factor(j, k) = product_of(self, unit(j)%rest, unit(k)%rest)
-        unit(k)%rest = unit(k)%rest - factor(j, k)*unit(j)%rest
+        factor(j, k) = product_of(self, unit(:, :, j), unit(:, :, k))
+        unit(:, :, k) = unit(:, :, k) - factor(j, k)*unit(:, :, j)
       end do
-      factor(k, k) = sqrt(product_of(self, unit(k)%rest, unit(k)%rest))
+      factor(k, k) = sqrt(product_of(self, unit(:, :, k), unit(:, :, k)))
       if (factor(k, k) <= dependent*length) then
         factor(k, k) = 0.0_wp
-        unit(k)%rest = 0.0_wp
+        unit(:, :, k) = 0.0_wp
       else
-        unit(k)%rest = unit(k)%rest/factor(k, k)
-        share(k) = product_of(self, unit(k)%rest, self%last%rest)
+        unit(:, :, k) = unit(:, :, k)/factor(k, k)
+        share(k) = product_of(self, unit(:, :, k), self%rest)
       end if
     end do
     do k = self%steps, 1, -1
@@ -123,9 +123,10 @@ contains
     end do
   end function best_shares
 
+  !> Product of two strain fields [3, elements].
   pure real(wp) function product_of(self, a, b)
     type(anderson_mixer), intent(in) :: self
-    real(wp), intent(in) :: a(:, :), b(:, :)   !! strains [3, elements]
+    real(wp), intent(in) :: a(:, :), b(:, :)
     integer :: e
 
     product_of = 0.0_wp

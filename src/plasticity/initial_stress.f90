@@ -6,28 +6,17 @@ module epcont_plasticity_initial_stress
   use epcont_material_linear_law, only: linear_law
   use epcont_material_total_theory, only: respond, response_type
   use epcont_model_model, only: model_type
-  use epcont_plasticity_anderson, only: anderson_mixer
-  use epcont_plasticity_method, only: plastic_method
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_mixing_method, only: mixing_method
   implicit none
   private
   public :: initial_stress_method
 
-  type, extends(plastic_method) :: initial_stress_method
-    type(anderson_mixer) :: mixer
+  type, extends(mixing_method) :: initial_stress_method
   contains
-    procedure :: restart
     procedure :: linearise
-    procedure :: advance
   end type initial_stress_method
 
 contains
-
-  pure subroutine restart(self)
-    class(initial_stress_method), intent(inout) :: self
-
-    call self%mixer%forget()
-  end subroutine restart
 
   !> Initial stress: that of the curve less the elastic one.
   pure subroutine linearise(self, model, material, strain, law)
@@ -49,15 +38,4 @@ contains
       end associate
     end do
   end subroutine linearise
-
-  pure subroutine advance(self, model, material, part, found, about)
-    class(initial_stress_method), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: part
-    type(scene_state), intent(in) :: found
-    type(scene_state), intent(inout) :: about
-
-    call self%mixer%mix(model, found, about)
-  end subroutine advance
 end module epcont_plasticity_initial_stress

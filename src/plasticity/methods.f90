@@ -8,13 +8,14 @@ module epcont_plasticity_methods
   use epcont_plasticity_secant, only: secant_method
   implicit none
   private
-  public :: new_method
+  public :: choose_method
 
 contains
 
-  function new_method(kind) result(method)
-    integer, intent(in) :: kind
-    class(plastic_method), allocatable :: method
+  ! A subroutine, since gfortran 12 loses the memory of a polymorphic function result.
+  subroutine choose_method(kind, method)
+    integer, intent(in) :: kind    !! method_secant, ...
+    class(plastic_method), allocatable, intent(out) :: method
 
     select case (kind)
     case (method_modsec)
@@ -27,5 +28,5 @@ contains
     case default
       allocate (secant_method :: method)
     end select
-  end function new_method
+  end subroutine choose_method
 end module epcont_plasticity_methods

@@ -2,37 +2,28 @@
 module epcont_plasticity_modified_secant
   use epcont_base_kinds, only: wp
   use epcont_material_curve, only: material_type
+  use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type
-  use epcont_plasticity_anderson, only: anderson_mixer
-  use epcont_plasticity_secant, only: secant_method
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_mixing_method, only: mixing_method
+  use epcont_plasticity_secant, only: set_secant_law
   implicit none
   private
   public :: modified_secant_method
 
-  type, extends(secant_method) :: modified_secant_method
-    type(anderson_mixer) :: mixer
+  type, extends(mixing_method) :: modified_secant_method
   contains
-    procedure :: restart
-    procedure :: advance
+    procedure :: linearise
   end type modified_secant_method
 
 contains
 
-  pure subroutine restart(self)
-    class(modified_secant_method), intent(inout) :: self
-
-    call self%mixer%forget()
-  end subroutine restart
-
-  pure subroutine advance(self, model, material, part, found, about)
+  pure subroutine linearise(self, model, material, strain, law)
     class(modified_secant_method), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: part
-    type(scene_state), intent(in) :: found
-    type(scene_state), intent(inout) :: about
+    real(wp), intent(in) :: strain(:, :)
+    type(linear_law), intent(inout) :: law
 
-    call self%mixer%mix(model, found, about)
-  end subroutine advance
+    call set_secant_law(model, material, strain, law)
+  end subroutine linearise
 end module epcont_plasticity_modified_secant

@@ -9,7 +9,7 @@ module epcont_plasticity_secant
   use epcont_plasticity_state, only: scene_state
   implicit none
   private
-  public :: secant_method
+  public :: secant_method, set_secant_law
 
   type, extends(plastic_method) :: secant_method
   contains
@@ -19,9 +19,18 @@ module epcont_plasticity_secant
 
 contains
 
-  !> Secant matrices (2-8).
   pure subroutine linearise(self, model, material, strain, law)
     class(secant_method), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: strain(:, :)
+    type(linear_law), intent(inout) :: law
+
+    call set_secant_law(model, material, strain, law)
+  end subroutine linearise
+
+  !> Secant matrices (2-8).
+  pure subroutine set_secant_law(model, material, strain, law)
     type(model_type), intent(in) :: model
     type(material_type), intent(in) :: material(:)
     real(wp), intent(in) :: strain(:, :)
@@ -33,7 +42,7 @@ contains
         if (m%yields) law%matrix(:, :, e) = secant_matrix(m, respond(m, strain(:, e)))
       end associate
     end do
-  end subroutine linearise
+  end subroutine set_secant_law
 
   !> What was found is taken as it is.
   pure subroutine advance(self, model, material, part, found, about)
