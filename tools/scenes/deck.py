@@ -46,6 +46,13 @@ class Deck:
             line = (name if i == 0 else "").ljust(8) + "".join(f.ljust(8) for f in fields[i:i + 8])
             self.lines.append(line.rstrip())
 
+    def wide(self, name, *fields):
+        """A card in large field, for reals that eight characters would cut."""
+        cells = [str(f) if not isinstance(f, float) else short(f) if f == int(f) else long(f) for f in fields]
+        for i in range(0, len(cells), 4):
+            line = (name + "*" if i == 0 else "*").ljust(8) + "".join(cell.ljust(16) for cell in cells[i:i + 4])
+            self.lines.append(line.rstrip())
+
     def remark(self, text):
         self.lines.append(f"$ {text}")
 
@@ -67,7 +74,7 @@ class Deck:
 
     def yields(self, number, stress, hardening):
         """Bilinear: stress over plastic strain beyond the yield stress."""
-        self.card("MATS1", number, "", "PLASTIC", hardening, 1, 1, stress)
+        self.wide("MATS1", number, "", "PLASTIC", hardening, 1, 1, stress)
 
     def follows(self, number, curve):
         """A curve from points of strain and stress, the origin and the yield point first."""
@@ -113,6 +120,12 @@ class Deck:
         head += ["LOAD = 1"] if any(line.startswith(("FORCE", "PLOADX1")) for line in self.lines) else []
         head.append("BEGIN BULK")
         return "\n".join(head + self.lines + ["ENDDATA", ""])
+
+    def measured(self, text):
+        """What epcont gives for this very mesh; nothing is said without a text."""
+        if text:
+            self.words.append("epcont on this mesh: " + text)
+        return self
 
     def write(self, path):
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,7 +1,7 @@
 """Scenes of elastic bodies."""
 import math
 
-from .deck import Deck, long, short
+from .deck import Deck
 from .mesh import block, first_free, graded, half_disc, quarter_disc, rings
 
 
@@ -162,11 +162,7 @@ def shrink(around=16):
     for i, (p, q) in enumerate(zip(inner.line["outer"], outer.line["inner"])):
         x, y = outer.point[q]
         frame, edge = 1 + i, [f if abs(f) > 1e-12 else 0.0 for f in (x / c, y / c)]
-        numbers = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, edge[0], edge[1], 0.0]
-        cells = [str(frame), "0"] + [long(f) if f != int(f) else short(f) for f in numbers]
-        for k in range(0, len(cells), 4):
-            line = ("CORD2R*" if k == 0 else "*").ljust(8) + "".join(cell.ljust(16) for cell in cells[k:k + 4])
-            deck.lines.append(line.rstrip())
+        deck.wide("CORD2R", frame, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, edge[0], edge[1], 0.0)
         deck.card("CGAP", 10 * free + 1 + i, 21, p + 1, q + first, "", "", "", frame)
     deck.card("PGAP", 21, -overlap)
     return deck
