@@ -47,7 +47,7 @@ contains
     call recover_stresses(model, run%state, load + pair_forces(model, answer%contact%force), answer)
     line = find_contact_line(model)
     answer%pressure = merge(answer%contact%force/max(line%tributary, tiny(1.0_wp)), -1.0_wp, line%tributary > 0.0_wp)
-    call certify(model, load, plan%off_curve, answer%displacement, answer%reaction, answer%stress, answer%contact%force, &
+    call certify(model, load, plan%off_curve, answer%displacement, answer%reaction, answer%point_stress, answer%contact%force, &
                  certificate)
   end subroutine analyse
 

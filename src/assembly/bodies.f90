@@ -33,7 +33,7 @@ contains
   pure subroutine factor_body(self, model, matrix, numbering, b, sound)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: matrix(:, :, :)   !! of the material of each element [stress] [3, 3, elements]
+    real(wp), intent(in) :: matrix(:, :, :)   !! of the material at each point [stress] [4, 4, points]
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
     logical, intent(out) :: sound

@@ -1,54 +1,83 @@
-!> From nodes to elements and back: strains of displacements, nodal forces of stresses.
+!> From nodes to integration points and back: strains of displacements, nodal forces of stresses.
 module epcont_assembly_fields
   use epcont_base_kinds, only: wp
-  use epcont_element_tria3, only: tria3_strain_matrix
+  use epcont_element_element, only: element_point, evaluate_points, most_points
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: element_strains, element_volumes, nodal_forces
+  public :: points_of_element, strains, volumes, nodal_forces
 
 contains
 
-  !> Strains xx, yy, xy (engineering) of all elements [3, elements].
-  pure function element_strains(model, displacement) result(strain)
+  !> The integration points of an element of the model.
+  pure subroutine points_of_element(model, e, point, count)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: e
+    type(element_point), intent(out) :: point(most_points)
+    integer, intent(out) :: count
+
+    associate (s => model%section(e))
+      count = model%first_point(e + 1) - model%first_point(e)
+      call evaluate_points(model%coordinates(e), model%kinematics(s), model%thickness(s), point(:count))
+    end associate
+  end subroutine points_of_element
+
+  !> Strains xx, yy, zz, xy (engineering) [4, points].
+  pure function strains(model, displacement) result(strain)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     real(wp), allocatable :: strain(:, :)
-    integer :: e
+    type(element_point) :: point(most_points)
+    integer :: count, e, i, k, n
 
-    allocate (strain(3, model%elements))
+    allocate (strain(4, model%points))
     do e = 1, model%elements
-      strain(:, e) = matmul(tria3_strain_matrix(model%corners(e)), reshape(displacement(:, model%corner(:, e)), [6]))
+      call points_of_element(model, e, point, count)
+      n = model%order(e)
+      do k = 1, count
+        strain(:, model%first_point(e) + k - 1) = 0.0_wp
+        do i = 1, n
+          associate (u => displacement(:, model%connectivity(i, e)), now => strain(:, model%first_point(e) + k - 1))
+            now = now + point(k)%b(:, 2*i - 1)*u(1) + point(k)%b(:, 2*i)*u(2)
+          end associate
+        end do
+      end do
     end do
-  end function element_strains
+  end function strains
 
-  !> Area times thickness of all elements [length**3] [elements].
-  pure function element_volumes(model) result(volume)
+  !> The volume that belongs to each point [length**3] [points].
+  pure function volumes(model) result(volume)
     type(model_type), intent(in) :: model
     real(wp), allocatable :: volume(:)
-    integer :: e
+    type(element_point) :: point(most_points)
+    integer :: count, e
 
-    allocate (volume(model%elements))
+    allocate (volume(model%points))
     do e = 1, model%elements
-      volume(e) = model%thickness(model%section(e))*model%area(e)
+      call points_of_element(model, e, point, count)
+      volume(model%first_point(e):model%first_point(e + 1) - 1) = point(:count)%volume
     end do
-  end function element_volumes
+  end function volumes
 
   !> Forces that nodes must exert on the elements to hold their stresses [force] [2, nodes].
   pure function nodal_forces(model, stress) result(force)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: stress(:, :)         !! xx, yy, xy [stress] [3, elements]
+    real(wp), intent(in) :: stress(:, :)         !! xx, yy, zz, xy [stress] [4, points]
     real(wp), allocatable :: force(:, :)
-    real(wp), allocatable :: volume(:)
-    real(wp) :: part(2, 3)
-    integer :: e, k
+    type(element_point) :: point(most_points)
+    integer :: count, e, i, k, n
 
-    volume = element_volumes(model)
     allocate (force(2, model%nodes), source=0.0_wp)
     do e = 1, model%elements
-      part = reshape(volume(e)*matmul(stress(:, e), tria3_strain_matrix(model%corners(e))), [2, 3])
-      do k = 1, 3
-        force(:, model%corner(k, e)) = force(:, model%corner(k, e)) + part(:, k)
+      call points_of_element(model, e, point, count)
+      n = model%order(e)
+      do k = 1, count
+        do i = 1, n
+          associate (node => model%connectivity(i, e), s => stress(:, model%first_point(e) + k - 1))
+            force(:, node) = force(:, node) + point(k)%volume*[dot_product(s, point(k)%b(:, 2*i - 1)), &
+                                                               dot_product(s, point(k)%b(:, 2*i))]
+          end associate
+        end do
       end do
     end do
   end function nodal_forces

@@ -5,11 +5,12 @@
 !>
 !> The band is factored alone; the border follows by its Schur complement S = K_rr - K_rb W, W = K_bb^-1 K_br.
 module epcont_assembly_stiffness
+  use epcont_assembly_fields, only: points_of_element
   use epcont_base_kinds, only: wp
-  use epcont_element_tria3, only: tria3_stiffness
+  use epcont_element_element, only: element_point, most_points
   use epcont_linalg_band, only: band_matrix, new_band_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: model_type, most_nodes
   use epcont_plan_numbering, only: body_numbering
   implicit none
   private
@@ -29,8 +30,8 @@ module epcont_assembly_stiffness
 
 contains
 
-  !> Assemble the elements of a body, each with its material matrix [3, 3, elements]. `settlement` receives the forces
-  !! that prescribed displacements exert on the free freedoms: minus K_fp u_p [force] [2, nodes].
+  !> Assemble the elements of a body; `matrix` is that of the material at each point [4, 4, points]. `settlement`
+  !! receives the forces that prescribed displacements exert on the free freedoms: minus K_fp u_p [force] [2, nodes].
   pure subroutine assemble_body(model, matrix, equation, body, stiffness, settlement)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: matrix(:, :, :)
@@ -38,39 +39,64 @@ contains
     type(body_numbering), intent(in) :: body
     type(body_stiffness), intent(out) :: stiffness
     real(wp), intent(inout) :: settlement(:, :)
-    real(wp) :: k(6, 6), forced(6)
-    integer :: e, i, node
+    real(wp) :: k(2*most_nodes, 2*most_nodes), forced(2*most_nodes)
+    integer :: e, i, n
 
     stiffness%band = new_band_matrix(body%equations, body%half_bandwidth)
     allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
     do e = 1, size(body%element)
-      associate (element => body%element(e), corner => model%corner(:, body%element(e)))
-        k = tria3_stiffness(model%corners(element), matrix(:, :, element), model%thickness(model%section(element)))
-        call add(k, reshape(equation(:, corner), [6]), stiffness)
-        do i = 1, 3
-          node = corner(i)
-          forced(2*i - 1) = model%prescribed(1, model%leader(1, node))
-          forced(2*i) = model%prescribed(2, model%leader(2, node))
-        end do
-        if (all(forced == 0.0_wp)) cycle
-        forced = matmul(k, forced)
-        do i = 1, 3
-          settlement(:, corner(i)) = settlement(:, corner(i)) - forced(2*i - 1:2*i)
-        end do
+      associate (element => body%element(e))
+        n = model%order(element)
+        k(:2*n, :2*n) = element_stiffness(model, element, matrix)
+        associate (node => model%connectivity(:n, element))
+          call add(k(:2*n, :2*n), reshape(equation(:, node), [2*n]), stiffness)
+          do i = 1, n
+            forced(2*i - 1) = model%prescribed(1, model%leader(1, node(i)))
+            forced(2*i) = model%prescribed(2, model%leader(2, node(i)))
+          end do
+          if (all(forced(:2*n) == 0.0_wp)) cycle
+          settlement(:, node) = settlement(:, node) - reshape(matmul(k(:2*n, :2*n), forced(:2*n)), [2, n])
+        end associate
       end associate
     end do
   end subroutine assemble_body
 
+  !> Stiffness of an element: B'D B times the volume of each point [force/length] [2 order, 2 order].
+  pure function element_stiffness(model, element, matrix) result(k)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element
+    real(wp), intent(in) :: matrix(:, :, :)
+    real(wp) :: k(2*model%order(element), 2*model%order(element))
+    type(element_point) :: point(most_points)
+    real(wp) :: d(4, 4), stress(4)
+    integer :: count, i, j, p
+
+    call points_of_element(model, element, point, count)
+    k = 0.0_wp
+    do p = 1, count
+      d = point(p)%volume*matrix(:, :, model%first_point(element) + p - 1)
+      do j = 1, size(k, 2)
+        stress = d(:, 1)*point(p)%b(1, j) + d(:, 2)*point(p)%b(2, j) + d(:, 3)*point(p)%b(3, j) + d(:, 4)*point(p)%b(4, j)
+        do i = 1, j
+          k(i, j) = k(i, j) + dot_product(point(p)%b(:, i), stress)
+        end do
+      end do
+    end do
+    do j = 2, size(k, 2)
+      k(j, :j - 1) = k(:j - 1, j)
+    end do
+  end function element_stiffness
+
   !> Add an element matrix to the band, the coupling and the border.
   pure subroutine add(k, number, stiffness)
-    real(wp), intent(in) :: k(6, 6)
-    integer, intent(in) :: number(6)
+    real(wp), intent(in) :: k(:, :)
+    integer, intent(in) :: number(:)
     type(body_stiffness), intent(inout) :: stiffness
     integer :: i, j
 
-    do j = 1, 6
+    do j = 1, size(number)
       if (number(j) == 0) cycle
-      do i = 1, 6
+      do i = 1, size(number)
         if (number(i) == 0) cycle
         if (number(i) >= number(j) .and. number(j) > 0) then
           stiffness%band%entries(1 + number(i) - number(j), number(j)) = &

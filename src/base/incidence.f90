@@ -11,7 +11,7 @@ module epcont_base_incidence
 
 contains
 
-  !> From the members of each group [any, groups].
+  !> From the members of each group [any, groups]; 0 is no member.
   pure function new_incidence(member, members) result(table)
     integer, intent(in) :: member(:, :)
     integer, intent(in) :: members   !! how many there are in all
@@ -20,9 +20,10 @@ contains
     integer, allocatable :: next(:)
 
     allocate (table%start(members + 1), source=0)
-    allocate (table%group(size(member)))
+    allocate (table%group(count(member > 0)))
     do g = 1, size(member, 2)
       do k = 1, size(member, 1)
+        if (member(k, g) == 0) exit
         table%start(member(k, g) + 1) = table%start(member(k, g) + 1) + 1
       end do
     end do
@@ -33,6 +34,7 @@ contains
     next = table%start
     do g = 1, size(member, 2)
       do k = 1, size(member, 1)
+        if (member(k, g) == 0) exit
         table%group(next(member(k, g))) = g
         next(member(k, g)) = next(member(k, g)) + 1
       end do

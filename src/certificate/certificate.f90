@@ -1,9 +1,11 @@
 !> Recomputes from displacements and forces alone whether they are an answer.
 !>
-!> Shares nothing with the solver: strains come from the gradient over the edges of each triangle, stresses on the
-!> curve from the paper's own equations (epcont_certificate_yielding), nodal forces from the tractions on the edges.
+!> Shares nothing with the solver: strains come from differences of what the displacements are between the nodes
+!> (epcont_certificate_gradient), stresses on the curve from the paper's own equations (epcont_certificate_yielding),
+!> nodal forces from the work of the stresses on unit displacements.
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
+  use epcont_certificate_gradient, only: most_places, strains_of
   use epcont_certificate_yielding, only: stress_on_curve
   use epcont_model_model, only: model_type
   implicit none
@@ -42,7 +44,7 @@ contains
     real(wp), intent(in) :: curve_tolerance
     real(wp), intent(in) :: displacement(:, :)  !! [2, nodes]
     real(wp), intent(in) :: reaction(:, :)      !! [2, nodes]
-    real(wp), intent(in) :: stress(:, :)        !! xx, yy, zz, xy [4, elements]
+    real(wp), intent(in) :: stress(:, :)        !! xx, yy, zz, xy [4, points]
     real(wp), intent(in) :: force(:)            !! contact forces [pairs]
     type(certificate_type), intent(out) :: certificate
     real(wp), allocatable :: residual(:, :), element_force(:)
@@ -88,41 +90,44 @@ contains
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :), stress(:, :)
     real(wp), intent(inout) :: internal(:, :), magnitude(:), stored, largest, off
-    real(wp) :: strain(3), force(2), edge(2), area
-    integer :: e, k, node
+    real(wp) :: strain(4, most_places), volume(most_places), force(2)
+    integer :: c, e, k, p, places
 
     do e = 1, model%elements
-      associate (corner => model%corner(:, e), t => model%thickness(model%section(e)))
-        call strain_of(model%x(:, corner), displacement(:, corner), strain, area)
-        off = max(off, maxval(abs(stress(:, e) - stress_on_curve(model, model%section(e), strain))))
-        largest = max(largest, maxval(abs(stress(:, e))))
-        stored = stored + t*area*(stress(1, e)*strain(1) + stress(2, e)*strain(2) + stress(4, e)*strain(3))
-        do k = 1, 3
-          ! Half of the traction on the two edges at a corner balances that on the edge across from it.
-          node = corner(k)
-          edge = model%x(:, corner(mod(k + 1, 3) + 1)) - model%x(:, corner(mod(k, 3) + 1))
-          force = -0.5_wp*t*[stress(1, e)*edge(2) - stress(4, e)*edge(1), stress(4, e)*edge(2) - stress(2, e)*edge(1)]
-          internal(:, node) = internal(:, node) + force
-          magnitude(node) = magnitude(node) + maxval(abs(force))
+      associate (node => model%connectivity(:model%order(e), e), first => model%first_point(e))
+        call strains_of(model, e, displacement(:, node), places, strain, volume)
+        do p = 1, places
+          associate (s => stress(:, first + p - 1))
+            off = max(off, maxval(abs(s - stress_on_curve(model, model%section(e), strain(:, p)))))
+            largest = max(largest, maxval(abs(s)))
+            stored = stored + volume(p)*dot_product(s, strain(:, p))
+          end associate
+        end do
+        do k = 1, size(node)
+          do c = 1, 2
+            force(c) = unit_work(model, e, k, c, stress(:, first:model%first_point(e + 1) - 1))
+          end do
+          internal(:, node(k)) = internal(:, node(k)) + force
+          magnitude(node(k)) = magnitude(node(k)) + maxval(abs(force))
         end do
       end associate
     end do
   end subroutine sum_elements
 
-  !> Strain of a triangle from how its corners move against the first.
-  pure subroutine strain_of(x, u, strain, area)
-    real(wp), intent(in) :: x(2, 3), u(2, 3)
-    real(wp), intent(out) :: strain(3), area
-    real(wp) :: side(2, 2), moved(2, 2), gradient(2, 2), determinant
+  !> Work of an element's stresses on a unit displacement of one of its freedoms: the force there.
+  pure real(wp) function unit_work(model, element, node, component, stress)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element, node, component
+    real(wp), intent(in) :: stress(:, :)   !! at its points [4, points]
+    real(wp) :: strain(4, most_places), volume(most_places)
+    real(wp) :: u(2, model%order(element))
+    integer :: places
 
-    side = x(:, 2:3) - spread(x(:, 1), 2, 2)
-    moved = u(:, 2:3) - spread(u(:, 1), 2, 2)
-    determinant = side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1)
-    gradient(:, 1) = (moved(:, 1)*side(2, 2) - moved(:, 2)*side(2, 1))/determinant
-    gradient(:, 2) = (moved(:, 2)*side(1, 1) - moved(:, 1)*side(1, 2))/determinant
-    strain = [gradient(1, 1), gradient(2, 2), gradient(1, 2) + gradient(2, 1)]
-    area = 0.5_wp*determinant
-  end subroutine strain_of
+    u = 0.0_wp
+    u(component, node) = 1.0_wp
+    call strains_of(model, element, u, places, strain, volume)
+    unit_work = sum(volume(:places)*sum(stress*strain(:, :places), dim=1))
+  end function unit_work
 
   !> Smallest force and gap, largest product; the pairs' forces are taken off the residual.
   pure subroutine check_pairs(model, largest_load, displacement, force, residual, certificate)

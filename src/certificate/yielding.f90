@@ -2,7 +2,7 @@
 !> Poisson's ratio mu of the secant body, and bisection for the equivalent strain. The solver shifts the curve instead.
 module epcont_certificate_yielding
   use epcont_base_kinds, only: wp
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: model_type, plane_stress
   implicit none
   private
   public :: stress_on_curve
@@ -12,11 +12,11 @@ module epcont_certificate_yielding
 
 contains
 
-  !> Stress xx, yy, zz, xy of a strain xx, yy, xy (engineering) [stress].
+  !> Stress xx, yy, zz, xy of a strain xx, yy, zz, xy (engineering) [stress].
   pure function stress_on_curve(model, section, strain) result(stress)
     type(model_type), intent(in) :: model
     integer, intent(in) :: section
-    real(wp), intent(in) :: strain(3)
+    real(wp), intent(in) :: strain(4)
     real(wp) :: stress(4)
     real(wp) :: across, lambda, mu, secant, shear
 
@@ -24,13 +24,13 @@ contains
       secant = young
       mu = nu
       if (allocated(model%curve(section)%strain)) call find_secant(model, section, strain, secant, mu)
-      across = strain_across(model%plane_strain(section), mu, strain)
+      across = strain_across(model%kinematics(section), mu, strain)
       ! E_D/3 of (2-5) is the shear modulus, E/(1 - 2 nu) of (2-6) three times the bulk modulus.
       shear = young/(3.0_wp*young/secant - (1.0_wp - 2.0_wp*nu))
       lambda = young/(3.0_wp*(1.0_wp - 2.0_wp*nu)) - 2.0_wp/3.0_wp*shear
       stress = lambda*(strain(1) + strain(2) + across) + 2.0_wp*shear*[strain(1), strain(2), across, 0.0_wp]
-      if (.not. model%plane_strain(section)) stress(3) = 0.0_wp
-      stress(4) = shear*strain(3)
+      if (model%kinematics(section) == plane_stress) stress(3) = 0.0_wp
+      stress(4) = shear*strain(4)
     end associate
   end function stress_on_curve
 
@@ -38,7 +38,7 @@ contains
   pure subroutine find_secant(model, section, strain, secant, mu)
     type(model_type), intent(in) :: model
     integer, intent(in) :: section
-    real(wp), intent(in) :: strain(3)
+    real(wp), intent(in) :: strain(4)
     real(wp), intent(inout) :: secant, mu   !! the elastic ones, which stay below yield
     real(wp) :: low, high, middle, stress
     integer :: k
@@ -70,7 +70,7 @@ contains
       real(wp), intent(in) :: total
 
       associate (ratio => poisson_ratio(total))
-        excess = equivalent_strain(strain, strain_across(model%plane_strain(section), ratio, strain), ratio) - total
+        excess = equivalent_strain(strain, strain_across(model%kinematics(section), ratio, strain), ratio) - total
       end associate
     end function excess
 
@@ -90,19 +90,19 @@ contains
 
   !> Equivalent strain (2-2).
   pure real(wp) function equivalent_strain(strain, across, mu)
-    real(wp), intent(in) :: strain(3), across, mu
+    real(wp), intent(in) :: strain(4), across, mu
 
     equivalent_strain = sqrt(0.5_wp*((strain(1) - strain(2))**2 + (strain(2) - across)**2 + (across - strain(1))**2) &
-                             + 0.75_wp*strain(3)**2)/(1.0_wp + mu)
+                             + 0.75_wp*strain(4)**2)/(1.0_wp + mu)
   end function equivalent_strain
 
-  !> Strain across the plane: 0, or that of a secant body without stress there.
-  pure real(wp) function strain_across(plane_strain, mu, strain)
-    logical, intent(in) :: plane_strain
-    real(wp), intent(in) :: mu, strain(3)
+  !> Strain across the plane: what it is, or in plane stress that of a secant body without stress there.
+  pure real(wp) function strain_across(kinematics, mu, strain)
+    integer, intent(in) :: kinematics
+    real(wp), intent(in) :: mu, strain(4)
 
-    strain_across = 0.0_wp
-    if (.not. plane_strain) strain_across = -mu/(1.0_wp - mu)*(strain(1) + strain(2))
+    strain_across = strain(3)
+    if (kinematics == plane_stress) strain_across = -mu/(1.0_wp - mu)*(strain(1) + strain(2))
   end function strain_across
 
   !> Stress of the uniaxial curve at a total strain; the last slope goes on.

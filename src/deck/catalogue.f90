@@ -2,6 +2,7 @@
 !> no other place that knows a column.
 module epcont_deck_catalogue
   use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
   use epcont_deck_entry, only: any_field, card_entry, components_field, field_entry, id_field, integer_field, largest_id, &
                                new_card, number_of, real_field, word_field
   implicit none
@@ -12,8 +13,19 @@ module epcont_deck_catalogue
   integer, parameter, public :: card_grid = 1, card_ctria3 = 2, card_pshell = 3, card_mat1 = 4, card_spc = 5, &
                                 card_spc1 = 6, card_force = 7, card_ploadx1 = 8, card_rbe2 = 9, card_suport = 10, &
                                 card_cord2r = 11, card_cgap = 12, card_pgap = 13, card_cbar = 14, card_param = 15, &
-                                card_mats1 = 16, card_tables1 = 17
-  integer, parameter, public :: card_kinds = 17
+                                card_mats1 = 16, card_tables1 = 17, &
+                                card_ctria6 = 18, card_cquad4 = 19, card_ctrax3 = 20, card_ctrax6 = 21, card_psolid = 22
+  integer, parameter, public :: card_kinds = 22
+
+  !> What the nodes of elements are, in their order on the card.
+  character(len=*), parameter :: in_turn(4) = ['first node, in either turning sense', 'second node                        ', &
+                                               'third node                         ', 'fourth node                        ']
+  character(len=*), parameter :: six(6) = ['first corner, in either turning sense', 'second corner                        ', &
+                                           'third corner                         ', 'between the first and the second     ', &
+                                           'between the second and the third     ', 'between the third and the first      ']
+  character(len=*), parameter :: round(6) = ['first corner, in either turning sense', 'between the first and the second     ', &
+                                             'second corner                        ', 'between the second and the third     ', &
+                                             'third corner                         ', 'between the third and the first      ']
 
 contains
 
@@ -22,7 +34,7 @@ contains
     type(card_entry) :: card(card_kinds)
 
     card(card_grid) = grid()
-    card(card_ctria3) = ctria3()
+    card(card_ctria3) = element('CTRIA3', 'constant-strain triangle', 'PSHELL', in_turn(:3))
     card(card_pshell) = pshell()
     card(card_mat1) = mat1()
     card(card_spc) = spc()
@@ -38,6 +50,11 @@ contains
     card(card_param) = param()
     card(card_mats1) = mats1()
     card(card_tables1) = tables1()
+    card(card_ctria6) = element('CTRIA6', 'six-node triangle', 'PSHELL', six)
+    card(card_cquad4) = element('CQUAD4', 'four-node quadrilateral, B-bar', 'PSHELL', in_turn(:4))
+    card(card_ctrax3) = element('CTRAX3', 'ring of a three-node triangle; x is the radius', 'PSOLID', in_turn(:3))
+    card(card_ctrax6) = element('CTRAX6', 'ring of a six-node triangle; x is the radius', 'PSOLID', round)
+    card(card_psolid) = psolid()
   end function catalogue
 
   function grid() result(card)
@@ -63,16 +80,28 @@ contains
     field%point_optional = .true.
   end function coordinate
 
-  function ctria3() result(card)
+  !> An element: id, property, nodes.
+  function element(name, meaning, property, node) result(card)
+    character(len=*), intent(in) :: name, meaning, property
+    character(len=*), intent(in) :: node(:)   !! what each of its nodes is
+    type(card_entry) :: card
+    integer :: k
+
+    card = new_card(name, meaning)
+    call card%add(id_field(2, 'EID', 'element'))
+    call card%add(id_field(3, 'PID', 'its '//property))
+    do k = 1, size(node)
+      call card%add(id_field(3 + k, 'G'//text_of(k), trim(node(k))))
+    end do
+  end function element
+
+  function psolid() result(card)
     type(card_entry) :: card
 
-    card = new_card('CTRIA3', 'constant-strain triangle')
-    call card%add(id_field(2, 'EID', 'element'))
-    call card%add(id_field(3, 'PID', 'its PSHELL'))
-    call card%add(id_field(4, 'G1', 'first node, in either turning sense'))
-    call card%add(id_field(5, 'G2', 'second node'))
-    call card%add(id_field(6, 'G3', 'third node'))
-  end function ctria3
+    card = new_card('PSOLID', 'section of rings')
+    call card%add(id_field(2, 'PID', 'property'))
+    call card%add(id_field(3, 'MID', 'its MAT1'))
+  end function psolid
 
   function pshell() result(card)
     type(card_entry) :: card

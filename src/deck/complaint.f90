@@ -40,6 +40,7 @@ contains
     word = name(:scan(name//' ', ' =(') - 1)
     remedy = 'epcont --cards lists the cards that are read'
     if (k > 0) remedy = 'did you mean '//trim(entry(k)%name)//'?'
+    if (name == 'CQUAD8' .or. name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6 or CQUAD4'
     if (index(control_words, ' '//word//' ') > 0 .and. len(word) > 0) remedy = 'one line BEGIN BULK behind case control'
     call faults%add_error(card%name_place(lines), 'unknown card '//name, remedy)
   end subroutine add_unknown

@@ -7,7 +7,7 @@
 module epcont_material_curve
   use epcont_base_kinds, only: wp
   use epcont_material_elasticity, only: bulk_modulus, shear_modulus
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: model_type, plane_stress
   implicit none
   private
   public :: material_type, curve_value, section_materials
@@ -18,7 +18,7 @@ module epcont_material_curve
     real(wp) :: bulk = 1.0_wp               !! K [stress]
     real(wp) :: shear = 1.0_wp              !! G [stress]
     real(wp) :: shift = 0.0_wp              !! (1 - 2 nu)/(3E): eps_i = e + shift*sigma_i
-    logical :: plane_strain = .true.        !! else plane stress
+    logical :: sheet = .false.              !! plane stress
     logical :: yields = .false.
     logical :: paper_ratio = .false.        !! MUP PAPER
     logical :: ends = .false.               !! beyond the last point there is no table
@@ -55,7 +55,7 @@ contains
       material(s)%bulk = bulk_modulus(model%young(s), model%poisson(s))
       material(s)%shear = shear_modulus(model%young(s), model%poisson(s))
       material(s)%shift = (1.0_wp - 2.0_wp*model%poisson(s))/(3.0_wp*model%young(s))
-      material(s)%plane_strain = model%plane_strain(s)
+      material(s)%sheet = model%kinematics(s) == plane_stress
       material(s)%yields = allocated(model%curve(s)%strain)
       if (.not. material(s)%yields) cycle
       material(s)%paper_ratio = model%controls%paper_ratio

@@ -21,18 +21,24 @@ contains
     shear_modulus = young/(2.0_wp*(1.0_wp + poisson))
   end function shear_modulus
 
-  !> D of stress = D strain, components xx, yy, xy (engineering shear strain) [stress] [3, 3]. With G = E_D/3 it is the
-  !! secant matrix (2-8).
-  pure function isotropic_matrix(bulk, shear, plane_strain) result(d)
+  !> D of stress = D strain, components xx, yy, zz, xy (engineering shear strain) [stress] [4, 4]. With G = E_D/3 it is
+  !! the secant matrix (2-8). In a sheet the stress zz vanishes, and the strain zz is what that takes.
+  pure function isotropic_matrix(bulk, shear, sheet) result(d)
     real(wp), intent(in) :: bulk, shear
-    logical, intent(in) :: plane_strain  !! else plane stress
-    real(wp) :: d(3, 3)
-    real(wp) :: normal, cross
+    logical, intent(in) :: sheet   !! plane stress
+    real(wp) :: d(4, 4)
+    real(wp) :: cross
+    integer :: i, normals
 
     cross = bulk - 2.0_wp*shear/3.0_wp
-    if (.not. plane_strain) cross = 2.0_wp*shear*cross/(cross + 2.0_wp*shear)
-    normal = cross + 2.0_wp*shear
-    d = reshape([normal, cross, 0.0_wp, cross, normal, 0.0_wp, 0.0_wp, 0.0_wp, shear], [3, 3])
+    if (sheet) cross = 2.0_wp*shear*cross/(cross + 2.0_wp*shear)
+    normals = merge(2, 3, sheet)
+    d = 0.0_wp
+    d(:normals, :normals) = cross
+    do i = 1, normals
+      d(i, i) = cross + 2.0_wp*shear
+    end do
+    d(4, 4) = shear
   end function isotropic_matrix
 
   !> Von Mises stress (2-1).

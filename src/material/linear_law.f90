@@ -1,4 +1,4 @@
-!> Stress as a linear function of strain, one for each element: what a stiffness matrix can be made of.
+!> Stress as a linear function of strain, one for each integration point: what a stiffness matrix can be made of.
 module epcont_material_linear_law
   use epcont_base_kinds, only: wp
   use epcont_material_curve, only: material_type
@@ -8,10 +8,10 @@ module epcont_material_linear_law
   private
   public :: linear_law, elastic_law
 
-  !> stress = matrix strain + initial_stress; components xx, yy, xy (engineering shear strain).
+  !> stress = matrix strain + initial_stress; components xx, yy, zz, xy (engineering shear strain).
   type :: linear_law
-    real(wp), allocatable :: matrix(:, :, :)        !! [stress] [3, 3, elements]
-    real(wp), allocatable :: initial_stress(:, :)   !! [stress] [3, elements]
+    real(wp), allocatable :: matrix(:, :, :)        !! [stress] [4, 4, points]
+    real(wp), allocatable :: initial_stress(:, :)   !! [stress] [4, points]
   contains
     procedure :: stress
   end type linear_law
@@ -23,27 +23,27 @@ contains
     type(model_type), intent(in) :: model
     type(material_type), intent(in) :: material(:)   !! of each section
     type(linear_law) :: law
-    integer :: e
+    integer :: p
 
-    allocate (law%matrix(3, 3, model%elements))
-    allocate (law%initial_stress(3, model%elements), source=0.0_wp)
-    do e = 1, model%elements
-      associate (m => material(model%section(e)))
-        law%matrix(:, :, e) = isotropic_matrix(m%bulk, m%shear, m%plane_strain)
+    allocate (law%matrix(4, 4, model%points))
+    allocate (law%initial_stress(4, model%points), source=0.0_wp)
+    do p = 1, model%points
+      associate (m => material(model%section(model%point_element(p))))
+        law%matrix(:, :, p) = isotropic_matrix(m%bulk, m%shear, m%sheet)
       end associate
     end do
   end function elastic_law
 
-  !> Stress of each element [3, elements].
+  !> Stress of each point [4, points].
   pure function stress(self, strain)
     class(linear_law), intent(in) :: self
-    real(wp), intent(in) :: strain(:, :)   !! [3, elements]
+    real(wp), intent(in) :: strain(:, :)   !! [4, points]
     real(wp), allocatable :: stress(:, :)
-    integer :: e
+    integer :: p
 
     allocate (stress, mold=strain)
-    do e = 1, size(strain, 2)
-      stress(:, e) = matmul(self%matrix(:, :, e), strain(:, e)) + self%initial_stress(:, e)
+    do p = 1, size(strain, 2)
+      stress(:, p) = matmul(self%matrix(:, :, p), strain(:, p)) + self%initial_stress(:, p)
     end do
   end function stress
 end module epcont_material_linear_law

@@ -24,28 +24,29 @@ module epcont_material_total_theory
 
 contains
 
-  !> Stress and moduli at a strain.
+  !> Stress and moduli at a strain; in a sheet the strain zz is found, whatever is given.
   pure function respond(material, strain) result(response)
     type(material_type), intent(in) :: material
-    real(wp), intent(in) :: strain(3)      !! xx, yy, xy (engineering)
+    real(wp), intent(in) :: strain(4)      !! xx, yy, zz, xy (engineering)
     type(response_type) :: response
-    real(wp) :: across
 
-    across = 0.0_wp
-    if (.not. material%plane_strain) across = strain_across(material, strain)
-    response = respond_in_space(material, strain, across)
-    if (.not. material%plane_strain) response%stress(3) = 0.0_wp
+    if (material%sheet) then
+      response = respond_in_space(material, [strain(:2), strain_across(material, strain), strain(4)])
+      response%stress(3) = 0.0_wp
+    else
+      response = respond_in_space(material, strain)
+    end if
   end function respond
 
-  !> Stress and moduli at a strain with its part across the plane.
-  pure function respond_in_space(material, strain, across) result(response)
+  !> The same with the strain zz as it is given.
+  pure function respond_in_space(material, strain) result(response)
     type(material_type), intent(in) :: material
-    real(wp), intent(in) :: strain(3), across
+    real(wp), intent(in) :: strain(4)
     type(response_type) :: response
     real(wp) :: mean
 
-    mean = (strain(1) + strain(2) + across)/3.0_wp
-    response%deviator = [strain(1) - mean, strain(2) - mean, across - mean, 0.5_wp*strain(3)]
+    mean = sum(strain(:3))/3.0_wp
+    response%deviator = [strain(:3) - mean, 0.5_wp*strain(4)]
     response%e = sqrt((sum(response%deviator**2) + response%deviator(4)**2)*2.0_wp/3.0_wp)
     response%curve = material%at_strain(response%e)
     response%stress = 2.0_wp/3.0_wp*response%curve%modulus*response%deviator
@@ -56,7 +57,7 @@ contains
   !! and has its zero between that of the elastic sheet and that of constant volume.
   pure function strain_across(material, strain) result(across)
     type(material_type), intent(in) :: material
-    real(wp), intent(in) :: strain(3)
+    real(wp), intent(in) :: strain(4)
     real(wp) :: across
     type(response_type) :: response
     real(wp) :: elastic, low, high, next, rate
@@ -68,7 +69,7 @@ contains
     low = min(across, -(strain(1) + strain(2)))
     high = max(across, -(strain(1) + strain(2)))
     do step = 1, most_steps
-      response = respond_in_space(material, strain, across)
+      response = respond_in_space(material, [strain(:2), across, strain(4)])
       if (.not. response%curve%yielded .and. step == 1) return
       if (response%stress(3) == 0.0_wp) return
       if (response%stress(3) > 0.0_wp) high = across
@@ -91,33 +92,29 @@ contains
       radial_stiffness = 4.0_wp/9.0_wp*(response%curve%slope - response%curve%modulus)/response%e**2
   end function radial_stiffness
 
-  !> D of stress = D strain (2-8) [stress] [3, 3].
+  !> D of stress = D strain (2-8) [stress] [4, 4].
   pure function secant_matrix(material, response) result(d)
     type(material_type), intent(in) :: material
     type(response_type), intent(in) :: response
-    real(wp) :: d(3, 3)
+    real(wp) :: d(4, 4)
 
-    d = isotropic_matrix(material%bulk, response%curve%modulus/3.0_wp, material%plane_strain)
+    d = isotropic_matrix(material%bulk, response%curve%modulus/3.0_wp, material%sheet)
   end function secant_matrix
 
-  !> D of d stress = D d strain, the consistent tangent [stress] [3, 3].
+  !> D of d stress = D d strain, the consistent tangent [stress] [4, 4].
   pure function tangent_matrix(material, response) result(d)
     type(material_type), intent(in) :: material
     type(response_type), intent(in) :: response
-    real(wp) :: d(3, 3)
-    real(wp) :: across(3), radial, thickening
-    real(wp) :: v(3)
+    real(wp) :: d(4, 4)
+    real(wp) :: across(4)
 
-    radial = radial_stiffness(response)
-    v = response%deviator([1, 2, 4])
-    d = isotropic_matrix(material%bulk, response%curve%modulus/3.0_wp, .true.) &
-        + radial*spread(v, 2, 3)*spread(v, 1, 3)
-    if (material%plane_strain) return
-    ! Stress across is zero: its strain is eliminated.
-    across = material%bulk - 2.0_wp/9.0_wp*response%curve%modulus
-    across(3) = 0.0_wp
-    across = across + radial*response%deviator(3)*v
-    thickening = material%bulk + 4.0_wp/9.0_wp*response%curve%modulus + radial*response%deviator(3)**2
-    d = d - spread(across, 2, 3)*spread(across, 1, 3)/thickening
+    d = isotropic_matrix(material%bulk, response%curve%modulus/3.0_wp, .false.) &
+        + radial_stiffness(response)*spread(response%deviator, 2, 4)*spread(response%deviator, 1, 4)
+    if (.not. material%sheet) return
+    ! The stress zz is zero: its strain is eliminated.
+    across = d(:, 3)
+    d = d - spread(across, 2, 4)*spread(across, 1, 4)/across(3)
+    d(3, :) = 0.0_wp
+    d(:, 3) = 0.0_wp
   end function tangent_matrix
 end module epcont_material_total_theory

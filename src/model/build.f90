@@ -2,11 +2,13 @@
 module epcont_model_build
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_sorting, only: id_index
-  use epcont_deck_deck, only: card_cgap, card_ctria3, card_grid, card_rbe2, deck_type
+  use epcont_deck_deck, only: card_cgap, card_grid, card_rbe2, deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_model_choices, only: build_controls
   use epcont_model_loads, only: build_loads
-  use epcont_model_mesh, only: build_elements, build_nodes, build_sections
+  use epcont_model_elements, only: build_elements, check_axis, element_cards
+  use epcont_model_loads, only: build_loads
+  use epcont_model_mesh, only: build_nodes, build_sections
   use epcont_model_model, only: model_type
   use epcont_model_pairs, only: build_pairs
   use epcont_model_reference, only: check_unique, index_of_ids
@@ -28,14 +30,15 @@ contains
     nodes = index_of_ids(deck, card_grid)
     call build_sections(deck, model, faults)
     call build_elements(deck, nodes, model, faults)
-    call check_unique(deck, [card_ctria3, card_rbe2, card_cgap], faults)
+    call check_unique(deck, [element_cards, card_rbe2, card_cgap], faults)
     call build_supports(deck, nodes, model, faults)
     call build_ties(deck, nodes, model, faults)
+    call check_axis(deck, model, faults)
     call build_references(deck, nodes, model, faults)
     call build_loads(deck, nodes, model, faults)
     call build_pairs(deck, nodes, model, faults)
     call build_controls(deck, model, faults)
-    if (deck%card(card_ctria3)%count == 0 .and. faults%error_count() == 0) &
+    if (model%elements == 0 .and. faults%error_count() == 0) &
       call faults%add_error(place_type(), 'the deck has no elements', 'CTRIA3 cards')
     if (faults%error_count() == 0) call find_bodies(model)
   end subroutine build_model
@@ -48,8 +51,9 @@ contains
 
     sets = new_partition(model%nodes)
     do i = 1, model%elements
-      call sets%join(model%corner(1, i), model%corner(2, i))
-      call sets%join(model%corner(1, i), model%corner(3, i))
+      do c = 2, model%order(i)
+        call sets%join(model%connectivity(1, i), model%connectivity(c, i))
+      end do
     end do
     do i = 1, model%nodes
       do c = 1, 2

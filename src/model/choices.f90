@@ -4,7 +4,7 @@ module epcont_model_choices
   use epcont_deck_deck, only: card_param, card_pshell, deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_controls, only: method_name, method_newton
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: model_type, plane_strain
   implicit none
   private
   public :: build_controls
@@ -34,9 +34,9 @@ contains
       call faults%add_error(deck%place(card_param, row, 2), 'PARAM MUP: PAPER does not go with METHOD NEWTON', &
                             'METHOD SECANT, MODSEC or INISTR, or MUP EXACT')
     do s = 1, size(model%curve)
-      if (model%plane_strain(s) .or. .not. allocated(model%curve(s)%strain)) cycle
+      if (model%kinematics(s) == plane_strain .or. .not. allocated(model%curve(s)%strain)) cycle
       call faults%add_error(deck%place(card_param, row, 2), 'PARAM MUP: PAPER is for plane strain, and '// &
-                            deck%identity(card_pshell, s)//' is in plane stress', 'MUP EXACT')
+                            deck%identity(card_pshell, s)//' is not', 'MUP EXACT')
       return
     end do
   end subroutine build_controls

@@ -1,12 +1,13 @@
 !> Nodal loads from FORCE and PLOADX1.
 module epcont_model_loads
+  use epcont_base_edge, only: edge_point, edge_point_count, edge_points
   use epcont_base_kinds, only: wp
-  use epcont_base_sorting, only: id_index
-  use epcont_base_text, only: text_of
-  use epcont_deck_deck, only: card_ctria3, card_force, card_ploadx1, deck_type
+  use epcont_base_sorting, only: id_index, new_id_index
+  use epcont_deck_deck, only: card_force, card_ploadx1, deck_type
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_model_model, only: model_type
-  use epcont_model_reference, only: index_of_ids, resolve
+  use epcont_model_elements, only: element_name
+  use epcont_model_model, only: axisymmetric, model_type
+  use epcont_model_reference, only: resolve
   use epcont_model_sets, only: chosen_set
   implicit none
   private
@@ -21,7 +22,7 @@ contains
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
     type(id_index) :: elements
-    integer :: element, i, k, node(2), set
+    integer :: element, i, k, node(2), set, side
 
     allocate (model%load(2, model%nodes), source=0.0_wp)
     call chosen_set(deck, [card_force, card_ploadx1], deck%load, deck%load_place, 'LOAD', faults, set)
@@ -35,49 +36,66 @@ contains
                                 ': field 8 (N3) points off the plane', '0.0: scenes lie in the x-y plane')
         model%load(:, node(1)) = model%load(:, node(1)) + force%value(k - 1, i)*force%value(k:k + 1, i)
       end do
-      if (pressure%count > 0) elements = index_of_ids(deck, card_ctria3)
+      if (pressure%count > 0) elements = new_id_index(model%element_id)
       do i = 1, pressure%count
-        call resolve(deck, card_ploadx1, i, 2, elements, 'CTRIA3', faults, element)
+        call resolve(deck, card_ploadx1, i, 2, elements, 'element', faults, element)
         do k = 1, 2
           call resolve(deck, card_ploadx1, i, pressure%column('GA') + k - 1, nodes, 'GRID', faults, node(k))
         end do
         if (element == 0 .or. any(node == 0) .or. nint(pressure%value(1, i)) /= set) cycle
-        if (any(model%corner(:, element) == 0)) cycle  ! said of the element
-        if (node(1) == node(2) .or. count(model%corner(:, element) == node(1)) + &
-            count(model%corner(:, element) == node(2)) /= 2) then
+        if (any(model%connectivity(:model%order(element), element) == 0)) cycle  ! said of the element
+        side = side_between(model, element, node)
+        if (side == 0) then
           call faults%add_error(deck%place(card_ploadx1, i, pressure%column('GA')), deck%identity(card_ploadx1, i)// &
-                                ': GA and GB are not two corners of CTRIA3 '//text_of(model%element_id(element)), &
-                                'two corners of the element')
+                                ': GA and GB are not the ends of a side of '//element_name(model, element), &
+                                'two neighbouring corners of the element')
         else if (model%section(element) > 0) then
-          call add_pressure(pressure%value(3:4, i), pressure%value(pressure%column('THETA'), i), element, node, model)
+          call add_pressure(pressure%value(3:4, i), pressure%value(pressure%column('THETA'), i), element, side, node(1), model)
         end if
       end do
     end associate
   end subroutine build_loads
 
-  !> Nodal forces of a pressure that varies linearly along an edge: positive into the element, turned
-  !! counter-clockwise by theta.
-  subroutine add_pressure(pressure, theta, element, node, model)
+  !> The side of an element that ends at two nodes; 0 where there is none.
+  pure integer function side_between(model, element, node) result(side)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element, node(2)
+    integer :: ends(3)
+
+    do side = 1, model%corners(element)
+      ends = model%edge(element, side)
+      if (all(ends(:2) == node) .or. all(ends(:2) == node([2, 1]))) return
+    end do
+    side = 0
+  end function side_between
+
+  !> Nodal forces of a pressure that varies linearly along a side, from one node to the other: positive into the
+  !! element, turned counter-clockwise by theta.
+  subroutine add_pressure(pressure, theta, element, side, from, model)
     real(wp), intent(in) :: pressure(2)    !! at the two nodes [stress]
     real(wp), intent(in) :: theta          !! [degree]
-    integer, intent(in) :: element, node(2)
+    integer, intent(in) :: element, side
+    integer, intent(in) :: from            !! the node of the first pressure
     type(model_type), intent(inout) :: model
     real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
-    real(wp) :: edge(2), inward(2), direction(2), to_third(2), force(2)
-    integer :: third, k
+    type(edge_point) :: point(edge_point_count)
+    real(wp) :: depth, inward(2), direction(2), at_ends(2), value
+    integer :: ends(3), k, p
 
-    third = sum(model%corner(:, element)) - sum(node)
-    edge = model%x(:, node(2)) - model%x(:, node(1))
-    to_third = model%x(:, third) - model%x(:, node(1))
-    inward = [-edge(2), edge(1)]            ! as long as the edge
-    if (dot_product(inward, to_third) < 0.0_wp) inward = -inward
-    direction = inward
-    if (theta /= 0.0_wp) direction = [cos(theta*degree)*inward(1) - sin(theta*degree)*inward(2), &
-                                      sin(theta*degree)*inward(1) + cos(theta*degree)*inward(2)]
-    force = [2.0_wp*pressure(1) + pressure(2), pressure(1) + 2.0_wp*pressure(2)]/6.0_wp
-    do k = 1, 2
-      model%load(:, node(k)) = model%load(:, node(k)) + &
-                               force(k)*model%thickness(model%section(element))*direction
+    ends = model%edge(element, side)
+    at_ends = merge(pressure, pressure([2, 1]), ends(1) == from)
+    point = edge_points(model%edge_coordinates(ends))
+    do p = 1, edge_point_count
+      inward = [-point(p)%tangent(2), point(p)%tangent(1)]   ! the element lies to the left
+      direction = inward
+      if (theta /= 0.0_wp) direction = [cos(theta*degree)*inward(1) - sin(theta*degree)*inward(2), &
+                                        sin(theta*degree)*inward(1) + cos(theta*degree)*inward(2)]
+      depth = model%thickness(model%section(element))
+      if (model%kinematics(model%section(element)) == axisymmetric) depth = 2.0_wp*acos(-1.0_wp)*point(p)%x(1)
+      value = at_ends(1) + (at_ends(2) - at_ends(1))*point(p)%along
+      do k = 1, size(ends)
+        if (ends(k) > 0) model%load(:, ends(k)) = model%load(:, ends(k)) + value*depth*point(p)%values(k)*direction
+      end do
     end do
   end subroutine add_pressure
 end module epcont_model_loads

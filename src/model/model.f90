@@ -3,22 +3,32 @@
 !> Components come first in all arrays. Nodes, elements and pairs are known by their position; their ids
 !> of the deck serve for output alone.
 module epcont_model_model
-  use epcont_base_geometry, only: triangle_area
   use epcont_base_kinds, only: wp
   use epcont_model_controls, only: controls_type, uniaxial_curve
   implicit none
   private
   public :: model_type
 
+  !> Nodes of an element, at most.
+  integer, parameter, public :: most_nodes = 6
+  !> What a section's elements do across the plane: nothing; give way; or they are rings, x their radius.
+  integer, parameter, public :: plane_strain = 1, plane_stress = 2, axisymmetric = 3
+
   type :: model_type
     integer :: nodes = 0, elements = 0, pairs = 0, bodies = 0
     integer, allocatable :: node_id(:)          !! [nodes]
     real(wp), allocatable :: x(:, :)            !! coordinates [length] [2, nodes]
     integer, allocatable :: element_id(:)       !! [elements]
-    integer, allocatable :: corner(:, :)        !! nodes of each element, counter-clockwise [3, elements]
+    integer, allocatable :: order(:)            !! nodes of each element: 3, 4 or 6 [elements]
+    !> The nodes of each element: its corners counter-clockwise, then the middles of its sides, the first behind the
+    !! first corner; 0 where it has no more. [most_nodes, elements]
+    integer, allocatable :: connectivity(:, :)
+    integer :: points = 0                       !! integration points of all elements
+    integer, allocatable :: first_point(:)      !! of each element; those of element e end before that of e + 1 [elements + 1]
+    integer, allocatable :: point_element(:)    !! [points]
     integer, allocatable :: section(:)          !! section of each element [elements]
     real(wp), allocatable :: thickness(:)       !! [length] [sections]
-    logical, allocatable :: plane_strain(:)     !! else plane stress [sections]
+    integer, allocatable :: kinematics(:)       !! plane_strain, plane_stress or axisymmetric [sections]
     real(wp), allocatable :: young(:)           !! [stress] [sections]
     real(wp), allocatable :: poisson(:)         !! [sections]
     type(uniaxial_curve), allocatable :: curve(:)  !! how each section yields, if it does [sections]
@@ -34,30 +44,54 @@ module epcont_model_model
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
     integer, allocatable :: body(:)             !! of each node [nodes]
   contains
+    procedure :: coordinates
     procedure :: corners
-    procedure :: area
+    procedure :: edge
+    procedure :: edge_coordinates
     procedure :: can_yield
     procedure :: has_flat_curve
   end type model_type
 
 contains
 
-  !> Coordinates of the corners of an element.
-  pure function corners(self, element) result(x)
+  !> Coordinates of the nodes of an element [length] [2, order].
+  pure function coordinates(self, element) result(x)
     class(model_type), intent(in) :: self
     integer, intent(in) :: element
-    real(wp) :: x(2, 3)
+    real(wp) :: x(2, self%order(element))
 
-    x = self%x(:, self%corner(:, element))
+    x = self%x(:, self%connectivity(:self%order(element), element))
+  end function coordinates
+
+  !> Corners, and sides, of an element.
+  pure integer function corners(self, element)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: element
+
+    corners = self%order(element)
+    if (corners == 6) corners = 3
   end function corners
 
-  pure function area(self, element)
+  !> Nodes of a side of an element: where it begins and ends, counter-clockwise, and its middle, 0 where it has none.
+  pure function edge(self, element, side)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
-    real(wp) :: area
+    integer, intent(in) :: element, side
+    integer :: edge(3)
 
-    area = triangle_area(self%corners(element))
-  end function area
+    associate (node => self%connectivity(:, element), n => self%corners(element))
+      edge = [node(side), node(mod(side, n) + 1), 0]
+      if (self%order(element) == 6) edge(3) = node(3 + side)
+    end associate
+  end function edge
+
+  !> Coordinates of the nodes of a side [length] [2, 2 or 3].
+  pure function edge_coordinates(self, edge) result(x)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: edge(3)
+    real(wp) :: x(2, merge(3, 2, edge(3) > 0))
+
+    x = self%x(:, edge(:size(x, 2)))
+  end function edge_coordinates
 
   !> Can an element yield?
   pure function can_yield(self, element)

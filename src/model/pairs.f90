@@ -110,16 +110,18 @@ contains
     type(model_type), intent(in) :: model
     real(wp), allocatable :: edge(:)
     real(wp) :: length
-    integer :: a, b, e, k
+    integer :: e, i, k, side(3)
 
     allocate (edge(model%nodes), source=huge(1.0_wp))
     do e = 1, model%elements
-      if (any(model%corner(:, e) == 0)) cycle
-      do k = 1, 3
-        a = model%corner(k, e)
-        b = model%corner(mod(k, 3) + 1, e)
-        length = norm2(model%x(:, a) - model%x(:, b))
-        edge([a, b]) = min(edge([a, b]), length)
+      if (any(model%connectivity(:model%order(e), e) == 0)) cycle
+      do k = 1, model%corners(e)
+        side = model%edge(e, k)
+        length = norm2(model%x(:, side(1)) - model%x(:, side(2)))
+        if (side(3) > 0) length = 0.5_wp*length
+        do i = 1, merge(3, 2, side(3) > 0)
+          edge(side(i)) = min(edge(side(i)), length)
+        end do
       end do
     end do
     where (edge == huge(1.0_wp)) edge = maxval(edge, mask=edge < huge(1.0_wp))

@@ -166,7 +166,7 @@ contains
     integer :: c, h, i, leader, p, rows, references
 
     rows = 2*count(column(parts%hinge(2, :)) + column(parts%hinge(3, :)) > 0) &
-           + 4*size(nodes) + columns/3
+           + 4*size(nodes) + columns
     allocate (held(rows, columns), source=0.0_wp)
     allocate (measured(2*size(nodes), columns), source=0.0_wp)
     allocate (freedom(2, 2*size(nodes)))
@@ -183,7 +183,12 @@ contains
       end associate
     end do
     do p = 1, parts%count
-      if (parts%turns(p) .or. parts%body(p) /= model%body(nodes(1))) cycle
+      if (parts%body(p) /= model%body(nodes(1))) cycle
+      if (parts%ring(p)) then
+        rows = rows + 1
+        held(rows, column(p) + 1) = 1.0_wp
+      end if
+      if (parts%turns(p) .and. .not. parts%ring(p)) cycle
       rows = rows + 1
       held(rows, column(p) + 3) = 1.0_wp
     end do

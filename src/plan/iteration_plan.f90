@@ -33,7 +33,7 @@ contains
 
     allocate (plan%body(model%bodies), source=.false.)
     do e = 1, model%elements
-      if (model%can_yield(e)) plan%body(model%body(model%corner(1, e))) = .true.
+      if (model%can_yield(e)) plan%body(model%body(model%connectivity(1, e))) = .true.
     end do
     plan%yields = any(plan%body)
     if (plan%yields) plan%load_steps = model%controls%load_steps

@@ -43,11 +43,11 @@ contains
     logical, allocatable :: at_contact(:)
     integer :: b, first, last, e_first, e_last
 
-    around = new_incidence(model%corner, model%nodes)
+    around = new_incidence(model%connectivity, model%nodes)
     allocate (at_contact(model%nodes), source=.false.)
     at_contact(reshape(model%pair_node, [2*model%pairs])) = .true.
     order = sorted_order(model%body)
-    element_body = model%body(model%corner(1, :))
+    element_body = model%body(model%connectivity(1, :))
     element_order = sorted_order(element_body)
     allocate (numbering%body(model%bodies))
     allocate (numbering%equation(2, model%nodes), source=0)
@@ -121,8 +121,8 @@ contains
       n = order(at)
       first = filled + 1
       do k = around%start(n), around%start(n + 1) - 1
-        associate (corner => model%corner(:, around%group(k)))
-          call add_new(corner, seen, order, filled)
+        associate (e => around%group(k))
+          call add_new(model%connectivity(:model%order(e), e), seen, order, filled)
         end associate
       end do
       if (filled > first) then
@@ -133,18 +133,18 @@ contains
 
   end function sweep
 
-  !> Put the corners not seen yet at the end of the order.
-  pure subroutine add_new(corner, seen, order, filled)
-    integer, intent(in) :: corner(:)
+  !> Put the nodes not seen yet at the end of the order.
+  pure subroutine add_new(node, seen, order, filled)
+    integer, intent(in) :: node(:)
     logical, intent(inout) :: seen(:)
     integer, intent(inout) :: order(:), filled
     integer :: c
 
-    do c = 1, size(corner)
-      if (seen(corner(c))) cycle
-      seen(corner(c)) = .true.
+    do c = 1, size(node)
+      if (seen(node(c))) cycle
+      seen(node(c)) = .true.
       filled = filled + 1
-      order(filled) = corner(c)
+      order(filled) = node(c)
     end do
   end subroutine add_new
 
@@ -184,7 +184,7 @@ contains
     end do
     body%contact_equations = body%equations - before_contact
     do e = 1, size(body%element)
-      associate (numbers => equation(:, model%corner(:, body%element(e))))
+      associate (numbers => equation(:, model%connectivity(:model%order(body%element(e)), body%element(e))))
         highest = maxval(numbers)
         lowest = minval(numbers, mask=numbers > 0)
         if (highest > 0) body%half_bandwidth = max(body%half_bandwidth, highest - lowest)

@@ -6,7 +6,7 @@ module epcont_plan_rigid_parts
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: axisymmetric, model_type, most_nodes
   implicit none
   private
   public :: rigid_parts, find_rigid_parts
@@ -16,6 +16,7 @@ module epcont_plan_rigid_parts
     integer, allocatable :: of_node(:)      !! a part of each node [nodes]
     integer, allocatable :: body(:)         !! of each part [count]
     logical, allocatable :: turns(:)        !! the part can turn [count]
+    logical, allocatable :: ring(:)         !! the part can move along y alone [count]
     integer, allocatable :: hinge(:, :)     !! node, part, other part of each hinge [3, hinges]
     real(wp), allocatable :: centre(:, :)   !! of each body [length] [2, bodies]
     real(wp), allocatable :: extent(:)      !! of each body, largest half width [length] [bodies]
@@ -32,12 +33,14 @@ contains
     integer, allocatable :: of_element(:)
     integer :: e, hinges, i, k
 
-    around = new_incidence(model%corner, model%nodes)
+    around = new_incidence(model%connectivity, model%nodes)
     call join_elements(model, around, of_element, parts%count)
     allocate (parts%of_node(model%nodes), source=0)
     do e = 1, model%elements
-      do k = 1, 3
-        if (parts%of_node(model%corner(k, e)) == 0) parts%of_node(model%corner(k, e)) = of_element(e)
+      do k = 1, model%order(e)
+        associate (node => model%connectivity(k, e))
+          if (parts%of_node(node) == 0) parts%of_node(node) = of_element(e)
+        end associate
       end do
     end do
     allocate (parts%turns(parts%count), source=.true.)
@@ -50,9 +53,13 @@ contains
     allocate (parts%body(parts%count))
     parts%body(parts%of_node) = model%body
     do e = 1, model%elements
-      parts%body(of_element(e)) = model%body(model%corner(1, e))
+      parts%body(of_element(e)) = model%body(model%connectivity(1, e))
     end do
-    allocate (parts%hinge(3, 3*model%elements))
+    allocate (parts%ring(parts%count), source=.false.)
+    do e = 1, model%elements
+      parts%ring(of_element(e)) = model%kinematics(model%section(e)) == axisymmetric
+    end do
+    allocate (parts%hinge(3, most_nodes*model%elements))
     hinges = 0
     do i = 1, model%nodes
       do k = around%start(i), around%start(i + 1) - 1
@@ -74,16 +81,16 @@ contains
     integer, allocatable, intent(out) :: of_element(:)
     integer, intent(out) :: count
     type(partition) :: sets
-    integer :: e, j, k, neighbour, other
+    integer :: e, j, k, neighbour, side(3)
 
     sets = new_partition(model%elements)
     do e = 1, model%elements
-      do k = 1, 3
-        other = model%corner(mod(k, 3) + 1, e)
-        do j = around%start(model%corner(k, e)), around%start(model%corner(k, e) + 1) - 1
+      do k = 1, model%corners(e)
+        side = model%edge(e, k)
+        do j = around%start(side(1)), around%start(side(1) + 1) - 1
           neighbour = around%group(j)
           if (neighbour >= e) exit
-          if (any(model%corner(:, neighbour) == other)) call sets%join(e, neighbour)
+          if (any(model%connectivity(:, neighbour) == side(2))) call sets%join(e, neighbour)
         end do
       end do
     end do

@@ -1,7 +1,7 @@
 !> Anderson's acceleration of a fixed-point iteration x -> g(x): from the last steps the mixture of g whose g - x is
 !> least, in the norm of the elastic energy of strains.
 module epcont_plasticity_anderson
-  use epcont_assembly_fields, only: element_volumes
+  use epcont_assembly_fields, only: volumes
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
   use epcont_plasticity_state, only: scene_state
@@ -19,7 +19,7 @@ module epcont_plasticity_anderson
   type :: anderson_mixer
     integer :: steps = 0                               !! remembered
     logical :: begun = .false.
-    real(wp), allocatable :: weight(:)                 !! of each element in the norm [elements]
+    real(wp), allocatable :: weight(:)                 !! of each point in the norm [points]
     ! The last strains of g - x, and g.
     real(wp), allocatable :: rest(:, :), strain(:, :), displacement(:, :)
     ! How they changed in the last steps, the latest first [., ., memory].
@@ -48,8 +48,8 @@ contains
     integer :: k
 
     if (.not. allocated(self%weight)) then
-      self%weight = element_volumes(model)*model%young(model%section)
-      allocate (self%rest_step(3, model%elements, memory), self%strain_step(3, model%elements, memory))
+      self%weight = volumes(model)*model%young(model%section(model%point_element))
+      allocate (self%rest_step(4, model%points, memory), self%strain_step(4, model%points, memory))
       allocate (self%displacement_step(2, model%nodes, memory))
     end if
     if (self%begun) call remember(self, found%strain - about%strain, found)
@@ -123,15 +123,15 @@ contains
     end do
   end function best_shares
 
-  !> Product of two strain fields [3, elements].
+  !> Product of two strain fields [4, points].
   pure real(wp) function product_of(self, a, b)
     type(anderson_mixer), intent(in) :: self
     real(wp), intent(in) :: a(:, :), b(:, :)
-    integer :: e
+    integer :: p
 
     product_of = 0.0_wp
-    do e = 1, size(a, 2)
-      product_of = product_of + self%weight(e)*(a(1, e)*b(1, e) + a(2, e)*b(2, e) + 0.5_wp*a(3, e)*b(3, e))
+    do p = 1, size(a, 2)
+      product_of = product_of + self%weight(p)*(dot_product(a(:3, p), b(:3, p)) + 0.5_wp*a(4, p)*b(4, p))
     end do
   end function product_of
 end module epcont_plasticity_anderson

@@ -26,15 +26,15 @@ contains
     real(wp), intent(in) :: strain(:, :)
     type(linear_law), intent(inout) :: law
     type(response_type) :: response
-    integer :: e
+    integer :: p
 
-    do e = 1, model%elements
-      associate (m => material(model%section(e)))
+    do p = 1, model%points
+      associate (m => material(model%section(model%point_element(p))))
         if (.not. m%yields) cycle
-        response = respond(m, strain(:, e))
-        law%initial_stress(:, e) = 0.0_wp
+        response = respond(m, strain(:, p))
+        law%initial_stress(:, p) = 0.0_wp
         if (response%curve%yielded) &
-          law%initial_stress(:, e) = response%stress([1, 2, 4]) - matmul(law%matrix(:, :, e), strain(:, e))
+          law%initial_stress(:, p) = response%stress - matmul(law%matrix(:, :, p), strain(:, p))
       end associate
     end do
   end subroutine linearise

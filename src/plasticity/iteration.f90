@@ -81,7 +81,7 @@ contains
     integer :: step
 
     call begin(model, motions, plan, loop)
-    allocate (run%history(0), strained(model%elements))
+    allocate (run%history(0), strained(model%points))
     strained = 0.0_wp
     do step = 1, plan%load_steps
       part = real(step, wp)/plan%load_steps
@@ -111,7 +111,7 @@ contains
     loop%scene = new_linear_scene(model, motions, plan%body)
     loop%material = section_materials(model)
     loop%law = elastic_law(model, loop%material)
-    allocate (loop%about%displacement(2, model%nodes), loop%about%strain(3, model%elements), source=0.0_wp)
+    allocate (loop%about%displacement(2, model%nodes), loop%about%strain(4, model%points), source=0.0_wp)
     allocate (loop%force(model%pairs), source=0.0_wp)
   end subroutine begin
 
@@ -190,24 +190,26 @@ contains
     type(scene_state), intent(in) :: found
     type(iteration_record), intent(inout) :: now
     type(response_type) :: response
+    logical, allocatable :: yielded(:)
     real(wp) :: off
-    integer :: e
+    integer :: p
 
     now%change = ratio(maxval(abs(found%displacement - loop%about%displacement)), maxval(abs(found%displacement)))
     now%force_change = 0.0_wp
     if (model%pairs > 0) now%force_change = ratio(maxval(abs(found%contact%force - loop%force)), maxval(found%contact%force))
     now%touching = count(found%contact%touching)
     now%pivots = found%contact%pivots
-    now%yielded = 0
+    allocate (yielded(model%elements), source=.false.)
     off = 0.0_wp
-    do e = 1, model%elements
-      associate (m => loop%material(model%section(e)))
+    do p = 1, model%points
+      associate (e => model%point_element(p), m => loop%material(model%section(model%point_element(p))))
         if (.not. m%yields) cycle
-        response = respond(m, found%strain(:, e))
-        if (response%curve%yielded) now%yielded = now%yielded + 1
-        off = max(off, maxval(abs(found%stress(:, e) - response%stress([1, 2, 4]))))
+        response = respond(m, found%strain(:, p))
+        yielded(e) = yielded(e) .or. response%curve%yielded
+        off = max(off, maxval(abs(found%stress(:, p) - response%stress)))
       end associate
     end do
+    now%yielded = count(yielded)
     now%residual = ratio(off, maxval(abs(found%stress)))
   end subroutine measure
 
@@ -238,18 +240,21 @@ contains
   pure subroutine find_unloaded(model, loop, strained, run)
     type(model_type), intent(in) :: model
     type(loop_type), intent(in) :: loop
-    real(wp), intent(inout) :: strained(:)    !! e of the elements that yielded in the last load step, else 0 [elements]
+    real(wp), intent(inout) :: strained(:)    !! e of the points that yielded in the last load step, else 0 [points]
     type(plastic_run), intent(inout) :: run
     type(response_type) :: response
-    integer :: e
+    logical, allocatable :: fell(:)
+    integer :: p
 
-    do e = 1, model%elements
-      response = respond(loop%material(model%section(e)), run%state%strain(:, e))
-      if (response%e < (1.0_wp - max(loop%plan%tolerance, least_fall))*strained(e)) then
-        run%unloaded = run%unloaded + 1
-        if (run%first_unloaded == 0) run%first_unloaded = e
-      end if
-      strained(e) = merge(response%e, 0.0_wp, response%curve%yielded)
+    allocate (fell(model%elements), source=.false.)
+    do p = 1, model%points
+      associate (e => model%point_element(p))
+        response = respond(loop%material(model%section(e)), run%state%strain(:, p))
+        fell(e) = fell(e) .or. response%e < (1.0_wp - max(loop%plan%tolerance, least_fall))*strained(p)
+        strained(p) = merge(response%e, 0.0_wp, response%curve%yielded)
+      end associate
     end do
+    run%unloaded = run%unloaded + count(fell)
+    if (run%first_unloaded == 0) run%first_unloaded = findloc(fell, .true., dim=1)
   end subroutine find_unloaded
 end module epcont_plasticity_iteration

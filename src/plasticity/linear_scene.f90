@@ -2,7 +2,7 @@
 !> an elastic analysis.
 module epcont_plasticity_linear_scene
   use epcont_assembly_bodies, only: factored_bodies, new_bodies
-  use epcont_assembly_fields, only: element_strains, nodal_forces
+  use epcont_assembly_fields, only: nodal_forces, strains
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_problem, contact_solved
   use epcont_contact_simplex, only: solve_contact
@@ -50,7 +50,7 @@ contains
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
-    real(wp), intent(in) :: matrix(:, :, :)      !! of each element's law [stress] [3, 3, elements]
+    real(wp), intent(in) :: matrix(:, :, :)      !! of the law at each point [stress] [4, 4, points]
     integer, intent(out) :: singular
     logical :: first, sound
     integer :: b
@@ -111,7 +111,7 @@ contains
     force = force + pair_forces(model, state%contact%force)
     state%displacement = self%bodies%displacements(model, numbering, force, part)
     ! The strains come before the rigid motion, whose digits they have no need of.
-    state%strain = element_strains(model, state%displacement)
+    state%strain = strains(model, state%displacement)
     state%stress = law%stress(state%strain)
     call add_motions(model, motions, state)
   end subroutine solve

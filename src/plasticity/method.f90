@@ -19,13 +19,13 @@ module epcont_plasticity_method
   end type plastic_method
 
   abstract interface
-    !> The law about a state of strain, for the elements that can yield; that of the others stays as it is.
+    !> The law about a state of strain, for the points that can yield; that of the others stays as it is.
     pure subroutine linearise_about(self, model, material, strain, law)
       import :: linear_law, material_type, model_type, plastic_method, wp
       class(plastic_method), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(material_type), intent(in) :: material(:)   !! [sections]
-      real(wp), intent(in) :: strain(:, :)             !! [3, elements]
+      real(wp), intent(in) :: strain(:, :)             !! [4, points]
       type(linear_law), intent(inout) :: law
     end subroutine linearise_about
 

@@ -4,7 +4,7 @@
 !> points along it satisfy supports and contact, since both its ends do. The search looks for the zero of the slope
 !> (f_int - f).d, since differences of the energy itself drown in rounding.
 module epcont_plasticity_newton
-  use epcont_assembly_fields, only: element_volumes
+  use epcont_assembly_fields, only: volumes
   use epcont_base_kinds, only: wp
   use epcont_material_curve, only: material_type
   use epcont_material_linear_law, only: linear_law
@@ -79,17 +79,17 @@ contains
     real(wp), intent(in) :: blend
     type(linear_law), intent(inout) :: law
     type(response_type) :: response
-    integer :: e
+    integer :: p
 
-    do e = 1, model%elements
-      associate (m => material(model%section(e)))
+    do p = 1, model%points
+      associate (m => material(model%section(model%point_element(p))))
         if (.not. m%yields) cycle
-        response = respond(m, strain(:, e))
-        law%initial_stress(:, e) = 0.0_wp
-        law%matrix(:, :, e) = secant_matrix(m, response)
+        response = respond(m, strain(:, p))
+        law%initial_stress(:, p) = 0.0_wp
+        law%matrix(:, :, p) = secant_matrix(m, response)
         if (.not. response%curve%yielded) cycle
-        law%matrix(:, :, e) = blend*law%matrix(:, :, e) + (1.0_wp - blend)*tangent_matrix(m, response)
-        law%initial_stress(:, e) = response%stress([1, 2, 4]) - matmul(law%matrix(:, :, e), strain(:, e))
+        law%matrix(:, :, p) = blend*law%matrix(:, :, p) + (1.0_wp - blend)*tangent_matrix(m, response)
+        law%initial_stress(:, p) = response%stress - matmul(law%matrix(:, :, p), strain(:, p))
       end associate
     end do
   end subroutine set_law
@@ -126,7 +126,7 @@ contains
 
     step_length = 1.0_wp
     along = found%strain - about%strain
-    volume = element_volumes(model)
+    volume = volumes(model)
     work = part*sum(model%load*(found%displacement - about%displacement))
     work_terms = part*sum(abs(model%load*(found%displacement - about%displacement)))
     call find_slope(0.0_wp, begin, terms)
@@ -161,13 +161,13 @@ contains
       real(wp), intent(out) :: value, magnitude
       type(response_type) :: response
       real(wp) :: term
-      integer :: e
+      integer :: p
 
       value = -work
       magnitude = work_terms
-      do e = 1, model%elements
-        response = respond(material(model%section(e)), about%strain(:, e) + length*along(:, e))
-        term = volume(e)*dot_product(response%stress([1, 2, 4]), along(:, e))
+      do p = 1, model%points
+        response = respond(material(model%section(model%point_element(p))), about%strain(:, p) + length*along(:, p))
+        term = volume(p)*dot_product(response%stress, along(:, p))
         value = value + term
         magnitude = magnitude + abs(term)
       end do

@@ -35,11 +35,11 @@ contains
     type(material_type), intent(in) :: material(:)
     real(wp), intent(in) :: strain(:, :)
     type(linear_law), intent(inout) :: law
-    integer :: e
+    integer :: p
 
-    do e = 1, model%elements
-      associate (m => material(model%section(e)))
-        if (m%yields) law%matrix(:, :, e) = secant_matrix(m, respond(m, strain(:, e)))
+    do p = 1, model%points
+      associate (m => material(model%section(model%point_element(p))))
+        if (m%yields) law%matrix(:, :, p) = secant_matrix(m, respond(m, strain(:, p)))
       end associate
     end do
   end subroutine set_secant_law

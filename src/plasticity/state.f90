@@ -8,8 +8,8 @@ module epcont_plasticity_state
 
   type :: scene_state
     real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
-    real(wp), allocatable :: strain(:, :)         !! xx, yy, xy (engineering) [3, elements]
-    real(wp), allocatable :: stress(:, :)         !! xx, yy, xy, in equilibrium [stress] [3, elements]
+    real(wp), allocatable :: strain(:, :)         !! xx, yy, zz, xy (engineering) [4, points]
+    real(wp), allocatable :: stress(:, :)         !! xx, yy, zz, xy, in equilibrium [stress] [4, points]
     type(contact_solution) :: contact
   end type scene_state
 end module epcont_plasticity_state

@@ -156,7 +156,7 @@ contains
     call file%line('element,x,y,sx,sy,sz,txy,equivalent_stress,equivalent_strain,secant_modulus,state')
     do e = 1, model%elements
       call file%line(text_of(model%element_id(e))//','// &
-                     row([sum(model%corners(e), dim=2)/3.0_wp, answer%stress(:, e), answer%equivalent_stress(e), &
+                     row([sum(model%coordinates(e), dim=2)/model%order(e), answer%stress(:, e), answer%equivalent_stress(e), &
                           answer%equivalent_strain(e), answer%secant_modulus(e)])//','// &
                      trim(merge('plastic', 'elastic', answer%plastic(e))))
     end do

@@ -10,12 +10,14 @@ module epcont_result_answer
   type :: answer_type
     real(wp), allocatable :: displacement(:, :)      !! [length] [2, nodes]
     real(wp), allocatable :: reaction(:, :)          !! of the supports [force] [2, nodes]
+    real(wp), allocatable :: point_stress(:, :)      !! xx, yy, zz, xy [stress] [4, points]
+    ! Of the elements: means over their points, by volume.
     real(wp), allocatable :: stress(:, :)            !! xx, yy, zz, xy [stress] [4, elements]
     real(wp), allocatable :: equivalent_stress(:)    !! von Mises [stress] [elements]
     real(wp), allocatable :: equivalent_strain(:)    !! (2-2) [elements]
     real(wp), allocatable :: secant_modulus(:)       !! E' of the curve at that strain [stress] [elements]
-    logical, allocatable :: plastic(:)               !! beyond the yield point [elements]
-    logical, allocatable :: beyond(:)                !! beyond the last point of the material's table [elements]
+    logical, allocatable :: plastic(:)               !! beyond the yield point, at any of its points [elements]
+    logical, allocatable :: beyond(:)                !! beyond the end of the material's table [elements]
     type(contact_solution) :: contact
     real(wp), allocatable :: pressure(:)             !! at the pairs; negative: no boundary there [stress] [pairs]
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm

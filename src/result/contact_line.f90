@@ -1,9 +1,11 @@
 !> Pressures at the pairs, and the zones in contact.
 module epcont_result_contact_line
+  use epcont_base_edge, only: edge_point, edge_point_count, edge_points
+  use epcont_base_geometry, only: cross_product
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: axisymmetric, model_type
   implicit none
   private
   public :: contact_line, find_contact_line, contact_zone, find_zones
@@ -39,9 +41,9 @@ contains
     type(incidence) :: around
     integer, allocatable :: pair_at(:)
     real(wp) :: edge(2)
-    integer :: e, i, k, other, pair, slot
+    integer :: e, i, k, pair, side(3)
 
-    around = new_incidence(model%corner, model%nodes)
+    around = new_incidence(model%connectivity, model%nodes)
     allocate (line%tributary(model%pairs), source=0.0_wp)
     allocate (line%neighbour(2, model%pairs), source=0)
     allocate (line%node(model%pairs), line%mirrored(model%pairs), pair_at(model%nodes))
@@ -55,22 +57,56 @@ contains
     do pair = 1, model%pairs
       associate (node => line%node(pair), n => model%normal(:, pair))
         line%mirrored(pair) = (model%held(1, node) .and. abs(n(2)) > 0.9_wp) .or. (model%held(2, node) .and. abs(n(1)) > 0.9_wp)
-        slot = 0
         do i = around%start(node), around%start(node + 1) - 1
           e = around%group(i)
-          do k = 1, 3
-            other = model%corner(k, e)
-            if (other == node .or. shared(model, around, node, other)) cycle
-            edge = model%x(:, other) - model%x(:, node)
+          do k = 1, model%corners(e)
+            side = model%edge(e, k)
+            if (.not. any(side == node) .or. shared(model, around, side(1), side(2))) cycle
+            edge = model%x(:, side(2)) - model%x(:, side(1))
             if (abs(dot_product(edge, n)) > along_tangent*norm2(edge)) cycle
-            line%tributary(pair) = line%tributary(pair) + 0.5_wp*abs(edge(1)*n(2) - edge(2)*n(1))*model%thickness(model%section(e))
-            slot = slot + 1
-            if (slot <= 2) line%neighbour(slot, pair) = pair_at(other)
+            line%tributary(pair) = line%tributary(pair) + share(model, e, side, node, n)
+            call add_neighbours(side, node, pair_at, line%neighbour(:, pair))
           end do
         end do
       end associate
     end do
   end function find_contact_line
+
+  !> What a uniform pressure on a side gives to one of its nodes along the normal, over that pressure [length**2].
+  pure real(wp) function share(model, element, side, node, n)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element, side(3), node
+    real(wp), intent(in) :: n(2)
+    type(edge_point) :: point(edge_point_count)
+    real(wp) :: depth
+    integer :: p
+
+    point = edge_points(model%edge_coordinates(side))
+    share = 0.0_wp
+    do p = 1, edge_point_count
+      depth = model%thickness(model%section(element))
+      if (model%kinematics(model%section(element)) == axisymmetric) depth = 2.0_wp*acos(-1.0_wp)*point(p)%x(1)
+      share = share + depth*point(p)%values(findloc(side, node, dim=1))*abs(cross_product(point(p)%tangent, n))
+    end do
+  end function share
+
+  !> Pairs beside a node on one of its sides: at the other end, or at the middle, or from there at both ends.
+  pure subroutine add_neighbours(side, node, pair_at, neighbour)
+    integer, intent(in) :: side(3), node, pair_at(:)
+    integer, intent(inout) :: neighbour(2)
+
+    if (side(3) == node) then
+      neighbour = pair_at(side(:2))
+      return
+    end if
+    associate (beside => merge(side(3), sum(side(:2)) - node, side(3) > 0))
+      if (neighbour(1) == 0) then
+        neighbour(1) = pair_at(beside)
+      else if (neighbour(2) == 0) then
+        neighbour(2) = pair_at(beside)
+      end if
+    end associate
+  end subroutine add_neighbours
 
   !> Whether two elements share the edge between two nodes.
   pure logical function shared(model, around, a, b)
@@ -81,7 +117,7 @@ contains
 
     found = 0
     do i = around%start(a), around%start(a + 1) - 1
-      if (any(model%corner(:, around%group(i)) == b)) found = found + 1
+      if (any(model%connectivity(:, around%group(i)) == b)) found = found + 1
     end do
     shared = found > 1
   end function shared

@@ -1,6 +1,6 @@
 !> Stresses of the elements and reactions of the supports.
 module epcont_result_stresses
-  use epcont_assembly_fields, only: nodal_forces
+  use epcont_assembly_fields, only: nodal_forces, volumes
   use epcont_base_kinds, only: wp
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_elasticity, only: equivalent_stress
@@ -21,27 +21,32 @@ contains
     real(wp), intent(in) :: applied(:, :)
     type(answer_type), intent(inout) :: answer
     type(material_type), allocatable :: material(:)
+    real(wp), allocatable :: volume(:)
     type(response_type) :: response
-    real(wp) :: across
-    integer :: e
+    real(wp) :: modulus
+    integer :: e, p
 
     material = section_materials(model)
-    allocate (answer%stress(4, model%elements), answer%equivalent_stress(model%elements))
-    allocate (answer%equivalent_strain(model%elements), answer%secant_modulus(model%elements))
-    allocate (answer%plastic(model%elements), answer%beyond(model%elements))
+    volume = volumes(model)
+    answer%point_stress = state%stress
+    allocate (answer%stress(4, model%elements), answer%equivalent_stress(model%elements), source=0.0_wp)
+    allocate (answer%equivalent_strain(model%elements), answer%secant_modulus(model%elements), source=0.0_wp)
+    allocate (answer%plastic(model%elements), answer%beyond(model%elements), source=.false.)
     do e = 1, model%elements
-      associate (m => material(model%section(e)), strain => state%strain(:, e), stress => state%stress(:, e))
-        ! The mean stress is elastic whatever the iteration has left open.
-        across = 0.0_wp
-        if (m%plane_strain) across = 3.0_wp*m%bulk*(strain(1) + strain(2)) - stress(1) - stress(2)
-        answer%stress(:, e) = [stress(1), stress(2), across, stress(3)]
-        answer%equivalent_stress(e) = equivalent_stress(answer%stress(:, e))
-        response = respond(m, strain)
-        answer%equivalent_strain(e) = response%curve%total
-        answer%secant_modulus(e) = m%young
-        if (response%curve%yielded) answer%secant_modulus(e) = 1.0_wp/(1.0_wp/response%curve%modulus + m%shift)
-        answer%plastic(e) = response%curve%yielded
-        answer%beyond(e) = response%curve%beyond
+      associate (m => material(model%section(e)), first => model%first_point(e), last => model%first_point(e + 1) - 1)
+        do p = first, last
+          response = respond(m, state%strain(:, p))
+          modulus = m%young
+          if (response%curve%yielded) modulus = 1.0_wp/(1.0_wp/response%curve%modulus + m%shift)
+          associate (share => volume(p)/sum(volume(first:last)))
+            answer%stress(:, e) = answer%stress(:, e) + share*state%stress(:, p)
+            answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*equivalent_stress(state%stress(:, p))
+            answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*response%curve%total
+            answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
+          end associate
+          answer%plastic(e) = answer%plastic(e) .or. response%curve%yielded
+          answer%beyond(e) = answer%beyond(e) .or. response%curve%beyond
+        end do
       end associate
     end do
     answer%reaction = reactions(model, state, applied)

@@ -1,0 +1,43 @@
+!> Integration along the edges of elements, straight or with a node between: what a traction gives to their nodes.
+module epcont_base_edge
+  use epcont_base_kinds, only: wp
+  implicit none
+  private
+  public :: edge_point, edge_points
+
+  !> Gauss points along an edge: exact for what a linear pressure gives on a curved edge of a ring.
+  integer, parameter, public :: edge_point_count = 3
+  real(wp), parameter :: place(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
+  real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
+
+  type :: edge_point
+    real(wp) :: values(3) = 0.0_wp   !! shape functions of its beginning, its end and its middle node
+    real(wp) :: x(2) = 0.0_wp        !! [length]
+    real(wp) :: tangent(2) = 0.0_wp  !! along the edge, as long as the part of it that belongs to the point [length]
+    real(wp) :: along = 0.0_wp       !! from 0 at its beginning to 1 at its end
+  end type edge_point
+
+contains
+
+  !> The integration points of an edge from its beginning and end, and its middle node where it has one.
+  pure function edge_points(x) result(point)
+    real(wp), intent(in) :: x(:, :)   !! [length] [2, 2 or 3]
+    type(edge_point) :: point(edge_point_count)
+    real(wp) :: slope(3), s
+    integer :: p
+
+    do p = 1, edge_point_count
+      s = place(p)
+      if (size(x, 2) == 3) then
+        point(p)%values = [0.5_wp*s*(s - 1.0_wp), 0.5_wp*s*(s + 1.0_wp), 1.0_wp - s*s]
+        slope = [s - 0.5_wp, s + 0.5_wp, -2.0_wp*s]
+      else
+        point(p)%values = [0.5_wp*(1.0_wp - s), 0.5_wp*(1.0_wp + s), 0.0_wp]
+        slope = [-0.5_wp, 0.5_wp, 0.0_wp]
+      end if
+      point(p)%x = matmul(x, point(p)%values(:size(x, 2)))
+      point(p)%tangent = weight(p)*matmul(x, slope(:size(x, 2)))
+      point(p)%along = 0.5_wp*(1.0_wp + s)
+    end do
+  end function edge_points
+end module epcont_base_edge
