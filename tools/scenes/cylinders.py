@@ -28,7 +28,7 @@ def hertz(mesh, plastic=False, b=0.0239):
     touch = [node for node in mesh.line["arc"] if mesh.point[node][0] < (1.9 if plastic else 1.5) * b]
     first = first_free(mesh)
     deck.nodes(mesh)
-    deck.triangles(mesh, 1)
+    deck.elements(mesh, 1)
     deck.material(1, 20400.0, 0.29)
     if plastic:
         deck.follows(1, STEEL)

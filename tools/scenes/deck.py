@@ -33,10 +33,11 @@ def long(value):
 class Deck:
     """Cards of a deck in the order they are asked for; `write` puts head and tail round them. `words`: paragraphs."""
 
-    def __init__(self, title, words, units="N-MM", strain=True, from_geometry=True):
-        self.title, self.words, self.lines = title, words, []
+    def __init__(self, title, words, units="N-MM", strain=True, from_geometry=True, rings=False):
+        self.title, self.words, self.lines, self.rings = title, words, [], rings
         self.card("PARAM", "UNITS", units)
-        self.card("PARAM", "PLANE", "STRAIN" if strain else "STRESS")
+        if not rings:
+            self.card("PARAM", "PLANE", "STRAIN" if strain else "STRESS")
         if from_geometry:
             self.card("PARAM", "GAPGEOM", "YES")
 
@@ -64,13 +65,28 @@ class Deck:
         for i, (x, y) in enumerate(mesh.point):
             self.grid(first + i, x, y)
 
-    def triangles(self, mesh, prop, first=1, first_node=1):
-        for k, corners in enumerate(mesh.triangle):
-            self.card("CTRIA3", first + k, prop, *(first_node + c for c in corners))
+    def elements(self, mesh, prop, first=1, first_node=1):
+        for k, nodes in enumerate(mesh.element):
+            nodes = [first_node + n for n in nodes]
+            if self.rings and len(nodes) == 6:  # CTRAX6 goes round its sides
+                nodes = [nodes[i] for i in (0, 3, 1, 4, 2, 5)]
+            name = {3: "CTRAX3", 6: "CTRAX6"} if self.rings else {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6"}
+            self.card(name[len(nodes)], first + k, prop, *nodes)
 
     def material(self, number, young, nu, thickness=1.0):
-        self.card("PSHELL", number, number, thickness)
+        if self.rings:
+            self.card("PSOLID", number, number)
+        else:
+            self.card("PSHELL", number, number, thickness)
         self.card("MAT1", number, young, "", nu)
+
+    def segments(self, number, nodes, first=1):
+        """A boundary line, from end to end."""
+        self.card("BLSEG", number, *(first + n for n in nodes))
+
+    def touches(self, number, slave, master):
+        """The nodes of one boundary line may touch the segments of another."""
+        self.card("BCONP", number, slave, master)
 
     def yields(self, number, stress, hardening):
         """Bilinear: stress over plastic strain beyond the yield stress."""
@@ -83,9 +99,11 @@ class Deck:
         self.card("TABLES1", number, *[""] * 7, *numbers)
 
     def press(self, mesh, line, value, first=1, first_node=1, theta=0.0):
-        """Pressure on the edges of a line of nodes."""
+        """Pressure on the sides between the corners of a line."""
+        corners = {n for nodes in mesh.element for n in nodes[:3 if len(nodes) == 6 else 4]}
+        line = [n for n in line if n in corners]
         for a, b in zip(line, line[1:]):
-            element = next(k for k, c in enumerate(mesh.triangle) if a in c and b in c)
+            element = mesh.side(a, b)
             self.card("PLOADX1", 1, first + element, value, value, first_node + a, first_node + b, *([theta] if theta else []))
 
     def hold(self, digits, nodes, first=1):
@@ -131,4 +149,4 @@ class Deck:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(self.text(), encoding="ascii")
         print(f"{path}: {sum(line.startswith('GRID') for line in self.lines)} nodes, "
-              f"{sum(line.startswith('CTRIA3') for line in self.lines)} triangles")
+              f"{sum(line.startswith(('CTRIA', 'CQUAD', 'CTRAX')) for line in self.lines)} elements")

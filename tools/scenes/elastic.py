@@ -23,10 +23,10 @@ def cylinder_on_block(n=6.0):
     first = free + 1
     deck.remark("Cylinder")
     deck.nodes(disc)
-    deck.triangles(disc, 1)
+    deck.elements(disc, 1)
     deck.remark("Block")
     deck.nodes(base, first)
-    deck.triangles(base, 2, first=first, first_node=first)
+    deck.elements(base, 2, first=first, first_node=first)
     deck.material(1, 210000.0, 0.3)
     deck.material(2, 70000.0, 0.3)
     deck.hold(1, disc.line["axis"])
@@ -55,7 +55,7 @@ def flat_punch(n=12, size=12.0, young=1000.0):
         f"Known answer (half space): p = P/(pi sqrt(a^2 - x^2)), 63.66 at the middle; grows without bound at the edge. The "
         f"block is {size:g} a wide and deep."])
     deck.nodes(mesh)
-    deck.triangles(mesh, 1)
+    deck.elements(mesh, 1)
     deck.material(1, young, 0.3)
     deck.hold(1, mesh.on(0, 0.0))
     deck.hold(2, mesh.line["bottom"])
@@ -92,10 +92,10 @@ def off_centre(n=10, size=10.0, shift=0.25):
         f"{31.830989 * 2 * shift:.4f}. All pairs touch, since e < a/2."])
     deck.remark("Block")
     deck.nodes(base)
-    deck.triangles(base, 1)
+    deck.elements(base, 1)
     deck.remark("Punch")
     deck.nodes(punch, first)
-    deck.triangles(punch, 2, first=first, first_node=first)
+    deck.elements(punch, 2, first=first, first_node=first)
     deck.material(1, 1000.0, 0.3)
     deck.material(2, 1.0e7, 0.3)
     deck.hold(12, base.line["bottom"])
@@ -123,7 +123,7 @@ def layer(n=20):
         "at the sides: receding contact, whose width does not depend on P. Half of the scene, x >= 0; half of P.",
         "Known answer: half contact a = 0.85699 h, pressure under the load p(0) = 0.95965 P/h = 95.965."])
     deck.nodes(mesh)
-    deck.triangles(mesh, 1)
+    deck.elements(mesh, 1)
     deck.material(1, 1000.0, 0.3)
     deck.hold(1, mesh.on(0, 0.0))
     load = mesh.line["top"][0] + 1
@@ -154,7 +154,7 @@ def shrink(around=16):
     first = free + 1
     for mesh, start, prop in ((inner, 1, 1), (outer, first, 2)):
         deck.nodes(mesh, start)
-        deck.triangles(mesh, prop, first=start, first_node=start)
+        deck.elements(mesh, prop, first=start, first_node=start)
         deck.hold(1, mesh.on(0, 0.0), start)
         deck.hold(2, mesh.on(1, 0.0), start)
     deck.material(1, young, nu)
@@ -184,10 +184,10 @@ def pin(around=60):
     first = free + 1
     deck.remark("Pin")
     deck.nodes(disc)
-    deck.triangles(disc, 1)
+    deck.elements(disc, 1)
     deck.remark("Plate")
     deck.nodes(plate, first)
-    deck.triangles(plate, 2, first=first, first_node=first)
+    deck.elements(plate, 2, first=first, first_node=first)
     deck.material(1, young, nu)
     deck.material(2, young, nu)
     deck.hold(1, disc.on(0, 0.0))
@@ -225,9 +225,9 @@ def patch(force_up=False, support=True):
     deck = Deck(title, words)
     first = 101
     deck.nodes(lower)
-    deck.triangles(lower, 1)
+    deck.elements(lower, 1)
     deck.nodes(upper, first)
-    deck.triangles(upper, 2, first=first, first_node=first)
+    deck.elements(upper, 2, first=first, first_node=first)
     deck.material(1, 1000.0, 0.4, 2.0)
     deck.material(2, 3000.0, 0.3, 2.0)
     deck.hold(1, lower.on(0, 0.0))
@@ -237,7 +237,7 @@ def patch(force_up=False, support=True):
     if support:
         deck.card("SUPORT", first + top[-1], 2)
     for i in range(len(top) - 1):
-        element = next(k for k, c in enumerate(upper.triangle) if top[i] in c and top[i + 1] in c)
+        element = upper.side(top[i], top[i + 1])
         value = -10.0 if force_up else 10.0
         deck.card("PLOADX1", 1, first + element, value, value, first + top[i], first + top[i + 1])
     deck.upward()

@@ -1,12 +1,13 @@
-"""Meshes of triangles: blocks, rings, discs."""
+"""Meshes: blocks, rings, discs."""
 import math
 
 
 class Mesh:
-    """Points and triangles; `line` says which points lie on a named line, in order."""
+    """Points and elements (their corners; with six points also the middles of the sides, the first behind the first corner);
+    `line` says which points lie on a named line, in order."""
 
-    def __init__(self, point, triangle, line):
-        self.point, self.triangle, self.line = point, triangle, line
+    def __init__(self, point, element, line):
+        self.point, self.element, self.line = point, element, line
 
     def on(self, axis, value):
         return [i for i, p in enumerate(self.point) if abs(p[axis] - value) < 1e-9 * max(1.0, abs(value))]
@@ -14,7 +15,7 @@ class Mesh:
 
 def first_free(*meshes):
     """The power of ten above every count of nodes and triangles: ids of a second body begin after it."""
-    return 10 ** len(str(max(max(len(mesh.point), len(mesh.triangle)) for mesh in meshes)))
+    return 10 ** len(str(max(max(len(mesh.point), len(mesh.element)) for mesh in meshes)))
 
 
 def graded(first, growth, length):
@@ -26,11 +27,11 @@ def graded(first, growth, length):
     return [p * length / places[-1] for p in places]
 
 
-def without_unused(point, triangle, line):
-    """The mesh of the points that triangles use."""
-    used = sorted({corner for corners in triangle for corner in corners})
+def without_unused(point, element, line):
+    """The mesh of the points that elements use."""
+    used = sorted({node for nodes in element for node in nodes})
     place = {old: new for new, old in enumerate(used)}
-    return Mesh([point[i] for i in used], [tuple(place[c] for c in corners) for corners in triangle],
+    return Mesh([point[i] for i in used], [tuple(place[c] for c in nodes) for nodes in element],
                 {name: [place[i] for i in nodes if i in place] for name, nodes in line.items()})
 
 
@@ -110,7 +111,7 @@ def rings(radii, around, opening=math.pi / 2, begin=0.0):
             place = (r * math.cos(angle), r * math.sin(angle))
             point.append(tuple(0.0 if abs(v) < 1e-12 * r else v for v in place))
     flat = block([float(i) for i in range(around + 1)], [float(j) for j in range(len(radii))])
-    triangle = [(a, c, b) for a, b, c in flat.triangle]
+    triangle = [(a, c, b) for a, b, c in flat.element]
     n = around + 1
     return Mesh(point, triangle, {"inner": list(range(n)), "outer": list(range(len(point) - n, len(point)))})
 

@@ -20,12 +20,12 @@ def tube(title, known, pressure, young, stress, hardening, nu=0.3, inner=100.0, 
     around = parts * 6 // 5
     flat = grid([float(i) for i in range(around + 1)], [float(j) for j in range(parts + 1)])
     ring = rings([inner + (outer - inner) * j / parts for j in range(parts + 1)], around)
-    mesh = Mesh(ring.point, [(a, c, b) for a, b, c in flat.triangle], ring.line)
+    mesh = Mesh(ring.point, [(a, c, b) for a, b, c in flat.element], ring.line)
     deck = Deck(title, [
         f"A thick tube, radii {inner:g} and {outer:g}, inner pressure {pressure:g}, plane strain, total theory; one quarter, "
         f"{parts} x {around} squares of two triangles. Nothing touches: no flexibility, no simplex.", known], from_geometry=False)
     deck.nodes(mesh)
-    deck.triangles(mesh, 1)
+    deck.elements(mesh, 1)
     deck.material(1, young, nu)
     deck.yields(1, stress, hardening)
     deck.hold(1, mesh.on(0, 0.0))
@@ -53,7 +53,7 @@ def bar():
         "points are (0.01, 320) and (0.05, 380); end displacement 0.0666667; Poisson's ratio of the secant body 0.5 - (0.5 - "
         "0.3) E'/E = 0.4802, E' = 19800: sideways strain -0.00800333."], strain=False, from_geometry=False)
     deck.nodes(mesh)
-    deck.triangles(mesh, 1)
+    deck.elements(mesh, 1)
     deck.material(1, 200000.0, 0.3)
     deck.follows(1, [(0.0, 0.0), (0.00125, 250.0), (0.004, 290.0), (0.01, 320.0), (0.05, 380.0)])
     deck.hold(1, mesh.on(0, 0.0))
@@ -78,7 +78,7 @@ def one_element():
         shifted = Mesh([(x + 2.0 * k, y) for x, y in square.point], [(0, 1, 2), (0, 2, 3)], {})
         shifted.point = [shifted.point[i] for i in (0, 1, 3, 2)]
         deck.nodes(shifted, first)
-        deck.triangles(shifted, k + 1, first=first, first_node=first)
+        deck.elements(shifted, k + 1, first=first, first_node=first)
         deck.material(k + 1, 210000.0, 0.3)
         deck.yields(k + 1, 240.0, hardening)
         deck.hold(1, [0, 3], first)
@@ -91,7 +91,7 @@ def cook(n=24, stress=None):
     """Cook's membrane: a tapered panel, sheared at its end."""
     flat = grid([i / n for i in range(n + 1)], [j / n for j in range(n + 1)])
     point = [(48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s)) for s, t in flat.point]
-    mesh = Mesh(point, flat.triangle, flat.line)
+    mesh = Mesh(point, flat.element, flat.line)
     words = ["Cook's membrane: a panel 48 long, 44 high at its held end and 16 at the other, where a shear of 1 in all pulls it "
              "up. Plane stress, E = 1, nu = 1/3."]
     if stress:
@@ -101,7 +101,7 @@ def cook(n=24, stress=None):
                      "triangles come near it slowly.")
     deck = Deck("COOK'S MEMBRANE" + (", YIELDING" if stress else ""), words, strain=False, from_geometry=False)
     deck.nodes(mesh)
-    deck.triangles(mesh, 1)
+    deck.elements(mesh, 1)
     deck.material(1, 1.0, 1.0 / 3.0)
     if stress:
         deck.yields(1, stress, 0.05)
@@ -141,8 +141,8 @@ def insert_joint(clearance=0.01, load=110.0, finest=0.25):
     rows = [-inner - w for w in reversed(wall)] + [-2.0, 0.0, 2.0] + [inner + w for w in wall]
     columns = [-40.0, -37.5, -35.0, -32.5, -30.0, -29.0] + overlap
     whole = block(columns, rows)
-    middle = [(sum(whole.point[i][0] for i in c) / 3, sum(whole.point[i][1] for i in c) / 3) for c in whole.triangle]
-    socket = without_unused(whole.point, [c for c, (x, y) in zip(whole.triangle, middle) if x < -30.0 or abs(y) > inner], {})
+    middle = [(sum(whole.point[i][0] for i in c) / 3, sum(whole.point[i][1] for i in c) / 3) for c in whole.element]
+    socket = without_unused(whole.point, [c for c, (x, y) in zip(whole.element, middle) if x < -30.0 or abs(y) > inner], {})
     deck = Deck("INSERT JOINT: A TONGUE IN A SOCKET", [
         f"A steel tongue, 8 high, sits 28 deep in a socket with a clearance of {clearance:g} above and below, and is bent by "
         f"{load:g} a mm at its end, 30 outside. Only contact holds it: up and down, and against turning (two free motions, two "
@@ -154,10 +154,10 @@ def insert_joint(clearance=0.01, load=110.0, finest=0.25):
     first = free + 1
     deck.remark("Tongue")
     deck.nodes(tongue)
-    deck.triangles(tongue, 1)
+    deck.elements(tongue, 1)
     deck.remark("Socket")
     deck.nodes(socket, first)
-    deck.triangles(socket, 2, first=first, first_node=first)
+    deck.elements(socket, 2, first=first, first_node=first)
     for number in (1, 2):
         deck.material(number, 210000.0, 0.3)
         deck.yields(number, 240.0, 4000.0)
