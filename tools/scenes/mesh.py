@@ -13,8 +13,42 @@ class Mesh:
         return [i for i, p in enumerate(self.point) if abs(p[axis] - value) < 1e-9 * max(1.0, abs(value))]
 
 
+    def side(self, a, b):
+        """The element with the side from point a to point b."""
+        return next(k for k, nodes in enumerate(self.element) if a in nodes and b in nodes)
+
+    def with_middles(self, curved=lambda a, b: None):
+        """The same triangles with a point in the middle of each side, and in the lines. `curved(a, b)` gives the place of the
+        middle between two places on a curved boundary, or None where the side is straight."""
+        point, middle = list(self.point), {}
+
+        def between(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middle:
+                (xa, ya), (xb, yb) = point[key[0]], point[key[1]]
+                middle[key] = len(point)
+                point.append(curved(point[key[0]], point[key[1]]) or ((xa + xb) / 2, (ya + yb) / 2))
+            return middle[key]
+
+        element = [(a, b, c, between(a, b), between(b, c), between(c, a)) for a, b, c in self.element]
+        line = {name: [n for a, b in zip(nodes, nodes[1:]) for n in (a, between(a, b))] + nodes[-1:]
+                for name, nodes in self.line.items()}
+        return Mesh(point, element, line)
+
+
+def on_circle(centre, radius):
+    """For `with_middles`: sides whose ends lie on a circle follow it."""
+    def curved(a, b):
+        if any(abs(math.dist(p, centre) - radius) > 1e-6 * radius for p in (a, b)):
+            return None
+        x, y = (a[0] + b[0]) / 2 - centre[0], (a[1] + b[1]) / 2 - centre[1]
+        scale = radius / math.hypot(x, y)
+        return centre[0] + scale * x, centre[1] + scale * y
+    return curved
+
+
 def first_free(*meshes):
-    """The power of ten above every count of nodes and triangles: ids of a second body begin after it."""
+    """The power of ten above every count of nodes and elements: ids of a second body begin after it."""
     return 10 ** len(str(max(max(len(mesh.point), len(mesh.element)) for mesh in meshes)))
 
 
