@@ -44,7 +44,7 @@ contains
 
     call take_over(run, answer)
     load = run%load_factor*model%load
-    call recover_stresses(model, run%state, load + pair_forces(model, answer%contact%force), answer)
+    call recover_stresses(model, run%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
     line = find_contact_line(model)
     answer%pressure = merge(answer%contact%force/max(line%tributary, tiny(1.0_wp)), -1.0_wp, line%tributary > 0.0_wp)
     call certify(model, load, plan%off_curve, answer%displacement, answer%reaction, answer%point_stress, answer%contact%force, &

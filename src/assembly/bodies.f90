@@ -1,6 +1,7 @@
 !> The factored bodies, and displacements under nodal forces.
 module epcont_assembly_bodies
   use epcont_assembly_stiffness, only: assemble_body, body_stiffness
+  use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
   use epcont_plan_numbering, only: numbering_type
@@ -30,9 +31,10 @@ contains
   end function new_bodies
 
   !> Assemble and factor one body, afresh if it was before. `sound` is false where the factor failed.
-  pure subroutine factor_body(self, model, matrix, numbering, b, sound)
+  pure subroutine factor_body(self, model, operator, matrix, numbering, b, sound)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
+    type(strain_operator), intent(in) :: operator
     real(wp), intent(in) :: matrix(:, :, :)   !! of the material at each point [stress] [4, 4, points]
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
@@ -44,7 +46,7 @@ contains
         self%settlement(:, node(i)) = 0.0_wp
       end do
     end associate
-    call assemble_body(model, matrix, numbering%equation, numbering%body(b), self%body(b), self%settlement)
+    call assemble_body(model, operator, matrix, numbering%equation, numbering%body(b), self%body(b), self%settlement)
     call self%body(b)%factor()
     if (numbering%body(b)%equations > 0) self%factorizations = self%factorizations + 1
     sound = self%body(b)%smallest_ratio > epsilon(1.0_wp)

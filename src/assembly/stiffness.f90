@@ -5,9 +5,8 @@
 !>
 !> The band is factored alone; the border follows by its Schur complement S = K_rr - K_rb W, W = K_bb^-1 K_br.
 module epcont_assembly_stiffness
-  use epcont_assembly_fields, only: points_of_element
+  use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: element_point, most_points
   use epcont_linalg_band, only: band_matrix, new_band_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   use epcont_model_model, only: model_type, most_nodes
@@ -32,8 +31,9 @@ contains
 
   !> Assemble the elements of a body; `matrix` is that of the material at each point [4, 4, points]. `settlement`
   !! receives the forces that prescribed displacements exert on the free freedoms: minus K_fp u_p [force] [2, nodes].
-  pure subroutine assemble_body(model, matrix, equation, body, stiffness, settlement)
+  pure subroutine assemble_body(model, operator, matrix, equation, body, stiffness, settlement)
     type(model_type), intent(in) :: model
+    type(strain_operator), intent(in) :: operator
     real(wp), intent(in) :: matrix(:, :, :)
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
@@ -47,7 +47,7 @@ contains
     do e = 1, size(body%element)
       associate (element => body%element(e))
         n = model%order(element)
-        k(:2*n, :2*n) = element_stiffness(model, element, matrix)
+        call operator%element_stiffness(model, element, matrix, k)
         associate (node => model%connectivity(:n, element))
           call add(k(:2*n, :2*n), reshape(equation(:, node), [2*n]), stiffness)
           do i = 1, n
@@ -60,32 +60,6 @@ contains
       end associate
     end do
   end subroutine assemble_body
-
-  !> Stiffness of an element: B'D B times the volume of each point [force/length] [2 order, 2 order].
-  pure function element_stiffness(model, element, matrix) result(k)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: element
-    real(wp), intent(in) :: matrix(:, :, :)
-    real(wp) :: k(2*model%order(element), 2*model%order(element))
-    type(element_point) :: point(most_points)
-    real(wp) :: d(4, 4), stress(4)
-    integer :: count, i, j, p
-
-    call points_of_element(model, element, point, count)
-    k = 0.0_wp
-    do p = 1, count
-      d = point(p)%volume*matrix(:, :, model%first_point(element) + p - 1)
-      do j = 1, size(k, 2)
-        stress = d(:, 1)*point(p)%b(1, j) + d(:, 2)*point(p)%b(2, j) + d(:, 3)*point(p)%b(3, j) + d(:, 4)*point(p)%b(4, j)
-        do i = 1, j
-          k(i, j) = k(i, j) + dot_product(point(p)%b(:, i), stress)
-        end do
-      end do
-    end do
-    do j = 2, size(k, 2)
-      k(j, :j - 1) = k(:j - 1, j)
-    end do
-  end function element_stiffness
 
   !> Add an element matrix to the band, the coupling and the border.
   pure subroutine add(k, number, stiffness)

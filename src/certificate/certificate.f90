@@ -5,9 +5,9 @@
 !> nodal forces from the work of the stresses on unit displacements.
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
-  use epcont_certificate_gradient, only: most_places, strains_of
+  use epcont_certificate_gradient, only: most_places, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: axisymmetric, model_type, most_nodes
   implicit none
   private
   public :: certificate_type, certify
@@ -90,22 +90,26 @@ contains
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :), stress(:, :)
     real(wp), intent(inout) :: internal(:, :), magnitude(:), stored, largest, off
-    real(wp) :: strain(4, most_places), volume(most_places), force(2)
+    real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), strain(4), force(2)
     integer :: c, e, k, p, places
 
     do e = 1, model%elements
+      call unit_strains(model, e, places, unit, volume)
       associate (node => model%connectivity(:model%order(e), e), first => model%first_point(e))
-        call strains_of(model, e, displacement(:, node), places, strain, volume)
         do p = 1, places
+          strain = strain_at(model, e, displacement, unit(:, :, :, p))
           associate (s => stress(:, first + p - 1))
-            off = max(off, maxval(abs(s - stress_on_curve(model, model%section(e), strain(:, p)))))
+            off = max(off, maxval(abs(s - stress_on_curve(model, model%section(e), strain))))
             largest = max(largest, maxval(abs(s)))
-            stored = stored + volume(p)*dot_product(s, strain(:, p))
+            stored = stored + volume(p)*dot_product(s, strain)
           end associate
         end do
         do k = 1, size(node)
           do c = 1, 2
-            force(c) = unit_work(model, e, k, c, stress(:, first:model%first_point(e + 1) - 1))
+            force(c) = 0.0_wp
+            do p = 1, places
+              force(c) = force(c) + volume(p)*dot_product(stress(:, first + p - 1), unit(:, c, k, p))
+            end do
           end do
           internal(:, node(k)) = internal(:, node(k)) + force
           magnitude(node(k)) = magnitude(node(k)) + maxval(abs(force))
@@ -114,20 +118,25 @@ contains
     end do
   end subroutine sum_elements
 
-  !> Work of an element's stresses on a unit displacement of one of its freedoms: the force there.
-  pure real(wp) function unit_work(model, element, node, component, stress)
+  !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel without strain,
+  !! and comes off first so that it leaves no rounding.
+  pure function strain_at(model, element, displacement, unit) result(strain)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: element, node, component
-    real(wp), intent(in) :: stress(:, :)   !! at its points [4, points]
-    real(wp) :: strain(4, most_places), volume(most_places)
-    real(wp) :: u(2, model%order(element))
-    integer :: places
+    integer, intent(in) :: element
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(in) :: unit(4, 2, most_nodes)
+    real(wp) :: strain(4), travel(2)
+    integer :: k
 
-    u = 0.0_wp
-    u(component, node) = 1.0_wp
-    call strains_of(model, element, u, places, strain, volume)
-    unit_work = sum(volume(:places)*sum(stress*strain(:, :places), dim=1))
-  end function unit_work
+    travel = displacement(:, model%connectivity(1, element))
+    if (model%kinematics(model%section(element)) == axisymmetric) travel(1) = 0.0_wp
+    strain = 0.0_wp
+    do k = 1, model%order(element)
+      associate (u => displacement(:, model%connectivity(k, element)))
+        strain = strain + (u(1) - travel(1))*unit(:, 1, k) + (u(2) - travel(2))*unit(:, 2, k)
+      end associate
+    end do
+  end function strain_at
 
   !> Smallest force and gap, largest product; the pairs' forces are taken off the residual.
   pure subroutine check_pairs(model, largest_load, displacement, force, residual, certificate)

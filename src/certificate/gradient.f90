@@ -2,10 +2,10 @@
 !> written down here afresh, and derived by differences, which are exact for the polynomials met.
 module epcont_certificate_gradient
   use epcont_base_kinds, only: wp
-  use epcont_model_model, only: axisymmetric, model_type, plane_stress
+  use epcont_model_model, only: axisymmetric, model_type, most_nodes, plane_stress
   implicit none
   private
-  public :: strains_of
+  public :: unit_strains
 
   !> Integration places of an element, at most.
   integer, parameter, public :: most_places = 4
@@ -40,75 +40,90 @@ contains
     end select
   end subroutine places_of
 
-  !> Strains xx, yy, zz, xy (engineering) at the integration places of an element, and the volumes that belong to them.
-  pure subroutine strains_of(model, element, u, places, strain, volume)
+  !> Strains xx, yy, zz, xy (engineering) that a unit displacement of each freedom gives at the integration places of an
+  !! element, and the volumes that belong to them.
+  pure subroutine unit_strains(model, element, places, strain, volume)
     type(model_type), intent(in) :: model
     integer, intent(in) :: element
-    real(wp), intent(in) :: u(:, :)                          !! displacements of its nodes [length] [2, order]
     integer, intent(out) :: places
-    real(wp), intent(out) :: strain(4, most_places), volume(most_places)   !! of its places [-, length**3]
-    real(wp) :: place(2, most_places), weight(most_places)
-    real(wp) :: x(2, model%order(element)), moved(2, model%order(element))
-    real(wp) :: side(2, 2), gradient(2, 2), change(2, 2), at(2), determinant, dilatation
-    integer :: p
+    real(wp), intent(out) :: strain(4, 2, most_nodes, most_places)   !! [-, directions, nodes, places] [1/length]
+    real(wp), intent(out) :: volume(most_places)                     !! [length**3]
+    real(wp) :: place(2, most_places), weight(most_places), at(most_nodes), change(2, most_nodes)
+    real(wp) :: x(2, most_nodes), side(2, 2), gradient(2), determinant, radius
+    integer :: k, n, p
 
-    x = model%coordinates(element)
-    moved = u - spread(u(:, 1), 2, size(u, 2))   ! a shift does not spoil the differences
-    call places_of(model%order(element), places, place, weight)
+    n = model%order(element)
+    do k = 1, n
+      x(:, k) = model%x(:, model%connectivity(k, element))
+    end do
+    call places_of(n, places, place, weight)
     associate (s => model%section(element))
       do p = 1, places
-        side = difference(x, place(:, p))
-        change = difference(moved, place(:, p))
+        change = differences(n, place(:, p))
+        side = matmul(x(:, :n), transpose(change(:, :n)))   ! d x/d local, one column each
         determinant = side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1)
-        gradient(:, 1) = (change(:, 1)*side(2, 2) - change(:, 2)*side(2, 1))/determinant
-        gradient(:, 2) = (change(:, 2)*side(1, 1) - change(:, 1)*side(1, 2))/determinant
-        strain(:, p) = [gradient(1, 1), gradient(2, 2), 0.0_wp, gradient(1, 2) + gradient(2, 1)]
         volume(p) = weight(p)*determinant*model%thickness(s)
+        strain(:, :, :n, p) = 0.0_wp
+        do k = 1, n
+          gradient = [change(1, k)*side(2, 2) - change(2, k)*side(2, 1), change(2, k)*side(1, 1) - change(1, k)*side(1, 2)] &
+                     /determinant
+          strain(1, 1, k, p) = gradient(1)
+          strain(2, 2, k, p) = gradient(2)
+          strain(4, :, k, p) = gradient([2, 1])
+        end do
         if (model%kinematics(s) /= axisymmetric) cycle
-        at = between(x, place(:, p))
-        strain(3, p) = (u(1, 1) + dot_product([1.0_wp, 0.0_wp], between(moved, place(:, p))))/at(1)
-        volume(p) = weight(p)*determinant*2.0_wp*acos(-1.0_wp)*at(1)
+        at = shares(n, place(:, p))
+        radius = dot_product(at(:n), x(1, :n))
+        strain(3, 1, :n, p) = at(:n)/radius
+        volume(p) = weight(p)*determinant*2.0_wp*acos(-1.0_wp)*radius
       end do
-      if (model%order(element) /= 4 .or. model%kinematics(s) == plane_stress) return
+      if (n == 4 .and. model%kinematics(s) /= plane_stress) call average_dilatation(strain, volume)
     end associate
-    ! CQUAD4 has the mean change of volume everywhere.
-    dilatation = sum(sum(strain(:3, :places), dim=1)*volume(:places))/sum(volume(:places))
-    do p = 1, places
-      strain(:3, p) = strain(:3, p) + (dilatation - sum(strain(:3, p)))/3.0_wp
+  end subroutine unit_strains
+
+  !> CQUAD4 has the mean change of volume everywhere.
+  pure subroutine average_dilatation(strain, volume)
+    real(wp), intent(inout) :: strain(4, 2, most_nodes, most_places)
+    real(wp), intent(in) :: volume(most_places)
+    real(wp) :: dilatation
+    integer :: c, k, p
+
+    do k = 1, 4
+      do c = 1, 2
+        dilatation = dot_product(sum(strain(:3, c, k, :), dim=1), volume)/sum(volume)
+        do p = 1, most_places
+          strain(:3, c, k, p) = strain(:3, c, k, p) + (dilatation - sum(strain(:3, c, k, p)))/3.0_wp
+        end do
+      end do
     end do
-  end subroutine strains_of
+  end subroutine average_dilatation
 
-  !> Derivatives of what is between the nodes by the two local coordinates [2, 2].
-  pure function difference(values, place) result(slope)
-    real(wp), intent(in) :: values(:, :), place(2)
-    real(wp) :: slope(2, 2)
-    real(wp) :: step(2)
-    integer :: c
-
-    do c = 1, 2
-      step = 0.0_wp
-      step(c) = half_step
-      slope(:, c) = (between(values, place + step) - between(values, place - step))/(2.0_wp*half_step)
-    end do
-  end function difference
-
-  !> What nodal values are at a local place: linear, quadratic or bilinear between the nodes.
-  pure function between(values, place) result(value)
-    real(wp), intent(in) :: values(:, :)   !! [2, nodes]
+  !> Derivatives of the nodes' shares by the two local coordinates [2, most_nodes].
+  pure function differences(nodes, place) result(slope)
+    integer, intent(in) :: nodes
     real(wp), intent(in) :: place(2)
-    real(wp) :: value(2)
+    real(wp) :: slope(2, most_nodes)
 
+    slope(1, :) = (shares(nodes, place + [half_step, 0.0_wp]) - shares(nodes, place - [half_step, 0.0_wp]))/(2.0_wp*half_step)
+    slope(2, :) = (shares(nodes, place + [0.0_wp, half_step]) - shares(nodes, place - [0.0_wp, half_step]))/(2.0_wp*half_step)
+  end function differences
+
+  !> The nodes' shares in what is at a local place: linear, quadratic or bilinear between the nodes.
+  pure function shares(nodes, place) result(share)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: place(2)
+    real(wp) :: share(most_nodes)
+
+    share = 0.0_wp
     associate (a => place(1), b => place(2), c => 1.0_wp - place(1) - place(2))
-      select case (size(values, 2))
+      select case (nodes)
       case (3)
-        value = values(:, 1) + a*(values(:, 2) - values(:, 1)) + b*(values(:, 3) - values(:, 1))
+        share(:3) = [c, a, b]
       case (6)
-        value = c*(2*c - 1)*values(:, 1) + a*(2*a - 1)*values(:, 2) + b*(2*b - 1)*values(:, 3) &
-                + 4*(c*a*values(:, 4) + a*b*values(:, 5) + b*c*values(:, 6))
+        share = [c*(2*c - 1), a*(2*a - 1), b*(2*b - 1), 4*c*a, 4*a*b, 4*b*c]
       case default
-        value = ((1 - a)*((1 - b)*values(:, 1) + (1 + b)*values(:, 4)) &
-                 + (1 + a)*((1 - b)*values(:, 2) + (1 + b)*values(:, 3)))/4
+        share(:4) = [(1 - a)*(1 - b), (1 + a)*(1 - b), (1 + a)*(1 + b), (1 - a)*(1 + b)]/4
       end select
     end associate
-  end function between
+  end function shares
 end module epcont_certificate_gradient

@@ -87,33 +87,42 @@ contains
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
     real(wp) :: area, longest, x(2, model%corners(e))
-    character(len=:), allocatable :: ids
     integer :: k, n
 
     n = model%corners(e)
     x = model%x(:, model%connectivity(:n, e))
     longest = maxval(sum((x - cshift(x, 1, dim=2))**2, dim=1))
     area = polygon_area(x)
-    ids = text_of(model%node_id(model%connectivity(1, e)))
-    do k = 2, n - 1
-      ids = ids//', '//text_of(model%node_id(model%connectivity(k, e)))
-    end do
-    ids = ids//' and '//text_of(model%node_id(model%connectivity(n, e)))
     if (abs(area) <= sliver*longest) then
-      call faults%add_error(deck%place(card, i, 4), deck%identity(card, i)//': its corners '//ids//' lie on one line', &
-                            'corners that span an area')
+      call faults%add_error(deck%place(card, i, 4), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &
+                            ' lie on one line', 'corners that span an area')
       return
     end if
     if (area < 0.0_wp) call turn(model%connectivity(:model%order(e), e))
     x = model%x(:, model%connectivity(:n, e))
     do k = 1, n
       if (cross_product(x(:, k) - x(:, mod(k + n - 2, n) + 1), x(:, mod(k, n) + 1) - x(:, k)) > sliver*longest) cycle
-      call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)//': its corners '//ids// &
+      call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &
                             ' cross over or bend inwards', 'four corners in turn, each bending the same way')
       return
     end do
     if (model%order(e) == 6) call check_middles(deck, card, i, model%coordinates(e), faults)
   end subroutine check_shape
+
+  !> The ids of an element's corners.
+  pure function corner_ids(model, e) result(ids)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: e
+    character(len=:), allocatable :: ids
+    integer :: k, n
+
+    n = model%corners(e)
+    ids = text_of(model%node_id(model%connectivity(1, e)))
+    do k = 2, n - 1
+      ids = ids//', '//text_of(model%node_id(model%connectivity(k, e)))
+    end do
+    ids = ids//' and '//text_of(model%node_id(model%connectivity(n, e)))
+  end function corner_ids
 
   !> The same nodes the other way round.
   pure subroutine turn(node)

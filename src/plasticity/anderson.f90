@@ -1,7 +1,6 @@
 !> Anderson's acceleration of a fixed-point iteration x -> g(x): from the last steps the mixture of g whose g - x is
 !> least, in the norm of the elastic energy of strains.
 module epcont_plasticity_anderson
-  use epcont_assembly_fields, only: volumes
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
   use epcont_plasticity_state, only: scene_state
@@ -39,16 +38,17 @@ contains
   end subroutine forget
 
   !> The next x, when the last one was `about` and g(about) is `found`.
-  pure subroutine mix(self, model, found, about)
+  pure subroutine mix(self, model, volume, found, about)
     class(anderson_mixer), intent(inout) :: self
     type(model_type), intent(in) :: model
+    real(wp), intent(in) :: volume(:)   !! of each point
     type(scene_state), intent(in) :: found
     type(scene_state), intent(inout) :: about
     real(wp) :: share(memory)
     integer :: k
 
     if (.not. allocated(self%weight)) then
-      self%weight = volumes(model)*model%young(model%section(model%point_element))
+      self%weight = volume*model%young(model%section(model%point_element))
       allocate (self%rest_step(4, model%points, memory), self%strain_step(4, model%points, memory))
       allocate (self%displacement_step(2, model%nodes, memory))
     end if

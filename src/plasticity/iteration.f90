@@ -1,5 +1,6 @@
 !> The loop of the plastic iteration; it knows nothing of the method that it drives.
 module epcont_plasticity_iteration
+  use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solved
   use epcont_material_curve, only: material_type, section_materials
@@ -38,6 +39,7 @@ module epcont_plasticity_iteration
   !> What came of the loads, and how.
   type :: plastic_run
     type(scene_state) :: state             !! the answer, or what came nearest to one
+    type(strain_operator), allocatable :: operator   !! of the scene, if there is an answer
     real(wp) :: load_factor = 0.0_wp       !! part of the loads that `state` carries
     logical :: converged = .false.         !! all loads, to the tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
@@ -81,6 +83,7 @@ contains
     integer :: step
 
     call begin(model, motions, plan, loop)
+    method%volume = loop%scene%operator%volume
     allocate (run%history(0), strained(model%points))
     strained = 0.0_wp
     do step = 1, plan%load_steps
@@ -99,6 +102,7 @@ contains
       call find_unloaded(model, loop, strained, run)
     end do
     run%converged = converged
+    call move_alloc(loop%scene%operator, run%operator)
   end subroutine follow_loads
 
   subroutine begin(model, motions, plan, loop)

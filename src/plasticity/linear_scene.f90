@@ -2,7 +2,7 @@
 !> an elastic analysis.
 module epcont_plasticity_linear_scene
   use epcont_assembly_bodies, only: factored_bodies, new_bodies
-  use epcont_assembly_fields, only: nodal_forces, strains
+  use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_problem, contact_solved
   use epcont_contact_simplex, only: solve_contact
@@ -18,6 +18,7 @@ module epcont_plasticity_linear_scene
   public :: linear_scene, new_linear_scene
 
   type :: linear_scene
+    type(strain_operator), allocatable :: operator
     type(factored_bodies) :: bodies
     type(contact_problem) :: problem
     logical, allocatable :: yields(:)                !! the body has elements that can yield [bodies]
@@ -37,6 +38,7 @@ contains
     logical, intent(in) :: yields(:)   !! the body has elements that can yield [bodies]
     type(linear_scene) :: scene
 
+    scene%operator = new_strain_operator(model)
     scene%bodies = new_bodies(model)
     scene%yields = yields
     scene%problem%initial_gap = model%initial_gap
@@ -59,7 +61,7 @@ contains
     singular = 0
     do b = 1, model%bodies
       if (.not. (first .or. self%yields(b))) cycle
-      call self%bodies%factor_body(model, matrix, numbering, b, sound)
+      call self%bodies%factor_body(model, self%operator, matrix, numbering, b, sound)
       if (sound) cycle
       singular = b
       return
@@ -98,7 +100,7 @@ contains
     real(wp), allocatable :: force(:, :)
 
     force = part*model%load
-    if (any(law%initial_stress /= 0.0_wp)) force = force - nodal_forces(model, law%initial_stress)
+    if (any(law%initial_stress /= 0.0_wp)) force = force - self%operator%nodal_forces(model, law%initial_stress)
     self%problem%load_gap = gap_opening(model, self%bodies%displacements(model, numbering, force, part))
     self%problem%resultant = part*self%resultant
     if (allocated(start)) then
@@ -111,7 +113,7 @@ contains
     force = force + pair_forces(model, state%contact%force)
     state%displacement = self%bodies%displacements(model, numbering, force, part)
     ! The strains come before the rigid motion, whose digits they have no need of.
-    state%strain = strains(model, state%displacement)
+    state%strain = self%operator%strains(model, state%displacement)
     state%stress = law%stress(state%strain)
     call add_motions(model, motions, state)
   end subroutine solve

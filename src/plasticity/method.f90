@@ -10,6 +10,7 @@ module epcont_plasticity_method
   public :: plastic_method
 
   type, abstract :: plastic_method
+    real(wp), allocatable :: volume(:)     !! of each integration point [length**3] [points]
     logical :: keeps_stiffness = .false.   !! the matrices of the law stay elastic: factors and flexibility serve again
   contains
     procedure :: restart

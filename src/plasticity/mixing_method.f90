@@ -33,6 +33,6 @@ contains
     type(scene_state), intent(in) :: found
     type(scene_state), intent(inout) :: about
 
-    call self%mixer%mix(model, found, about)
+    call self%mixer%mix(model, self%volume, found, about)
   end subroutine advance
 end module epcont_plasticity_mixing_method

@@ -4,7 +4,6 @@
 !> points along it satisfy supports and contact, since both its ends do. The search looks for the zero of the slope
 !> (f_int - f).d, since differences of the energy itself drown in rounding.
 module epcont_plasticity_newton
-  use epcont_assembly_fields, only: volumes
   use epcont_base_kinds, only: wp
   use epcont_material_curve, only: material_type
   use epcont_material_linear_law, only: linear_law
@@ -105,7 +104,7 @@ contains
     real(wp) :: length
 
     length = 1.0_wp
-    if (.not. self%takes_full_step) length = step_length(model, material, part, about, found)
+    if (.not. self%takes_full_step) length = step_length(model, material, self%volume, part, about, found)
     self%takes_full_step = .false.
     about%displacement = about%displacement + length*(found%displacement - about%displacement)
     about%strain = about%strain + length*(found%strain - about%strain)
@@ -115,18 +114,18 @@ contains
   end subroutine advance
 
   !> The zero of the slope of the energy, from 0 to 1: regula falsi of Illinois.
-  pure real(wp) function step_length(model, material, part, about, found)
+  pure real(wp) function step_length(model, material, volume, part, about, found)
     type(model_type), intent(in) :: model
     type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: volume(:)   !! of each point
     real(wp), intent(in) :: part
     type(scene_state), intent(in) :: about, found
-    real(wp), allocatable :: along(:, :), volume(:)
+    real(wp), allocatable :: along(:, :)
     real(wp) :: begin, low, high, slope, slope_low, slope_high, terms, work, work_terms
     integer :: k, side
 
     step_length = 1.0_wp
     along = found%strain - about%strain
-    volume = volumes(model)
     work = part*sum(model%load*(found%displacement - about%displacement))
     work_terms = part*sum(abs(model%load*(found%displacement - about%displacement)))
     call find_slope(0.0_wp, begin, terms)

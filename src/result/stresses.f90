@@ -1,6 +1,6 @@
 !> Stresses of the elements and reactions of the supports.
 module epcont_result_stresses
-  use epcont_assembly_fields, only: nodal_forces, volumes
+  use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_elasticity, only: equivalent_stress
@@ -15,19 +15,18 @@ module epcont_result_stresses
 contains
 
   !> Fill in stresses, strains, moduli and reactions. `applied` are the nodal forces of loads and pairs [2, nodes].
-  pure subroutine recover_stresses(model, state, applied, answer)
+  pure subroutine recover_stresses(model, operator, state, applied, answer)
     type(model_type), intent(in) :: model
+    type(strain_operator), intent(in) :: operator
     type(scene_state), intent(in) :: state
     real(wp), intent(in) :: applied(:, :)
     type(answer_type), intent(inout) :: answer
     type(material_type), allocatable :: material(:)
-    real(wp), allocatable :: volume(:)
     type(response_type) :: response
     real(wp) :: modulus
     integer :: e, p
 
     material = section_materials(model)
-    volume = volumes(model)
     answer%point_stress = state%stress
     allocate (answer%stress(4, model%elements), answer%equivalent_stress(model%elements), source=0.0_wp)
     allocate (answer%equivalent_strain(model%elements), answer%secant_modulus(model%elements), source=0.0_wp)
@@ -38,7 +37,7 @@ contains
           response = respond(m, state%strain(:, p))
           modulus = m%young
           if (response%curve%yielded) modulus = 1.0_wp/(1.0_wp/response%curve%modulus + m%shift)
-          associate (share => volume(p)/sum(volume(first:last)))
+          associate (share => operator%volume(p)/sum(operator%volume(first:last)))
             answer%stress(:, e) = answer%stress(:, e) + share*state%stress(:, p)
             answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*equivalent_stress(state%stress(:, p))
             answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*response%curve%total
@@ -49,19 +48,17 @@ contains
         end do
       end associate
     end do
-    answer%reaction = reactions(model, state, applied)
+    answer%reaction = reactions(model, operator%nodal_forces(model, state%stress), applied)
   end subroutine recover_stresses
 
   !> What the supports must hold [force] [2, nodes].
-  pure function reactions(model, state, applied) result(reaction)
+  pure function reactions(model, force, applied) result(reaction)
     type(model_type), intent(in) :: model
-    type(scene_state), intent(in) :: state
+    real(wp), intent(in) :: force(:, :)     !! that the elements need at the nodes [2, nodes]
     real(wp), intent(in) :: applied(:, :)
     real(wp), allocatable :: reaction(:, :)
-    real(wp), allocatable :: force(:, :)
     integer :: c, node
 
-    force = nodal_forces(model, state%stress)
     allocate (reaction(2, model%nodes), source=0.0_wp)
     do node = 1, model%nodes
       do c = 1, 2

@@ -1,0 +1,117 @@
+!> The operator B of all integration points, made once: strain = B u; and what is made with it: strains of
+!> displacements, nodal forces of stresses, element stiffness.
+module epcont_assembly_strain_operator
+  use epcont_base_kinds, only: wp
+  use epcont_element_element, only: element_point, evaluate_points, most_points
+  use epcont_model_model, only: model_type, most_nodes
+  implicit none
+  private
+  public :: strain_operator, new_strain_operator
+
+  type :: strain_operator
+    real(wp), allocatable :: b(:, :)         !! rows xx, yy, zz, xy; two columns a node, point by point [1/length] [4, columns]
+    integer, allocatable :: column(:)        !! column before the first of each point [points]
+    real(wp), allocatable :: volume(:)       !! that belongs to each point [length**3] [points]
+  contains
+    procedure :: strains
+    procedure :: nodal_forces
+    procedure :: element_stiffness
+  end type strain_operator
+
+contains
+
+  pure function new_strain_operator(model) result(operator)
+    type(model_type), intent(in) :: model
+    type(strain_operator) :: operator
+    type(element_point) :: point(most_points)
+    real(wp) :: x(2, most_nodes)
+    integer :: column, e, k, n, points
+
+    allocate (operator%column(model%points), operator%volume(model%points))
+    allocate (operator%b(4, 2*sum(model%order*(model%first_point(2:) - model%first_point(:model%elements)))))
+    column = 0
+    do e = 1, model%elements
+      n = model%order(e)
+      points = model%first_point(e + 1) - model%first_point(e)
+      do k = 1, n
+        x(:, k) = model%x(:, model%connectivity(k, e))
+      end do
+      call evaluate_points(x(:, :n), model%kinematics(model%section(e)), model%thickness(model%section(e)), point(:points))
+      do k = 1, points
+        operator%b(:, column + 1:column + 2*n) = point(k)%b(:, :2*n)
+        operator%volume(model%first_point(e) + k - 1) = point(k)%volume
+        operator%column(model%first_point(e) + k - 1) = column
+        column = column + 2*n
+      end do
+    end do
+  end function new_strain_operator
+
+  !> Strains xx, yy, zz, xy (engineering) [4, points].
+  pure function strains(self, model, displacement) result(strain)
+    class(strain_operator), intent(in) :: self
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), allocatable :: strain(:, :)
+    real(wp) :: now(4)
+    integer :: c, i, node, p
+
+    allocate (strain(4, model%points))
+    do p = 1, model%points
+      now = 0.0_wp
+      c = self%column(p)
+      do i = 1, model%order(model%point_element(p))
+        node = model%connectivity(i, model%point_element(p))
+        now = now + self%b(:, c + 2*i - 1)*displacement(1, node) + self%b(:, c + 2*i)*displacement(2, node)
+      end do
+      strain(:, p) = now
+    end do
+  end function strains
+
+  !> Forces that nodes must exert on the elements to hold their stresses [force] [2, nodes].
+  pure function nodal_forces(self, model, stress) result(force)
+    class(strain_operator), intent(in) :: self
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: stress(:, :)         !! xx, yy, zz, xy [stress] [4, points]
+    real(wp), allocatable :: force(:, :)
+    real(wp) :: s(4)
+    integer :: c, i, node, p
+
+    allocate (force(2, model%nodes), source=0.0_wp)
+    do p = 1, model%points
+      s = self%volume(p)*stress(:, p)
+      c = self%column(p)
+      do i = 1, model%order(model%point_element(p))
+        node = model%connectivity(i, model%point_element(p))
+        force(1, node) = force(1, node) + dot_product(s, self%b(:, c + 2*i - 1))
+        force(2, node) = force(2, node) + dot_product(s, self%b(:, c + 2*i))
+      end do
+    end do
+  end function nodal_forces
+
+  !> Stiffness of an element: B'D B times the volume of each point [force/length] [2 order, 2 order].
+  pure subroutine element_stiffness(self, model, element, matrix, k)
+    class(strain_operator), intent(in) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element
+    real(wp), intent(in) :: matrix(:, :, :)      !! of the material at each point [stress] [4, 4, points]
+    real(wp), intent(out) :: k(:, :)             !! [2 most_nodes, 2 most_nodes], set as far as the element has nodes
+    real(wp) :: d(4, 4), stress(4)
+    integer :: c, i, j, n, p
+
+    n = 2*model%order(element)
+    k(:n, :n) = 0.0_wp
+    do p = model%first_point(element), model%first_point(element + 1) - 1
+      d = self%volume(p)*matrix(:, :, p)
+      c = self%column(p)
+      do j = 1, n
+        stress = d(:, 1)*self%b(1, c + j) + d(:, 2)*self%b(2, c + j) + d(:, 3)*self%b(3, c + j) + d(:, 4)*self%b(4, c + j)
+        do i = 1, j
+          k(i, j) = k(i, j) + dot_product(self%b(:, c + i), stress)
+        end do
+      end do
+    end do
+    do j = 2, n
+      k(j, :j - 1) = k(:j - 1, j)
+    end do
+  end subroutine element_stiffness
+end module epcont_assembly_strain_operator
