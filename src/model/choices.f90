@@ -1,7 +1,7 @@
 !> What the PARAMs choose for the plastic iteration, and whether the scene allows it.
 module epcont_model_choices
   use epcont_base_kinds, only: wp
-  use epcont_deck_deck, only: card_param, card_pshell, deck_type
+  use epcont_deck_deck, only: card_param, card_pshell, card_psolid, deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_controls, only: method_name, method_newton
   use epcont_model_model, only: model_type, plane_strain
@@ -36,10 +36,25 @@ contains
     do s = 1, size(model%curve)
       if (model%kinematics(s) == plane_strain .or. .not. allocated(model%curve(s)%strain)) cycle
       call faults%add_error(deck%place(card_param, row, 2), 'PARAM MUP: PAPER is for plane strain, and '// &
-                            deck%identity(card_pshell, s)//' is not', 'MUP EXACT')
+                            section_name(deck, s)//' is not', 'MUP EXACT')
       return
     end do
   end subroutine build_controls
+
+  !> The card of a section: PSHELL come first, then PSOLID.
+  function section_name(deck, section) result(name)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: section
+    character(len=:), allocatable :: name
+    integer :: shells
+
+    shells = deck%card(card_pshell)%count
+    if (section <= shells) then
+      name = deck%identity(card_pshell, section)
+    else
+      name = deck%identity(card_psolid, section - shells)
+    end if
+  end function section_name
 
   !> Each PARAM stands once: of two, one would be ignored.
   subroutine check_once(deck, faults)

@@ -93,7 +93,7 @@ contains
     x = model%x(:, model%connectivity(:n, e))
     longest = maxval(sum((x - cshift(x, 1, dim=2))**2, dim=1))
     area = polygon_area(x)
-    if (abs(area) <= sliver*longest) then
+    if (n == 3 .and. abs(area) <= sliver*longest) then
       call faults%add_error(deck%place(card, i, 4), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &
                             ' lie on one line', 'corners that span an area')
       return
@@ -103,7 +103,7 @@ contains
     do k = 1, n
       if (cross_product(x(:, k) - x(:, mod(k + n - 2, n) + 1), x(:, mod(k, n) + 1) - x(:, k)) > sliver*longest) cycle
       call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &
-                            ' cross over or bend inwards', 'four corners in turn, each bending the same way')
+                            ' cross over, bend inwards or lie on one line', 'four corners in turn, each bending the same way')
       return
     end do
     if (model%order(e) == 6) call check_middles(deck, card, i, model%coordinates(e), faults)

@@ -55,14 +55,17 @@ contains
     character(len=*), intent(in) :: wanted    !! their name
     type(diagnostics), intent(inout) :: faults
     integer, intent(out) :: position
+    character(len=:), allocatable :: article
 
     position = 0
     if (.not. deck%card(card)%given(column, i)) return  ! the reader has said so
     position = index%find(nint(deck%card(card)%value(column, i)))
     if (position > 0 .or. .not. deck%card(card)%sound(i)) return
+    article = 'the id of a '
+    if (wanted == 'element') article = 'the id of an '
     call faults%add_error(deck%place(card, i, column), deck%identity(card, i)//': field '// &
                           text_of(deck%entry(card)%field(column)%number)//' ('// &
                           trim(deck%card(card)%name(column))//'): there is no '//wanted//' '// &
-                          text_of(nint(deck%card(card)%value(column, i))), 'the id of a '//wanted)
+                          text_of(nint(deck%card(card)%value(column, i))), article//wanted)
   end subroutine resolve
 end module epcont_model_reference

@@ -1,7 +1,7 @@
 !> A model of sections that yield, without a mesh, and strains to try them with.
 module yielding_model
   use epcont_base_kinds, only: wp
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: model_type, plane_strain, plane_stress
   implicit none
   private
   public :: new_yielding_model, strain_path
@@ -18,7 +18,7 @@ contains
 
     model%young = [200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp]
     model%poisson = [0.3_wp, 0.3_wp, 0.25_wp, 0.25_wp, 0.4999_wp, 0.3_wp]
-    model%plane_strain = [.true., .false., .true., .false., .true., .true.]
+    model%kinematics = [plane_strain, plane_stress, plane_strain, plane_stress, plane_strain, plane_strain]
     allocate (model%curve(sections))
     do s = 1, 2
       model%curve(s)%strain = [0.0_wp, 0.005_wp, 0.01_wp, 0.02_wp, 0.05_wp]
@@ -32,11 +32,12 @@ contains
     model%controls%paper_ratio = paper_ratio
   end function new_yielding_model
 
-  !> Strains of all directions and sizes, from elastic to 50 times yield.
+  !> Strains of all directions and sizes, from elastic to 50 times yield; every third in the plane only.
   pure function strain_path(k) result(strain)
     integer, intent(in) :: k   !! 1 to 200, say
-    real(wp) :: strain(3)
+    real(wp) :: strain(4)
 
-    strain = 0.001_wp*1.03_wp**k*[cos(0.7_wp*k), sin(1.3_wp*k), 1.5_wp*cos(2.1_wp*k + 1.0_wp)]
+    strain = 0.001_wp*1.03_wp**k*[cos(0.7_wp*k), sin(1.3_wp*k), sin(1.7_wp*k), 1.5_wp*cos(2.1_wp*k + 1.0_wp)]
+    if (mod(k, 3) == 0) strain(3) = 0.0_wp
   end function strain_path
 end module yielding_model
