@@ -145,24 +145,28 @@ contains
     real(wp), intent(in) :: displacement(:, :), force(:)
     real(wp), intent(inout) :: residual(:, :)
     type(certificate_type), intent(inout) :: certificate
-    real(wp) :: gap, moved
-    integer :: k
+    real(wp) :: gap, apart(2), travel
+    integer :: i, k
 
     if (model%pairs == 0) return
     certificate%smallest_force = minval(force)
     certificate%smallest_gap = huge(1.0_wp)
     certificate%force_scale = max(maxval(abs(force)), largest_load, tiny(1.0_wp))
     do k = 1, model%pairs
-      associate (a => model%pair_node(1, k), b => model%pair_node(2, k), n => model%normal(:, k))
-        moved = sum(n*(displacement(:, b) - displacement(:, a)))
-        gap = model%initial_gap(k) + moved
-        certificate%smallest_gap = min(certificate%smallest_gap, gap)
-        certificate%force_gap = max(certificate%force_gap, abs(gap*force(k)))
-        if (force(k) > 0.0_wp) certificate%gap_rounding = max(certificate%gap_rounding, roundings*epsilon(1.0_wp)* &
-          max(abs(model%initial_gap(k)), maxval(abs(displacement(:, [a, b])))))
-        residual(:, b) = residual(:, b) - force(k)*n
-        residual(:, a) = residual(:, a) + force(k)*n
-      end associate
+      apart = 0.0_wp
+      travel = 0.0_wp
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        associate (node => model%row_node(i))
+          apart = apart + model%row_weight(i)*displacement(:, node)
+          travel = max(travel, maxval(abs(displacement(:, node))))
+          residual(:, node) = residual(:, node) - model%row_weight(i)*force(k)*model%normal(:, k)
+        end associate
+      end do
+      gap = model%initial_gap(k) + sum(model%normal(:, k)*apart)
+      certificate%smallest_gap = min(certificate%smallest_gap, gap)
+      certificate%force_gap = max(certificate%force_gap, abs(gap*force(k)))
+      if (force(k) > 0.0_wp) certificate%gap_rounding = &
+        max(certificate%gap_rounding, roundings*epsilon(1.0_wp)*max(abs(model%initial_gap(k)), travel))
     end do
   end subroutine check_pairs
 
@@ -171,11 +175,15 @@ contains
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :), force(:)
     real(wp), intent(inout) :: work, terms
-    real(wp) :: done
-    integer :: k
+    real(wp) :: apart(2), done
+    integer :: i, k
 
     do k = 1, model%pairs
-      done = force(k)*sum(model%normal(:, k)*(displacement(:, model%pair_node(2, k)) - displacement(:, model%pair_node(1, k))))
+      apart = 0.0_wp
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        apart = apart + model%row_weight(i)*displacement(:, model%row_node(i))
+      end do
+      done = force(k)*sum(model%normal(:, k)*apart)
       work = work + done
       terms = terms + abs(done)
     end do

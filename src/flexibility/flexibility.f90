@@ -18,53 +18,55 @@ contains
     integer, intent(in) :: b                       !! the body
     type(body_stiffness), intent(in) :: stiffness  !! factored
     real(wp), intent(inout) :: flexibility(:, :)
-    real(wp), allocatable :: compliance(:, :), weight(:, :)
-    integer, allocatable :: place(:, :)
+    real(wp), allocatable :: compliance(:, :), weight(:)
+    integer, allocatable :: start(:), place(:)
     integer :: i, j, k, l
 
     if (numbering%body(b)%contact_equations + numbering%body(b)%border == 0) return
-    call pair_weights(model, numbering, b, place, weight)
+    call body_rows(model, numbering, b, start, place, weight)
     compliance = stiffness%trailing_compliance(numbering%body(b)%contact_equations)
     do l = 1, model%pairs
-      do j = 1, 4
-        if (place(j, l) == 0) cycle
+      do j = start(l), start(l + 1) - 1
         do k = 1, model%pairs
-          do i = 1, 4
-            if (place(i, k) == 0) cycle
-            flexibility(k, l) = flexibility(k, l) + weight(i, k)*weight(j, l)*compliance(place(i, k), place(j, l))
+          do i = start(k), start(k + 1) - 1
+            flexibility(k, l) = flexibility(k, l) + weight(i)*weight(j)*compliance(place(i), place(j))
           end do
         end do
       end do
     end do
   end subroutine add_body_flexibility
 
-  !> Rows of N in one body: the freedoms of nodes A and B by their place in the compliance, 0 where held or of
-  !! another body, and their weights in the gap.
-  pure subroutine pair_weights(model, numbering, b, place, weight)
+  !> Rows of N in one body: the entries start(k) to start(k+1)-1 of pair k are freedoms by their place in the
+  !! compliance, and their weights in the gap. Freedoms that are held or of another body are left out.
+  pure subroutine body_rows(model, numbering, b, start, place, weight)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
-    integer, allocatable, intent(out) :: place(:, :)    !! [4, pairs]
-    real(wp), allocatable, intent(out) :: weight(:, :)  !! [4, pairs]
-    integer :: c, first, k, number, side
+    integer, allocatable, intent(out) :: start(:)    !! [pairs + 1]
+    integer, allocatable, intent(out) :: place(:)    !! [entries]
+    real(wp), allocatable, intent(out) :: weight(:)  !! [entries]
+    integer :: c, first, i, k, number
 
-    allocate (place(4, model%pairs), source=0)
-    allocate (weight(4, model%pairs))
-    associate (body => numbering%body(b))
+    allocate (start(model%pairs + 1), source=1)
+    allocate (place(2*size(model%row_node)), weight(2*size(model%row_node)))
+    associate (body => numbering%body(b), last => start(model%pairs + 1))
       first = body%equations - body%contact_equations
+      last = 1
       do k = 1, model%pairs
-        do side = 1, 2
+        start(k) = last
+        do i = model%row_start(k), model%row_start(k + 1) - 1
+          if (model%body(model%row_node(i)) /= b) cycle
           do c = 1, 2
-            weight(2*side - 2 + c, k) = merge(-1.0_wp, 1.0_wp, side == 1)*model%normal(c, k)
-            if (model%body(model%pair_node(side, k)) /= b) cycle
-            number = numbering%equation(c, model%pair_node(side, k))
-            if (number > 0) place(2*side - 2 + c, k) = number - first
-            if (number < 0) place(2*side - 2 + c, k) = body%contact_equations - number
+            number = numbering%equation(c, model%row_node(i))
+            if (number == 0) cycle
+            place(last) = merge(number - first, body%contact_equations - number, number > 0)
+            weight(last) = model%row_weight(i)*model%normal(c, k)
+            last = last + 1
           end do
         end do
       end do
     end associate
-  end subroutine pair_weights
+  end subroutine body_rows
 
   !> Opening of the gaps by displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)
@@ -75,8 +77,7 @@ contains
 
     allocate (opening(model%pairs))
     do k = 1, model%pairs
-      opening(k) = dot_product(model%normal(:, k), displacement(:, model%pair_node(2, k)) - &
-                               displacement(:, model%pair_node(1, k)))
+      opening(k) = model%opening(k, displacement(:, model%row_node(model%row_start(k):model%row_start(k + 1) - 1)))
     end do
   end function gap_opening
 
@@ -85,14 +86,15 @@ contains
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)  !! [pairs]
     real(wp), allocatable :: nodal(:, :)
-    integer :: k
+    integer :: i, k
 
     allocate (nodal(2, model%nodes), source=0.0_wp)
     do k = 1, model%pairs
-      associate (a => model%pair_node(1, k), b => model%pair_node(2, k))
-        nodal(:, b) = nodal(:, b) + force(k)*model%normal(:, k)
-        nodal(:, a) = nodal(:, a) - force(k)*model%normal(:, k)
-      end associate
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        associate (node => model%row_node(i))
+          nodal(:, node) = nodal(:, node) + force(k)*model%row_weight(i)*model%normal(:, k)
+        end associate
+      end do
     end do
   end function pair_forces
 
@@ -101,13 +103,19 @@ contains
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     real(wp), allocatable :: columns(:, :)
-    integer :: k, m
+    real(wp), allocatable :: moved(:, :)
+    integer :: first, i, k, m
 
     allocate (columns(model%pairs, motions%count))
     do m = 1, motions%count
       do k = 1, model%pairs
-        columns(k, m) = -dot_product(model%normal(:, k), motions%displacement(model, model%pair_node(2, k), m) - &
-                                     motions%displacement(model, model%pair_node(1, k), m))
+        first = model%row_start(k)
+        allocate (moved(2, model%row_start(k + 1) - first))
+        do i = 1, size(moved, 2)
+          moved(:, i) = motions%displacement(model, model%row_node(first + i - 1), m)
+        end do
+        columns(k, m) = -model%opening(k, moved)
+        deallocate (moved)
       end do
     end do
   end function motion_columns

@@ -39,8 +39,12 @@ module epcont_model_model
     logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
     real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]
     integer, allocatable :: pair_id(:)          !! [pairs]
-    integer, allocatable :: pair_node(:, :)     !! nodes A and B [2, pairs]
+    integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
     real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
+    !> Row k of N: along its normal the nodes row_node(row_start(k):row_start(k+1)-1) open the gap by row_weight. The
+    !! weights of a row sum to 0. [pairs + 1], [entries], [entries]
+    integer, allocatable :: row_start(:), row_node(:)
+    real(wp), allocatable :: row_weight(:)
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
     integer, allocatable :: body(:)             !! of each node [nodes]
   contains
@@ -50,6 +54,7 @@ module epcont_model_model
     procedure :: edge_coordinates
     procedure :: can_yield
     procedure :: has_flat_curve
+    procedure :: opening
   end type model_type
 
 contains
@@ -115,4 +120,20 @@ contains
       flat = flat .or. self%curve(s)%stress(n) <= self%curve(s)%stress(n - 1)
     end do
   end function has_flat_curve
+
+  !> How far displacements open the gap of a pair.
+  pure function opening(self, pair, displacement)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: pair
+    real(wp), intent(in) :: displacement(:, :)  !! of the nodes of its row [2, entries of the row]
+    real(wp) :: opening, apart(2)
+    integer :: k
+
+    ! Summed before it is seen along the normal: a travel that the nodes share drops out without rounding.
+    apart = 0.0_wp
+    do k = 1, size(displacement, 2)
+      apart = apart + self%row_weight(self%row_start(pair) + k - 1)*displacement(:, k)
+    end do
+    opening = dot_product(self%normal(:, pair), apart)
+  end function opening
 end module epcont_model_model

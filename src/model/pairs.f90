@@ -37,7 +37,7 @@ contains
     associate (cgap => deck%card(card_cgap), pgap => deck%card(card_pgap))
       model%pairs = cgap%count
       model%pair_id = nint(cgap%value(1, :))
-      allocate (model%pair_node(2, cgap%count))
+      allocate (model%pair_node(2, cgap%count), source=0)
       allocate (model%normal(2, cgap%count), model%initial_gap(cgap%count), source=0.0_wp)
       edge = shortest_edge(model)
       do i = 1, cgap%count
@@ -51,6 +51,9 @@ contains
         if (geometry) model%initial_gap(i) = model%initial_gap(i) + dot_product(model%normal(:, i), &
                                              model%x(:, model%pair_node(2, i)) - model%x(:, model%pair_node(1, i)))
       end do
+      model%row_start = [(2*i - 1, i=1, cgap%count + 1)]
+      model%row_node = reshape(model%pair_node([2, 1], :), [2*cgap%count])
+      model%row_weight = [(1.0_wp, -1.0_wp, i=1, cgap%count)]
     end associate
     call warn_of_overlap(deck, model, faults)
   end subroutine build_pairs

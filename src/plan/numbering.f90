@@ -45,7 +45,7 @@ contains
 
     around = new_incidence(model%connectivity, model%nodes)
     allocate (at_contact(model%nodes), source=.false.)
-    at_contact(reshape(model%pair_node, [2*model%pairs])) = .true.
+    at_contact(model%row_node) = .true.
     order = sorted_order(model%body)
     element_body = model%body(model%connectivity(1, :))
     element_order = sorted_order(element_body)
