@@ -3,7 +3,8 @@ module epcont_deck_bulk
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_deck_card, only: card_fields, gather
-  use epcont_deck_catalogue, only: card_kinds, catalogue, parameters
+  use epcont_deck_card_kinds, only: card_kinds
+  use epcont_deck_catalogue, only: catalogue, parameters
   use epcont_deck_complaint, only: add_fault, add_unknown, add_value_fault, field_text, identity
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_entry, only: card_entry, field_entry, kind_word, number_of, slot_of

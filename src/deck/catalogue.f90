@@ -3,19 +3,15 @@
 module epcont_deck_catalogue
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
+  use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cbar, card_cgap, card_cord2r, card_cquad4, card_ctrax3, &
+                                    card_ctrax6, card_ctria3, card_ctria6, card_force, card_grid, card_kinds, card_mat1, &
+                                    card_mats1, card_param, card_pgap, card_ploadx1, card_pshell, card_psolid, card_rbe2, &
+                                    card_spc, card_spc1, card_suport, card_tables1
   use epcont_deck_entry, only: any_field, card_entry, components_field, field_entry, id_field, integer_field, largest_id, &
                                new_card, number_of, real_field, word_field
   implicit none
   private
   public :: catalogue, parameters
-
-  !> The cards, by their place in the catalogue.
-  integer, parameter, public :: card_grid = 1, card_ctria3 = 2, card_pshell = 3, card_mat1 = 4, card_spc = 5, &
-                                card_spc1 = 6, card_force = 7, card_ploadx1 = 8, card_rbe2 = 9, card_suport = 10, &
-                                card_cord2r = 11, card_cgap = 12, card_pgap = 13, card_cbar = 14, card_param = 15, &
-                                card_mats1 = 16, card_tables1 = 17, &
-                                card_ctria6 = 18, card_cquad4 = 19, card_ctrax3 = 20, card_ctrax6 = 21, card_psolid = 22
-  integer, parameter, public :: card_kinds = 22
 
   !> What the nodes of elements are, in their order on the card.
   character(len=*), parameter :: in_turn(4) = ['first node, in either turning sense', 'second node                        ', &
@@ -55,6 +51,8 @@ contains
     card(card_ctrax3) = element('CTRAX3', 'ring of a three-node triangle; x is the radius', 'PSOLID', in_turn(:3))
     card(card_ctrax6) = element('CTRAX6', 'ring of a six-node triangle; x is the radius', 'PSOLID', round)
     card(card_psolid) = psolid()
+    card(card_blseg) = blseg()
+    card(card_bconp) = bconp()
   end function catalogue
 
   function grid() result(card)
@@ -283,6 +281,32 @@ contains
     call card%add(noted(real_field(14, 'TRMIN', 'smallest penetration', '')))
   end function pgap
 
+  function blseg() result(card)
+    type(card_entry) :: card
+
+    card = new_card('BLSEG', 'line of nodes along the boundary of a body')
+    call card%add(id_field(2, 'ID', 'line'))
+    call card%add_list(3, 'G', 'nodes in their order, in either sense; G1 THRU G2, or G1 THRU G2 BY step; a closed line'// &
+                       ' ends with its first node', has_ranges=.true.)
+    card%has_steps = .true.
+  end function blseg
+
+  function bconp() result(card)
+    type(card_entry) :: card
+    type(field_entry) :: friction
+
+    card = new_card('BCONP', 'contact of the nodes of one line with the segments of another')
+    call card%add(id_field(2, 'ID', 'contact'))
+    call card%add(id_field(3, 'SLAVE', 'BLSEG whose nodes are held off'))
+    call card%add(id_field(4, 'MASTER', 'BLSEG whose segments they are held off'))
+    call card%add(noted(real_field(6, 'SFAC', 'stiffness factor: contact is exact', '')))
+    friction = zero(7, 'FRICID', 'friction')
+    friction%reason = 'there is no friction'
+    call card%add(friction)
+    call card%add(integer_field(8, 'PTYPE', 'forces from slave and master: 1', 1, 1, default=1))
+    call card%add(zero(9, 'CID', 'system of the contact plane: the basic one'))
+  end function bconp
+
   function cbar() result(card)
     type(card_entry) :: card
     integer :: slot
@@ -307,7 +331,7 @@ contains
 
   !> All PARAMs: the field VALUE for each NAME.
   function parameters() result(field)
-    type(field_entry) :: field(9)
+    type(field_entry) :: field(10)
 
     field(1) = word_field(3, 'PLANE', 'every PSHELL with blank MID2', choices='STRAIN STRESS')
     field(2) = word_field(3, 'RULE', 'contact entry rule; default AUTO', choices='AUTO CONRY')
@@ -322,6 +346,8 @@ contains
     field(8) = word_field(3, 'MUP', 'Poisson''s ratio in the equivalent strain: exact, or formula (2-4); default EXACT', &
                           choices='EXACT PAPER')
     field(9) = integer_field(3, 'NLOAD', 'load steps; default 1', 1, 10000)
+    field(10) = positive(real_field(3, 'SEARCH', 'how far BCONP looks for a segment; default twice the longest segment of the'// &
+                                    ' two lines', 'length'))
     field%required = .true.
   end function parameters
 

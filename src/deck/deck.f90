@@ -6,10 +6,8 @@ module epcont_deck_deck
   use epcont_deck_bulk, only: read_bulk
   use epcont_deck_card, only: card_fields, gather
   use epcont_deck_case_control, only: case_control, read_case_control
-  use epcont_deck_catalogue, only: card_cbar, card_cgap, card_cord2r, card_cquad4, card_ctrax3, card_ctrax6, card_ctria3, &
-                                   card_ctria6, card_force, card_grid, card_kinds, &
-                                   card_mat1, card_mats1, card_param, card_pgap, card_ploadx1, card_pshell, &
-                                   card_psolid, card_rbe2, card_spc, card_spc1, card_suport, card_tables1, catalogue
+  use epcont_deck_card_kinds, only: card_kinds, card_param
+  use epcont_deck_catalogue, only: catalogue
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_entry, only: card_entry, slot_of
   use epcont_deck_source, only: read_source, source
@@ -17,9 +15,6 @@ module epcont_deck_deck
   implicit none
   private
   public :: deck_type, card_table, read_deck
-  public :: card_cbar, card_cgap, card_cord2r, card_cquad4, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_force, &
-            card_grid, card_kinds, card_mat1, card_mats1, card_param, card_pgap, card_ploadx1, card_pshell, card_psolid, &
-            card_rbe2, card_spc, card_spc1, card_suport, card_tables1
 
   !> All that a deck says: titles, sets chosen and output wanted, as case control has it, and the cards.
   type, extends(case_control) :: deck_type

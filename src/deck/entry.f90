@@ -47,6 +47,7 @@ module epcont_deck_entry
     integer, allocatable :: column_at(:)         !! by slot: the index into `field`; 0 where the field must be blank
     integer :: list_number = 0                   !! where the list begins; 0: there is none
     logical :: has_ranges = .false.              !! the list may hold `G1 THRU G2`
+    logical :: has_steps = .false.               !! ranges may fall, or go on `BY` a step
     logical :: has_points = .false.              !! the list is of points `X1 Y1 X2 Y2 .. ENDT`, not of ids
     character(len=:), allocatable :: list_name, list_meaning
     logical :: has_words = .false.

@@ -1,7 +1,8 @@
 !> The manual of the cards, printed from the catalogue that the reader checks by.
 module epcont_deck_manual
   use epcont_base_text, only: text_of, upper
-  use epcont_deck_catalogue, only: card_kinds, card_param, catalogue, parameters
+  use epcont_deck_card_kinds, only: card_kinds, card_param
+  use epcont_deck_catalogue, only: catalogue, parameters
   use epcont_deck_entry, only: card_entry, field_entry, kind_any, kind_components, kind_integer, kind_real, number_of, &
                                slot_of
   implicit none

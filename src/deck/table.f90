@@ -21,9 +21,9 @@ module epcont_deck_table
     integer, allocatable :: line(:)                    !! where the card begins [count]
     integer, allocatable :: noted(:)                   !! how often each field without effect is filled [columns]
     integer, allocatable :: noted_card(:)              !! the first card in which it is [columns]
-    !> Open lists: card i has the items list_start(i) to list_start(i+1)-1, each the ids list_from to list_to, or
-    !! the point list_point. [count + 1], [items], [2, items]
-    integer, allocatable :: list_start(:), list_from(:), list_to(:)
+    !> Open lists: card i has the items list_start(i) to list_start(i+1)-1, each the ids list_from to list_to by
+    !! list_step, or the point list_point. [count + 1], [items], [2, items]
+    integer, allocatable :: list_start(:), list_from(:), list_to(:), list_step(:)
     real(wp), allocatable :: list_point(:, :)
     integer, allocatable :: list_field(:)              !! position of each item in its card [items]
     integer :: items = 0                               !! in all lists
@@ -54,7 +54,7 @@ contains
     allocate (table%noted(columns), table%noted_card(columns), source=0)
     allocate (table%list_start(1), source=1)
     allocate (table%value(columns, 0), table%given(columns, 0), table%sound(0), table%line(0))
-    allocate (table%list_from(0), table%list_to(0), table%list_field(0), table%list_point(2, 0))
+    allocate (table%list_from(0), table%list_to(0), table%list_step(0), table%list_field(0), table%list_point(2, 0))
     if (entry%has_words) allocate (table%word(columns, 0))
   end function new_table
 
@@ -104,21 +104,25 @@ contains
   end subroutine add_card
 
   !> Add an item to the list of the last card.
-  subroutine add_item(self, from, to, field)
+  subroutine add_item(self, from, to, field, step)
     class(card_table), intent(inout) :: self
-    integer, intent(in) :: from, to  !! the first and the last id
-    integer, intent(in) :: field     !! position in the card
+    integer, intent(in) :: from, to        !! the first and the last id
+    integer, intent(in) :: field           !! position in the card
+    integer, intent(in), optional :: step  !! from one id to the next; default 1
     integer :: room
 
     if (self%items == size(self%list_from)) then
       room = max(first_room, 2*self%items)
       call resize_integers(self%list_from, room)
       call resize_integers(self%list_to, room)
+      call resize_integers(self%list_step, room)
       call resize_integers(self%list_field, room)
     end if
     self%items = self%items + 1
     self%list_from(self%items) = from
     self%list_to(self%items) = to
+    self%list_step(self%items) = 1
+    if (present(step)) self%list_step(self%items) = step
     self%list_field(self%items) = field
     self%list_start(self%count + 1) = self%items + 1
   end subroutine add_item
@@ -140,6 +144,7 @@ contains
     call resize(self, self%count)
     call resize_integers(self%list_from, self%items)
     call resize_integers(self%list_to, self%items)
+    call resize_integers(self%list_step, self%items)
     call resize_integers(self%list_field, self%items)
   end subroutine finish
 

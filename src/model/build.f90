@@ -2,11 +2,13 @@
 module epcont_model_build
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_sorting, only: id_index
-  use epcont_deck_deck, only: card_cgap, card_grid, card_rbe2, deck_type
+  use epcont_deck_card_kinds, only: card_cgap, card_grid, card_rbe2
+  use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_model_choices, only: build_controls
-  use epcont_model_loads, only: build_loads
   use epcont_model_elements, only: build_elements, check_axis, element_cards
+  use epcont_model_line_pairs, only: build_line_pairs
+  use epcont_model_lines, only: build_lines
   use epcont_model_loads, only: build_loads
   use epcont_model_mesh, only: build_nodes, build_sections
   use epcont_model_model, only: model_type
@@ -37,6 +39,8 @@ contains
     call build_references(deck, nodes, model, faults)
     call build_loads(deck, nodes, model, faults)
     call build_pairs(deck, nodes, model, faults)
+    call build_lines(deck, nodes, model, faults)
+    call build_line_pairs(deck, model, faults)
     call build_controls(deck, model, faults)
     if (model%elements == 0 .and. faults%error_count() == 0) &
       call faults%add_error(place_type(), 'the deck has no elements', 'CTRIA3 cards')

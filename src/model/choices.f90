@@ -1,7 +1,8 @@
 !> What the PARAMs choose for the plastic iteration, and whether the scene allows it.
 module epcont_model_choices
   use epcont_base_kinds, only: wp
-  use epcont_deck_deck, only: card_param, card_pshell, card_psolid, deck_type
+  use epcont_deck_card_kinds, only: card_param, card_pshell, card_psolid
+  use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_controls, only: method_name, method_newton
   use epcont_model_model, only: model_type, plane_strain

@@ -4,8 +4,9 @@ module epcont_model_elements
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
   use epcont_base_text, only: text_of
-  use epcont_deck_deck, only: card_cquad4, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_grid, card_pshell, &
-                              card_psolid, deck_type
+  use epcont_deck_card_kinds, only: card_cquad4, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_grid, card_pshell, &
+                                    card_psolid
+  use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_model, only: axisymmetric, model_type, most_nodes
   use epcont_model_reference, only: index_of_ids, resolve

@@ -3,7 +3,8 @@ module epcont_model_loads
   use epcont_base_edge, only: edge_point, edge_point_count, edge_points
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index, new_id_index
-  use epcont_deck_deck, only: card_force, card_ploadx1, deck_type
+  use epcont_deck_card_kinds, only: card_force, card_ploadx1
+  use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_elements, only: element_name
   use epcont_model_model, only: axisymmetric, model_type

@@ -3,7 +3,8 @@ module epcont_model_materials
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
   use epcont_base_text, only: short_real, text_of
-  use epcont_deck_deck, only: card_mat1, card_mats1, card_tables1, deck_type
+  use epcont_deck_card_kinds, only: card_mat1, card_mats1, card_tables1
+  use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_controls, only: uniaxial_curve
   use epcont_model_reference, only: check_unique, index_of_ids, resolve

@@ -3,7 +3,8 @@ module epcont_model_mesh
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
   use epcont_base_text, only: short_real
-  use epcont_deck_deck, only: card_grid, card_mat1, card_param, card_pshell, card_psolid, deck_type
+  use epcont_deck_card_kinds, only: card_grid, card_mat1, card_param, card_pshell, card_psolid
+  use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_materials, only: material_card, read_materials
   use epcont_model_model, only: axisymmetric, model_type, plane_strain, plane_stress

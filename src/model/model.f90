@@ -4,15 +4,25 @@
 !> of the deck serve for output alone.
 module epcont_model_model
   use epcont_base_kinds, only: wp
+  use epcont_model_boundary_line, only: boundary_line
   use epcont_model_controls, only: controls_type, uniaxial_curve
   implicit none
   private
-  public :: model_type
+  public :: line_contact, model_type
 
   !> Nodes of an element, at most.
   integer, parameter, public :: most_nodes = 6
   !> What a section's elements do across the plane: nothing; give way; or they are rings, x their radius.
   integer, parameter, public :: plane_strain = 1, plane_stress = 2, axisymmetric = 3
+
+  !> Contact of two boundary lines (BCONP), and the pairs that came of it.
+  type :: line_contact
+    integer :: id = 0
+    integer :: slave = 0, master = 0     !! which lines
+    integer :: first = 1, last = 0       !! its pairs
+    integer :: left_out = 0              !! nodes of the slave line that face no side of the other
+    real(wp) :: search = 0.0_wp          !! how far away a side may be [length]
+  end type line_contact
 
   type :: model_type
     integer :: nodes = 0, elements = 0, pairs = 0, bodies = 0
@@ -46,6 +56,8 @@ module epcont_model_model
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
+    type(boundary_line), allocatable :: line(:)
+    type(line_contact), allocatable :: line_contact(:)
     integer, allocatable :: body(:)             !! of each node [nodes]
   contains
     procedure :: coordinates

@@ -3,7 +3,8 @@ module epcont_model_pairs
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
   use epcont_base_text, only: short_real, text_of
-  use epcont_deck_deck, only: card_cgap, card_cord2r, card_pgap, deck_type
+  use epcont_deck_card_kinds, only: card_cgap, card_cord2r, card_pgap
+  use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_model, only: model_type
   use epcont_model_reference, only: check_unique, index_of_ids, resolve

@@ -3,7 +3,8 @@ module epcont_model_supports
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
   use epcont_base_text, only: text_of
-  use epcont_deck_deck, only: card_grid, card_rbe2, card_spc, card_spc1, card_suport, deck_type
+  use epcont_deck_card_kinds, only: card_grid, card_rbe2, card_spc, card_spc1, card_suport
+  use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_model, only: model_type
   use epcont_model_reference, only: resolve

@@ -2,7 +2,8 @@
 module epcont_report_motions
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_base_kinds, only: wp
-  use epcont_deck_deck, only: card_grid, deck_type
+  use epcont_deck_card_kinds, only: card_grid
+  use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: motion_fault, motion_not_held, motion_too_many

@@ -1,0 +1,280 @@
+!> A line of element sides along the boundary of a body, and where a point faces it.
+!>
+!> The line is walked with the body to the left, so that outward is to the right. Where its sides are chords, the
+!> boundary that is meant is the smooth curve through their ends: normals at the nodes come from the two sides that meet
+!> there, exact on a circle, and the gap is measured to the curve (a cubic over each chord) and not to the chord, whose
+!> facets would show in the pressures. Force and counterforce still lie on one line, through the chord.
+module epcont_model_boundary_line
+  use epcont_base_geometry, only: cross_product
+  use epcont_base_kinds, only: wp
+  implicit none
+  private
+  public :: boundary_line, facing_place, find_normals
+
+  !> Sides that turn by more than this meet at a corner.
+  real(wp), parameter :: corner_cosine = cos(30.0_wp*acos(-1.0_wp)/180.0_wp)
+  !> Part of a side by which a point may stand beyond its end: rounding of coordinates in eight columns.
+  real(wp), parameter :: beyond = 1.0e-6_wp
+  !> The same between two curved sides that join smoothly, whose normals differ a little there.
+  real(wp), parameter :: beyond_joint = 0.05_wp
+  !> A point so near to a node, as a part of the side, faces the node.
+  real(wp), parameter :: at_node = 1.0e-9_wp
+  !> Steps of Newton's method, which needs five, and the change that ends it.
+  integer, parameter :: most_steps = 30
+  real(wp), parameter :: converged = 1.0e-14_wp
+
+  type :: boundary_line
+    integer :: id = 0
+    logical :: closed = .false.
+    integer, allocatable :: segment(:, :)      !! nodes of each side: start, end, and middle or 0 [3, segments]
+    integer, allocatable :: element(:)         !! whose sides they are [segments]
+    real(wp), allocatable :: x(:, :, :)        !! their coordinates [length] [2, 3, segments]
+    real(wp), allocatable :: normal(:, :, :)   !! outward, at start and end of each side [2, 2, segments]
+    logical, allocatable :: smooth(:, :)       !! the next side begins with the normal with which this one ends [2, segments]
+  contains
+    procedure :: longest
+    procedure :: outward
+    procedure :: face
+  end type boundary_line
+
+  !> Where a point faces a line.
+  type :: facing_place
+    logical :: found = .false.
+    real(wp) :: share(3) = 0.0_wp    !! of start, end and middle of the side in the place [-]
+    real(wp) :: normal(2) = 0.0_wp   !! outward
+    real(wp) :: gap = 0.0_wp         !! from the curve to the point, along the normal [length]
+  end type facing_place
+
+contains
+
+  !> Normals at the ends of the sides. `mirror` is the direction held at the first and the last node, if the line ends
+  !! there on a line of symmetry, else 0.
+  pure subroutine find_normals(line, mirror)
+    type(boundary_line), intent(inout) :: line
+    integer, intent(in) :: mirror(2)
+    logical :: known(2, size(line%element))
+    real(wp) :: chord(2), here(2), there(2)
+    integer :: i, next, n
+
+    n = size(line%element)
+    allocate (line%normal(2, 2, n))
+    allocate (line%smooth(2, n), source=.false.)
+    known = .false.
+    do i = 1, n
+      next = i + 1
+      if (next > n .and. .not. line%closed) exit
+      if (next > n) next = 1
+      here = own_normal(line, i, 1.0_wp)
+      there = own_normal(line, next, 0.0_wp)
+      if (dot_product(here, there) < corner_cosine) cycle
+      here = unit(chord_length(line, next)*here + chord_length(line, i)*there)
+      line%normal(:, 2, i) = here
+      line%normal(:, 1, next) = here
+      line%smooth(2, i) = .true.
+      line%smooth(1, next) = .true.
+    end do
+    known = line%smooth
+    if (.not. line%closed) then
+      call reflect(mirror(1), own_normal(line, 1, 0.0_wp), line%normal(:, 1, 1), known(1, 1))
+      call reflect(mirror(2), own_normal(line, n, 1.0_wp), line%normal(:, 2, n), known(2, n))
+    end if
+    do i = 1, n
+      chord = own_normal(line, i, 0.5_wp)
+      do next = 1, 2
+        if (known(next, i)) cycle
+        line%normal(:, next, i) = own_normal(line, i, real(next - 1, wp))
+        if (line%segment(3, i) > 0 .or. .not. known(3 - next, i)) cycle
+        ! Of a circle through both ends the one normal mirrors the other.
+        associate (other => line%normal(:, 3 - next, i))
+          line%normal(:, next, i) = 2.0_wp*dot_product(other, chord)*chord - other
+        end associate
+      end do
+    end do
+  end subroutine find_normals
+
+  !> On a line of symmetry the normal lies in it.
+  pure subroutine reflect(direction, own, normal, known)
+    integer, intent(in) :: direction
+    real(wp), intent(in) :: own(2)
+    real(wp), intent(inout) :: normal(2)
+    logical, intent(inout) :: known
+
+    if (direction == 0) return
+    if (abs(own(direction)) >= 0.5_wp) return
+    normal = own
+    normal(direction) = 0.0_wp
+    normal = unit(normal)
+    known = .true.
+  end subroutine reflect
+
+  !> Outward normal of a side itself, at a place from 0 to 1.
+  pure function own_normal(line, segment, s) result(normal)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: s
+    real(wp) :: normal(2), tangent(2)
+
+    tangent = matmul(line%x(:, :, segment), slopes(line%segment(3, segment) > 0, s))
+    normal = unit([tangent(2), -tangent(1)])
+  end function own_normal
+
+  pure real(wp) function chord_length(line, segment)
+    type(boundary_line), intent(in) :: line
+    integer, intent(in) :: segment
+
+    chord_length = norm2(line%x(:, 2, segment) - line%x(:, 1, segment))
+  end function chord_length
+
+  !> Length of the longest side, from end to end [length].
+  pure real(wp) function longest(self)
+    class(boundary_line), intent(in) :: self
+    integer :: i
+
+    longest = 0.0_wp
+    do i = 1, size(self%element)
+      longest = max(longest, chord_length(self, i))
+    end do
+  end function longest
+
+  !> Outward normal at a node of a side: 1 its start, 2 its end, 3 its middle. At a corner between the two sides.
+  pure function outward(self, segment, which) result(normal)
+    class(boundary_line), intent(in) :: self
+    integer, intent(in) :: segment, which
+    real(wp) :: normal(2)
+    integer :: next
+
+    if (which == 3) then
+      normal = own_normal(self, segment, 0.5_wp)
+      return
+    end if
+    normal = self%normal(:, which, segment)
+    next = segment + merge(1, -1, which == 2)
+    if (self%closed) next = modulo(next - 1, size(self%element)) + 1
+    if (next < 1 .or. next > size(self%element)) return
+    normal = unit(normal + self%normal(:, 3 - which, next))
+  end function outward
+
+  !> Where a point faces a side: the place whose normal leads to it.
+  pure function face(self, segment, point) result(place)
+    class(boundary_line), intent(in) :: self
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: point(2)    !! [length]
+    type(facing_place) :: place
+    real(wp) :: room(2), s
+    logical :: curved, found
+
+    curved = self%segment(3, segment) > 0
+    room = merge(beyond_joint, beyond, curved .and. self%smooth(:, segment))
+    call find_foot(self, segment, point, s, found)
+    if (.not. found .or. s < -room(1) .or. s > 1.0_wp + room(2)) return
+    place%found = .true.
+    if (s <= at_node) then
+      place%share = [1.0_wp, 0.0_wp, 0.0_wp]
+      place%normal = self%normal(:, 1, segment)
+      place%gap = dot_product(place%normal, point - self%x(:, 1, segment))
+    else if (s >= 1.0_wp - at_node) then
+      place%share = [0.0_wp, 1.0_wp, 0.0_wp]
+      place%normal = self%normal(:, 2, segment)
+      place%gap = dot_product(place%normal, point - self%x(:, 2, segment))
+    else
+      place%share = values(curved, s)
+      place%normal = normal_at(self, segment, s)
+      place%gap = dot_product(place%normal, point - matmul(self%x(:, :, segment), place%share))
+      if (.not. curved) place%gap = place%gap - rise(self, segment, s)
+    end if
+  end function face
+
+  !> The place of a side at which its normal, between those at its ends or its own if it is curved, leads to a point.
+  pure subroutine find_foot(line, segment, point, s, found)
+    type(boundary_line), intent(in) :: line
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: point(2)
+    real(wp), intent(out) :: s
+    logical, intent(out) :: found
+    real(wp) :: away(2), chord(2), slope(2), rate, value, step
+    logical :: curved
+    integer :: k
+
+    curved = line%segment(3, segment) > 0
+    chord = line%x(:, 2, segment) - line%x(:, 1, segment)
+    s = dot_product(point - line%x(:, 1, segment), chord)/dot_product(chord, chord)
+    found = .false.
+    do k = 1, most_steps
+      if (abs(s) > 10.0_wp) return
+      away = point - matmul(line%x(:, :, segment), values(curved, s))
+      slope = matmul(line%x(:, :, segment), slopes(curved, s))
+      if (curved) then
+        value = dot_product(slope, away)
+        rate = dot_product(matmul(line%x(:, :, segment), [4.0_wp, 4.0_wp, -8.0_wp]), away) - dot_product(slope, slope)
+      else
+        associate (from => line%normal(:, 1, segment), to => line%normal(:, 2, segment))
+          value = cross_product(from + s*(to - from), away)
+          rate = cross_product(to - from, away) - cross_product(from + s*(to - from), slope)
+        end associate
+      end if
+      if (rate == 0.0_wp) return
+      step = -value/rate
+      s = s + step
+      found = abs(step) <= converged*max(1.0_wp, abs(s))
+      if (found) return
+    end do
+    found = abs(step) <= at_node
+  end subroutine find_foot
+
+  !> Normal within a side.
+  pure function normal_at(line, segment, s) result(normal)
+    type(boundary_line), intent(in) :: line
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: s
+    real(wp) :: normal(2)
+
+    if (line%segment(3, segment) > 0) then
+      normal = own_normal(line, segment, s)
+    else
+      normal = unit((1.0_wp - s)*line%normal(:, 1, segment) + s*line%normal(:, 2, segment))
+    end if
+  end function normal_at
+
+  !> How far the smooth curve rises outwards above the chord: the cubic with the normals at its ends [length].
+  pure real(wp) function rise(line, segment, s)
+    type(boundary_line), intent(in) :: line
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: s
+    real(wp) :: across(2), along(2), slope(2)
+    integer :: k
+
+    across = own_normal(line, segment, s)
+    along = [-across(2), across(1)]
+    do k = 1, 2
+      slope(k) = -dot_product(line%normal(:, k, segment), along)/dot_product(line%normal(:, k, segment), across)
+    end do
+    rise = chord_length(line, segment)*s*(1.0_wp - s)*((1.0_wp - s)*slope(1) - s*slope(2))
+  end function rise
+
+  !> Shape functions of start, end and middle.
+  pure function values(curved, s) result(share)
+    logical, intent(in) :: curved
+    real(wp), intent(in) :: s
+    real(wp) :: share(3)
+
+    share = [1.0_wp - s, s, 0.0_wp]
+    if (curved) share = [(1.0_wp - s)*(1.0_wp - 2.0_wp*s), s*(2.0_wp*s - 1.0_wp), 4.0_wp*s*(1.0_wp - s)]
+  end function values
+
+  !> Their derivatives.
+  pure function slopes(curved, s) result(slope)
+    logical, intent(in) :: curved
+    real(wp), intent(in) :: s
+    real(wp) :: slope(3)
+
+    slope = [-1.0_wp, 1.0_wp, 0.0_wp]
+    if (curved) slope = [4.0_wp*s - 3.0_wp, 4.0_wp*s - 1.0_wp, 4.0_wp - 8.0_wp*s]
+  end function slopes
+
+  pure function unit(vector)
+    real(wp), intent(in) :: vector(2)
+    real(wp) :: unit(2)
+
+    unit = vector/norm2(vector)
+  end function unit
+end module epcont_model_boundary_line

@@ -1,0 +1,193 @@
+!> Boundary lines from BLSEG: sides of elements, end to end.
+module epcont_model_lines
+  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: id_index
+  use epcont_base_text, only: text_of
+  use epcont_deck_card_kinds, only: card_blseg
+  use epcont_deck_deck, only: deck_type
+  use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_model_boundary_line, only: boundary_line, find_normals
+  use epcont_model_elements, only: element_name
+  use epcont_model_model, only: model_type
+  use epcont_model_reference, only: check_unique
+  implicit none
+  private
+  public :: build_lines
+
+  !> What a line is read into.
+  type :: walk_type
+    integer, allocatable :: node(:)       !! as the card lists them; 0: there is none of that id
+    type(place_type), allocatable :: place(:)
+    integer, allocatable :: side(:, :)    !! nodes of the sides found, as the elements turn [3, sides]
+    integer, allocatable :: element(:)
+    logical :: sound = .true.
+  end type walk_type
+
+contains
+
+  !> All lines; one that is not sound has no sides.
+  subroutine build_lines(deck, nodes, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(id_index), intent(in) :: nodes
+    type(model_type), intent(inout) :: model
+    type(diagnostics), intent(inout) :: faults
+    type(incidence) :: around
+    type(walk_type) :: walk
+    integer :: i
+
+    call check_unique(deck, [card_blseg], faults)
+    associate (blseg => deck%card(card_blseg))
+      allocate (model%line(blseg%count))
+      if (blseg%count == 0) return
+      around = new_incidence(model%connectivity, model%nodes)
+      do i = 1, blseg%count
+        model%line(i)%id = nint(blseg%value(1, i))
+        allocate (model%line(i)%segment(3, 0), model%line(i)%element(0))
+        call read_nodes(deck, i, nodes, walk, faults)
+        if (walk%sound) call find_sides(deck, i, model, around, walk, faults)
+        if (walk%sound) call set_line(model, walk, model%line(i))
+      end do
+    end associate
+  end subroutine build_lines
+
+  !> The nodes of a card, ranges and steps written out.
+  subroutine read_nodes(deck, i, nodes, walk, faults)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i
+    type(id_index), intent(in) :: nodes
+    type(walk_type), intent(out) :: walk
+    type(diagnostics), intent(inout) :: faults
+    integer :: id, k
+
+    allocate (walk%node(0), walk%place(0), walk%side(3, 0), walk%element(0))
+    associate (blseg => deck%card(card_blseg))
+      do k = blseg%list_start(i), blseg%list_start(i + 1) - 1
+        do id = blseg%list_from(k), blseg%list_to(k), blseg%list_step(k)
+          walk%node = [walk%node, nodes%find(id)]
+          walk%place = [walk%place, deck%list_place(card_blseg, k)]
+          if (walk%node(size(walk%node)) > 0) cycle
+          call faults%add_error(deck%list_place(card_blseg, k), deck%identity(card_blseg, i)//': there is no GRID '// &
+                                text_of(id), 'the id of a GRID')
+          walk%sound = .false.
+        end do
+      end do
+      walk%sound = walk%sound .and. blseg%sound(i)
+      if (walk%sound .and. size(walk%node) < 2) then
+        call faults%add_error(deck%place(card_blseg, i, 0), deck%identity(card_blseg, i)//': one node is no line', &
+                              'two nodes or more')
+        walk%sound = .false.
+      end if
+    end associate
+  end subroutine read_nodes
+
+  !> The sides between consecutive nodes; a middle node between two corners may be listed or left out.
+  subroutine find_sides(deck, i, model, around, walk, faults)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    type(walk_type), intent(inout) :: walk
+    type(diagnostics), intent(inout) :: faults
+    integer :: element(2), k, side(3), sides
+
+    k = 1
+    do while (k < size(walk%node))
+      call side_between(model, around, walk%node(k), walk%node(k + 1), side, element, sides)
+      if (sides == 0 .and. k + 2 <= size(walk%node)) then
+        call side_between(model, around, walk%node(k), walk%node(k + 2), side, element, sides)
+        if (sides > 0 .and. side(3) == walk%node(k + 1)) then
+          k = k + 1
+        else
+          sides = 0
+        end if
+      end if
+      if (sides == 1) then
+        walk%side = reshape([walk%side, side], [3, size(walk%element) + 1])
+        walk%element = [walk%element, element(1)]
+        k = k + 1
+        cycle
+      end if
+      walk%sound = .false.
+      call say_what_is_wrong()
+      return
+    end do
+
+  contains
+
+    subroutine say_what_is_wrong()
+      character(len=:), allocatable :: between
+
+      associate (a => model%node_id(walk%node(k)), b => model%node_id(walk%node(k + 1)))
+        between = text_of(a)//' and '//text_of(b)
+        if (sides == 0) then
+          call faults%add_error(walk%place(k + 1), deck%identity(card_blseg, i)//': GRID '//between// &
+                                ' are not the ends of a side of an element', 'nodes in the order of the boundary')
+        else
+          call faults%add_error(walk%place(k + 1), deck%identity(card_blseg, i)//': the side between GRID '//between// &
+                                ' lies inside a body, between '//element_name(model, element(1))//' and '// &
+                                element_name(model, element(2)), 'sides that one element has')
+        end if
+      end associate
+    end subroutine say_what_is_wrong
+  end subroutine find_sides
+
+  !> The side that ends at two corners, and how many elements have it.
+  pure subroutine side_between(model, around, a, b, found, element, sides)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: a, b
+    integer, intent(out) :: found(3)     !! of the first of them
+    integer, intent(out) :: element(2)   !! the first and the last
+    integer, intent(out) :: sides
+    integer :: e, i, k, side(3)
+
+    sides = 0
+    found = 0
+    element = 0
+    do i = around%start(a), around%start(a + 1) - 1
+      e = around%group(i)
+      do k = 1, model%corners(e)
+        side = model%edge(e, k)
+        if (.not. (all(side(:2) == [a, b]) .or. all(side(:2) == [b, a]))) cycle
+        sides = sides + 1
+        if (sides == 1) found = side
+        element(min(sides, 2)) = e
+      end do
+    end do
+  end subroutine side_between
+
+  !> The line from its sides, walked with the body to the left.
+  subroutine set_line(model, walk, line)
+    type(model_type), intent(in) :: model
+    type(walk_type), intent(in) :: walk
+    type(boundary_line), intent(inout) :: line
+    integer :: i, k, n
+
+    n = size(walk%element)
+    line%segment = walk%side
+    line%element = walk%element
+    if (walk%side(1, 1) /= walk%node(1)) then
+      line%segment = walk%side(:, n:1:-1)
+      line%element = walk%element(n:1:-1)
+    end if
+    line%closed = n > 1 .and. walk%node(1) == walk%node(size(walk%node))
+    allocate (line%x(2, 3, n), source=0.0_wp)
+    do i = 1, n
+      do k = 1, 3
+        if (line%segment(k, i) > 0) line%x(:, k, i) = model%x(:, line%segment(k, i))
+      end do
+    end do
+    call find_normals(line, [held_direction(line%segment(1, 1)), held_direction(line%segment(2, n))])
+
+  contains
+
+    !> The one direction in which a node is held without moving: across a line of symmetry.
+    pure integer function held_direction(node)
+      integer, intent(in) :: node
+
+      held_direction = 0
+      if (count(model%held(:, node)) == 1) held_direction = findloc(model%held(:, node), .true., dim=1)
+    end function held_direction
+  end subroutine set_line
+end module epcont_model_lines
