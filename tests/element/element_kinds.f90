@@ -12,7 +12,7 @@ module element_kinds
   use epcont_model_model, only: plane_stress
   implicit none
   private
-  public :: sample_shapes, straight_shapes, label, sample_place, local_node, slopes, corners_of, centroid_radius
+  public :: sample_shapes, label, sample_place, local_node, slopes, corners_of, centroid_radius
   public :: points_of, places_of, strains_of, linear_field, elasticity, stiffness, eigenvalues
   public :: patch_of, solved_patch, grid_element
 
@@ -52,27 +52,34 @@ contains
     real(wp), parameter :: irregular(8) = [2.1_wp, 1.3_wp, 0.8_wp, 1.5_wp, 0.4_wp, -0.1_wp, 1.6_wp, -0.6_wp]
     real(wp), parameter :: at_axis(8) = [0.0_wp, 0.0_wp, 0.9_wp, 0.2_wp, 1.1_wp, 0.8_wp, 0.0_wp, 1.2_wp]
 
-    shape = [element_shape('right tria3', right), element_shape('scalene tria3', scalene), &
-             element_shape('flat tria3', flat), element_shape('tria3 at the axis', axis), &
-             element_shape('right tria6', with_middles(right, none)), &
-             element_shape('scalene tria6', with_middles(scalene, none)), &
-             element_shape('flat tria6', with_middles(flat, none)), &
-             element_shape('tria6 at the axis', with_middles(axis, none)), &
-             element_shape('tria6 with one arc', with_middles(right, one_arc), .false.), &
-             element_shape('tria6 with three arcs', with_middles(scalene, arcs), .false.), &
-             element_shape('square quad4', reshape(square, [2, 4])), element_shape('skew quad4', reshape(skew, [2, 4])), &
-             element_shape('trapezoid quad4', reshape(trapezoid, [2, 4])), &
-             element_shape('irregular quad4', reshape(irregular, [2, 4])), &
-             element_shape('quad4 at the axis', reshape(at_axis, [2, 4]))]
+    allocate (shape(15))
+    call name(shape(1), 'right tria3', right)
+    call name(shape(2), 'scalene tria3', scalene)
+    call name(shape(3), 'flat tria3', flat)
+    call name(shape(4), 'tria3 at the axis', axis)
+    call name(shape(5), 'right tria6', with_middles(right, none))
+    call name(shape(6), 'scalene tria6', with_middles(scalene, none))
+    call name(shape(7), 'flat tria6', with_middles(flat, none))
+    call name(shape(8), 'tria6 at the axis', with_middles(axis, none))
+    call name(shape(9), 'tria6 with one arc', with_middles(right, one_arc))
+    call name(shape(10), 'tria6 with three arcs', with_middles(scalene, arcs))
+    shape(9:10)%straight = .false.
+    call name(shape(11), 'square quad4', reshape(square, [2, 4]))
+    call name(shape(12), 'skew quad4', reshape(skew, [2, 4]))
+    call name(shape(13), 'trapezoid quad4', reshape(trapezoid, [2, 4]))
+    call name(shape(14), 'irregular quad4', reshape(irregular, [2, 4]))
+    call name(shape(15), 'quad4 at the axis', reshape(at_axis, [2, 4]))
+  contains
+    ! An array constructor of shapes leaks with gfortran 12.
+    subroutine name(one, words, x)
+      type(element_shape), intent(inout) :: one
+      character(len=*), intent(in) :: words
+      real(wp), intent(in) :: x(:, :)
+
+      one%name = words
+      one%x = x
+    end subroutine name
   end function sample_shapes
-
-  function straight_shapes() result(shape)
-    type(element_shape), allocatable :: shape(:)
-    integer :: i
-
-    shape = sample_shapes()
-    shape = shape(pack([(i, i=1, size(shape))], [(shape(i)%straight, i=1, size(shape))]))
-  end function straight_shapes
 
   function label(shape, kinematics) result(text)
     type(element_shape), intent(in) :: shape
