@@ -1,0 +1,328 @@
+!> Shapes of every kind of element, patches of them, and what tests ask of an element: strains, stiffness, eigenvalues.
+module element_kinds
+  use epcont_base_geometry, only: polygon_area
+  use epcont_base_kinds, only: wp
+  use epcont_element_element, only: element_point, evaluate_points, local_points, most_points, point_count, shape_values
+  use epcont_element_quad4, only: quad4_slopes
+  use epcont_element_tria3, only: tria3_slopes
+  use epcont_element_tria6, only: tria6_slopes
+  use epcont_linalg_dense, only: lu_solve
+  use epcont_linalg_lapack, only: dsyev
+  use epcont_material_elasticity, only: bulk_modulus, isotropic_matrix, shear_modulus
+  use epcont_model_model, only: plane_stress
+  implicit none
+  private
+  public :: sample_shapes, label, sample_place, local_node, slopes, corners_of, centroid_radius
+  public :: points_of, places_of, strains_of, linear_field, elasticity, stiffness, eigenvalues
+  public :: patch_of, solved_patch, grid_element
+
+  integer, parameter, public :: node_numbers(3) = [3, 6, 4]
+  real(wp), parameter, public :: thickness = 0.7_wp
+  character(len=*), parameter, public :: kinematics_name(3) = [', plane strain', ', plane stress', ', ring        ']
+
+  !> One element; all are to the right of the axis of rings.
+  type, public :: element_shape
+    character(len=30) :: name
+    real(wp), allocatable :: x(:, :)   !! [2, nodes]
+    logical :: straight = .true.       !! sides, with their nodes in their middles
+  end type element_shape
+
+  !> Elements that share nodes.
+  type, public :: patch
+    real(wp), allocatable :: x(:, :)              !! [2, nodes]
+    integer, allocatable :: connectivity(:, :)    !! [nodes of an element, elements]
+    logical, allocatable :: inner(:)              !! is not on the boundary [nodes]
+  end type patch
+
+contains
+
+  !> Elements of all numbers of nodes.
+  function sample_shapes() result(shape)
+    type(element_shape), allocatable :: shape(:)
+    real(wp), parameter :: right(2, 3) = reshape([1.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 1.0_wp, 1.0_wp], [2, 3])
+    real(wp), parameter :: scalene(2, 3) = reshape([0.3_wp, -0.2_wp, 2.1_wp, 0.4_wp, 0.9_wp, 1.7_wp], [2, 3])
+    real(wp), parameter :: flat(2, 3) = reshape([4.0_wp, 0.3_wp, 2.6_wp, 0.5_wp, 1.0_wp, 0.0_wp], [2, 3])
+    real(wp), parameter :: axis(2, 3) = reshape([0.0_wp, 1.5_wp, 0.0_wp, 0.1_wp, 1.2_wp, 0.4_wp], [2, 3])
+    real(wp), parameter :: none(2, 3) = 0.0_wp
+    real(wp), parameter :: one_arc(2, 3) = reshape([0.05_wp, -0.15_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], [2, 3])
+    real(wp), parameter :: arcs(2, 3) = reshape([0.0_wp, -0.1_wp, -0.08_wp, -0.06_wp, 0.1_wp, 0.02_wp], [2, 3])
+    real(wp), parameter :: square(8) = [1.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 1.0_wp, 1.0_wp, 1.0_wp]
+    real(wp), parameter :: skew(8) = [1.0_wp, 0.0_wp, 2.5_wp, 0.3_wp, 3.3_wp, 1.4_wp, 1.8_wp, 1.1_wp]
+    real(wp), parameter :: trapezoid(8) = [1.0_wp, 0.0_wp, 3.0_wp, 0.0_wp, 2.2_wp, 1.0_wp, 1.5_wp, 1.0_wp]
+    real(wp), parameter :: irregular(8) = [2.1_wp, 1.3_wp, 0.8_wp, 1.5_wp, 0.4_wp, -0.1_wp, 1.6_wp, -0.6_wp]
+    real(wp), parameter :: at_axis(8) = [0.0_wp, 0.0_wp, 0.9_wp, 0.2_wp, 1.1_wp, 0.8_wp, 0.0_wp, 1.2_wp]
+
+    allocate (shape(15))
+    call name(shape(1), 'right tria3', right)
+    call name(shape(2), 'scalene tria3', scalene)
+    call name(shape(3), 'flat tria3', flat)
+    call name(shape(4), 'tria3 at the axis', axis)
+    call name(shape(5), 'right tria6', with_middles(right, none))
+    call name(shape(6), 'scalene tria6', with_middles(scalene, none))
+    call name(shape(7), 'flat tria6', with_middles(flat, none))
+    call name(shape(8), 'tria6 at the axis', with_middles(axis, none))
+    call name(shape(9), 'tria6 with one arc', with_middles(right, one_arc))
+    call name(shape(10), 'tria6 with three arcs', with_middles(scalene, arcs))
+    shape(9:10)%straight = .false.
+    call name(shape(11), 'square quad4', reshape(square, [2, 4]))
+    call name(shape(12), 'skew quad4', reshape(skew, [2, 4]))
+    call name(shape(13), 'trapezoid quad4', reshape(trapezoid, [2, 4]))
+    call name(shape(14), 'irregular quad4', reshape(irregular, [2, 4]))
+    call name(shape(15), 'quad4 at the axis', reshape(at_axis, [2, 4]))
+  contains
+    ! An array constructor of shapes leaks with gfortran 12.
+    subroutine name(one, words, x)
+      type(element_shape), intent(inout) :: one
+      character(len=*), intent(in) :: words
+      real(wp), intent(in) :: x(:, :)
+
+      one%name = words
+      one%x = x
+    end subroutine name
+  end function sample_shapes
+
+  function label(shape, kinematics) result(text)
+    type(element_shape), intent(in) :: shape
+    integer, intent(in) :: kinematics
+    character(len=:), allocatable :: text
+
+    text = trim(shape%name)//trim(kinematics_name(kinematics))
+  end function label
+
+  !> Six nodes from three corners, the middle ones moved by `bend`.
+  pure function with_middles(corner, bend) result(x)
+    real(wp), intent(in) :: corner(2, 3), bend(2, 3)
+    real(wp) :: x(2, 6)
+
+    x(:, :3) = corner
+    x(:, 4:) = 0.5_wp*(corner + cshift(corner, 1, dim=2)) + bend
+  end function with_middles
+
+  !> Places all over the square from -1 to 1, without pattern.
+  pure function sample_place(i) result(place)
+    integer, intent(in) :: i
+    real(wp) :: place(2)
+
+    place = 2.0_wp*modulo(i*[0.754877666246693_wp, 0.569840290998053_wp], 1.0_wp) - 1.0_wp
+  end function sample_place
+
+  !> Local places of the nodes.
+  pure function local_node(nodes) result(place)
+    integer, intent(in) :: nodes
+    real(wp) :: place(2, nodes)
+    real(wp), parameter :: corner(2, 3) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 3])
+    real(wp), parameter :: none(2, 3) = 0.0_wp
+
+    select case (nodes)
+    case (6)
+      place = with_middles(corner, none)
+    case (4)
+      place = reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [2, 4])
+    case default
+      place = corner
+    end select
+  end function local_node
+
+  pure function slopes(nodes, place) result(slope)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: place(2)
+    real(wp) :: slope(2, nodes)
+
+    select case (nodes)
+    case (6)
+      slope = tria6_slopes(place)
+    case (4)
+      slope = quad4_slopes(place)
+    case default
+      slope = tria3_slopes(place)
+    end select
+  end function slopes
+
+  !> The nodes at corners.
+  pure function corners_of(x) result(corner)
+    real(wp), intent(in) :: x(:, :)
+    real(wp), allocatable :: corner(:, :)
+
+    corner = x(:, :merge(4, 3, size(x, 2) == 4))
+  end function corners_of
+
+  !> Distance of a polygon's centroid from the axis.
+  pure real(wp) function centroid_radius(corner) result(radius)
+    real(wp), intent(in) :: corner(:, :)
+    integer :: k
+
+    radius = 0.0_wp
+    do k = 2, size(corner, 2) - 1
+      radius = radius + polygon_area(corner(:, [1, k, k + 1]))*sum(corner(1, [1, k, k + 1]))/3.0_wp
+    end do
+    radius = radius/polygon_area(corner)
+  end function centroid_radius
+
+  !> What `evaluate_points` gives.
+  pure function points_of(x, kinematics) result(point)
+    real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: kinematics
+    type(element_point) :: point(point_count(size(x, 2)))
+
+    call evaluate_points(x, kinematics, thickness, point)
+  end function points_of
+
+  !> Where the integration points are.
+  pure function places_of(x) result(place)
+    real(wp), intent(in) :: x(:, :)
+    real(wp) :: place(2, point_count(size(x, 2)))
+    real(wp) :: local(2, most_points), weight(most_points)
+    integer :: p
+
+    call local_points(size(x, 2), local, weight)
+    do p = 1, size(place, 2)
+      place(:, p) = matmul(x, shape_values(size(x, 2), local(:, p)))
+    end do
+  end function places_of
+
+  !> Strains at the integration points.
+  pure function strains_of(x, kinematics, u) result(strain)
+    real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: kinematics
+    real(wp), intent(in) :: u(:, :)   !! displacements of the nodes [2, nodes]
+    real(wp) :: strain(4, point_count(size(x, 2)))
+    type(element_point) :: point(size(strain, 2))
+    integer :: p
+
+    point = points_of(x, kinematics)
+    do p = 1, size(point)
+      strain(:, p) = matmul(point(p)%b(:, :size(u)), reshape(u, [size(u)]))
+    end do
+  end function strains_of
+
+  !> Displacements u = gradient x + shift.
+  pure function linear_field(x, gradient, shift) result(u)
+    real(wp), intent(in) :: x(:, :), gradient(2, 2), shift(2)
+    real(wp) :: u(2, size(x, 2))
+
+    u = matmul(gradient, x) + spread(shift, 2, size(x, 2))
+  end function linear_field
+
+  !> D of Young's modulus 1.
+  pure function elasticity(kinematics, poisson) result(d)
+    integer, intent(in) :: kinematics
+    real(wp), intent(in) :: poisson
+    real(wp) :: d(4, 4)
+
+    d = isotropic_matrix(bulk_modulus(1.0_wp, poisson), shear_modulus(1.0_wp, poisson), kinematics == plane_stress)
+  end function elasticity
+
+  pure function stiffness(x, kinematics, poisson) result(k)
+    real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: kinematics
+    real(wp), intent(in) :: poisson
+    real(wp) :: k(2*size(x, 2), 2*size(x, 2))
+    type(element_point) :: point(point_count(size(x, 2)))
+    integer :: p
+
+    point = points_of(x, kinematics)
+    k = 0.0_wp
+    do p = 1, size(point)
+      associate (b => point(p)%b(:, :size(k, 1)))
+        k = k + point(p)%volume*matmul(transpose(b), matmul(elasticity(kinematics, poisson), b))
+      end associate
+    end do
+  end function stiffness
+
+  !> Eigenvalues of a symmetric matrix, ascending.
+  pure function eigenvalues(a) result(value)
+    real(wp), intent(in) :: a(:, :)
+    real(wp) :: value(size(a, 1))
+    real(wp) :: copy(size(a, 1), size(a, 1)), work(8*size(a, 1))
+    integer :: info
+
+    copy = a
+    call dsyev('N', 'U', size(a, 1), copy, size(a, 1), value, work, size(work), info)
+    if (info /= 0) value = -huge(1.0_wp)
+  end function eigenvalues
+
+  !> An irregular patch: 4 triangles about a node, or 5 quadrilaterals, one of them within the others.
+  function patch_of(nodes, bend) result(made)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: bend       !! by how much middle nodes leave the middles of their sides
+    type(patch) :: made
+    real(wp), parameter :: outer(8) = [1.0_wp, 0.0_wp, 3.0_wp, 0.2_wp, 3.3_wp, 2.1_wp, 0.8_wp, 1.7_wp]
+    real(wp), parameter :: within(8) = [1.6_wp, 0.5_wp, 2.3_wp, 0.7_wp, 2.6_wp, 1.6_wp, 1.2_wp, 1.1_wp]
+    integer, parameter :: next(4) = [2, 3, 4, 1], inner_nodes(3:6) = [1, 4, 0, 5], all_nodes(3:6) = [5, 8, 0, 13]
+    integer :: k
+
+    allocate (made%x(2, all_nodes(nodes)), made%inner(all_nodes(nodes)))
+    made%inner(:) = [(k > all_nodes(nodes) - inner_nodes(nodes), k=1, all_nodes(nodes))]
+    made%x(:, :4) = reshape(outer, [2, 4])
+    if (nodes == 4) then
+      made%x(:, 5:) = reshape(within, [2, 4])
+      made%connectivity = reshape([([k, next(k), 4 + next(k), 4 + k], k=1, 4), [5, 6, 7, 8]], [4, 5])
+    else if (nodes == 3) then
+      made%x(:, 5) = [1.9_wp, 0.7_wp]
+      made%connectivity = reshape([([k, next(k), 5], k=1, 4)], [3, 4])
+    else
+      ! The inner corner takes the place after the middles of the outer sides.
+      made%x(:, 9) = [1.9_wp, 0.7_wp]
+      do k = 1, 4
+        made%x(:, 4 + k) = 0.5_wp*(made%x(:, k) + made%x(:, next(k))) + bend*[sin(2.0_wp*k), cos(3.0_wp*k)]
+        made%x(:, 9 + k) = 0.5_wp*(made%x(:, k) + made%x(:, 9)) + bend*[cos(5.0_wp*k), sin(7.0_wp*k)]
+      end do
+      made%connectivity = reshape([([k, next(k), 9, 4 + k, 9 + next(k), 9 + k], k=1, 4)], [6, 4])
+    end if
+  end function patch_of
+
+  !> Displacements of a patch whose inner nodes are free of forces; those of the others are given.
+  function solved_patch(given, kinematics, poisson, u) result(solved)
+    type(patch), intent(in) :: given
+    integer, intent(in) :: kinematics
+    real(wp), intent(in) :: poisson
+    real(wp), intent(in) :: u(:, :)   !! of all nodes; those of inner ones do not count [2, nodes]
+    real(wp) :: solved(2, size(u, 2))
+    real(wp) :: k(size(u), size(u)), flat(size(u))
+    real(wp), allocatable :: a(:, :), b(:, :)
+    integer, allocatable :: free(:), held(:), row(:)
+    integer :: e, i, info
+
+    k = 0.0_wp
+    do e = 1, size(given%connectivity, 2)
+      associate (node => given%connectivity(:, e))
+        row = [([2*node(i) - 1, 2*node(i)], i=1, size(node))]
+        k(row, row) = k(row, row) + stiffness(given%x(:, node), kinematics, poisson)
+      end associate
+    end do
+    free = pack([(i, i=1, size(u))], [(given%inner((i + 1)/2), i=1, size(u))])
+    held = pack([(i, i=1, size(u))], [(.not. given%inner((i + 1)/2), i=1, size(u))])
+    flat = reshape(u, [size(u)])
+    a = k(free, free)
+    b = reshape(-matmul(k(free, held), flat(held)), [size(free), 1])
+    call lu_solve(a, b, info)
+    if (info /= 0) b = huge(1.0_wp)
+    flat(free) = b(:, 1)
+    solved = reshape(flat, shape(solved))
+  end function solved_patch
+
+  !> Nodes of one element of a distorted grid: cell (i, j) of n by n, a triangle being one half of it.
+  pure function grid_element(nodes, n, i, j, half) result(x)
+    integer, intent(in) :: nodes, n, i, j, half
+    real(wp) :: x(2, nodes)
+    real(wp), parameter :: none(2, 3) = 0.0_wp
+    real(wp) :: corner(2, 4), local(2, nodes)
+    integer :: k
+
+    corner(1, :) = (i - 1 + [0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp])/n
+    corner(2, :) = (j - 1 + [0.0_wp, 0.0_wp, 1.0_wp, 1.0_wp])/n
+    select case (nodes)
+    case (6)
+      local = with_middles(corner(:, merge([1, 2, 3], [1, 3, 4], half == 1)), none)
+    case (4)
+      local = corner
+    case default
+      local = corner(:, merge([1, 2, 3], [1, 3, 4], half == 1))
+    end select
+    do k = 1, nodes
+      associate (s => local(1, k), t => local(2, k))
+        x(:, k) = [1.0_wp + s + 0.1_wp*sin(3.0_wp*t), t + 0.2_wp*s*s + 0.1_wp*sin(4.0_wp*s*t)]
+      end associate
+    end do
+  end function grid_element
+end module element_kinds
