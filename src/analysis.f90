@@ -12,7 +12,8 @@ module epcont_analysis
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_methods, only: choose_method
   use epcont_result_answer, only: answer_type
-  use epcont_result_contact_line, only: contact_line, find_contact_line
+  use epcont_result_contact_line, only: contact_line, find_contact_line, find_zones
+  use epcont_result_line_pressure, only: compare_sides
   use epcont_result_stresses, only: recover_stresses
   implicit none
   private
@@ -47,6 +48,8 @@ contains
     call recover_stresses(model, run%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
     line = find_contact_line(model)
     answer%pressure = merge(answer%contact%force/max(line%tributary, tiny(1.0_wp)), -1.0_wp, line%tributary > 0.0_wp)
+    answer%zones = find_zones(model, line, answer%contact%touching, answer%contact%force, answer%pressure)
+    answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
     call certify(model, load, plan%off_curve, answer%displacement, answer%reaction, answer%point_stress, answer%contact%force, &
                  certificate)
   end subroutine analyse

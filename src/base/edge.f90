@@ -5,7 +5,7 @@ module epcont_base_edge
   private
   public :: edge_point, edge_points
 
-  !> Gauss points along an edge: exact for what a linear pressure gives on a curved edge of a ring.
+  !> Gauss points along an edge: exact for a linear pressure on a straight one, and for a uniform one on any, rings too.
   integer, parameter, public :: edge_point_count = 3
   real(wp), parameter :: place(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
   real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp

@@ -17,9 +17,10 @@ module epcont_report_listing
   use epcont_report_outcome, only: outcome_type
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_zone
+  use epcont_result_line_pressure, only: line_pressure
   implicit none
   private
-  public :: list_deck, list_outcome, list_contact, list_zones, list_nodes, list_elements, list_summary
+  public :: list_deck, list_outcome, list_contact, list_zones, list_lines, list_nodes, list_elements, list_summary
 
 contains
 
@@ -165,6 +166,27 @@ contains
     if (half_width >= 0.0_wp) text = column_number(half_width, 0.0_wp)
   end function half_width_text
 
+  !> Contact of lines, seen from both sides.
+  subroutine list_lines(file, model, line)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(line_pressure), intent(in) :: line(:)
+    integer :: c
+
+    call heading(file, 'LINES IN CONTACT  (pressures on the slave line are those above; on the master line by its nodes'' forces)')
+    call file%line('     BCONP    slave   master    pairs left out touching        force     on slave    on master   difference')
+    do c = 1, size(line)
+      associate (contact => model%line_contact(c))
+        call file%line(right(text_of(contact%id), 10)//right(text_of(model%line(contact%slave)%id), 9)// &
+                       right(text_of(model%line(contact%master)%id), 9)// &
+                       right(text_of(contact%last - contact%first + 1), 9)//right(text_of(contact%left_out), 9)// &
+                       right(text_of(line(c)%touching), 9)//column_number(line(c)%force, 0.0_wp)// &
+                       column_number(line(c)%on_slave, 0.0_wp)//column_number(line(c)%on_master, 0.0_wp)// &
+                       column_number(line(c)%difference, 1.0_wp))
+      end associate
+    end do
+  end subroutine list_lines
+
   !> Displacements and reactions.
   subroutine list_nodes(file, model, answer)
     type(text_file), intent(in) :: file
@@ -190,17 +212,18 @@ contains
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
-    real(wp) :: s
+    real(wp) :: s, strain
     integer :: e
 
     call heading(file, 'STRESSES')
     call file%line('   element           sx           sy           sz          txy   equivalent       strain       secant  state')
     s = maxval(abs(answer%stress))
+    strain = maxval(answer%equivalent_strain)
     do e = 1, model%elements
       call file%line(right(text_of(model%element_id(e)), 10)//column_number(answer%stress(1, e), s)// &
                      column_number(answer%stress(2, e), s)//column_number(answer%stress(3, e), s)// &
                      column_number(answer%stress(4, e), s)//column_number(answer%equivalent_stress(e), s)// &
-                     column_number(answer%equivalent_strain(e), maxval(answer%equivalent_strain))// &
+                     column_number(answer%equivalent_strain(e), strain)// &
                      column_number(answer%secant_modulus(e), 0.0_wp)//merge('  plastic', '  elastic', answer%plastic(e)))
     end do
   end subroutine list_elements

@@ -3,6 +3,8 @@ module epcont_result_answer
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solution
   use epcont_plasticity_iteration, only: iteration_record
+  use epcont_result_contact_line, only: contact_zone
+  use epcont_result_line_pressure, only: line_pressure
   implicit none
   private
   public :: answer_type
@@ -20,6 +22,8 @@ module epcont_result_answer
     logical, allocatable :: beyond(:)                !! beyond the end of the material's table [elements]
     type(contact_solution) :: contact
     real(wp), allocatable :: pressure(:)             !! at the pairs; negative: no boundary there [stress] [pairs]
+    type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
+    type(line_pressure), allocatable :: lines(:)     !! of each line contact
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
     type(iteration_record), allocatable :: history(:)  !! every solve
     integer :: factorizations = 0                    !! of bodies

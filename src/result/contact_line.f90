@@ -39,22 +39,41 @@ contains
     type(model_type), intent(in) :: model
     type(contact_line) :: line
     type(incidence) :: around
-    integer, allocatable :: pair_at(:)
-    real(wp) :: edge(2)
-    integer :: e, i, k, pair, side(3)
+    integer :: c, last, pair
 
     around = new_incidence(model%connectivity, model%nodes)
     allocate (line%tributary(model%pairs), source=0.0_wp)
     allocate (line%neighbour(2, model%pairs), source=0)
-    allocate (line%node(model%pairs), line%mirrored(model%pairs), pair_at(model%nodes))
-    pair_at = 0
-    do pair = model%pairs, 1, -1
+    allocate (line%node(model%pairs), line%mirrored(model%pairs))
+    do pair = 1, model%pairs
       associate (a => model%pair_node(1, pair), b => model%pair_node(2, pair))
         line%node(pair) = merge(b, a, around%start(b + 1) > around%start(b))
       end associate
+    end do
+    ! A node may have a pair in each of several contacts: neighbours are of one.
+    last = model%pairs
+    if (size(model%line_contact) > 0) last = model%line_contact(1)%first - 1
+    call find_edges(model, around, 1, last, line)
+    do c = 1, size(model%line_contact)
+      call find_edges(model, around, model%line_contact(c)%first, model%line_contact(c)%last, line)
+    end do
+  end function find_contact_line
+
+  !> Edges at a range of pairs, and the neighbours among them.
+  pure subroutine find_edges(model, around, first, last, line)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: first, last
+    type(contact_line), intent(inout) :: line
+    integer, allocatable :: pair_at(:)
+    real(wp) :: edge(2)
+    integer :: e, i, k, pair, side(3)
+
+    allocate (pair_at(model%nodes), source=0)
+    do pair = last, first, -1
       pair_at(line%node(pair)) = pair
     end do
-    do pair = 1, model%pairs
+    do pair = first, last
       associate (node => line%node(pair), n => model%normal(:, pair))
         line%mirrored(pair) = (model%held(1, node) .and. abs(n(2)) > 0.9_wp) .or. (model%held(2, node) .and. abs(n(1)) > 0.9_wp)
         do i = around%start(node), around%start(node + 1) - 1
@@ -70,7 +89,7 @@ contains
         end do
       end associate
     end do
-  end function find_contact_line
+  end subroutine find_edges
 
   !> What a uniform pressure on a side gives to one of its nodes along the normal, over that pressure [length**2].
   pure real(wp) function share(model, element, side, node, n)

@@ -1,0 +1,84 @@
+!> All that a run writes: the listing, and the tables beside it.
+module epcont_report_results
+  use epcont_base_error, only: error_type
+  use epcont_certificate_certificate, only: certificate_type
+  use epcont_deck_deck, only: deck_type
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
+  use epcont_report_file, only: new_text_file, text_file
+  use epcont_report_iterations, only: list_iterations
+  use epcont_report_listing, only: list_contact, list_deck, list_elements, list_lines, list_nodes, list_outcome, &
+                                   list_summary, list_zones
+  use epcont_report_outcome, only: outcome_type
+  use epcont_report_tables, only: write_contact, write_elements, write_history, write_nodes, write_summary, write_zones
+  use epcont_result_answer, only: answer_type
+  implicit none
+  private
+  public :: run_results, write_results
+
+  !> One deck's way, from its cards to its answer.
+  type :: run_results
+    type(deck_type) :: deck
+    type(diagnostics) :: faults
+    type(model_type) :: model
+    type(free_motions) :: motions
+    character(len=:), allocatable :: plan   !! in words
+    type(answer_type) :: answer
+    type(certificate_type) :: certificate
+    type(outcome_type) :: outcome
+  end type run_results
+
+contains
+
+  !> The listing and the tables; those of nodes and elements where the deck, or `all_tables`, asks for them.
+  subroutine write_results(run, stem, all_tables, error)
+    type(run_results), intent(in) :: run
+    character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
+    logical, intent(in) :: all_tables
+    type(error_type), allocatable, intent(out) :: error
+    logical :: nodes, elements
+
+    nodes = all_tables .or. run%deck%displacement .or. run%deck%spcforces
+    elements = all_tables .or. run%deck%stress
+    call write_listing(run, stem, nodes, elements, error)
+    associate (model => run%model, answer => run%answer)
+      if (.not. allocated(error)) &
+        call write_summary(stem, model, run%motions, answer, run%certificate, run%outcome, error)
+      if (.not. run%outcome%has_answer) return
+      if (.not. allocated(error)) call write_contact(stem, model, answer, error)
+      if (.not. allocated(error)) call write_zones(stem, model, answer%zones, error)
+      if (.not. allocated(error)) call write_history(stem, answer, error)
+      if (.not. allocated(error) .and. nodes) call write_nodes(stem, model, answer, error)
+      if (.not. allocated(error) .and. elements) call write_elements(stem, model, answer, error)
+    end associate
+  end subroutine write_results
+
+  subroutine write_listing(run, stem, nodes, elements, error)
+    type(run_results), intent(in) :: run
+    character(len=*), intent(in) :: stem
+    logical, intent(in) :: nodes, elements
+    type(error_type), allocatable, intent(out) :: error
+    type(text_file) :: file
+
+    call new_text_file(stem//'.lst', file, error)
+    if (allocated(error)) return
+    call list_deck(file, run%deck, run%faults)
+    call file%line(run%plan(:len(run%plan) - 1))
+    call list_outcome(file, run%outcome)
+    if (run%outcome%has_answer) then
+      associate (model => run%model, answer => run%answer)
+        call list_iterations(file, model, answer)
+        if (model%pairs > 0) then
+          call list_contact(file, model, answer)
+          call list_zones(file, model, answer%zones)
+          if (size(answer%lines) > 0) call list_lines(file, model, answer%lines)
+        end if
+        if (nodes) call list_nodes(file, model, answer)
+        if (elements) call list_elements(file, model, answer)
+        call list_summary(file, model, run%motions, answer, run%certificate, run%outcome)
+      end associate
+    end if
+    call file%finish(error)
+  end subroutine write_listing
+end module epcont_report_results
