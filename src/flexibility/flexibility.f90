@@ -18,20 +18,27 @@ contains
     integer, intent(in) :: b                       !! the body
     type(body_stiffness), intent(in) :: stiffness  !! factored
     real(wp), intent(inout) :: flexibility(:, :)
-    real(wp), allocatable :: compliance(:, :), weight(:)
+    real(wp), allocatable :: compliance(:, :), response(:), weight(:)
+    real(wp) :: opening
     integer, allocatable :: start(:), place(:)
     integer :: i, j, k, l
 
     if (numbering%body(b)%contact_equations + numbering%body(b)%border == 0) return
     call body_rows(model, numbering, b, start, place, weight)
     compliance = stiffness%trailing_compliance(numbering%body(b)%contact_equations)
+    allocate (response(size(compliance, 1)))
     do l = 1, model%pairs
+      response = 0.0_wp
       do j = start(l), start(l + 1) - 1
-        do k = 1, model%pairs
-          do i = start(k), start(k + 1) - 1
-            flexibility(k, l) = flexibility(k, l) + weight(i)*weight(j)*compliance(place(i), place(j))
-          end do
+        response = response + weight(j)*compliance(:, place(j))
+      end do
+      do k = l, model%pairs
+        opening = 0.0_wp
+        do i = start(k), start(k + 1) - 1
+          opening = opening + weight(i)*response(place(i))
         end do
+        flexibility(k, l) = flexibility(k, l) + opening
+        if (k > l) flexibility(l, k) = flexibility(l, k) + opening
       end do
     end do
   end subroutine add_body_flexibility

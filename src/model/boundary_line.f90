@@ -35,11 +35,14 @@ module epcont_model_boundary_line
     procedure :: longest
     procedure :: outward
     procedure :: face
+    procedure :: foot
+    procedure :: at
   end type boundary_line
 
   !> Where a point faces a line.
   type :: facing_place
     logical :: found = .false.
+    logical :: in_wedge = .false.    !! beyond the end, in the wedge between two curved sides: at their node
     real(wp) :: share(3) = 0.0_wp    !! of start, end and middle of the side in the place [-]
     real(wp) :: normal(2) = 0.0_wp   !! outward
     real(wp) :: gap = 0.0_wp         !! from the curve to the point, along the normal [length]
@@ -168,6 +171,7 @@ contains
     call find_foot(self, segment, point, s, found)
     if (.not. found .or. s < -room(1) .or. s > 1.0_wp + room(2)) return
     place%found = .true.
+    place%in_wedge = s < -beyond .or. s > 1.0_wp + beyond
     if (s <= at_node) then
       place%share = [1.0_wp, 0.0_wp, 0.0_wp]
       place%normal = self%normal(:, 1, segment)
@@ -183,6 +187,38 @@ contains
       if (.not. curved) place%gap = place%gap - rise(self, segment, s)
     end if
   end function face
+
+  !> The place of a side, from 0 to 1, that a point within a distance faces.
+  pure subroutine foot(self, segment, point, distance, s, found)
+    class(boundary_line), intent(in) :: self
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: point(2), distance
+    real(wp), intent(out) :: s
+    logical, intent(out) :: found
+
+    found = .false.
+    s = 0.0_wp
+    associate (a => self%x(:, 1, segment), b => self%x(:, 2, segment))
+      if (any(abs(point - 0.5_wp*(a + b)) > distance + norm2(b - a))) return
+    end associate
+    call find_foot(self, segment, point, s, found)
+    found = found .and. s >= 0.0_wp .and. s <= 1.0_wp
+  end subroutine foot
+
+  !> Shape functions, place on the smooth curve and tangent at a place of a side.
+  pure subroutine at(self, segment, s, share, x, tangent)
+    class(boundary_line), intent(in) :: self
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: s
+    real(wp), intent(out) :: share(3), x(2), tangent(2)
+    logical :: curved
+
+    curved = self%segment(3, segment) > 0
+    share = values(curved, s)
+    x = matmul(self%x(:, :, segment), share)
+    tangent = matmul(self%x(:, :, segment), slopes(curved, s))
+    if (.not. curved) x = x + rise(self, segment, s)*own_normal(self, segment, s)
+  end subroutine at
 
   !> The place of a side at which its normal, between those at its ends or its own if it is curved, leads to a point.
   pure subroutine find_foot(line, segment, point, s, found)

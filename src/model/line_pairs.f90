@@ -1,4 +1,5 @@
-!> Contact pairs from BCONP: each node of the slave line against the side of the master line that it faces.
+!> Contact pairs from BCONP: each node of the slave line against what it faces of the master line. Gap and normal are those
+!> at the node; what the master nodes share in it comes from epcont_model_mortar.
 module epcont_model_line_pairs
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
@@ -6,8 +7,10 @@ module epcont_model_line_pairs
   use epcont_deck_card_kinds, only: card_bconp, card_blseg
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_model_boundary_line, only: boundary_line, facing_place
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_boundary_line, only: boundary_line
+  use epcont_model_facing, only: facing_type, find_nearest
+  use epcont_model_model, only: axisymmetric, line_contact, model_type
+  use epcont_model_mortar, only: mortar_rows
   use epcont_model_reference, only: check_unique, index_of_ids, resolve
   implicit none
   private
@@ -15,16 +18,14 @@ module epcont_model_line_pairs
 
   !> Where nothing is said of it, a side is looked for within this many times the longest side of the two lines.
   real(wp), parameter :: default_search = 2.0_wp
-  !> A gap below so many roundings of the coordinates is none.
-  real(wp), parameter :: roundings = 16.0_wp*epsilon(1.0_wp)
-  !> Gaps that differ by less than this part of the search are equal: at a corner the better normal decides.
-  real(wp), parameter :: equal = 1.0e-9_wp
-
-  !> What a node of the slave line faces.
-  type :: facing_type
-    type(facing_place) :: place
-    integer :: node = 0, segment = 0
-  end type facing_type
+  !> What the nodes of a slave line face.
+  type :: faces_type
+    integer :: nodes = 0                           !! of the line
+    integer :: same_way = 0                        !! of them near sides that look the same way only
+    integer, allocatable :: node(:)                !! those that face something [rows]
+    type(facing_type), allocatable :: facing(:)    !! what [rows]
+    integer, allocatable :: row_of(:, :)           !! of the nodes of each side; 0: they face nothing [3, sides]
+  end type faces_type
 
 contains
 
@@ -33,10 +34,10 @@ contains
     type(deck_type), intent(in) :: deck
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
-    type(facing_type), allocatable :: facing(:)
+    type(faces_type) :: faces
     type(id_index) :: lines
     logical, allocatable :: used(:)
-    integer :: i, same_way
+    integer :: i
 
     call check_unique(deck, [card_bconp], faults)
     lines = index_of_ids(deck, card_blseg)
@@ -58,10 +59,13 @@ contains
           associate (slave => model%line(contact%slave), master => model%line(contact%master))
             if (size(slave%element) == 0 .or. size(master%element) == 0) cycle   ! said of the line
             contact%search = deck%parameter_value('SEARCH', default_search*max(slave%longest(), master%longest()))
-            call find_facing(model, slave, master, contact%search, facing, same_way)
+            call find_faces(model, slave, master, contact%search, faces)
           end associate
-          if (size(facing) == 0) call add_nothing_faced(deck, i, model, same_way, faults)
-          call add_pairs(facing, model, contact)
+          if (size(faces%node) == 0) then
+            call add_nothing_faced(deck, i, model, faces%same_way, faults)
+            cycle
+          end if
+          call add_pairs(faces, model, contact)
           call warn_of_overlap(deck, i, model, contact, faults)
         end associate
       end do
@@ -72,119 +76,79 @@ contains
     end do
   end subroutine build_line_pairs
 
-  !> What the nodes of one line face of another, in their order along the line. `same_way` counts those near sides
-  !! that look the same way only.
-  pure subroutine find_facing(model, slave, master, search, facing, same_way)
+  !> What the nodes of one line face of another, in their order along the line.
+  pure subroutine find_faces(model, slave, master, search, faces)
     type(model_type), intent(in) :: model
     type(boundary_line), intent(in) :: slave, master
     real(wp), intent(in) :: search
-    type(facing_type), allocatable, intent(out) :: facing(:)
-    integer, intent(out) :: same_way
-    type(facing_type) :: best
+    type(faces_type), intent(out) :: faces
+    type(facing_type) :: facing
     integer, parameter :: in_turn(3) = [1, 3, 2]
-    integer :: found, k, s, turn, which
-    logical :: wrong
+    integer :: n, s, sides, turn, which
 
-    allocate (facing(3*size(slave%element)))
-    found = 0
-    same_way = 0
-    do s = 1, size(slave%element)
+    sides = size(slave%element)
+    allocate (faces%facing(2*sides + 1), faces%node(2*sides + 1))
+    allocate (faces%row_of(3, sides), source=0)
+    n = 0
+    do s = 1, sides
       do turn = 1, 3
         which = in_turn(turn)
         if (slave%segment(which, s) == 0) cycle
-        if (which == 2 .and. (s < size(slave%element) .or. slave%closed)) cycle   ! the next side's start
-        best%node = slave%segment(which, s)
-        call find_nearest(model, best%node, slave%outward(s, which), master, search, best, wrong)
-        if (wrong) same_way = same_way + 1
-        if (.not. best%place%found) cycle
-        found = found + 1
-        facing(found) = best
+        if (which == 1 .and. s > 1) then                        ! the end of the side before
+          faces%row_of(1, s) = faces%row_of(2, s - 1)
+        else if (which == 2 .and. s == sides .and. slave%closed) then
+          faces%row_of(2, s) = faces%row_of(1, 1)
+        else
+          associate (node => slave%segment(which, s))
+            facing = find_nearest(master, model%x(:, node), slave%outward(s, which), search, node)
+            faces%nodes = faces%nodes + 1
+            if (facing%same_way) faces%same_way = faces%same_way + 1
+            if (.not. facing%place%found) cycle
+            n = n + 1
+            faces%facing(n) = facing
+            faces%node(n) = node
+            faces%row_of(which, s) = n
+          end associate
+        end if
       end do
     end do
-    facing = [(facing(k), k=1, found)]
-  end subroutine find_facing
+    faces%facing = faces%facing(:n)
+    faces%node = faces%node(:n)
+  end subroutine find_faces
 
-  !> The side of the master line that a node faces nearest by. `wrong`: there is none, but one near it that looks the
-  !! same way.
-  pure subroutine find_nearest(model, node, outward, master, search, best, wrong)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node
-    real(wp), intent(in) :: outward(2)
-    type(boundary_line), intent(in) :: master
-    real(wp), intent(in) :: search
-    type(facing_type), intent(inout) :: best
-    logical, intent(out) :: wrong
-    type(facing_place) :: place
-    real(wp) :: reach, better
-    integer :: i
-
-    best%place = facing_place()
-    wrong = .false.
-    associate (x => model%x(:, node))
-      do i = 1, size(master%element)
-        if (any(master%segment(:, i) == node)) cycle
-        associate (a => master%x(:, 1, i), b => master%x(:, 2, i))
-          reach = search + norm2(b - a)
-          if (any(abs(x - 0.5_wp*(a + b)) > reach)) cycle
-        end associate
-        place = master%face(i, x)
-        if (.not. place%found .or. abs(place%gap) > search) cycle
-        if (dot_product(place%normal, outward) >= 0.0_wp) then
-          wrong = .true.
-          cycle
-        end if
-        if (best%place%found) then
-          better = abs(best%place%gap) - abs(place%gap)
-          if (better < -equal*search) cycle
-          if (better <= equal*search .and. &
-              dot_product(place%normal, outward) >= dot_product(best%place%normal, outward)) cycle
-        end if
-        best%place = place
-        best%segment = i
-      end do
-      if (abs(best%place%gap) <= roundings*maxval(abs(x))) best%place%gap = 0.0_wp
-    end associate
-    wrong = wrong .and. .not. best%place%found
-  end subroutine find_nearest
-
-  !> Append pairs, with their rows of N: the node is B, the side's nodes are A.
-  subroutine add_pairs(facing, model, contact)
-    type(facing_type), intent(in) :: facing(:)
+  !> Append pairs, with their rows of N: the slave node is B, the master line's nodes are A.
+  subroutine add_pairs(faces, model, contact)
+    type(faces_type), intent(in) :: faces
     type(model_type), intent(inout) :: model
     type(line_contact), intent(inout) :: contact
-    integer, allocatable :: nodes(:)
-    real(wp), allocatable :: weights(:)
-    integer :: i, k, n
+    integer, allocatable :: start(:), node(:), nodes(:)
+    real(wp), allocatable :: weight(:), weights(:)
+    integer :: i, n
 
-    allocate (nodes(4*size(facing)), weights(4*size(facing)))
-    contact%first = model%pairs + 1
-    n = 0
+    n = size(faces%node)
     associate (slave => model%line(contact%slave), master => model%line(contact%master))
-      do i = 1, size(facing)
-        associate (place => facing(i)%place, side => master%segment(:, facing(i)%segment))
-          n = n + 1
-          nodes(n) = facing(i)%node
-          weights(n) = 1.0_wp
-          do k = 1, 3
-            if (place%share(k) == 0.0_wp) cycle
-            n = n + 1
-            nodes(n) = side(k)
-            weights(n) = -place%share(k)
-          end do
-          model%row_start = [model%row_start, size(model%row_node) + n + 1]
-          model%pair_node = reshape([model%pair_node, side(maxloc(place%share, dim=1)), facing(i)%node], &
-                                    [2, model%pairs + i])
-        end associate
-      end do
-      contact%left_out = 2*size(slave%element) + merge(0, 1, slave%closed) - count(slave%segment(3, :) == 0) - size(facing)
+      call mortar_rows(slave, master, faces%row_of, faces%facing, contact%search, &
+                       model%kinematics(model%section(slave%element(1))) == axisymmetric, start, node, weight)
     end associate
-    model%pair_id = [model%pair_id, model%node_id(facing%node)]
-    model%normal = reshape([model%normal, (facing(i)%place%normal, i=1, size(facing))], [2, model%pairs + size(facing)])
-    model%initial_gap = [model%initial_gap, facing%place%gap]
-    model%row_node = [model%row_node, nodes(:n)]
-    model%row_weight = [model%row_weight, weights(:n)]
-    model%pairs = model%pairs + size(facing)
-    contact%last = model%pairs
+    allocate (nodes(0), weights(0))
+    do i = 1, n
+      associate (first => start(i), last => start(i + 1) - 1)
+        nodes = [nodes, faces%node(i), node(first:last)]
+        weights = [weights, 1.0_wp, -weight(first:last)]
+        model%row_start = [model%row_start, size(model%row_node) + size(nodes) + 1]
+        model%pair_node = reshape([model%pair_node, node(first - 1 + maxloc(weight(first:last), dim=1)), faces%node(i)], &
+                                  [2, model%pairs + i])
+      end associate
+    end do
+    contact%first = model%pairs + 1
+    contact%last = model%pairs + n
+    contact%left_out = faces%nodes - n
+    model%pair_id = [model%pair_id, model%node_id(faces%node)]
+    model%normal = reshape([model%normal, (faces%facing(i)%place%normal, i=1, n)], [2, contact%last])
+    model%initial_gap = [model%initial_gap, faces%facing%place%gap]
+    model%row_node = [model%row_node, nodes]
+    model%row_weight = [model%row_weight, weights]
+    model%pairs = contact%last
   end subroutine add_pairs
 
   subroutine add_nothing_faced(deck, i, model, same_way, faults)

@@ -1,0 +1,57 @@
+!> What a point near a boundary line faces of it.
+module epcont_model_facing
+  use epcont_base_kinds, only: wp
+  use epcont_model_boundary_line, only: boundary_line, facing_place
+  implicit none
+  private
+  public :: facing_type, find_nearest
+
+  !> Gaps that differ by less than this part of the search are equal: at a corner the better normal decides.
+  real(wp), parameter :: equal = 1.0e-9_wp
+  !> A gap below so many roundings of the coordinates is none.
+  real(wp), parameter :: roundings = 16.0_wp*epsilon(1.0_wp)
+
+  type :: facing_type
+    type(facing_place) :: place
+    integer :: segment = 0        !! the side
+    logical :: same_way = .false. !! there is none, but one near by that looks the same way
+  end type facing_type
+
+contains
+
+  !> The side of a line that a point faces nearest by, not farther than `search`; `outward` is the normal of the boundary
+  !! to which the point belongs. Sides that end at node `except` do not count.
+  pure function find_nearest(line, x, outward, search, except) result(best)
+    type(boundary_line), intent(in) :: line
+    real(wp), intent(in) :: x(2), outward(2), search
+    integer, intent(in) :: except
+    type(facing_type) :: best
+    type(facing_place) :: place
+    real(wp) :: better, reach
+    integer :: i
+
+    do i = 1, size(line%element)
+      if (any(line%segment(:, i) == except) .and. except > 0) cycle
+      associate (a => line%x(:, 1, i), b => line%x(:, 2, i))
+        reach = search + norm2(b - a)
+        if (any(abs(x - 0.5_wp*(a + b)) > reach)) cycle
+      end associate
+      place = line%face(i, x)
+      if (.not. place%found .or. abs(place%gap) > search) cycle
+      if (dot_product(place%normal, outward) >= 0.0_wp) then
+        best%same_way = .true.
+        cycle
+      end if
+      if (best%place%found .and. place%in_wedge .and. .not. best%place%in_wedge) cycle
+      if (best%place%found .and. (place%in_wedge .eqv. best%place%in_wedge)) then
+        better = abs(best%place%gap) - abs(place%gap)
+        if (better < -equal*search) cycle
+        if (better <= equal*search .and. dot_product(place%normal, outward) >= dot_product(best%place%normal, outward)) cycle
+      end if
+      best%place = place
+      best%segment = i
+    end do
+    if (abs(best%place%gap) <= roundings*maxval(abs(x))) best%place%gap = 0.0_wp
+    best%same_way = best%same_way .and. .not. best%place%found
+  end function find_nearest
+end module epcont_model_facing

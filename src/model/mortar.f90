@@ -1,0 +1,241 @@
+!> How the nodes of a master line share in the gaps of the slave nodes: a dual mortar.
+!>
+!> The pressure of slave node i is spread by the dual function psi_i of its shape functions N, which gives nothing to the
+!> other slave nodes: integral of psi_i N_j = d_ij integral of N_i. Its gap is then that of the node, less the master line's
+!> displacement averaged with psi_i: weights (integral of psi_i N_master)/(integral of N_i). A uniform pressure passes
+!> exactly between lines that do not match, and where they do match each node is against its twin alone. (Wohlmuth, A mortar
+!> finite element method using dual spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000.) A side whose slave
+!> nodes do not all face the other line, or not all along, counts at its nodes' own places.
+module epcont_model_mortar
+  use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: sorted_order
+  use epcont_model_boundary_line, only: boundary_line
+  use epcont_model_facing, only: facing_type, find_nearest
+  implicit none
+  private
+  public :: mortar_rows
+
+  !> Gauss points of each piece of a side: exact for the product of two quadratics on a straight one.
+  integer, parameter :: gauss_points = 3
+  real(wp), parameter :: gauss_place(3) = 0.5_wp + 0.5_wp*[-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
+  real(wp), parameter :: gauss_weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/18.0_wp
+  !> Pieces shorter than this part of a side, and weights below it, are rounding.
+  real(wp), parameter :: rounding = 1.0e-12_wp
+
+  !> Weights gathered in any order: of a node in a row.
+  type :: weight_list
+    integer :: count = 0
+    integer, allocatable :: row(:), node(:)
+    real(wp), allocatable :: weight(:)
+    real(wp), allocatable :: area(:)      !! integral of N_i so far [rows]
+  contains
+    procedure :: add
+  end type weight_list
+
+  !> The integration points of one side.
+  type :: side_points
+    integer :: count = 0
+    logical :: covered = .true.               !! all of them face the other line
+    real(wp), allocatable :: share(:, :)      !! shape functions of the side's nodes [3, points]
+    real(wp), allocatable :: weight(:)        !! length, in rings times radius
+    type(facing_type), allocatable :: facing(:)
+  end type side_points
+
+contains
+
+  !> Rows of master nodes and weights, one for each slave node that has a pair; the weights of a row sum to 1. Row k is the
+  !! entries start(k) to start(k+1)-1.
+  pure subroutine mortar_rows(slave, master, row_of, facing, search, ring, start, node, weight)
+    type(boundary_line), intent(in) :: slave, master
+    integer, intent(in) :: row_of(:, :)            !! of each side's nodes; 0: they face nothing [3, sides]
+    type(facing_type), intent(in) :: facing(:)     !! what the nodes face [rows]
+    real(wp), intent(in) :: search
+    logical, intent(in) :: ring                    !! x is a radius
+    integer, allocatable, intent(out) :: start(:), node(:)
+    real(wp), allocatable, intent(out) :: weight(:)
+    type(weight_list) :: list
+    type(side_points) :: points
+    real(wp) :: integral
+    integer :: k, row, s
+
+    allocate (list%row(0), list%node(0), list%weight(0))
+    allocate (list%area(size(facing)), source=0.0_wp)
+    do s = 1, size(slave%element)
+      call cut_side(slave, s, master, search, ring, points)
+      if (points%covered .and. all(row_of(:, s) > 0 .or. slave%segment(:, s) == 0)) then
+        call add_dual(master, points, row_of(:, s), list)
+        cycle
+      end if
+      do k = 1, 3
+        row = row_of(k, s)
+        if (row == 0) cycle
+        integral = sum(points%weight(:points%count)*points%share(k, :points%count))
+        call list%add(row, master%segment(:, facing(row)%segment), integral*facing(row)%place%share)
+        list%area(row) = list%area(row) + integral
+      end do
+    end do
+    call collect(list, start, node, weight)
+  end subroutine mortar_rows
+
+  !> Integration points of a side, cut where nodes of the other line face it.
+  pure subroutine cut_side(slave, side, master, search, ring, points)
+    type(boundary_line), intent(in) :: slave, master
+    integer, intent(in) :: side
+    real(wp), intent(in) :: search
+    logical, intent(in) :: ring
+    type(side_points), intent(out) :: points
+    real(wp), allocatable :: cut(:)
+    real(wp) :: s, x(2), tangent(2)
+    integer :: i, k
+
+    cut = cuts_of(slave, side, master, search)
+    allocate (points%share(3, gauss_points*size(cut)), points%weight(gauss_points*size(cut)))
+    allocate (points%facing(gauss_points*size(cut)))
+    do i = 2, size(cut)
+      if (cut(i) - cut(i - 1) <= rounding) cycle
+      do k = 1, gauss_points
+        s = cut(i - 1) + (cut(i) - cut(i - 1))*gauss_place(k)
+        points%count = points%count + 1
+        associate (p => points%count)
+          call slave%at(side, s, points%share(:, p), x, tangent)
+          points%weight(p) = gauss_weight(k)*(cut(i) - cut(i - 1))*norm2(tangent)
+          if (ring) points%weight(p) = points%weight(p)*dot_product(points%share(:, p), slave%x(1, :, side))
+          points%facing(p) = find_nearest(master, x, [tangent(2), -tangent(1)], search, 0)
+          points%covered = points%covered .and. points%facing(p)%place%found
+        end associate
+      end do
+    end do
+  end subroutine cut_side
+
+  !> Places along a side, from 0 to 1, at which the ends of the other line's sides face it.
+  pure function cuts_of(slave, side, master, search) result(cut)
+    type(boundary_line), intent(in) :: slave, master
+    integer, intent(in) :: side
+    real(wp), intent(in) :: search
+    real(wp), allocatable :: cut(:)
+    real(wp) :: s
+    integer :: i, k
+    logical :: found
+
+    cut = [0.0_wp, 1.0_wp]
+    do i = 1, size(master%element)
+      do k = 1, 2
+        if (k == 2 .and. i < size(master%element)) cycle   ! the start of the next
+        call slave%foot(side, master%x(:, k, i), search, s, found)
+        if (found) cut = [pack(cut, cut < s), s, pack(cut, cut >= s)]
+      end do
+    end do
+  end function cuts_of
+
+  !> Add the weights of a side that faces the other line all along.
+  pure subroutine add_dual(master, points, row, list)
+    type(boundary_line), intent(in) :: master
+    type(side_points), intent(in) :: points
+    integer, intent(in) :: row(3)
+    type(weight_list), intent(inout) :: list
+    real(wp) :: dual(3, 3), mass(3, 3), integral(3), psi(3)
+    integer :: j, k, p
+
+    mass = 0.0_wp
+    integral = 0.0_wp
+    do p = 1, points%count
+      associate (n => points%share(:, p), w => points%weight(p))
+        integral = integral + w*n
+        do j = 1, 3
+          mass(:, j) = mass(:, j) + w*n*n(j)
+        end do
+      end associate
+    end do
+    if (row(3) == 0) mass(3, 3) = integral(1)   ! no middle node
+    dual = inverse(mass)
+    do k = 1, 3
+      dual(k, :) = integral(k)*dual(k, :)
+      if (row(k) > 0) list%area(row(k)) = list%area(row(k)) + integral(k)
+    end do
+    do p = 1, points%count
+      psi = points%weight(p)*matmul(dual, points%share(:, p))
+      associate (facing => points%facing(p))
+        do k = 1, 3
+          if (row(k) > 0) call list%add(row(k), master%segment(:, facing%segment), psi(k)*facing%place%share)
+        end do
+      end associate
+    end do
+  end subroutine add_dual
+
+  !> By cofactors.
+  pure function inverse(a) result(b)
+    real(wp), intent(in) :: a(3, 3)
+    real(wp) :: b(3, 3)
+    integer :: i, j, p, q, r, s
+
+    do j = 1, 3
+      do i = 1, 3
+        p = mod(j, 3) + 1
+        q = mod(p, 3) + 1
+        r = mod(i, 3) + 1
+        s = mod(r, 3) + 1
+        b(i, j) = a(p, r)*a(q, s) - a(p, s)*a(q, r)
+      end do
+    end do
+    b = b/dot_product(a(1, :), b(:, 1))
+  end function inverse
+
+  !> Note the weights of a side's nodes in a row; node 0 is none.
+  pure subroutine add(self, row, node, weight)
+    class(weight_list), intent(inout) :: self
+    integer, intent(in) :: row, node(3)
+    real(wp), intent(in) :: weight(3)
+    integer :: k, room
+
+    do k = 1, 3
+      if (node(k) == 0 .or. weight(k) == 0.0_wp) cycle
+      if (self%count == size(self%row)) then
+        room = max(64, self%count)
+        self%row = [self%row, spread(0, 1, room)]
+        self%node = [self%node, spread(0, 1, room)]
+        self%weight = [self%weight, spread(0.0_wp, 1, room)]
+      end if
+      self%count = self%count + 1
+      self%row(self%count) = row
+      self%node(self%count) = node(k)
+      self%weight(self%count) = weight(k)
+    end do
+  end subroutine add
+
+  !> The rows: weights of one node added up, over the row's area, without rounding.
+  pure subroutine collect(list, start, node, weight)
+    type(weight_list), intent(in) :: list
+    integer, allocatable, intent(out) :: start(:), node(:)
+    real(wp), allocatable, intent(out) :: weight(:)
+    integer, allocatable :: order(:)
+    integer :: first, i, k, n, row
+
+    order = sorted_order(list%row(:list%count))
+    allocate (start(size(list%area) + 1), node(list%count), weight(list%count))
+    n = 0
+    i = 1
+    do row = 1, size(list%area)
+      start(row) = n + 1
+      first = n + 1
+      do while (i <= list%count)
+        if (list%row(order(i)) /= row) exit
+        k = first - 1 + findloc(node(first:n), list%node(order(i)), dim=1)
+        if (k < first) then
+          n = n + 1
+          k = n
+          node(n) = list%node(order(i))
+          weight(n) = 0.0_wp
+        end if
+        weight(k) = weight(k) + list%weight(order(i))/list%area(row)
+        i = i + 1
+      end do
+      k = first - 1 + count(abs(weight(first:n)) > rounding)
+      node(first:k) = pack(node(first:n), abs(weight(first:n)) > rounding)
+      weight(first:k) = pack(weight(first:n), abs(weight(first:n)) > rounding)
+      n = k
+    end do
+    start(size(start)) = n + 1
+    node = node(:n)
+    weight = weight(:n)
+  end subroutine collect
+end module epcont_model_mortar
