@@ -118,13 +118,14 @@ def cook(n=24, stress=None):
     return deck
 
 
-def punch_limit(stress, steps=1, element="ctria3", n=12, size=12.0, growth=(1.4, 1.25)):
+def punch_limit(stress=23.0, steps=1, element="ctria3", n=12, size=12.0, growth=(1.4, 1.25)):
     """The flat punch on a block with a flat curve."""
     deck = flat_punch(n, size, 1.0e5, element, growth)
     if element != "ctria3":
-        deck.title = f"RIGID FLAT PUNCH, LIMIT LOAD WITH {element.upper()}"
+        deck.title = f"RIGID FLAT PUNCH, LIMIT LOAD, {element.upper()}"
         deck.words = ["The rigid flat punch on a block that yields without hardening, with elements that can flow without change "
-                      "of volume.", f"Yield stress {stress:g}, mean pressure 100: {100 / stress:.3f} times it. Fully plastic flow "
+                      "of volume. The block is deeper than 8.74 a: a shallower one, on a base without friction, would flow through to the "
+                      "base under less (Hill).", f"Yield stress {stress:g}, mean pressure 100: {100 / stress:.3f} times it. Fully plastic flow "
                       "of a half plane begins at (2 + pi)/sqrt(3) = 2.968 times."]
         if steps > 1:
             deck.card("PARAM", "NLOAD", steps)
