@@ -2,7 +2,7 @@
 import math
 
 from .deck import Deck
-from .mesh import block, first_free, graded, half_disc, quarter_disc, rings
+from .mesh import block, first_free, graded, half_disc, quarter_disc, rings, squared
 
 
 def cylinder_on_block(n=6.0):
@@ -40,14 +40,16 @@ def cylinder_on_block(n=6.0):
     return deck
 
 
-def flat_punch(n=12, size=12.0, young=1000.0):
-    """Rigid flat punch on a block, all gaps zero."""
+def flat_punch(n=12, size=12.0, young=1000.0, element="ctria3", growth=(1.4, 1.25)):
+    """Rigid flat punch on a block, all gaps zero. `growth` of the elements beside the punch, and below it."""
     xs = [math.sin(math.pi / 2 * i / n) for i in range(n + 1)]
     xs[-1] = 1.0
-    xs += [1.0 + x for x in graded(1.0 - xs[-2], 1.4, size - 1.0)[1:]]
-    ys = [-y for y in reversed(graded(0.4 / n, 1.25, size))]
-    mesh = block(xs, ys)
-    surface = mesh.line["top"][:n + 1]
+    xs += [1.0 + x for x in graded(1.0 - xs[-2], growth[0], size - 1.0)[1:]]
+    ys = [-y for y in reversed(graded(0.4 / n, growth[1], size))]
+    mesh = (squared if element == "cquad4" else block)(xs, ys)
+    if element == "ctria6":
+        mesh = mesh.with_middles()
+    surface = [node for node in mesh.line["top"] if mesh.point[node][0] <= 1.0]
     deck = Deck("RIGID FLAT PUNCH", [
         "A rigid flat punch of half width a = 1 on an elastic block; all gaps are zero at first, so that every step of the "
         "contact search is a tie. Half of the scene, x >= 0. The punch is nodes without elements, tied by RBE2; its one free "
@@ -64,8 +66,8 @@ def flat_punch(n=12, size=12.0, young=1000.0):
     first = free + 1
     for i, node in enumerate(surface):
         deck.grid(first + i, mesh.point[node][0], 0.0)
-    deck.card("SPC1", 1, 1, first, "THRU", first + n)
-    deck.platen(10 * free, 2, range(n + 1), first)
+    deck.card("SPC1", 1, 1, first, "THRU", first + len(surface) - 1)
+    deck.platen(10 * free, 2, range(len(surface)), first)
     deck.card("SUPORT", first, 2)
     deck.card("FORCE", 1, first, 0, 100.0, 0.0, -1.0, 0.0)
     deck.upward()

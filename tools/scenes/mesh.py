@@ -12,7 +12,6 @@ class Mesh:
     def on(self, axis, value):
         return [i for i, p in enumerate(self.point) if abs(p[axis] - value) < 1e-9 * max(1.0, abs(value))]
 
-
     def side(self, a, b):
         """The element with the side from point a to point b."""
         return next(k for k, nodes in enumerate(self.element) if a in nodes and b in nodes)
@@ -34,6 +33,11 @@ class Mesh:
         line = {name: [n for a, b in zip(nodes, nodes[1:]) for n in (a, between(a, b))] + nodes[-1:]
                 for name, nodes in self.line.items()}
         return Mesh(point, element, line)
+
+
+def round_origin(a, b):
+    """For `with_middles`: sides whose ends lie equally far from the origin follow the circle round it."""
+    return on_circle((0.0, 0.0), math.hypot(*a))(a, b)
 
 
 def on_circle(centre, radius):
@@ -69,16 +73,29 @@ def without_unused(point, element, line):
                 {name: [place[i] for i in nodes if i in place] for name, nodes in line.items()})
 
 
+def cells(columns, rows):
+    """The squares of a grid whose points are numbered row by row: where each lies, and its corners."""
+    for j in range(rows - 1):
+        for i in range(columns - 1):
+            a = j * columns + i
+            yield i, j, (a, a + 1, a + columns + 1, a + columns)
+
+
 def block(xs, ys):
     """Triangulated grid; the diagonals turn over at x = 0 only: turning in every cell ripples the contact pressures."""
+    squares = squared(xs, ys)
+    triangle = []
+    for i, _, (a, b, c, d) in cells(len(xs), len(ys)):
+        triangle += [(a, b, c), (a, c, d)] if xs[i] + xs[i + 1] < 0 else [(a, b, d), (b, c, d)]
+    return Mesh(squares.point, triangle, squares.line)
+
+
+def squared(xs, ys):
+    """Grid of quadrilaterals."""
     n = len(xs)
     point = [(x, y) for y in ys for x in xs]
-    triangle = []
-    for j in range(len(ys) - 1):
-        for i in range(n - 1):
-            a, b, c, d = j * n + i, j * n + i + 1, (j + 1) * n + i + 1, (j + 1) * n + i
-            triangle += [(a, b, c), (a, c, d)] if xs[i] + xs[i + 1] < 0 else [(a, b, d), (b, c, d)]
-    return Mesh(point, triangle, {"bottom": list(range(n)), "top": list(range(len(point) - n, len(point)))})
+    return Mesh(point, [corners for _, _, corners in cells(n, len(ys))],
+                {"bottom": list(range(n)), "top": list(range(len(point) - n, len(point)))})
 
 
 def zip_rows(lower, upper, point, triangle):
@@ -134,6 +151,66 @@ def quarter_disc(radius, b, n, growth=None):
             top.append(row[-1])
         before = row
     return Mesh(point, triangle, {"arc": arc, "axis": axis, "top": top})
+
+
+def quarter_disc_squared(radius, n, core, layers):
+    """The quarter disc in quadrilaterals, standing on the origin: a core of n x n at the origin, `core` wide, and round it
+    layers of 2 n that grow evenly. Lines as in `quarter_disc`."""
+    def height(x):  # of the circle, without the rounding of radius - sqrt
+        return x * x / (radius + math.sqrt(radius * radius - x * x))
+
+    def ring(k):
+        """From the circle to x = 0: even angles about the origin; a square with blunt corners first, the top last."""
+        along = k / layers
+        first = core ** (1 - along) * (math.sqrt(2.0) * radius) ** along
+        begin = math.asin(first / (2.0 * radius))
+        row = []
+        for i in range(2 * n + 1):
+            part = i / (2 * n)
+            angle, bend = begin + (math.pi / 2 - begin) * part, math.pi / 2 * min(part, 1 - part)
+            near = core / (math.cos(bend) + 0.25 * math.sin(bend))
+            far = radius / math.sin(math.pi / 4 * (1 + part))
+            r = near ** (1 - along) * far ** along
+            row.append((r * math.cos(angle) if i < 2 * n else 0.0, r * math.sin(angle)))
+        row[0] = (first * math.sqrt(1.0 - (first / (2.0 * radius)) ** 2), first * first / (2.0 * radius))
+        return [(x, radius) for x, _ in row] if k == layers else row
+
+    row = ring(0)
+    right, top, corner = row[:n + 1], row[:n - 1:-1], row[n]
+    point = []
+    for j in range(n + 1):
+        for i in range(n + 1):
+            s, t = i / n, j / n
+            x = right[0][0] * s
+            low, left = (x, height(x)), (0.0, top[0][1] * t)
+            point.append(tuple((1 - t) * low[c] + t * top[i][c] + (1 - s) * left[c] + s * right[j][c]
+                               - s * (1 - t) * right[0][c] - t * (1 - s) * top[0][c] - s * t * corner[c] for c in (0, 1)))
+    element = [corners for _, _, corners in cells(n + 1, n + 1)]
+    before = [j * (n + 1) + n for j in range(n)] + [n * (n + 1) + i for i in range(n, -1, -1)]
+    arc, axis = list(range(n + 1)), [j * (n + 1) for j in range(n + 1)]
+    for k in range(1, layers + 1):
+        now = list(range(len(point), len(point) + 2 * n + 1))
+        point += ring(k)
+        element += [(before[i], now[i], now[i + 1], before[i + 1]) for i in range(2 * n)]
+        arc.append(now[0])
+        axis.append(now[-1])
+        before = now
+    return Mesh(point, element, {"arc": arc, "axis": axis, "top": before})
+
+
+def quarter_plane(radii):
+    """The quarter x >= 0, y <= 0 about the origin, in triangles on rings of these radii. Lines: `surface`, `axis`, `outer`."""
+    point, triangle, surface, axis, before, last = [(0.0, 0.0)], [], [0], [0], [0], 0.0
+    for r in radii:
+        parts = max(1, round(math.pi / 2 * r / (r - last)))
+        row = list(range(len(point), len(point) + parts + 1))
+        point += [(r, 0.0)] + [(r * math.cos(a), -r * math.sin(a)) for a in (math.pi / 2 * i / parts for i in range(1, parts))]
+        point.append((0.0, -r))
+        zip_rows(row, before, point, triangle)
+        surface.append(row[0])
+        axis.append(row[-1])
+        before, last = row, r
+    return Mesh(point, triangle, {"surface": surface, "axis": axis, "outer": before})
 
 
 def rings(radii, around, opening=math.pi / 2, begin=0.0):

@@ -1,29 +1,31 @@
 """Scenes that yield."""
 from .deck import Deck
 from .elastic import flat_punch
-from .mesh import Mesh, block, first_free, graded, rings, without_unused
+from .mesh import Mesh, block, cells, first_free, graded, rings, round_origin, squared, without_unused
 
 
 def grid(xs, ys):
     """Cells of two triangles, the diagonal turned in every other one."""
-    n = len(xs)
+    squares = squared(xs, ys)
     triangle = []
-    for j in range(len(ys) - 1):
-        for i in range(n - 1):
-            a, b, c, d = j * n + i, j * n + i + 1, (j + 1) * n + i + 1, (j + 1) * n + i
-            triangle += [(a, b, c), (a, c, d)] if (i + j) % 2 else [(a, b, d), (b, c, d)]
-    return Mesh([(x, y) for y in ys for x in xs], triangle, {"bottom": list(range(n)), "top": list(range(n * (len(ys) - 1), n * len(ys)))})
+    for i, j, (a, b, c, d) in cells(len(xs), len(ys)):
+        triangle += [(a, b, c), (a, c, d)] if (i + j) % 2 else [(a, b, d), (b, c, d)]
+    return Mesh(squares.point, triangle, squares.line)
 
 
-def tube(title, known, pressure, young, stress, hardening, nu=0.3, inner=100.0, outer=200.0, parts=20):
+def tube(title, known, pressure, young, stress, hardening, nu=0.3, inner=100.0, outer=200.0, parts=20,
+         element="ctria3"):
     """Thick tube under inner pressure, plane strain, one quarter."""
-    around = parts * 6 // 5
-    flat = grid([float(i) for i in range(around + 1)], [float(j) for j in range(parts + 1)])
+    around = max(2, parts * 6 // 5)
+    flat = (squared if element == "cquad4" else grid)(list(range(around + 1)), list(range(parts + 1)))
     ring = rings([inner + (outer - inner) * j / parts for j in range(parts + 1)], around)
-    mesh = Mesh(ring.point, [(a, c, b) for a, b, c in flat.element], ring.line)
+    mesh = Mesh(ring.point, [nodes[:1] + nodes[:0:-1] for nodes in flat.element], ring.line)
+    if element == "ctria6":
+        mesh = mesh.with_middles(round_origin)
+    squares = {"ctria3": "squares of two triangles", "ctria6": "squares of two six-node triangles", "cquad4": "quadrilaterals"}[element]
     deck = Deck(title, [
         f"A thick tube, radii {inner:g} and {outer:g}, inner pressure {pressure:g}, plane strain, total theory; one quarter, "
-        f"{parts} x {around} squares of two triangles. Nothing touches: no flexibility, no simplex.", known], from_geometry=False)
+        f"{parts} x {around} {squares}. Nothing touches: no flexibility, no simplex.", known], from_geometry=False)
     deck.nodes(mesh)
     deck.elements(mesh, 1)
     deck.material(1, young, nu)
@@ -34,9 +36,15 @@ def tube(title, known, pressure, young, stress, hardening, nu=0.3, inner=100.0, 
     return deck
 
 
-def tube_flat(pressure, answer, parts=20):
+def tube_flat(pressure, answer, parts=20, element="ctria3"):
     return tube("THICK TUBE, NO HARDENING", "E = 210, nu = 0.3, yield stress 0.24, flat curve. Known answer: " + answer +
-                "; first yield at 0.1037503, limit load 0.1920906.", pressure, 210.0, 0.24, 0.0, parts=parts)
+                "; first yield at 0.1037503, limit load 0.1920906.", pressure, 210.0, 0.24, 0.0, parts=parts, element=element)
+
+
+def tube_locking(nu, answer, pressure=60.0, parts=10, element="cquad4"):
+    """A tube that can hardly change its volume, elastic or plastic: elements that cannot either lock."""
+    return tube("THICK TUBE, NEARLY INCOMPRESSIBLE", f"E = 100000, nu = {nu:g}, yield stress 100, flat curve. Known answer: {answer}.",
+                pressure, 1.0e5, 100.0, 0.0, nu, 1.0, 2.0, parts, element)
 
 
 def tube_hardening(parts=20):
@@ -110,10 +118,18 @@ def cook(n=24, stress=None):
     return deck
 
 
-def punch_limit(stress, steps=1):
+def punch_limit(stress=23.0, steps=1, element="ctria3", n=12, size=12.0, growth=(1.4, 1.25)):
     """The flat punch on a block with a flat curve."""
-    deck = flat_punch(young=1.0e5)
-    if steps == 1:
+    deck = flat_punch(n, size, 1.0e5, element, growth)
+    if element != "ctria3":
+        deck.title = f"RIGID FLAT PUNCH, LIMIT LOAD, {element.upper()}"
+        deck.words = ["The rigid flat punch on a block that yields without hardening, with elements that can flow without change "
+                      "of volume. The block is deeper than 8.74 a: a shallower one, on a base without friction, would flow through to the "
+                      "base under less (Hill).", f"Yield stress {stress:g}, mean pressure 100: {100 / stress:.3f} times it. Fully plastic flow "
+                      "of a half plane begins at (2 + pi)/sqrt(3) = 2.968 times."]
+        if steps > 1:
+            deck.card("PARAM", "NLOAD", steps)
+    elif steps == 1:
         deck.title = "RIGID FLAT PUNCH NEAR THE LIMIT LOAD"
         deck.words = ["The rigid flat punch on a block that yields without hardening: near the limit load of this mesh.",
                       f"Yield stress {stress:g}, mean pressure 100: {100 / stress:.3f} times it. Fully plastic flow of a half "

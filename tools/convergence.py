@@ -1,0 +1,135 @@
+"""How fast the answers come near the known ones, for each kind of element: tables, and a picture.
+
+    tools/convergence                                  tables
+    tools/convergence -o input/hertz/pictures/convergence     and NAME.png, NAME.svg
+
+Two equal cylinders, elastic: the approach against Johnson's 2 P (1 - nu^2)/(pi E) (2 ln(4 R/b) - 1), the largest pressure
+against Hertz's. A thick tube beyond yield (p = 0.16): u(a), the mean over the inner nodes, against the one-dimensional
+integration along the radius. The decks are those of tools/scenes, run in a temporary directory; times are the shortest of
+three whole runs (one, where it takes a second), reading and writing included, and differ from machine to machine and run to run; all else does not.
+Unknowns: equations of the bodies, as `epcont --plan` counts them.
+"""
+import argparse
+import csv
+import math
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+from scenes import cylinders, plastic
+
+TOP = pathlib.Path(__file__).resolve().parent.parent
+EPCONT = TOP / "build/release/epcont"
+ELEMENTS = ("ctria3", "cquad4", "ctria6")
+
+# Two cylinders: P, R, E, nu.
+P, R, E, NU = 10.0, 1.0, 20400.0, 0.29
+B = math.sqrt(4 * P * (R / 2) * 2 * (1 - NU * NU) / (math.pi * E))
+P_MAX = 2 * P / (math.pi * B)
+APPROACH = P * (1 - NU * NU) / (math.pi * E) * (2 * math.log(4 * R / B) - 1)   # half of the cylinders'
+U_A = 0.1835687
+#: Elements across the contact; elements through the wall. Six-node triangles twice as large. No whole numbers only: where the
+#: contact ends within an element matters.
+ACROSS = {"ctria3": (3.3, 4.7, 6, 8.5, 10.5, 12.5, 14.5, 16, 24.3, 32.7, 48.5), "cquad4": (2, 3, 4, 5, 6, 7, 8, 12, 16, 24, 32, 48),
+          "ctria6": (1, 1.3, 1.7, 2, 2.5, 2.7, 3.3, 3.7, 4, 4.7, 6, 8.5, 12.3, 16.7, 24.3)}
+PARTS = {"ctria3": (5, 10, 20, 40, 80), "cquad4": (5, 10, 20, 40, 80), "ctria6": (3, 5, 10, 20, 40)}
+
+
+def solve(deck, place):
+    """Summary and nodes of a run, its unknowns, and its time."""
+    path = pathlib.Path(place) / "scene.dat"
+    path.write_text(deck.text(), encoding="ascii")
+    spent = []
+    while len(spent) < 3 and sum(spent) < 1.0:
+        start = time.perf_counter()
+        run = subprocess.run([EPCONT, path, "-o", place, "--tables", "all"], capture_output=True, text=True, check=False)
+        spent.append(time.perf_counter() - start)
+        if run.returncode:
+            sys.exit(f"{deck.title}: exit status {run.returncode}\n{run.stdout}{run.stderr}")
+    plan = subprocess.run([EPCONT, "--plan", path], capture_output=True, text=True, check=True).stdout
+    bodies = plan[plan.index("equations"):]
+    unknowns = sum(int(row.split()[2]) for row in re.findall(r"^ +\d+ +\d+ +\d+ .*$", bodies, re.MULTILINE))
+    with open(path.with_suffix(".summary.csv"), newline="", encoding="ascii") as file:
+        summary = {row["key"]: row["value"] for row in csv.DictReader(file)}
+    with open(path.with_suffix(".nodes.csv"), newline="", encoding="ascii") as file:
+        nodes = [[float(row[key]) for key in ("x", "y", "ux", "uy")] for row in csv.DictReader(file)]
+    return summary, nodes, unknowns, min(spent)
+
+
+def two_cylinders(element, across, place):
+    """Unknowns, errors of approach and largest pressure, seconds."""
+    mesh = cylinders.disc_squared(R, B, round(1.6 * across)) if element == "cquad4" else cylinders.disc_spaced(B / across, b=B, element=element)
+    summary, _, unknowns, seconds = solve(cylinders.hertz(mesh, b=B), place)
+    approach = next(float(value) for key, value in summary.items() if key.startswith("approach"))
+    return unknowns, -approach / APPROACH - 1, float(summary["max_pressure"]) / P_MAX - 1, seconds
+
+
+def tube(element, parts, place):
+    """Unknowns, error of u(a), seconds."""
+    _, nodes, unknowns, seconds = solve(plastic.tube_flat(0.16, "", parts, element), place)
+    inner = [math.hypot(ux, uy) for x, y, ux, uy in nodes if abs(math.hypot(x, y) - 100.0) < 1e-6]
+    return unknowns, sum(inner) / len(inner) / U_A - 1, seconds
+
+
+def needed(rows, error=1e-3):
+    """Unknowns from which on the error stays below, between two meshes on the line of the logarithms; None: never."""
+    beyond = [i for i, row in enumerate(rows) if abs(row[1]) > error]
+    if not beyond or beyond[-1] + 1 == len(rows):
+        return None
+    (n0, e0), (n1, e1) = rows[beyond[-1]][:2], rows[beyond[-1] + 1][:2]
+    part = math.log(error / abs(e0)) / math.log(abs(e1 / e0))
+    return round(n0 * (n1 / n0) ** part)
+
+
+def draw(contact, wall, name):
+    import matplotlib  # here, so that the tables need nothing but Python
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8,
+                         "legend.frameon": False, "svg.hashsalt": "epcont", "svg.fonttype": "path", "figure.dpi": 110})
+    figure, panels = plt.subplots(1, 3, figsize=(12.5, 4.2), layout="constrained", sharey=True)
+    styles = {"ctria3": ("#4477aa", "o"), "cquad4": ("#228833", "s"), "ctria6": ("#cc3311", "^")}
+    for axes, rows, column, title in ((panels[0], contact, 1, "two cylinders: approach"), (panels[1], contact, 2, "two cylinders: largest pressure"),
+                                      (panels[2], wall, 1, "tube beyond yield: u(a)")):
+        for element, (colour, mark) in styles.items():
+            axes.loglog([row[0] for row in rows[element]], [100 * abs(row[column]) for row in rows[element]], mark + "-", ms=4, lw=1.1,
+                        color=colour, label=element.upper())
+        axes.axhline(0.1, color="#999999", lw=0.7, dashes=(4, 3))
+        axes.set(title=title, xlabel="unknowns", ylim=(1e-3, None))
+    panels[0].set_ylabel("error, %")
+    panels[0].legend()
+    name.parent.mkdir(parents=True, exist_ok=True)
+    for kind, metadata in (("png", {"Software": None}), ("svg", {"Date": None, "Creator": None})):
+        figure.savefig(name.with_name(f"{name.name}.{kind}"), metadata=metadata, dpi=120)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", type=pathlib.Path, help="name of a picture, without .png and .svg")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as place:
+        contact = {element: [two_cylinders(element, n, place) for n in ACROSS[element]] for element in ELEMENTS}
+        wall = {element: [tube(element, n, place) for n in PARTS[element]] for element in ELEMENTS}
+    print("| two cylinders | unknowns | approach off by | p_max off by | seconds |\n| --- | --- | --- | --- | --- |")
+    for element in ELEMENTS:
+        for unknowns, approach, pressure, seconds in contact[element]:
+            print(f"| {element.upper()} | {unknowns} | {approach:+.3%} | {pressure:+.3%} | {seconds:.3f} |")
+    print("\n| tube | unknowns | u(a) off by | seconds |\n| --- | --- | --- | --- |")
+    for element in ELEMENTS:
+        for unknowns, error, seconds in wall[element]:
+            print(f"| {element.upper()} | {unknowns} | {error:+.3%} | {seconds:.3f} |")
+    print("\n| unknowns for 0.1 % | approach | tube |\n| --- | --- | --- |")
+    for element in ELEMENTS:
+        print(f"| {element.upper()} | {needed(contact[element])} | {needed(wall[element])} |")
+    if options.output:
+        draw(contact, wall, options.output)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
