@@ -14,6 +14,7 @@ module epcont_analysis
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line, find_contact_line, find_zones
   use epcont_result_line_pressure, only: compare_sides
+  use epcont_result_pressures, only: pair_pressures
   use epcont_result_stresses, only: recover_stresses
   implicit none
   private
@@ -47,7 +48,7 @@ contains
     load = run%load_factor*model%load
     call recover_stresses(model, run%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
     line = find_contact_line(model)
-    answer%pressure = merge(answer%contact%force/max(line%tributary, tiny(1.0_wp)), -1.0_wp, line%tributary > 0.0_wp)
+    answer%pressure = pair_pressures(model, line, answer%contact%touching, answer%contact%force)
     answer%zones = find_zones(model, line, answer%contact%touching, answer%contact%force, answer%pressure)
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
     call certify(model, load, plan%off_curve, answer%displacement, answer%reaction, answer%point_stress, answer%contact%force, &

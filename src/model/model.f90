@@ -64,6 +64,7 @@ module epcont_model_model
     procedure :: corners
     procedure :: edge
     procedure :: edge_coordinates
+    procedure :: has_rings
     procedure :: can_yield
     procedure :: has_flat_curve
     procedure :: opening
@@ -109,6 +110,13 @@ contains
 
     x = self%x(:, edge(:size(x, 2)))
   end function edge_coordinates
+
+  !> Are the elements rings? (All are, or none.)
+  pure logical function has_rings(self)
+    class(model_type), intent(in) :: self
+
+    has_rings = self%kinematics(self%section(1)) == axisymmetric
+  end function has_rings
 
   !> Can an element yield?
   pure function can_yield(self, element)

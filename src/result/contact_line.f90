@@ -13,12 +13,17 @@ module epcont_result_contact_line
   !> An edge belongs to the contact line where it lies within 45 degrees of the tangent.
   real(wp), parameter :: along_tangent = sqrt(0.5_wp)
 
+  !> A corner of a curved ring on the axis has no area but for rounding and curvature: less than this part of its side's.
+  real(wp), parameter :: no_area = 1.0e-3_wp
+
   !> The pairs as a line along the boundary.
   type :: contact_line
     !> Area of each pair: half of its edges, as seen along the normal, times thickness; 0: no edges. A pressure on
     !! the edges exerts along the normal what it would on that area. [pairs]
     real(wp), allocatable :: tributary(:)
     integer, allocatable :: neighbour(:, :) !! pairs at the other ends of its edges, 0: none [2, pairs]
+    real(wp), allocatable :: part(:, :)     !! of the area, towards each neighbour; of a middle node not set [2, pairs]
+    logical, allocatable :: middle(:)       !! the middle node of an edge [pairs]
     integer, allocatable :: node(:)         !! of the boundary at each pair: B, or A where B has no elements [pairs]
     logical, allocatable :: mirrored(:)     !! the pair is on a line of symmetry [pairs]
   end type contact_line
@@ -44,6 +49,8 @@ contains
     around = new_incidence(model%connectivity, model%nodes)
     allocate (line%tributary(model%pairs), source=0.0_wp)
     allocate (line%neighbour(2, model%pairs), source=0)
+    allocate (line%part(2, model%pairs), source=0.0_wp)
+    allocate (line%middle(model%pairs), source=.false.)
     allocate (line%node(model%pairs), line%mirrored(model%pairs))
     do pair = 1, model%pairs
       associate (a => model%pair_node(1, pair), b => model%pair_node(2, pair))
@@ -66,7 +73,7 @@ contains
     integer, intent(in) :: first, last
     type(contact_line), intent(inout) :: line
     integer, allocatable :: pair_at(:)
-    real(wp) :: edge(2)
+    real(wp) :: edge(2), own
     integer :: e, i, k, pair, side(3)
 
     allocate (pair_at(model%nodes), source=0)
@@ -83,8 +90,11 @@ contains
             if (.not. any(side == node) .or. shared(model, around, side(1), side(2))) cycle
             edge = model%x(:, side(2)) - model%x(:, side(1))
             if (abs(dot_product(edge, n)) > along_tangent*norm2(edge)) cycle
-            line%tributary(pair) = line%tributary(pair) + share(model, e, side, node, n)
-            call add_neighbours(side, node, pair_at, line%neighbour(:, pair))
+            own = share(model, e, side, node, n)
+            if (abs(own) <= no_area*area(model, e, side, n)) own = 0.0_wp
+            line%tributary(pair) = line%tributary(pair) + own
+            line%middle(pair) = side(3) == node
+            call add_neighbours(side, node, pair_at, own, line%neighbour(:, pair), line%part(:, pair))
           end do
         end do
       end associate
@@ -109,21 +119,36 @@ contains
     end do
   end function share
 
+  !> Area of a side, as seen along the normal [length**2].
+  pure real(wp) function area(model, element, side, n)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element, side(3)
+    real(wp), intent(in) :: n(2)
+    integer :: k
+
+    area = 0.0_wp
+    do k = 1, merge(3, 2, side(3) > 0)
+      area = area + share(model, element, side, side(k), n)
+    end do
+  end function area
+
   !> Pairs beside a node on one of its sides: at the other end, or at the middle, or from there at both ends.
-  pure subroutine add_neighbours(side, node, pair_at, neighbour)
+  pure subroutine add_neighbours(side, node, pair_at, share, neighbour, part)
     integer, intent(in) :: side(3), node, pair_at(:)
+    real(wp), intent(in) :: share   !! of the side's area
     integer, intent(inout) :: neighbour(2)
+    real(wp), intent(inout) :: part(2)
+    integer :: k
 
     if (side(3) == node) then
       neighbour = pair_at(side(:2))
       return
     end if
     associate (beside => merge(side(3), sum(side(:2)) - node, side(3) > 0))
-      if (neighbour(1) == 0) then
-        neighbour(1) = pair_at(beside)
-      else if (neighbour(2) == 0) then
-        neighbour(2) = pair_at(beside)
-      end if
+      k = findloc(neighbour, 0, dim=1)
+      if (k == 0) return
+      neighbour(k) = pair_at(beside)
+      part(k) = share
     end associate
   end subroutine add_neighbours
 
