@@ -152,7 +152,7 @@ class Problem:
                 break
         else:
             raise NoEquilibrium("secant steps do not settle: limit load")
-        residual = self.off_curve(u, found[1])
+        residual, before = self.off_curve(u, found[1]), np.inf
         for _ in range(NEWTON_STEPS):
             strain = model.strains(u)
             d = model.of_points("tangent", strain, 4, 4)
@@ -163,8 +163,10 @@ class Problem:
                 length /= 2
             u = u + length * step
             residual = self.off_curve(u, found[1])
-            if abs(step).max() <= 1e-12 * abs(u).max() or (residual < 1e-13 and abs(step).max() <= 1e-9 * abs(u).max()):
+            size = abs(step).max() / abs(u).max()
+            if size <= 1e-12 or (size <= 1e-9 and (residual < 1e-13 or size > before / 2)):
                 return found
+            before = size
         raise NoEquilibrium(f"Newton does not end: residual {residual:.1e}")
 
     def linear_answer(self):
