@@ -3,6 +3,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from deck import DeckError, at, ids, real
+from lines import pairs_of_lines
 from shapes import KINDS, side_points, strain_matrices
 from yielding import Law, bilinear
 
@@ -61,7 +62,8 @@ class Model:
         return curves
 
     def elements(self):
-        """Elements card by card; `parts` has the integration points of each kind: (which, freedoms, strain matrices)."""
+        """Elements card by card; `parts` has the integration points of each kind: (which, freedoms, strain matrices), `boundary`
+        the sides of one element by their ends: (element, side)."""
         self.element, self.property, self.kind, self.members = [], [], [], []
         self.parts, volumes, owners, points = [], [], [], 0
         for name, kind in KINDS.items():
@@ -79,10 +81,16 @@ class Model:
             b, volume = strain_matrices(kind, self.x[members], np.array([depth or 0.0 for depth, _ in sections]), mean)
             freedom = np.stack([2 * members, 2 * members + 1], axis=2).reshape(len(cards), -1)
             each = len(kind.points)
-            self.parts.append((slice(points, points + volume.size), np.repeat(freedom, each, axis=0), b.reshape(-1, *b.shape[2:])))
+            which = slice(points, points + volume.size)
+            self.parts.append((which, np.repeat(freedom, each, axis=0), b.reshape(-1, *b.shape[2:])))
             points += volume.size
             volumes.append(volume.ravel())
             owners.append(np.repeat(np.arange(first, len(self.element)), each))
+        owners_of = {}
+        for k in range(len(self.element)):
+            for side in self.sides(k):
+                owners_of.setdefault(frozenset(side[:2]), []).append((k, side))
+        self.boundary = {ends: found[0] for ends, found in owners_of.items() if len(found) == 1}
         self.volume = np.concatenate(volumes) if volumes else np.zeros(0)
         self.owner = np.concatenate(owners) if owners else np.zeros(0, int)
         of_point = np.array(self.property, int)[self.owner]
@@ -192,24 +200,29 @@ class Model:
                     self.support += [(int(card[i]), int(digit)) for digit in card[i + 1] if digit in "12"]
 
     def pairs(self):
+        """Of each pair: id, the two nodes that tables name, normal, gap, and its row of the gap matrix."""
         frames = {int(card[1]): first_axis([real(at(card, i)) for i in range(3, 12)]) for card in self.deck.of("CORD2R")}
         given = {int(card[1]): real(at(card, 2)) for card in self.deck.of("PGAP")}
-        cards = self.deck.of("CGAP")
-        self.pair = [int(card[1]) for card in cards]
-        self.ends = np.array([[self.row[int(card[3])], self.row[int(card[4])]] for card in cards]).reshape(-1, 2)
-        self.normal = np.zeros((len(cards), 2))
-        self.initial = np.zeros(len(cards))
-        for k, card in enumerate(cards):
-            a, b = self.ends[k]
+        found = []
+        for card in self.deck.of("CGAP"):
+            a, b = self.row[int(card[3])], self.row[int(card[4])]
             along = self.x[b] - self.x[a]
-            self.normal[k] = frames[int(card[8])] if at(card, 8) else along / np.linalg.norm(along)
-            self.initial[k] = given[int(card[2] or card[1])]
-            if self.parameter.get("GAPGEOM") == "YES":
-                self.initial[k] += along @ self.normal[k]
-        rows = np.repeat(np.arange(len(cards)), 4)
-        columns = np.array([[2 * a, 2 * a + 1, 2 * b, 2 * b + 1] for a, b in self.ends]).ravel()
-        values = np.hstack([-self.normal, self.normal]).ravel()
-        self.gap_matrix = sp.csr_matrix((values, (rows, columns.astype(int))), shape=(len(cards), 2 * len(self.node)))
+            n = frames[int(card[8])] if at(card, 8) else along / np.linalg.norm(along)
+            gap = given[int(card[2] or card[1])] + (along @ n if self.parameter.get("GAPGEOM") == "YES" else 0.0)
+            found.append((int(card[1]), (a, b), n, gap, {a: -1.0, b: 1.0}))
+        for slave, rows, values, n, gap in pairs_of_lines(self):
+            weights = {slave: 1.0}
+            for row, value in zip(rows, values):
+                weights[row] = weights.get(row, 0.0) - value
+            found.append((self.node[slave], (rows[int(np.argmax(values))], slave), n, gap, weights))
+        self.pair = [pair[0] for pair in found]
+        self.ends = [pair[1] for pair in found]
+        self.normal = np.array([pair[2] for pair in found]).reshape(-1, 2)
+        self.initial = np.array([pair[3] for pair in found])
+        entries = [(k, 2 * row + c, weight * n[c]) for k, (_, _, n, _, weights) in enumerate(found)
+                   for row, weight in weights.items() for c in (0, 1)]
+        rows, columns, values = np.array(entries).reshape(-1, 3).T
+        self.gap_matrix = sp.csr_matrix((values, (rows.astype(int), columns.astype(int))), shape=(len(found), 2 * len(self.node)))
 
     def load(self):
         self.force = np.zeros(2 * len(self.node))

@@ -204,25 +204,22 @@ def product(matrix, z):
 
 def tributary(model):
     """What a uniform pressure on the boundary sides along the tangent (chord within 45 degrees) gives to each pair's node along
-    the normal, over that pressure."""
-    owners = {}
-    for k in range(len(model.element)):
-        for side in model.sides(k):
-            owners.setdefault(frozenset(side[:2]), []).append((k, side))
+    the normal, over that pressure; nothing, say, at the end of a quadratic side on the axis of rings."""
     around = {}
-    for found in owners.values():
-        if len(found) == 1:
-            for i, node in enumerate(found[0][1]):
-                around.setdefault(node, []).append((i, *found[0]))
-    share = np.zeros(len(model.pair))
+    for k, side in model.boundary.values():
+        for i, node in enumerate(side):
+            around.setdefault(node, []).append((i, k, side))
+    share, size = np.zeros(len(model.pair)), np.full(len(model.pair), 1e-300)
     for p, (a, b) in enumerate(model.ends):
         n = model.normal[p]
         for i, k, side in around.get(b if b in around else a, []):
             x = model.x[side]
             if abs((x[1] - x[0]) @ n) <= np.sqrt(0.5) * np.linalg.norm(x[1] - x[0]):
-                share[p] += sum(values[i] * model.depth(k, place) * abs(tangent[0] * n[1] - tangent[1] * n[0])
-                                for values, place, tangent, _ in side_points(x))
-    return share
+                parts = [values[i] * model.depth(k, place) * abs(tangent[0] * n[1] - tangent[1] * n[0])
+                         for values, place, tangent, _ in side_points(x)]
+                share[p] += sum(parts)
+                size[p] += sum(abs(part) for part in parts)
+    return np.where(share > 1e-10 * size, share, 0.0)
 
 
 def tables(problem, v, force, gap, touching):
