@@ -1,7 +1,7 @@
 """Contact between boundary lines: which place of the master line each slave node faces, from roots of polynomials.
 
-A side is a polynomial p(s), 0 <= s <= 1, with a polynomial normal n(s) along which slave nodes are seen; feet of a node x are the
-real roots of (x - p) x n. Above a straight side the smooth curve through its ends is a cubic that has their slopes.
+A side is a polynomial p(s), 0 <= s <= 1, with a polynomial normal n(s) along which slave nodes are seen; feet of a node x are
+the real roots of (x - p) x n. Above a straight side the smooth curve through its ends is a cubic that has their slopes.
 """
 from dataclasses import dataclass, field
 

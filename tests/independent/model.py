@@ -4,7 +4,7 @@ import scipy.sparse as sp
 
 from deck import DeckError, at, ids, real
 from lines import pairs_of_lines
-from shapes import KINDS, side_points, strain_matrices
+from shapes import KINDS, folded, side_points, strain_matrices
 from yielding import Law, bilinear
 
 
@@ -72,6 +72,8 @@ class Model:
                 continue
             count, first = len(kind.nodes), len(self.element)
             members = np.array([[self.row[int(g)] for g in card[3:3 + count]] for card in cards])
+            if folded(kind, self.x[members]).any():
+                raise DeckError("an element folds over")
             self.element += [int(card[1]) for card in cards]
             self.property += [int(card[2] or card[1]) for card in cards]
             self.kind += [kind] * len(cards)
@@ -222,7 +224,8 @@ class Model:
         entries = [(k, 2 * row + c, weight * n[c]) for k, (_, _, n, _, weights) in enumerate(found)
                    for row, weight in weights.items() for c in (0, 1)]
         rows, columns, values = np.array(entries).reshape(-1, 3).T
-        self.gap_matrix = sp.csr_matrix((values, (rows.astype(int), columns.astype(int))), shape=(len(found), 2 * len(self.node)))
+        places, shape = (rows.astype(int), columns.astype(int)), (len(found), 2 * len(self.node))
+        self.gap_matrix = sp.csr_matrix((values, places), shape=shape)
 
     def load(self):
         self.force = np.zeros(2 * len(self.node))

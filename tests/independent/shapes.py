@@ -57,6 +57,14 @@ KINDS = {
 }
 
 
+def folded(kind, x):
+    """Whether an element turns over at some corner: x [element, node, 2]."""
+    inverse = np.linalg.inv(kind.monomials(kind.nodes))
+    slope = np.stack([kind.monomials(kind.nodes, c) @ inverse for c in (0, 1)], axis=1)[kind.corners()]
+    sense = np.sign(np.linalg.det(np.einsum("pcn,enj->epcj", slope, x)))
+    return np.any(sense != sense[:, :1], axis=1)
+
+
 def strain_matrices(kind, x, thickness, mean_dilatation):
     """Strains xx yy zz xy of nodal displacements [element, point, 4, 2 nodes] and volumes [element, point].
 

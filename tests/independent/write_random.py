@@ -66,14 +66,14 @@ class Scene:
         return at
 
     def mesh(self, xs, ys, section, corners, middles, place):
-        """Elements of 3 or 4 corners, with middles or without, turning either way, the inner nodes out of line. Nodes by (column,
-        row), where middles lie at halves; `place` moves the whole."""
+        """Elements of 3 or 4 corners, with middles or without, turning either way, the inner nodes out of line. Nodes by
+        (column, row), where middles lie at halves; `place` moves the whole."""
         at, spot, rng = {}, {}, self.rng
 
         def node(i, j, ends=()):
             if (i, j) not in at:
                 inside = 0 < i < len(xs) - 1 and 0 < j < len(ys) - 1
-                reach = (0.05 if ends else 0.15) * inside
+                reach = (0.03 if ends else 0.15) * inside
                 middle = [sum(spot[end][c] for end in ends) / 2 for c in (0, 1)] if ends else (xs[i], ys[j])
                 spot[i, j] = tuple(middle[c] + rng.uniform(-reach, reach) * (v[1] - v[0]) for c, v in ((0, xs), (1, ys)))
                 self.nodes += 1
