@@ -49,16 +49,16 @@ class Segment:
         self.rise = Polynomial(hermite)
 
     def feet(self, x):
-        """(s, shape values, unit normal, gap) of each place that x faces."""
+        """(whether beyond the end, shape values, unit normal, gap) of each place that x faces."""
         off = [x[c] - self.path[c] for c in range(2)]
         for root in (off[0] * self.seen[1] - off[1] * self.seen[0]).roots():
             if abs(root.imag) > 1e-9:
                 continue
-            s, end = float(root.real), int(root.real > 0.5)
+            s, end, beyond = float(root.real), int(root.real > 0.5), False
             if not -OUTSIDE <= s <= 1 + OUTSIDE:
                 if len(self.nodes) < 3 or self.smooth[end] is None or not -BESIDE <= s <= 1 + BESIDE:
                     continue
-                s, normal = float(end), self.smooth[end]
+                s, normal, beyond = float(end), self.smooth[end], True
             else:
                 s = min(max(s, 0.0), 1.0)
                 node = self.places[np.argmin(abs(self.places - s))]
@@ -66,7 +66,7 @@ class Segment:
                 normal = np.array([n(s) for n in self.seen])
                 normal = normal / np.hypot(*normal)
             place = np.array([p(s) for p in self.path])
-            yield s, np.array([n(s) for n in self.shape]), normal, float(normal @ (x - place) - self.rise(s))
+            yield beyond, np.array([n(s) for n in self.shape]), normal, float(normal @ (x - place) - self.rise(s))
 
 
 class Line:
@@ -137,7 +137,9 @@ class Line:
 
 
 def pairs_of_lines(model):
-    """(slave row, rows of the master side, shape values, normal, gap) of all BCONP."""
+    """(slave row, rows of the master side, shape values, normal, gap) of all BCONP.
+
+    A foot beyond the end of a side counts only where no side has one of its own: at the end the force would be off its line."""
     lines = {int(card[1]): Line(model, [model.row[g] for g in ids(card[2:])]) for card in model.deck.of("BLSEG")}
     found = []
     for card in model.deck.of("BCONP"):
@@ -145,11 +147,11 @@ def pairs_of_lines(model):
         reach = real(model.parameter.get("SEARCH", ""), 2 * max(s.chord for s in slave.segments + master.segments))
         count = len(found)
         for row, outward in slave.nodes().items():
-            faced = [(abs(gap), i, row, segment.nodes, values, normal, gap) for i, segment in enumerate(master.segments)
-                     for _, values, normal, gap in segment.feet(model.x[row])
+            faced = [(beyond, abs(gap), i, row, segment.nodes, values, normal, gap) for i, segment in enumerate(master.segments)
+                     for beyond, values, normal, gap in segment.feet(model.x[row])
                      if abs(gap) <= reach and any(normal @ n < 0 for n in outward)]
             if faced:
-                found.append(min(faced, key=lambda f: f[:2])[2:])
+                found.append(min(faced, key=lambda f: f[:3])[3:])
         if len(found) == count:
             raise DeckError(f"BCONP {at(card, 1)} pairs nothing")
     return found
