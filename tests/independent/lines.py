@@ -2,6 +2,9 @@
 
 A side is a polynomial p(s), 0 <= s <= 1, with a polynomial normal n(s) along which slave nodes are seen; feet of a node x are
 the real roots of (x - p) x n. Above a straight side the smooth curve through its ends is a cubic that has their slopes.
+
+The master line's displacement is fitted on each slave side by the slave's shape functions, least squares; a slave node's gap is
+against the fits of its sides, averaged as their lengths (in rings areas) that belong to the node.
 """
 from dataclasses import dataclass, field
 
@@ -9,9 +12,10 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from deck import DeckError, at, ids, real
+from shapes import GAUSS
 
 BEND, ALONG = np.cos(np.radians(30.0)), 0.5
-OUTSIDE, AT_NODE, BESIDE = 1e-6, 1e-9, 0.05
+OUTSIDE, AT_NODE, BESIDE, EQUAL = 1e-6, 1e-9, 0.05, 1e-9
 
 
 @dataclass
@@ -48,25 +52,41 @@ class Segment:
         hermite = np.linalg.solve([[1, 0, 0, 0], [1, 1, 1, 1], [0, 1, 0, 0], [0, 1, 2, 3]], [0, 0, *slopes])
         self.rise = Polynomial(hermite)
 
+    def roots(self, x):
+        """The places s, on the side or beyond, whose normals lead to x."""
+        off = [x[c] - self.path[c] for c in range(2)]
+        found = (off[0] * self.seen[1] - off[1] * self.seen[0]).roots()
+        return [float(root.real) for root in found if abs(root.imag) <= 1e-9]
+
     def feet(self, x):
         """(whether beyond the end, shape values, unit normal, gap) of each place that x faces."""
-        off = [x[c] - self.path[c] for c in range(2)]
-        for root in (off[0] * self.seen[1] - off[1] * self.seen[0]).roots():
-            if abs(root.imag) > 1e-9:
+        for s in self.roots(x):
+            end, beyond = int(s > 0.5), not -OUTSIDE <= s <= 1 + OUTSIDE
+            if beyond and (len(self.nodes) < 3 or self.smooth[end] is None or not -BESIDE <= s <= 1 + BESIDE):
                 continue
-            s, end, beyond = float(root.real), int(root.real > 0.5), False
-            if not -OUTSIDE <= s <= 1 + OUTSIDE:
-                if len(self.nodes) < 3 or self.smooth[end] is None or not -BESIDE <= s <= 1 + BESIDE:
-                    continue
-                s, normal, beyond = float(end), self.smooth[end], True
-            else:
-                s = min(max(s, 0.0), 1.0)
-                node = self.places[np.argmin(abs(self.places - s))]
-                s = node if abs(s - node) <= AT_NODE else s
-                normal = np.array([n(s) for n in self.seen])
-                normal = normal / np.hypot(*normal)
+            s = min(max(s, 0.0), 1.0)
+            node = self.places[np.argmin(abs(self.places - s))]
+            s = node if abs(s - node) <= AT_NODE else s
+            normal = self.smooth[end] if beyond else np.array([n(s) for n in self.seen])
+            normal = normal / np.hypot(*normal)
             place = np.array([p(s) for p in self.path])
-            yield beyond, np.array([n(s) for n in self.shape]), normal, float(normal @ (x - place) - self.rise(s))
+            yield beyond, self.values(s), normal, float(normal @ (x - place) - self.rise(s))
+
+    def values(self, s):
+        return np.array([n(s) for n in self.shape])
+
+    def near(self, x, reach):
+        return np.all(abs(x - (self.x[0] + self.x[-1]) / 2) <= reach + self.chord)
+
+    def points(self, cuts, ring):
+        """Of three Gauss points between neighbouring cuts: shape values, place on the smooth curve, outward normal, weight."""
+        cuts = sorted({0.0, 1.0, *(s for s in cuts if 0 <= s <= 1)})
+        for low, high in zip(cuts, cuts[1:]):
+            for t, part in zip(*GAUSS):
+                s = low + t * (high - low)
+                on_side = np.array([p(s) for p in self.path])
+                length = np.hypot(*(p.deriv()(s) for p in self.path)) * part * (high - low)
+                yield self.values(s), on_side + self.rise(s) * self.across, self.own(s), length * (on_side[0] if ring else 1.0)
 
 
 class Line:
@@ -127,31 +147,63 @@ class Line:
                     segment.normal[end] = 2 * (other @ across) * across - other if mirror else segment.own(float(end))
 
     def nodes(self):
-        """Rows of the nodes with their outward normals: one, or those of both sides of a corner."""
+        """Rows of the nodes with their outward normals, at a corner between those of its sides."""
         found = {}
         for segment in self.segments:
             for row, s in zip(segment.nodes, segment.places):
                 end = {0.0: 0, 1.0: 1}.get(s)
-                found.setdefault(row, []).append(segment.own(s) if end is None else segment.normal[end])
+                found[row] = found.get(row, 0.0) + (segment.own(s) if end is None else segment.normal[end])
         return found
+
+    def face(self, x, outward, reach, but=None):
+        """(rows of a side, shape values, normal, gap) where a place faces this line, or None: the nearest; of equally near ones
+        that which looks most against it. Beyond the end of a side counts only where no side is faced: there the force would
+        lie beside the node that it pushes."""
+        found = [(beyond, abs(gap), normal @ outward, segment.nodes, values, normal, gap) for segment in self.segments
+                 if but not in segment.nodes and segment.near(x, reach)
+                 for beyond, values, normal, gap in segment.feet(x) if abs(gap) <= reach and normal @ outward < 0]
+        if not found:
+            return None
+        least = min(found, key=lambda f: f[:2])
+        equal = [f for f in found if f[0] == least[0] and f[1] <= least[1] + EQUAL * reach]
+        return min(equal, key=lambda f: f[2])[3:]
+
+
+def averages(model, slave, master, faced, reach):
+    """Of each slave row that faces the master line: by master rows the weights whose sum is 1."""
+    ring, share, size = model.kind[0].ring, {row: {} for row in faced}, dict.fromkeys(faced, 0.0)
+    ends = [segment.x[end] for segment in master.segments for end in (0, -1)]
+    for segment in slave.segments:
+        points = list(segment.points([s for x in ends if segment.near(x, reach) for s in segment.roots(x)], ring))
+        values, weight = np.array([p[0] for p in points]), np.array([p[3] for p in points])
+        seen = [master.face(place, outward, reach) for _, place, outward, _ in points]
+        if None in seen or any(row not in faced for row in segment.nodes):
+            fits = {row: zip(*faced[row][:2]) for row in segment.nodes if row in faced}
+        else:
+            columns = sorted({row for side in seen for row in side[0]})
+            other = np.array([[dict(zip(side[0], side[1])).get(row, 0.0) for row in columns] for side in seen])
+            root = np.sqrt(weight)[:, None]
+            fit = np.linalg.lstsq(root * values, root * other, rcond=None)[0]
+            fits = {row: zip(columns, line) for row, line in zip(segment.nodes, fit)}
+        for row, area in zip(segment.nodes, weight @ values):
+            for column, value in fits.get(row, ()):
+                share[row][column] = share[row].get(column, 0.0) + area * value
+            if row in faced:
+                size[row] += area
+    return {row: {column: value / size[row] for column, value in found.items()} for row, found in share.items()}
 
 
 def pairs_of_lines(model):
-    """(slave row, rows of the master side, shape values, normal, gap) of all BCONP.
-
-    A foot beyond the end of a side counts only where no side has one of its own: at the end the force would be off its line."""
+    """(slave row, {master row: weight}, normal, gap) of all BCONP."""
     lines = {int(card[1]): Line(model, [model.row[g] for g in ids(card[2:])]) for card in model.deck.of("BLSEG")}
     found = []
     for card in model.deck.of("BCONP"):
         slave, master = lines[int(card[2])], lines[int(card[3])]
         reach = real(model.parameter.get("SEARCH", ""), 2 * max(s.chord for s in slave.segments + master.segments))
-        count = len(found)
-        for row, outward in slave.nodes().items():
-            faced = [(beyond, abs(gap), i, row, segment.nodes, values, normal, gap) for i, segment in enumerate(master.segments)
-                     for beyond, values, normal, gap in segment.feet(model.x[row])
-                     if abs(gap) <= reach and any(normal @ n < 0 for n in outward)]
-            if faced:
-                found.append(min(faced, key=lambda f: f[:3])[3:])
-        if len(found) == count:
+        faced = {row: master.face(model.x[row], outward, reach, row) for row, outward in slave.nodes().items()}
+        faced = {row: face for row, face in faced.items() if face}
+        if not faced:
             raise DeckError(f"BCONP {at(card, 1)} pairs nothing")
+        weights = averages(model, slave, master, faced, reach)
+        found += [(row, weights[row], face[2], face[3]) for row, face in faced.items()]
     return found

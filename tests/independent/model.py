@@ -212,11 +212,9 @@ class Model:
             n = frames[int(card[8])] if at(card, 8) else along / np.linalg.norm(along)
             gap = given[int(card[2] or card[1])] + (along @ n if self.parameter.get("GAPGEOM") == "YES" else 0.0)
             found.append((int(card[1]), (a, b), n, gap, {a: -1.0, b: 1.0}))
-        for slave, rows, values, n, gap in pairs_of_lines(self):
-            weights = {slave: 1.0}
-            for row, value in zip(rows, values):
-                weights[row] = weights.get(row, 0.0) - value
-            found.append((self.node[slave], (rows[int(np.argmax(values))], slave), n, gap, weights))
+        for slave, shares, n, gap in pairs_of_lines(self):
+            weights = {slave: 1.0, **{row: -share for row, share in shares.items()}}
+            found.append((self.node[slave], (max(shares, key=shares.get), slave), n, gap, weights))
         self.pair = [pair[0] for pair in found]
         self.ends = [pair[1] for pair in found]
         self.normal = np.array([pair[2] for pair in found]).reshape(-1, 2)
