@@ -15,7 +15,7 @@ from deck import DeckError, at, ids, real
 from shapes import GAUSS
 
 BEND, ALONG = np.cos(np.radians(30.0)), 0.5
-OUTSIDE, AT_NODE, BESIDE, EQUAL = 1e-6, 1e-9, 0.05, 1e-9
+OUTSIDE, AT_NODE, BESIDE, EQUAL, ROUNDING = 1e-6, 1e-9, 0.05, 1e-9, 1e-12
 
 
 @dataclass
@@ -82,6 +82,8 @@ class Segment:
         """Of three Gauss points between neighbouring cuts: shape values, place on the smooth curve, outward normal, weight."""
         cuts = sorted({0.0, 1.0, *(s for s in cuts if 0 <= s <= 1)})
         for low, high in zip(cuts, cuts[1:]):
+            if high - low <= ROUNDING:
+                continue
             for t, part in zip(*GAUSS):
                 s = low + t * (high - low)
                 on_side = np.array([p(s) for p in self.path])
@@ -171,7 +173,7 @@ class Line:
 
 def averages(model, slave, master, faced, reach):
     """Of each slave row that faces the master line: by master rows the weights whose sum is 1."""
-    ring, share, size = model.kind[0].ring, {row: {} for row in faced}, dict.fromkeys(faced, 0.0)
+    ring, share = model.kind[0].ring, {row: [] for row in faced}
     ends = [segment.x[end] for segment in master.segments for end in (0, -1)]
     for segment in slave.segments:
         points = list(segment.points([s for x in ends if segment.near(x, reach) for s in segment.roots(x)], ring))
@@ -186,11 +188,20 @@ def averages(model, slave, master, faced, reach):
             fit = np.linalg.lstsq(root * values, root * other, rcond=None)[0]
             fits = {row: zip(columns, line) for row, line in zip(segment.nodes, fit)}
         for row, area in zip(segment.nodes, weight @ values):
-            for column, value in fits.get(row, ()):
-                share[row][column] = share[row].get(column, 0.0) + area * value
             if row in faced:
-                size[row] += area
-    return {row: {column: value / size[row] for column, value in found.items()} for row, found in share.items()}
+                share[row].append((area if area > ROUNDING * weight.sum() else 0.0, dict(fits[row])))
+    return {row: mean(found) for row, found in share.items()}
+
+
+def mean(found):
+    """Of [(area, values by name)]; where there is no area, at the axis of rings, of equals."""
+    if not any(area for area, _ in found):
+        found = [(1.0, values) for _, values in found]
+    total = {}
+    for area, values in found:
+        for name, value in values.items():
+            total[name] = total.get(name, 0.0) + area * value / sum(area for area, _ in found)
+    return total
 
 
 def pairs_of_lines(model):
