@@ -6,8 +6,8 @@ import pathlib
 import re
 from dataclasses import dataclass, field
 
-KNOWN = {"GRID", "CTRIA3", "PSHELL", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1", "RBE2", "SUPORT", "CORD2R", "CGAP",
-         "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1"}
+KNOWN = {"GRID", "CTRIA3", "CTRIA6", "CQUAD4", "CTRAX3", "CTRAX6", "PSHELL", "PSOLID", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1",
+         "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP"}
 
 
 class DeckError(Exception):
@@ -92,13 +92,17 @@ def integer(text, default=0):
 
 
 def ids(items):
-    """An open list of ids with THRU."""
+    """An open list of ids with THRU, which may fall, and BY."""
     items = [item for item in items if item]
     found, i = [], 0
     while i < len(items):
         if i + 2 < len(items) and items[i + 1] == "THRU":
-            found += range(int(items[i]), int(items[i + 2]) + 1)
+            first, last, step = int(items[i]), int(items[i + 2]), 1
             i += 3
+            if i + 1 < len(items) and items[i] == "BY":
+                step = abs(int(items[i + 1]))
+                i += 2
+            found += range(first, last + 1, step) if last >= first else range(first, last - 1, -step)
         else:
             found.append(int(items[i]))
             i += 1

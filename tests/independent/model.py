@@ -2,7 +2,9 @@
 import numpy as np
 import scipy.sparse as sp
 
-from deck import DeckError, at, ids, integer, real
+from deck import DeckError, at, ids, real
+from lines import pairs_of_lines
+from shapes import KINDS, folded, side_points, strain_matrices
 from yielding import Law, bilinear
 
 
@@ -11,7 +13,7 @@ class Model:
         self.deck = deck
         self.nodes()
         self.materials()
-        self.triangles()
+        self.elements()
         self.freedoms()
         self.pairs()
         self.load()
@@ -38,7 +40,9 @@ class Model:
             if not strain and self.parameter.get("PLANE") != "STRESS":
                 raise DeckError("neither plane strain nor plane stress")
             e, nu = matrices[int(card[2])]
-            self.section[int(card[1])] = (real(card[3]), Law(e, nu, strain, curves.get(int(card[2])), paper))
+            self.section[int(card[1])] = (real(card[3]), Law(e, nu, not strain, curves.get(int(card[2])), paper))
+        for card in self.deck.of("PSOLID"):
+            self.section[int(card[1])] = (None, Law(*matrices[int(card[2])], False, curves.get(int(card[2]))))
 
     def curves(self, matrices):
         """Uniaxial curves by the ids of their MAT1; a table's yield strain is its yield stress over E."""
@@ -57,30 +61,45 @@ class Model:
                 curves[int(card[1])] = bilinear(young, real(card[7]), real(at(card, 4)))
         return curves
 
-    def triangles(self):
-        cards = self.deck.of("CTRIA3")
-        self.element = [int(card[1]) for card in cards]
-        self.property = [int(card[2] or card[1]) for card in cards]
-        self.corner = np.array([[self.row[int(g)] for g in card[3:6]] for card in cards]).reshape(-1, 3)
-        p = self.x[self.corner]
-        twice = (p[:, 1, 0] - p[:, 0, 0]) * (p[:, 2, 1] - p[:, 0, 1]) - (p[:, 2, 0] - p[:, 0, 0]) * (p[:, 1, 1] - p[:, 0, 1])
-        turned = twice < 0
-        self.corner[turned] = self.corner[turned][:, ::-1]
-        self.area = abs(twice) / 2
+    def elements(self):
+        """Elements card by card; `parts` has the integration points of each kind: (which, freedoms, strain matrices), `boundary`
+        the sides of one element by their ends: (element, side)."""
+        self.element, self.property, self.kind, self.members = [], [], [], []
+        self.parts, volumes, owners, points = [], [], [], 0
+        for name, kind in KINDS.items():
+            cards = self.deck.of(name)
+            if not cards:
+                continue
+            count, first = len(kind.nodes), len(self.element)
+            members = np.array([[self.row[int(g)] for g in card[3:3 + count]] for card in cards])
+            if folded(kind, self.x[members]).any():
+                raise DeckError("an element folds over")
+            self.element += [int(card[1]) for card in cards]
+            self.property += [int(card[2] or card[1]) for card in cards]
+            self.kind += [kind] * len(cards)
+            self.members += list(members)
+            sections = [self.section[p] for p in self.property[first:]]
+            mean = np.array([name == "CQUAD4" and not law.plane_stress for _, law in sections])
+            b, volume = strain_matrices(kind, self.x[members], np.array([depth or 0.0 for depth, _ in sections]), mean)
+            freedom = np.stack([2 * members, 2 * members + 1], axis=2).reshape(len(cards), -1)
+            each = len(kind.points)
+            which = slice(points, points + volume.size)
+            self.parts.append((which, np.repeat(freedom, each, axis=0), b.reshape(-1, *b.shape[2:])))
+            points += volume.size
+            volumes.append(volume.ravel())
+            owners.append(np.repeat(np.arange(first, len(self.element)), each))
+        owners_of = {}
+        for k in range(len(self.element)):
+            for side in self.sides(k):
+                owners_of.setdefault(frozenset(side[:2]), []).append((k, side))
+        self.boundary = {ends: found[0] for ends, found in owners_of.items() if len(found) == 1}
+        self.volume = np.concatenate(volumes) if volumes else np.zeros(0)
+        self.owner = np.concatenate(owners) if owners else np.zeros(0, int)
+        of_point = np.array(self.property, int)[self.owner]
+        self.groups = [(law, np.flatnonzero(of_point == q)) for q, (_, law) in self.section.items()]
 
-        self.strain_matrix = np.zeros((len(self.element), 3, 6))
-        x, y = self.x[self.corner, 0], self.x[self.corner, 1]
-        for i in range(3):
-            j, m = (i + 1) % 3, (i + 2) % 3
-            slope_x, slope_y = (y[:, j] - y[:, m]) / (2 * self.area), (x[:, m] - x[:, j]) / (2 * self.area)
-            self.strain_matrix[:, 0, 2 * i] = self.strain_matrix[:, 2, 2 * i + 1] = slope_x
-            self.strain_matrix[:, 1, 2 * i + 1] = self.strain_matrix[:, 2, 2 * i] = slope_y
-        self.volume = self.area * np.array([self.section[p][0] for p in self.property])
-        self.freedom = np.stack([2 * self.corner, 2 * self.corner + 1], axis=2).reshape(-1, 6)
-        self.groups = [(law, np.flatnonzero([p == q for p in self.property])) for q, (_, law) in self.section.items()]
-
-    def of_elements(self, name, strain, *shape):
-        """What the law of each element's section says of its strain."""
+    def of_points(self, name, strain, *shape):
+        """What the law of each point's section says of its strain."""
         values = np.zeros((len(strain),) + shape)
         for law, members in self.groups:
             if len(members):
@@ -88,7 +107,7 @@ class Model:
         return values
 
     def respond(self, strain):
-        """Stress [n, 4], equivalent strain, secant modulus and state of all elements."""
+        """Stress [n, 4], equivalent strain, secant modulus and state of all points."""
         stress, total, secant = np.zeros((len(strain), 4)), np.zeros(len(strain)), np.zeros(len(strain))
         plastic = np.zeros(len(strain), bool)
         for law, members in self.groups:
@@ -97,20 +116,41 @@ class Model:
         return stress, total, secant, plastic
 
     def strains(self, u):
-        return np.einsum("eij,ej->ei", self.strain_matrix, u[self.freedom])
+        """Strains xx yy zz xy of all points."""
+        strain = np.zeros((len(self.volume), 4))
+        for which, freedom, b in self.parts:
+            strain[which] = np.einsum("eij,ej->ei", b, u[freedom])
+        return strain
 
-    def nodal(self, stress):
-        """Nodal forces that hold stresses xx yy xy."""
+    def mean(self, values):
+        """Of each element, over the volumes of its points."""
+        whole = np.bincount(self.owner, self.volume, len(self.element))
+        return np.bincount(self.owner, self.volume * values, len(self.element)) / whole
+
+    def nodal(self, stress, size=lambda force: force):
+        """Nodal forces that hold stresses xx yy zz xy; or of all that is summed the size."""
         force = np.zeros(2 * len(self.node))
-        np.add.at(force, self.freedom, np.einsum("e,eij,ei->ej", self.volume, self.strain_matrix, stress))
+        for which, freedom, b in self.parts:
+            np.add.at(force, freedom, size(np.einsum("e,eij,ei->ej", self.volume[which], b, stress[which])))
         return force
 
     def stiffness(self, d):
-        """Of material matrices [n, 3, 3]."""
+        """Of material matrices [n, 4, 4]."""
         n = 2 * len(self.node)
-        values = np.einsum("e,eki,ekl,elj->eij", self.volume, self.strain_matrix, d, self.strain_matrix)
-        rows, columns = np.repeat(self.freedom, 6, axis=1), np.tile(self.freedom, (1, 6))
-        return sp.csr_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=(n, n))
+        total = sp.csr_matrix((n, n))
+        for which, freedom, b in self.parts:
+            values = b.transpose(0, 2, 1) @ (self.volume[which, None, None] * (d[which] @ b))
+            rows, columns = np.repeat(freedom, freedom.shape[1], axis=1), np.tile(freedom, (1, freedom.shape[1]))
+            total = total + sp.csr_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=(n, n))
+        return total
+
+    def sides(self, k):
+        """Rows of the nodes of the sides of element k: ends, and the middle where there is one."""
+        return [[int(self.members[k][i]) for i in side] for side in self.kind[k].sides]
+
+    def depth(self, k, x):
+        """Of element k at a place: its thickness, or the circumference of a ring."""
+        return 2 * np.pi * x[0] if self.kind[k].ring else self.section[self.property[k]][0]
 
     def chosen(self, kind, cards):
         sets = {int(card[1]) for card in cards}
@@ -162,24 +202,28 @@ class Model:
                     self.support += [(int(card[i]), int(digit)) for digit in card[i + 1] if digit in "12"]
 
     def pairs(self):
+        """Of each pair: id, the two nodes that tables name, normal, gap, and its row of the gap matrix."""
         frames = {int(card[1]): first_axis([real(at(card, i)) for i in range(3, 12)]) for card in self.deck.of("CORD2R")}
         given = {int(card[1]): real(at(card, 2)) for card in self.deck.of("PGAP")}
-        cards = self.deck.of("CGAP")
-        self.pair = [int(card[1]) for card in cards]
-        self.ends = np.array([[self.row[int(card[3])], self.row[int(card[4])]] for card in cards]).reshape(-1, 2)
-        self.normal = np.zeros((len(cards), 2))
-        self.initial = np.zeros(len(cards))
-        for k, card in enumerate(cards):
-            a, b = self.ends[k]
+        found = []
+        for card in self.deck.of("CGAP"):
+            a, b = self.row[int(card[3])], self.row[int(card[4])]
             along = self.x[b] - self.x[a]
-            self.normal[k] = frames[int(card[8])] if at(card, 8) else along / np.linalg.norm(along)
-            self.initial[k] = given[int(card[2] or card[1])]
-            if self.parameter.get("GAPGEOM") == "YES":
-                self.initial[k] += along @ self.normal[k]
-        rows = np.repeat(np.arange(len(cards)), 4)
-        columns = np.array([[2 * a, 2 * a + 1, 2 * b, 2 * b + 1] for a, b in self.ends]).ravel()
-        values = np.hstack([-self.normal, self.normal]).ravel()
-        self.gap_matrix = sp.csr_matrix((values, (rows, columns.astype(int))), shape=(len(cards), 2 * len(self.node)))
+            n = frames[int(card[8])] if at(card, 8) else along / np.linalg.norm(along)
+            gap = given[int(card[2] or card[1])] + (along @ n if self.parameter.get("GAPGEOM") == "YES" else 0.0)
+            found.append((int(card[1]), (a, b), n, gap, {a: -1.0, b: 1.0}))
+        for slave, shares, n, gap in pairs_of_lines(self):
+            weights = {slave: 1.0, **{row: -share for row, share in shares.items()}}
+            found.append((self.node[slave], (max(shares, key=shares.get), slave), n, gap, weights))
+        self.pair = [pair[0] for pair in found]
+        self.ends = [pair[1] for pair in found]
+        self.normal = np.array([pair[2] for pair in found]).reshape(-1, 2)
+        self.initial = np.array([pair[3] for pair in found])
+        entries = [(k, 2 * row + c, weight * n[c]) for k, (_, _, n, _, weights) in enumerate(found)
+                   for row, weight in weights.items() for c in (0, 1)]
+        rows, columns, values = np.array(entries).reshape(-1, 3).T
+        places, shape = (rows.astype(int), columns.astype(int)), (len(found), 2 * len(self.node))
+        self.gap_matrix = sp.csr_matrix((values, places), shape=shape)
 
     def load(self):
         self.force = np.zeros(2 * len(self.node))
@@ -198,16 +242,15 @@ class Model:
     def edge_load(self, card, k):
         a, b = self.row[int(card[5])], self.row[int(card[6])]
         pa, pb = real(card[3]), real(card[4], real(card[3]))
+        side = [a, b] + next(side[2:] for side in self.sides(k) if set(side[:2]) == {a, b})
+        inner = self.x[self.members[k][self.kind[k].corners()]].mean(axis=0) - self.x[a]
         along = self.x[b] - self.x[a]
-        inward = np.array([-along[1], along[0]])
-        third = next(c for c in self.corner[k] if c not in (a, b))
-        if inward @ (self.x[third] - self.x[a]) < 0:
-            inward = -inward
-        angle = np.radians(real(at(card, 7)))
+        angle = np.radians(real(at(card, 7))) + (np.pi / 2 if along[0] * inner[1] > along[1] * inner[0] else -np.pi / 2)
         turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        inward = turn @ inward * self.section[self.property[k]][0]
-        self.force[2 * a:2 * a + 2] += inward * (2 * pa + pb) / 6
-        self.force[2 * b:2 * b + 2] += inward * (pa + 2 * pb) / 6
+        for values, x, tangent, t in side_points(self.x[side]):
+            traction = (pa + (pb - pa) * t) * self.depth(k, x) * (turn @ tangent)
+            for node, value in zip(side, values):
+                self.force[2 * node:2 * node + 2] += value * traction
 
 
 def first_axis(numbers):

@@ -25,6 +25,7 @@ import scipy.sparse.linalg as spl
 
 from deck import DeckError, read
 from model import Model
+from shapes import side_points
 
 
 #: Secant steps end at this change of the displacements; so many are tried, and growth by this factor is flight.
@@ -43,12 +44,12 @@ class Problem:
         self.g = model.initial + model.gap_matrix @ model.held
         self.exchanges = 0
         self.u = np.zeros(2 * len(model.node))
-        nothing = np.zeros((len(model.element), 3))
-        self.linearise(model.of_elements("secant_matrix", nothing, 3, 3), nothing)
+        nothing = np.zeros((len(model.volume), 4))
+        self.linearise(model.of_points("secant_matrix", nothing, 4, 4), nothing)
         self.stiff = abs(self.k.diagonal()).max()
 
     def linearise(self, d, initial):
-        """Stress = d strain + initial in all elements."""
+        """Stress = d strain + initial at all points."""
         model = self.model
         self.full = model.stiffness(d)
         self.k = (model.tie.T @ self.full @ model.tie).tocsc()
@@ -133,18 +134,16 @@ class Problem:
     def off_curve(self, u, force):
         """Largest unbalanced force at a free freedom, of the stresses on the curve."""
         model = self.model
-        stress = model.respond(model.strains(u))[0][:, [0, 1, 3]]
+        stress = model.respond(model.strains(u))[0]
         rest = model.tie.T @ (model.nodal(stress) - model.force - model.gap_matrix.T @ force)
-        scale = np.zeros(2 * len(model.node))
-        np.add.at(scale, model.freedom, abs(np.einsum("e,eij,ei->ej", model.volume, model.strain_matrix, stress)))
-        return abs(rest).max(initial=0.0) / scale.max()
+        return abs(rest).max(initial=0.0) / model.nodal(stress, abs).max()
 
     def yielding_answer(self, found):
         model = self.model
         u = self.move(found)
         for _ in range(SECANT_STEPS):
             before = u
-            self.linearise(model.of_elements("secant_matrix", model.strains(u), 3, 3), np.zeros((len(model.element), 3)))
+            self.linearise(model.of_points("secant_matrix", model.strains(u), 4, 4), np.zeros((len(model.volume), 4)))
             found = self.linear_answer()
             u = self.move(found)
             if abs(u).max() > FAR * abs(before).max() or not np.isfinite(u).all():
@@ -153,19 +152,21 @@ class Problem:
                 break
         else:
             raise NoEquilibrium("secant steps do not settle: limit load")
-        residual = self.off_curve(u, found[1])
+        residual, before = self.off_curve(u, found[1]), np.inf
         for _ in range(NEWTON_STEPS):
             strain = model.strains(u)
-            d = model.of_elements("tangent", strain, 3, 3)
-            self.linearise(d, model.respond(strain)[0][:, [0, 1, 3]] - np.einsum("eij,ej->ei", d, strain))
+            d = model.of_points("tangent", strain, 4, 4)
+            self.linearise(d, model.respond(strain)[0] - np.einsum("eij,ej->ei", d, strain))
             found = self.linear_answer()
             step, length = self.move(found) - u, 1.0
             while self.off_curve(u + length * step, found[1]) > max(residual, 1e-11) and length > 1e-3:
                 length /= 2
             u = u + length * step
             residual = self.off_curve(u, found[1])
-            if abs(step).max() <= 1e-12 * abs(u).max() or (residual < 1e-13 and abs(step).max() <= 1e-9 * abs(u).max()):
+            size = abs(step).max() / abs(u).max()
+            if size <= 1e-12 or (size <= 1e-9 and (residual < 1e-13 or size > before / 2)):
                 return found
+            before = size
         raise NoEquilibrium(f"Newton does not end: residual {residual:.1e}")
 
     def linear_answer(self):
@@ -202,33 +203,30 @@ def product(matrix, z):
 
 
 def tributary(model):
-    """Half the boundary edges along the tangent (within 45 degrees) that meet at each pair's node, as seen along the
-    normal, times thickness."""
-    owners = {}
-    for k, c in enumerate(model.corner):
-        for i in range(3):
-            owners.setdefault(tuple(sorted((c[i], c[(i + 1) % 3]))), []).append(k)
+    """What a uniform pressure on the boundary sides along the tangent (chord within 45 degrees) gives to each pair's node along
+    the normal, over that pressure; nothing, say, at the end of a quadratic side on the axis of rings."""
     around = {}
-    for (a, b), elements in owners.items():
-        if len(elements) == 1:
-            thickness = model.section[model.property[elements[0]]][0]
-            around.setdefault(a, []).append((b, thickness))
-            around.setdefault(b, []).append((a, thickness))
-    share = np.zeros(len(model.pair))
-    for k, (a, b) in enumerate(model.ends):
-        node = b if b in around else a
-        for other, thickness in around.get(node, []):
-            edge = model.x[other] - model.x[node]
-            if abs(edge @ model.normal[k]) <= np.sqrt(0.5) * np.linalg.norm(edge):
-                share[k] += thickness * abs(edge[0] * model.normal[k][1] - edge[1] * model.normal[k][0]) / 2
-    return share
+    for k, side in model.boundary.values():
+        for i, node in enumerate(side):
+            around.setdefault(node, []).append((i, k, side))
+    share, size = np.zeros(len(model.pair)), np.full(len(model.pair), 1e-300)
+    for p, (a, b) in enumerate(model.ends):
+        n = model.normal[p]
+        for i, k, side in around.get(b if b in around else a, []):
+            x = model.x[side]
+            if abs((x[1] - x[0]) @ n) <= np.sqrt(0.5) * np.linalg.norm(x[1] - x[0]):
+                parts = [values[i] * model.depth(k, place) * abs(tangent[0] * n[1] - tangent[1] * n[0])
+                         for values, place, tangent, _ in side_points(x)]
+                share[p] += sum(parts)
+                size[p] += sum(abs(part) for part in parts)
+    return np.where(share > 1e-10 * size, share, 0.0)
 
 
 def tables(problem, v, force, gap, touching):
     model = problem.model
     u = model.tie @ v + model.held
     stress, total, secant, plastic = model.respond(model.strains(u))
-    reaction = model.nodal(stress[:, [0, 1, 3]]) - model.force - model.gap_matrix.T @ force
+    reaction = model.nodal(stress) - model.force - model.gap_matrix.T @ force
     reaction = np.where(model.is_held, reaction, 0.0).reshape(-1, 2)
     u = u.reshape(-1, 2)
     share = tributary(model)
@@ -239,18 +237,18 @@ def tables(problem, v, force, gap, touching):
         contact.append([pair, model.node[a], model.node[b], *model.x[b], *model.normal[k], model.initial[k], force[k],
                         force[k] / area if area else 0.0, gap[k], "touching" if touching[k] else "open"])
     nodes = [[node, *model.x[i], *u[i], *reaction[i]] for i, node in enumerate(model.node)]
-    elements = []
-    for k, element in enumerate(model.element):
-        sx, sy, sz, txy = stress[k]
-        mises = np.sqrt(((sx - sy) ** 2 + (sy - sz) ** 2 + (sz - sx) ** 2) / 2 + 3 * txy ** 2)
-        elements.append([element, *model.x[model.corner[k]].mean(axis=0), sx, sy, sz, txy, mises, total[k], secant[k],
-                         "plastic" if plastic[k] else "elastic"])
+    sx, sy, sz, txy = stress.T
+    mises = np.sqrt(((sx - sy) ** 2 + (sy - sz) ** 2 + (sz - sx) ** 2) / 2 + 3 * txy ** 2)
+    columns = np.array([model.mean(values) for values in (sx, sy, sz, txy, mises, total, secant)]).T
+    yielded = np.bincount(model.owner, plastic, len(model.element)) > 0
+    elements = [[element, *model.x[model.members[k]].mean(axis=0), *columns[k], "plastic" if yielded[k] else "elastic"]
+                for k, element in enumerate(model.element)]
     summary = [["status", "solved", ""]]
     if contact:
         summary.append(["max_pressure", max(row[9] for row in contact), ""])
     summary += [["total_contact_force", float(force.sum()), ""],
                ["pairs_in_contact", int(touching.sum()), ""],
-               ["plastic_elements", int(plastic.sum()), ""],
+               ["plastic_elements", int(yielded.sum()), ""],
                ["max_equivalent_stress", max((row[7] for row in elements), default=0.0), ""],
                ["max_displacement", float(np.hypot(*u.T).max()), ""]]
     for node, digit in model.support:

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Write random scenes that yield: stacks of up to four blocks, and tongues in sockets held by contact alone.
+"""Write random scenes that yield: stacks of up to four blocks, tongues in sockets held by contact alone, and blocks or rings of
+any element that press one another, node on node or line on line.
 
     . tools/venv && python tests/independent/write_random.py DIRECTORY [-n 40] [--seed 1]
     python tests/independent/compare.py build/release/epcont DIRECTORY/*.dat --tolerance 1e-7
@@ -13,9 +14,10 @@ import random
 
 
 class Scene:
-    def __init__(self, rng, strain):
+    def __init__(self, rng, strain, rings=False):
+        self.rings, self.side = rings, {}
         self.rng, self.lines, self.nodes, self.elements, self.pairs, self.materials = rng, [], 0, 0, 0, 0
-        self.lines.append(f"PARAM,PLANE,{'STRAIN' if strain else 'STRESS'}")
+        self.lines += [] if rings else [f"PARAM,PLANE,{'STRAIN' if strain else 'STRESS'}"]
         self.lines += ["PARAM,GAPGEOM,YES", "CORD2R,1,,0.0,0.0,0.0,0.0,0.0,1.0,+", "+,0.0,1.0,0.0", "PGAP,1,0.0"]
 
     def add(self, *fields):
@@ -27,7 +29,10 @@ class Scene:
         self.materials += 1
         rng, number = self.rng, self.materials
         young, nu, stress = rng.uniform(0.5, 3.0) * 1e3, rng.uniform(0.0, 0.45), rng.uniform(0.7, 1.5) * scale
-        self.add("PSHELL", number, number, rng.uniform(0.5, 2.0))
+        if self.rings:
+            self.add("PSOLID", number, number)
+        else:
+            self.add("PSHELL", number, number, rng.uniform(0.5, 2.0))
         self.add("MAT1", number, young, "", nu)
         kind = rng.choice(["elastic", "bilinear", "flat", "curve", "curve"])
         if kind in ("bilinear", "flat"):
@@ -59,6 +64,48 @@ class Scene:
                 self.elements += 1
                 self.add("CTRIA3", self.elements, section, *corners)
         return at
+
+    def mesh(self, xs, ys, section, corners, middles, place):
+        """Elements of 3 or 4 corners, with middles or without, turning either way, the inner nodes out of line. Nodes by
+        (column, row), where middles lie at halves; `place` moves the whole."""
+        at, spot, rng = {}, {}, self.rng
+
+        def node(i, j, ends=()):
+            if (i, j) not in at:
+                inside = 0 < i < len(xs) - 1 and 0 < j < len(ys) - 1
+                reach = (0.03 if ends else 0.15) * inside
+                middle = [sum(spot[end][c] for end in ends) / 2 for c in (0, 1)] if ends else (xs[i], ys[j])
+                spot[i, j] = tuple(middle[c] + rng.uniform(-reach, reach) * (v[1] - v[0]) for c, v in ((0, xs), (1, ys)))
+                self.nodes += 1
+                at[i, j] = self.nodes
+                self.add("GRID", self.nodes, "", *(float(v) for v in place(*spot[i, j])))
+            return at[i, j]
+
+        for i in range(len(xs) - 1):
+            for j in range(len(ys) - 1):
+                a, b, c, d = (i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)
+                halves = rng.choice([[(a, b, c), (a, c, d)], [(a, b, d), (b, c, d)]])
+                for turn in [(a, b, c, d)] if corners == 4 else halves:
+                    turn = turn[::-1] if rng.random() < 0.5 else turn
+                    self.elements += 1
+                    ends = [node(*p) for p in turn]
+                    round_it = list(zip(turn, turn[1:] + turn[:1]))
+                    between = [node((p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p, q)) for p, q in round_it] if middles else []
+                    if self.rings and middles:
+                        ends, between = [n for two in zip(ends, between) for n in two], []
+                    name = f"C{'TRAX' if self.rings else 'QUAD' if corners == 4 else 'TRIA'}{len(ends + between)}"
+                    self.add(name, self.elements, section, *ends, *between)
+                    for p, q in round_it:
+                        self.side[at[p], at[q]] = self.side[at[q], at[p]] = self.elements
+        return at
+
+    def segments(self, number, nodes):
+        """A line, from either end."""
+        self.add_long("BLSEG", number, *(nodes if self.rng.random() < 0.5 else nodes[::-1]))
+
+    def add_long(self, name, *fields):
+        for i in range(0, len(fields), 8):
+            self.add(name if i == 0 else "", *fields[i:i + 8])
 
     def pair(self, a, b):
         self.pairs += 1
@@ -126,6 +173,49 @@ def tongue(rng):
     return scene
 
 
+def row(at, j, middles):
+    """Columns of the nodes of a row of a mesh."""
+    return [at[i, k] for i, k in sorted(at) if k == j and (middles or i == int(i))]
+
+
+def pressed(rng):
+    """One body on another, of random elements: node on node, or a bent line on a line of other columns."""
+    rings, by_lines = rng.random() < 1 / 3, rng.random() < 0.5
+    scene = Scene(rng, rng.random() < 0.5, rings)
+    kinds = [rng.choice([(3, False), (3, True)] if rings else [(3, False), (3, True), (4, False)]) for _ in range(2)]
+    left = rng.choice([0.0, 1.0]) if rings else 0.0
+    columns = rng.randint(4, 8)
+    xs = places(rng, left, left + 3.0, columns)
+    bend, dent = (rng.uniform(0.0, 0.02), rng.uniform(-0.005, 0.02)) if by_lines else (0.0, 0.0)
+    gap = rng.choice([0.0, 0.0, 0.0005, -0.0005 if by_lines else 0.0])
+    rows, upper_rows = rng.randint(2, 4), rng.randint(2, 4)
+    low = scene.mesh(xs, places(rng, -1.2, 0.0, rows), scene.material(), *kinds[0],
+                     lambda x, y: (x, y + (y + 1.2) / 1.2 * dent * (x - left) ** 2))
+    if by_lines:
+        columns = rng.randint(4, 8)
+        xs = places(rng, left, left + rng.uniform(1.5, 2.9), columns)
+    high = scene.mesh(xs, places(rng, 0.0, 1.0, upper_rows), scene.material(), *kinds[1],
+                      lambda x, y: (x, y + gap + (1.0 - y) * (bend + dent) * (x - left) ** 2))
+    scene.add_long("SPC1", 1, 2, *row(low, 0, True))
+    if left == 0.0:
+        scene.add_long("SPC1", 1, 1, *[n for at in (low, high) for (i, _), n in at.items() if i == 0])
+    scene.add("SUPORT", high[0, upper_rows], 2)
+    face, under, full = row(low, rows, kinds[0][1]), row(high, 0, kinds[1][1]), rng.random() < 0.5
+    if by_lines:
+        scene.segments(1, face if full else row(low, rows, False))
+        scene.segments(2, under if full else row(high, 0, False))
+        scene.add("BCONP", 1, *rng.choice([(1, 2), (2, 1)]), "", 1.0, "", 1, 0)
+    else:
+        for a, b in zip(face, under) if len(face) == len(under) else zip(row(low, rows, False), row(high, 0, False)):
+            scene.pair(a, b)
+    total = rng.uniform(0.4, 1.6)
+    for a, b in zip(row(high, upper_rows, False), row(high, upper_rows, False)[1:]):
+        p, q, turn = total * rng.uniform(0.2, 1.8), total * rng.uniform(0.2, 1.8), rng.choice(["", rng.uniform(-5.0, 5.0)])
+        scene.add("PLOADX1", 1, scene.side[a, b], p, q, *rng.choice([(a, b), (b, a)]), turn)
+    scene.add("FORCE", 1, high[columns, upper_rows], 0, 0.05, rng.uniform(-1.0, 1.0), -1.0)
+    return scene
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("directory", type=pathlib.Path)
@@ -135,7 +225,7 @@ def main():
     options.directory.mkdir(parents=True, exist_ok=True)
     for k in range(options.number):
         rng = random.Random(f"{options.seed} {k}")
-        scene = (tongue if k % 3 == 2 else stack)(rng)
+        scene = (pressed if k % 2 else tongue if k % 6 == 4 else stack)(rng)
         (options.directory / f"scene{k:03}.dat").write_text(scene.text(), encoding="ascii")
 
 

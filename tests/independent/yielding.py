@@ -1,4 +1,4 @@
-"""Total theory of plasticity by the uniaxial curve as it stands: bisection for the equivalent strain, all elements at once.
+"""Total theory of plasticity by the uniaxial curve as it stands: bisection for the equivalent strain, all points at once.
 
 The secant body of a strain has E' = sigma/eps of the curve and the Poisson's ratio mu = 0.5 - (0.5 - nu) E'/E; its
 equivalent strain, taken with that mu (and, in plane stress, with the strain across that mu gives), must be eps itself.
@@ -9,10 +9,10 @@ HALVINGS = 70
 
 
 class Law:
-    """Stress of elements of one section at their strains xx, yy, xy (engineering)."""
+    """Stress of points of one section at their strains xx, yy, zz, xy (engineering); in plane stress zz follows."""
 
-    def __init__(self, young, nu, plane_strain, curve=None, paper=False):
-        self.young, self.nu, self.plane_strain, self.curve, self.paper = young, nu, plane_strain, curve, paper
+    def __init__(self, young, nu, plane_stress, curve=None, paper=False):
+        self.young, self.nu, self.plane_stress, self.curve, self.paper = young, nu, plane_stress, curve, paper
 
     def curve_stress(self, total):
         strain, stress = self.curve
@@ -26,12 +26,12 @@ class Law:
         return 0.5 - (0.5 - self.nu) * self.curve_stress(total) / total / self.young
 
     def equivalent_strain(self, strain, mu):
-        x, y, g = strain.T
-        z = 0.0 if self.plane_strain else -mu / (1 - mu) * (x + y)
+        x, y, z, g = strain.T
+        z = -mu / (1 - mu) * (x + y) if self.plane_stress else z
         return np.sqrt(((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) / 2 + 0.75 * g * g) / (1 + mu)
 
     def respond(self, strain):
-        """(stress xx yy zz xy, equivalent strain, secant modulus, beyond yield?) of each element."""
+        """(stress xx yy zz xy, equivalent strain, secant modulus, beyond yield?) of each point."""
         secant = np.full(len(strain), self.young)
         mu = np.full(len(strain), self.nu)
         total = self.equivalent_strain(strain, mu)
@@ -42,14 +42,14 @@ class Law:
                 total[plastic] = self.search(strain[plastic])
                 secant[plastic] = self.curve_stress(total[plastic]) / total[plastic]
                 mu[plastic] = self.ratio(total[plastic])
-        x, y, g = strain.T
-        z = 0.0 if self.plane_strain else -mu / (1 - mu) * (x + y)
+        x, y, z, g = strain.T
+        z = -mu / (1 - mu) * (x + y) if self.plane_stress else z
         shear = self.young / (3 * self.young / secant - (1 - 2 * self.nu))
         mean = (x + y + z) / 3
         pressure = self.young / (1 - 2 * self.nu) * mean
         stress = np.array([pressure + 2 * shear * (x - mean), pressure + 2 * shear * (y - mean),
                            pressure + 2 * shear * (z - mean), shear * g]).T
-        if not self.plane_strain:
+        if self.plane_stress:
             stress[:, 2] = 0.0
         return stress, total, secant, plastic
 
@@ -71,10 +71,10 @@ class Law:
         """d stress/d strain by central differences, a step far from the kinks' size: Newton corrects what it misses."""
         step = 1e-6 * np.maximum(abs(strain).max(axis=1), 1e-12 if self.curve is None else 1e-3 * self.curve[0][1])
         columns = []
-        for c in range(3):
+        for c in range(4):
             moved = np.zeros_like(strain)
             moved[:, c] = step
-            columns.append((self.respond(strain + moved)[0] - self.respond(strain - moved)[0])[:, [0, 1, 3]] / (2 * step[:, None]))
+            columns.append((self.respond(strain + moved)[0] - self.respond(strain - moved)[0]) / (2 * step[:, None]))
         d = np.stack(columns, axis=2)
         return (d + d.transpose(0, 2, 1)) / 2
 
@@ -83,12 +83,13 @@ class Law:
         secant = self.respond(strain)[2]
         shear = self.young / (3 * self.young / secant - (1 - 2 * self.nu))
         normal = self.young / (3 * (1 - 2 * self.nu)) - 2 / 3 * shear
-        if not self.plane_strain:
+        if self.plane_stress:
             normal = 2 * shear * normal / (normal + 2 * shear)
-        d = np.zeros((len(strain), 3, 3))
-        d[:, 0, 0] = d[:, 1, 1] = normal + 2 * shear
-        d[:, 0, 1] = d[:, 1, 0] = normal
-        d[:, 2, 2] = shear
+        d = np.zeros((len(strain), 4, 4))
+        d[:, :3, :3] = normal[:, None, None] + 2 * shear[:, None, None] * np.eye(3)
+        d[:, 3, 3] = shear
+        if self.plane_stress:
+            d[:, 2] = d[:, :, 2] = 0.0
         return d
 
 
