@@ -204,7 +204,7 @@ def product(matrix, z):
 
 def tributary(model):
     """What a uniform pressure on the boundary sides along the tangent (chord within 45 degrees) gives to each pair's node along
-    the normal, over that pressure; nothing, say, at the end of a quadratic side on the axis of rings."""
+    the normal, over that pressure; not a number on sides with middles, where the program smooths pressures."""
     around = {}
     for k, side in model.boundary.values():
         for i, node in enumerate(side):
@@ -214,12 +214,14 @@ def tributary(model):
         n = model.normal[p]
         for i, k, side in around.get(b if b in around else a, []):
             x = model.x[side]
+            if len(side) == 3:
+                share[p] = np.nan
             if abs((x[1] - x[0]) @ n) <= np.sqrt(0.5) * np.linalg.norm(x[1] - x[0]):
                 parts = [values[i] * model.depth(k, place) * abs(tangent[0] * n[1] - tangent[1] * n[0])
                          for values, place, tangent, _ in side_points(x)]
                 share[p] += sum(parts)
                 size[p] += sum(abs(part) for part in parts)
-    return np.where(share > 1e-10 * size, share, 0.0)
+    return np.where(share <= 1e-10 * size, 0.0, share)
 
 
 def tables(problem, v, force, gap, touching):
@@ -244,7 +246,7 @@ def tables(problem, v, force, gap, touching):
     elements = [[element, *model.x[model.members[k]].mean(axis=0), *columns[k], "plastic" if yielded[k] else "elastic"]
                 for k, element in enumerate(model.element)]
     summary = [["status", "solved", ""]]
-    if contact:
+    if contact and not np.isnan(share).any():
         summary.append(["max_pressure", max(row[9] for row in contact), ""])
     summary += [["total_contact_force", float(force.sum()), ""],
                ["pairs_in_contact", int(touching.sum()), ""],
