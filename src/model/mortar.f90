@@ -22,7 +22,7 @@ module epcont_model_mortar
   !> Pieces shorter than this part of a side, and weights below it, are rounding.
   real(wp), parameter :: rounding = 1.0e-12_wp
 
-  !> A corner of rings' curved side on the axis has no area but for rounding and curvature.
+  !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not need one.
   real(wp), parameter :: no_area = 1.0e-3_wp
 
   !> Weights gathered in any order: of a node in a row.
@@ -74,9 +74,6 @@ contains
         if (row > 0) call list%add_own_place(row, master, facing(row), sum(points%weight(:points%count)* &
                                                                          points%share(k, :points%count)))
       end do
-    end do
-    do row = 1, size(facing)
-      if (list%area(row) == 0.0_wp) call list%add_own_place(row, master, facing(row), 1.0_wp)
     end do
     call collect(list, start, node, weight)
   end subroutine mortar_rows
@@ -151,7 +148,7 @@ contains
       end associate
     end do
     if (row(3) == 0) mass(3, 3) = sum(integral)   ! no middle node
-    where (integral <= no_area*sum(integral)) integral = 0.0_wp
+    integral = max(integral, no_area*sum(integral))
     dual = inverse(mass)
     do k = 1, 3
       dual(k, :) = integral(k)*dual(k, :)
