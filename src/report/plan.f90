@@ -70,8 +70,8 @@ contains
            plural(contact%last - contact%first + 1, 'pair')//', initial gaps '// &
            short_real(minval(model%initial_gap(contact%first:contact%last)))//' to '// &
            short_real(maxval(model%initial_gap(contact%first:contact%last)))
-    if (contact%left_out > 0) text = text//'; '//plural(contact%left_out, 'node')//' face nothing within '// &
-                                     short_real(contact%search)
+    if (contact%left_out > 0) text = text//'; left out, since they face nothing within '//short_real(contact%search)// &
+                                     ': '//plural(contact%left_out, 'node')
     text = text//newline
   end function line_text
 
