@@ -2,9 +2,11 @@
 import numpy as np
 import scipy.sparse as sp
 
+from boundary import boundary, edge_forces
 from deck import DeckError, at, ids, real
+from kinds import KINDS
 from lines import pairs_of_lines
-from shapes import KINDS, folded, side_points, strain_matrices
+from shapes import folded, strain_matrices
 from yielding import Law, bilinear
 
 
@@ -88,11 +90,8 @@ class Model:
             points += volume.size
             volumes.append(volume.ravel())
             owners.append(np.repeat(np.arange(first, len(self.element)), each))
-        owners_of = {}
-        for k in range(len(self.element)):
-            for side in self.sides(k):
-                owners_of.setdefault(frozenset(side[:2]), []).append((k, side))
-        self.boundary = {ends: found[0] for ends, found in owners_of.items() if len(found) == 1}
+        self.boundary = boundary([(kind, [int(row) for row in members], self.section[p][0])
+                                  for kind, members, p in zip(self.kind, self.members, self.property)], self.x)
         self.volume = np.concatenate(volumes) if volumes else np.zeros(0)
         self.owner = np.concatenate(owners) if owners else np.zeros(0, int)
         of_point = np.array(self.property, int)[self.owner]
@@ -143,14 +142,6 @@ class Model:
             rows, columns = np.repeat(freedom, freedom.shape[1], axis=1), np.tile(freedom, (1, freedom.shape[1]))
             total = total + sp.csr_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=(n, n))
         return total
-
-    def sides(self, k):
-        """Rows of the nodes of the sides of element k: ends, and the middle where there is one."""
-        return [[int(self.members[k][i]) for i in side] for side in self.kind[k].sides]
-
-    def depth(self, k, x):
-        """Of element k at a place: its thickness, or the circumference of a ring."""
-        return 2 * np.pi * x[0] if self.kind[k].ring else self.section[self.property[k]][0]
 
     def chosen(self, kind, cards):
         sets = {int(card[1]) for card in cards}
@@ -212,9 +203,14 @@ class Model:
             n = frames[int(card[8])] if at(card, 8) else along / np.linalg.norm(along)
             gap = given[int(card[2] or card[1])] + (along @ n if self.parameter.get("GAPGEOM") == "YES" else 0.0)
             found.append((int(card[1]), (a, b), n, gap, {a: -1.0, b: 1.0}))
-        for slave, shares, n, gap in pairs_of_lines(self):
-            weights = {slave: 1.0, **{row: -share for row, share in shares.items()}}
-            found.append((self.node[slave], (max(shares, key=shares.get), slave), n, gap, weights))
+        self.contacts = [range(len(found))]
+        held = {(int(f) // 2, int(f) % 2) for f in np.flatnonzero(self.is_held)}
+        for contact in pairs_of_lines(self.deck, self.parameter, self.boundary, self.x, held, self.row.get):
+            self.contacts.append(range(len(found), len(found) + len(contact)))
+            for slave, shares, n, gap in contact:
+                weights = {slave: 1.0, **{row: -share for row, share in shares.items()}}
+                found.append((self.node[slave], (max(shares, key=shares.get), slave), n, gap, weights))
+        self.held_directions = held
         self.pair = [pair[0] for pair in found]
         self.ends = [pair[1] for pair in found]
         self.normal = np.array([pair[2] for pair in found]).reshape(-1, 2)
@@ -229,7 +225,6 @@ class Model:
         self.force = np.zeros(2 * len(self.node))
         cards = self.deck.of("FORCE") + self.deck.of("PLOADX1")
         chosen = self.chosen("LOAD", cards)
-        row = {element: k for k, element in enumerate(self.element)}
         for card in cards:
             if int(card[1]) != chosen:
                 continue
@@ -237,20 +232,11 @@ class Model:
                 i = 2 * self.row[int(card[2])]
                 self.force[i:i + 2] += real(card[4]) * np.array([real(at(card, 5)), real(at(card, 6))])
             else:
-                self.edge_load(card, row[int(card[2])])
-
-    def edge_load(self, card, k):
-        a, b = self.row[int(card[5])], self.row[int(card[6])]
-        pa, pb = real(card[3]), real(card[4], real(card[3]))
-        side = [a, b] + next(side[2:] for side in self.sides(k) if set(side[:2]) == {a, b})
-        inner = self.x[self.members[k][self.kind[k].corners()]].mean(axis=0) - self.x[a]
-        along = self.x[b] - self.x[a]
-        angle = np.radians(real(at(card, 7))) + (np.pi / 2 if along[0] * inner[1] > along[1] * inner[0] else -np.pi / 2)
-        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        for values, x, tangent, t in side_points(self.x[side]):
-            traction = (pa + (pb - pa) * t) * self.depth(k, x) * (turn @ tangent)
-            for node, value in zip(side, values):
-                self.force[2 * node:2 * node + 2] += value * traction
+                pa = real(card[3])
+                ends = self.row[int(card[5])], self.row[int(card[6])]
+                side = self.boundary[frozenset(ends)]
+                for node, c, force in edge_forces(side, self.x, ends[0], (pa, real(card[4], pa)), real(at(card, 7))):
+                    self.force[2 * node + c] += force
 
 
 def first_axis(numbers):

@@ -25,7 +25,7 @@ import scipy.sparse.linalg as spl
 
 from deck import DeckError, read
 from model import Model
-from shapes import side_points
+from pressures import pressures
 
 
 #: Secant steps end at this change of the displacements; so many are tried, and growth by this factor is flight.
@@ -202,28 +202,6 @@ def product(matrix, z):
     return result
 
 
-def tributary(model):
-    """What a uniform pressure on the boundary sides along the tangent (chord within 45 degrees) gives to each pair's node along
-    the normal, over that pressure; not a number on sides with middles, where the program smooths pressures."""
-    around = {}
-    for k, side in model.boundary.values():
-        for i, node in enumerate(side):
-            around.setdefault(node, []).append((i, k, side))
-    share, size = np.zeros(len(model.pair)), np.full(len(model.pair), 1e-300)
-    for p, (a, b) in enumerate(model.ends):
-        n = model.normal[p]
-        for i, k, side in around.get(b if b in around else a, []):
-            x = model.x[side]
-            if len(side) == 3:
-                share[p] = np.nan
-            if abs((x[1] - x[0]) @ n) <= np.sqrt(0.5) * np.linalg.norm(x[1] - x[0]):
-                parts = [values[i] * model.depth(k, place) * abs(tangent[0] * n[1] - tangent[1] * n[0])
-                         for values, place, tangent, _ in side_points(x)]
-                share[p] += sum(parts)
-                size[p] += sum(abs(part) for part in parts)
-    return np.where(share <= 1e-10 * size, 0.0, share)
-
-
 def tables(problem, v, force, gap, touching):
     model = problem.model
     u = model.tie @ v + model.held
@@ -231,13 +209,14 @@ def tables(problem, v, force, gap, touching):
     reaction = model.nodal(stress) - model.force - model.gap_matrix.T @ force
     reaction = np.where(model.is_held, reaction, 0.0).reshape(-1, 2)
     u = u.reshape(-1, 2)
-    share = tributary(model)
+    within = {int(row) for members in model.members for row in members}
+    places = [(b if b in within else a, n) for (a, b), n in zip(model.ends, model.normal)]
+    pressure = pressures(model.boundary, model.x, model.held_directions, places, model.contacts, force, touching)
     contact = []
     for k, pair in enumerate(model.pair):
         a, b = model.ends[k]
-        area = share[k]
         contact.append([pair, model.node[a], model.node[b], *model.x[b], *model.normal[k], model.initial[k], force[k],
-                        force[k] / area if area else 0.0, gap[k], "touching" if touching[k] else "open"])
+                        pressure[k] or 0.0, gap[k], "touching" if touching[k] else "open"])
     nodes = [[node, *model.x[i], *u[i], *reaction[i]] for i, node in enumerate(model.node)]
     sx, sy, sz, txy = stress.T
     mises = np.sqrt(((sx - sy) ** 2 + (sy - sz) ** 2 + (sz - sx) ** 2) / 2 + 3 * txy ** 2)
@@ -246,7 +225,7 @@ def tables(problem, v, force, gap, touching):
     elements = [[element, *model.x[model.members[k]].mean(axis=0), *columns[k], "plastic" if yielded[k] else "elastic"]
                 for k, element in enumerate(model.element)]
     summary = [["status", "solved", ""]]
-    if contact and not np.isnan(share).any():
+    if contact:
         summary.append(["max_pressure", max(row[9] for row in contact), ""])
     summary += [["total_contact_force", float(force.sum()), ""],
                ["pairs_in_contact", int(touching.sum()), ""],

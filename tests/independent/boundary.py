@@ -1,0 +1,62 @@
+"""The sides that belong to one element only: what lies inside, how deep they are, what presses on them. Standard library only.
+
+Nodes have any names: rows of arrays, or ids.
+"""
+from dataclasses import dataclass
+from math import cos, pi, radians, sin
+
+from kinds import GAUSS, solved
+
+#: Of a side from 0 to 1 with two or three nodes (end, end, middle): coefficients of the shape functions [node][power].
+WAYS = {n: list(zip(*solved([[t ** p for p in range(n)] for t in (0.0, 1.0, 0.5)[:n]],
+                            [[float(i == j) for j in range(n)] for i in range(n)]))) for n in (2, 3)}
+
+
+@dataclass(frozen=True)
+class Side:
+    nodes: tuple        # end, end, middle or nothing
+    inner: tuple        # the centre of the element's corners
+    thickness: float    # None: a ring
+
+    def depth(self, radius):
+        return 2 * pi * radius if self.thickness is None else self.thickness
+
+
+def boundary(elements, x):
+    """The sides of one element only, by their ends. `elements`: (kind, nodes in the order of the card, thickness or None)."""
+    found = {}
+    for kind, nodes, thickness in elements:
+        corners = [x[nodes[i]] for i in kind.corners()]
+        inner = tuple(sum(corner[c] for corner in corners) / len(corners) for c in (0, 1))
+        for side in kind.sides:
+            names = tuple(nodes[i] for i in side)
+            found.setdefault(frozenset(names[:2]), []).append(Side(names, inner, thickness))
+    return {ends: sides[0] for ends, sides in found.items() if len(sides) == 1}
+
+
+def side_points(x):
+    """Of each of three Gauss points on a side: shape values, place, tangent times its part, way along from 0 to 1.
+
+    x: its ends, and its middle where it has one."""
+    shape = WAYS[len(x)]
+    for t, part in zip(*GAUSS):
+        values = [sum(c * t ** p for p, c in enumerate(column)) for column in shape]
+        slopes = [sum(p * c * t ** (p - 1) for p, c in enumerate(column) if p) for column in shape]
+        place = [sum(v * point[c] for v, point in zip(values, x)) for c in (0, 1)]
+        yield values, place, [part * sum(v * point[c] for v, point in zip(slopes, x)) for c in (0, 1)], t
+
+
+def edge_forces(side, x, first, pressures, angle):
+    """(node, direction, force) of a pressure from that at end `first` to that at the other; `angle` turns it from the inward
+    normal, in degrees."""
+    a, b = side.nodes[:2] if side.nodes[0] == first else side.nodes[1::-1]
+    nodes = [a, b, *side.nodes[2:]]
+    along = x[b][0] - x[a][0], x[b][1] - x[a][1]
+    left = along[0] * (side.inner[1] - x[a][1]) > along[1] * (side.inner[0] - x[a][0])
+    turn = radians(angle) + (pi / 2 if left else -pi / 2)
+    for values, place, tangent, t in side_points([x[node] for node in nodes]):
+        traction = (pressures[0] + (pressures[1] - pressures[0]) * t) * side.depth(place[0])
+        push = (tangent[0] * cos(turn) - tangent[1] * sin(turn), tangent[0] * sin(turn) + tangent[1] * cos(turn))
+        for node, value in zip(nodes, values):
+            for c in (0, 1):
+                yield node, c, value * traction * push[c]

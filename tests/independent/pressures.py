@@ -1,0 +1,132 @@
+"""Pressures of pairs from their forces: force over area, and along touching six-node sides the slope of the force summed up to
+each corner over the area summed up there. Standard library only.
+
+The sum is known at the corners of a run of sides that touch all along; a polynomial in Newton's form goes through those around
+a node. Where the run ends on a line of symmetry it goes on mirrored; at the axis of rings it need not, for there a pressure
+that is even in the radius is smooth in the area. Where contact ends, the outermost corner and middle keep force over area.
+"""
+from math import hypot, sqrt
+
+from boundary import side_points
+
+ALONG, NO_AREA, UPRIGHT = sqrt(0.5), 1e-3, 0.9
+AROUND_MIDDLE, AROUND_CORNER, LEAST = 4, 5, 4
+
+
+def share(side, x, n):
+    """What a uniform pressure on a side gives to each of its nodes along n, over that pressure."""
+    found = [0.0] * len(side.nodes)
+    for values, place, tangent, _ in side_points([x[node] for node in side.nodes]):
+        size = side.depth(place[0]) * abs(tangent[0] * n[1] - tangent[1] * n[0])
+        found = [total + size * value for total, value in zip(found, values)]
+    return [total if abs(total) > NO_AREA * sum(found) else 0.0 for total in found]
+
+
+def areas(sides, x, pairs):
+    """Of each pair (node, normal) its area by sides, where the chord is within 45 degrees of the tangent."""
+    around = {}
+    for ends, side in sides.items():
+        for node in side.nodes:
+            around.setdefault(node, []).append(ends)
+    found = []
+    for node, n in pairs:
+        own = {}
+        for ends in around.get(node, []):
+            (xa, ya), (xb, yb) = (x[end] for end in sides[ends].nodes[:2])
+            if abs((xb - xa) * n[0] + (yb - ya) * n[1]) <= ALONG * hypot(xb - xa, yb - ya):
+                own[ends] = share(sides[ends], x, n)[sides[ends].nodes.index(node)]
+        found.append(own)
+    return found
+
+
+def slope(places, values, at):
+    """Derivative at a place of the polynomial through (places, values), by divided differences."""
+    table = list(values)
+    for order in range(1, len(table)):
+        for k in range(len(table) - 1, order - 1, -1):
+            table[k] = (table[k] - table[k - 1]) / (places[k] - places[k - order])
+    value, derivative = table[-1], 0.0
+    for place, coefficient in zip(places[-2::-1], table[-2::-1]):
+        derivative = derivative * (at - place) + value
+        value = value * (at - place) + coefficient
+    return derivative
+
+
+def runs(sides, at, own):
+    """Chains of six-node sides all of whose nodes touch: [(corner, middle, corner, ...)] of pair numbers. `at`: those that touch
+    in one contact, by their nodes."""
+    whole = [tuple(at[side.nodes[i]] for i in (0, 2, 1)) for ends, side in sides.items()
+             if len(side.nodes) == 3 and all(node in at and ends in own[at[node]] for node in side.nodes)]
+    whole.sort(key=lambda side: side[1])
+    chains = []
+    while whole:
+        chain = list(whole.pop(0))
+        for _ in range(2):
+            while True:
+                following = next((side for side in whole if chain[-1] in (side[0], side[2])), None)
+                if following is None:
+                    break
+                whole.remove(following)
+                chain += following[1:] if following[0] == chain[-1] else following[1::-1]
+            chain.reverse()
+        chains.append(chain)
+    return chains
+
+
+class Run:
+    """Sums of area and force up to the corners of a chain, mirrored beyond its ends; the chain's own begin at `first`."""
+
+    def __init__(self, chain, own, force, mirrored, axis):
+        self.chain = chain
+        self.even = [mirrored[end] for end in (chain[0], chain[-1])]
+        self.area, self.force, self.first = [0.0], [0.0], 0
+        for k in range(1, len(chain), 2):
+            both = own[chain[k]].keys() & own[chain[k - 1]].keys() & own[chain[k + 1]].keys()
+            parts = [(node, sum(own[node][ends] for ends in both)) for node in chain[k - 1:k + 2]]
+            bear = [part * force[node] / (sum(own[node].values()) or 1.0) for node, part in parts]
+            self.area.append(self.area[-1] + sum(part for _, part in parts))
+            self.force.append(self.force[-1] + sum(bear))
+        count, beyond = len(self.area), min(len(self.area) - 1, AROUND_CORNER // 2)
+        if self.even[1] and not axis[chain[-1]]:
+            for total in (self.area, self.force):
+                total += [2 * total[count - 1] - total[count - 1 - k] for k in range(1, beyond + 1)]
+        if self.even[0] and not axis[chain[0]]:
+            self.first = beyond
+            for total in (self.area, self.force):
+                total[:0] = [-total[k] for k in range(beyond, 0, -1)]
+
+    def slope(self, first, many, at):
+        first = max(0, min(first, len(self.area) - many))
+        return slope(self.area[first:first + many], self.force[first:first + many], at)
+
+    def pressures(self, x, ring):
+        """(pair, pressure) of all nodes but those of ends where contact ends. x of each pair."""
+        if len(self.area) < LEAST:
+            return
+        last = len(self.chain) - 1
+        for i in range(0 if self.even[0] else 2, last + 1 if self.even[1] else last - 1):
+            k, here = self.first + i // 2, self.chain[i]
+            if i % 2 == 0:
+                yield here, self.slope(k - AROUND_CORNER // 2, AROUND_CORNER, self.area[k])
+                continue
+            a, m, b = (x[node] for node in self.chain[i - 1:i + 2])
+            one, two = (hypot(q[0] - p[0], q[1] - p[1]) * (p[0] + q[0] if ring else 1.0) for p, q in ((a, m), (m, b)))
+            at = self.area[k] + (self.area[k + 1] - self.area[k]) * one / (one + two)
+            yield here, self.slope(k - AROUND_MIDDLE // 2 + 1, AROUND_MIDDLE, at)
+
+
+def pressures(sides, x, held, pairs, groups, forces, touching):
+    """Pressure of each pair, None where it has no area. `pairs`: (node on a side, normal); `held`: (node, direction);
+    `groups`: the pair numbers of each contact."""
+    own = areas(sides, x, pairs)
+    found = [force / sum(area.values()) if sum(area.values()) > 0 else None for force, area in zip(forces, own)]
+    ring = any(side.thickness is None for side in sides.values())
+    place = [x[node] for node, _ in pairs]
+    mirrored = [any((node, c) in held and abs(n[1 - c]) > UPRIGHT for c in (0, 1)) for node, n in pairs]
+    axis = [ring and p[0] == 0.0 for p in place]
+    for group in groups:
+        at = {pairs[k][0]: k for k in reversed(group)}
+        for chain in runs(sides, {node: k for node, k in at.items() if touching[k]}, own):
+            for k, pressure in Run(chain, own, forces, mirrored, axis).pressures(place, ring):
+                found[k] = pressure
+    return found

@@ -1,0 +1,1 @@
+"""What tools/verify is made of."""

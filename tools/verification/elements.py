@@ -1,0 +1,47 @@
+"""Strains at the integration points of an element, from the displacements of its nodes, and the volumes of the points."""
+import math
+from functools import cache
+
+from kinds import KINDS
+
+
+@cache
+def reference(name):
+    """Of each integration point the shape functions and their derivatives by both coordinates."""
+    kind = KINDS[name]
+    return list(zip(kind.shapes(), kind.shapes(0), kind.shapes(1)))
+
+
+def unit_strains(name, x, thickness, plane_stress):
+    """[(volume, [(of ux, of uy) of each node])] of each point: strains xx, yy, zz, xy that a unit displacement gives."""
+    kind, points = KINDS[name], []
+    for value, by_a, by_b in reference(name):
+        xa, ya, xb, yb = (sum(s * p[c] for s, p in zip(slope, x)) for slope in (by_a, by_b) for c in (0, 1))
+        twice = xa * yb - xb * ya
+        radius = sum(v * p[0] for v, p in zip(value, x))
+        depth = 2 * math.pi * radius if kind.ring else thickness
+        unit = []
+        for v, a, b in zip(value, by_a, by_b):
+            dx, dy = (a * yb - b * ya) / twice, (b * xa - a * xb) / twice
+            unit.append(([dx, 0.0, v / radius if kind.ring else 0.0, dy], [0.0, dy, 0.0, dx]))
+        points.append((abs(twice) * kind.weight * depth, unit))
+    if name == "CQUAD4" and not plane_stress:
+        even_out(points)
+    return points
+
+
+def even_out(points):
+    """The change of volume at all points is that of the whole element."""
+    whole = math.fsum(volume for volume, _ in points)
+    for k in range(4):
+        for c in (0, 1):
+            mean = math.fsum(volume * sum(unit[k][c][:3]) for volume, unit in points) / whole
+            for _, unit in points:
+                change = (mean - sum(unit[k][c][:3])) / 3
+                unit[k][c][:3] = [value + change for value in unit[k][c][:3]]
+
+
+def strain_of(unit, u, ring):
+    """From displacements of the nodes, a common travel taken off first: a rigid motion does not spoil the strain."""
+    travel = (0.0 if ring else u[0][0], u[0][1])
+    return [sum(of[c][i] * (moved[c] - travel[c]) for of, moved in zip(unit, u) for c in (0, 1)) for i in range(4)]

@@ -1,0 +1,60 @@
+"""Stresses at strains: total theory on the uniaxial curve."""
+import math
+
+from deck import at, real
+
+
+def curves(deck, material):
+    """Points (strain, stress) of the uniaxial curves, by MAT1."""
+    tables = {int(c[1]): [real(text) for text in c[9:c.index("ENDT")]] for c in deck.of("TABLES1")}
+    found = {}
+    for c in deck.of("MATS1"):
+        young = material[int(c[1])][0]
+        if at(c, 2):
+            numbers = tables[int(c[2])]
+            points = list(zip(numbers[0::2], numbers[1::2]))
+            points[1] = (points[1][1] / young, points[1][1])
+        else:
+            limit, slope = real(c[7]), real(at(c, 4))
+            points = [(0.0, 0.0), (limit / young, limit), (2 * limit / young, limit + limit * slope / (young + slope))]
+        found[int(c[1])] = points
+    return found
+
+
+def on_curve(points, total):
+    """Stress at a total strain; the last slope goes on."""
+    k = next((k for k in range(2, len(points)) if points[k][0] >= total), len(points) - 1)
+    (e0, s0), (e1, s1) = points[k - 1], points[k]
+    return s0 + (s1 - s0) / (e1 - e0) * (total - e0)
+
+
+def stress_of(strain, young, nu, plane_stress, points=None, paper=False):
+    """xx, yy, zz, xy by total theory of strains xx, yy, zz, xy: the secant body whose equivalent strain lies on the curve, by
+    bisection."""
+    x, y, given, g = strain
+
+    def across(mu):
+        return -mu / (1 - mu) * (x + y) if plane_stress else given
+
+    def equivalent(mu):
+        z = across(mu)
+        return math.sqrt(((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) / 2 + 0.75 * g * g) / (1 + mu)
+
+    def ratio(total):
+        stress = on_curve(points, total)
+        return 0.5 - (0.5 - nu) * (points[1][1] / stress if paper else stress / total / young)
+
+    mu, secant = nu, young
+    if points and equivalent(nu) > points[1][0]:
+        low, high = points[1][0], 2 * points[1][0]
+        while equivalent(ratio(high)) > high:
+            high *= 2
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (middle, high) if equivalent(ratio(middle)) > middle else (low, middle)
+        mu, secant = ratio(low), on_curve(points, low) / low
+    shear = young / (3 * young / secant - (1 - 2 * nu))
+    mean = (x + y + across(mu)) / 3
+    pressure = young / (1 - 2 * nu) * mean
+    return (pressure + 2 * shear * (x - mean), pressure + 2 * shear * (y - mean),
+            0.0 if plane_stress else pressure + 2 * shear * (across(mu) - mean), shear * g)

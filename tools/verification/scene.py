@@ -1,0 +1,124 @@
+"""What a deck says, as dictionaries by id: nothing of the program."""
+import math
+
+from boundary import boundary, edge_forces
+from deck import DeckError, at, ids, real
+from kinds import KINDS
+from lines import pairs_of_lines
+from verification.material import curves
+
+
+class Section:
+    """thickness: None of a ring. points: of the uniaxial curve, or None."""
+
+    def __init__(self, thickness, material, plane_stress, points):
+        self.thickness, (self.young, self.nu), self.plane_stress, self.points = thickness, material, plane_stress, points
+
+
+class Pair:
+    """Gap = initial + sum of weight * displacement . normal over its nodes. `node`: of the boundary side it lies on."""
+
+    def __init__(self, initial, normal, weights, node):
+        self.initial, self.normal, self.weights, self.node = initial, normal, weights, node
+
+
+class Scene:
+    def __init__(self, deck):
+        self.deck = deck
+        self.x = {int(c[1]): (real(at(c, 3)), real(at(c, 4))) for c in deck.of("GRID")}
+        self.parameter = parameter = {c[1]: c[2] for c in deck.of("PARAM")}
+        newton = parameter.get("METHOD", "AUTO") in ("NEWTON", "AUTO") and parameter.get("MUP") != "PAPER"
+        self.off_curve = real(parameter.get("TOL", ""), 1e-8 if newton else 0.01) * (1 if newton else 10)
+        self.off_curve *= bool(deck.of("MATS1"))
+        self.paper = parameter.get("MUP") == "PAPER"
+        self.sections()
+        self.element = {}
+        for name, kind in KINDS.items():
+            for c in deck.of(name):
+                self.element[int(c[1])] = (name, [int(g) for g in c[3:3 + len(kind.nodes)]], self.section[int(c[2] or c[1])])
+        self.side = boundary([(KINDS[name], nodes, section.thickness) for name, nodes, section in self.element.values()], self.x)
+        self.supports()
+        self.pairs()
+        self.loads()
+
+    def sections(self):
+        material = {}
+        for c in self.deck.of("MAT1"):
+            e, g, nu = (real(text, None) for text in c[2:5])
+            e = 2 * g * (1 + nu) if e is None else e
+            material[int(c[1])] = (e, e / (2 * g) - 1 if nu is None else nu)
+        curve = curves(self.deck, material)
+        self.section = {}
+        for c in self.deck.of("PSHELL"):
+            strain = at(c, 4) == "-1" or self.parameter.get("PLANE") == "STRAIN"
+            self.section[int(c[1])] = Section(real(c[3]), material[int(c[2])], not strain, curve.get(int(c[2])))
+        for c in self.deck.of("PSOLID"):
+            self.section[int(c[1])] = Section(None, material[int(c[2])], False, curve.get(int(c[2])))
+
+    def supports(self):
+        """Held directions and the leaders of tied ones."""
+        cards = self.deck.of("SPC1") + self.deck.of("SPC")
+        chosen = self.deck.case.get("SPC", next((int(c[1]) for c in cards), 0))
+        named = [(int(c[1]), at(c, 8)) for c in self.deck.of("GRID")]
+        for c in cards:
+            if int(c[1]) == chosen:
+                named += ([(g, c[2]) for g in ids(c[3:])] if c[0] == "SPC1"
+                          else [(int(c[i]), c[i + 1]) for i in (2, 5) if at(c, i)])
+        self.held = {(node, int(digit) - 1) for node, digits in named for digit in set(digits) & {"1", "2"}}
+        self.leader = {}
+        for c in self.deck.of("RBE2"):
+            for node in ids(c[4:]):
+                for digit in set(c[3]) & {"1", "2"}:
+                    self.leader[node, int(digit) - 1] = (int(c[2]), int(digit) - 1)
+
+    def pairs(self):
+        frame = {int(c[1]): x_axis([real(at(c, i)) for i in range(3, 12)]) for c in self.deck.of("CORD2R")}
+        given = {int(c[1]): real(at(c, 2)) for c in self.deck.of("PGAP")}
+        within = {node for _, nodes, _ in self.element.values() for node in nodes}
+        self.pair, self.contacts = {}, []
+        for c in self.deck.of("CGAP"):
+            a, b = int(c[3]), int(c[4])
+            along = (self.x[b][0] - self.x[a][0], self.x[b][1] - self.x[a][1])
+            n = frame[int(c[8])] if at(c, 8) else tuple(v / math.hypot(*along) for v in along)
+            gap = given[int(c[2] or c[1])]
+            if self.parameter.get("GAPGEOM") == "YES":
+                gap += along[0] * n[0] + along[1] * n[1]
+            self.pair[int(c[1])] = Pair(gap, n, {a: -1.0, b: 1.0}, b if b in within else a)
+        self.contacts.append(list(self.pair))
+        for contact in pairs_of_lines(self.deck, self.parameter, self.side, self.x, self.held):
+            self.contacts.append([node for node, *_ in contact])
+            for node, shares, n, gap in contact:
+                if node in self.pair:
+                    raise DeckError(f"two pairs have id {node}")
+                self.pair[node] = Pair(gap, n, {node: 1.0, **{other: -share for other, share in shares.items()}}, node)
+
+    def loads(self):
+        self.load = {}
+        cards = self.deck.of("FORCE") + self.deck.of("PLOADX1")
+        chosen = self.deck.case.get("LOAD", next((int(c[1]) for c in cards), 0))
+        for c in cards:
+            if int(c[1]) != chosen:
+                continue
+            if c[0] == "FORCE":
+                for i in (0, 1):
+                    self.add(int(c[2]), i, real(c[4]) * real(at(c, 5 + i)))
+            else:
+                first, pa = int(c[5]), real(c[3])
+                side = self.side[frozenset((first, int(c[6])))]
+                for node, i, value in edge_forces(side, self.x, first, (pa, real(c[4], pa)), real(at(c, 7))):
+                    self.add(node, i, value)
+
+    def add(self, node, i, value):
+        self.load.setdefault((node, i), []).append(value)
+
+
+def x_axis(p):
+    """x-axis of a CORD2R in the plane, from the nine coordinates of A, B, C."""
+    z = [p[3 + i] - p[i] for i in range(3)]
+    length = math.hypot(*z)
+    z = [v / length for v in z]
+    c = [p[6 + i] - p[i] for i in range(3)]
+    along = sum(c[i] * z[i] for i in range(3))
+    x = [c[i] - along * z[i] for i in range(3)]
+    length = math.hypot(*x)
+    return x[0] / length, x[1] / length
