@@ -100,9 +100,10 @@ def boundary(mesh):
 
 
 def walk(mesh, begin, end):
-    """The nodes of the boundary from the one nearest to a place to that nearest to another, the body on the left."""
+    """The nodes of the boundary from the corner nearest to a place to that nearest to another, the body on the left."""
     follows = boundary(mesh)
-    node, last = (min(follows, key=lambda n: math.dist(mesh.point[n], place)) for place in (begin, end))
+    corners = {n for nodes in mesh.element for n in (nodes[:3] if len(nodes) == 6 else nodes)}
+    node, last = (min(corners & follows.keys(), key=lambda n: math.dist(mesh.point[n], place)) for place in (begin, end))
     nodes = [node]
     while node != last or len(nodes) == 1:
         node = follows[node]
