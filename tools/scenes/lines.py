@@ -1,4 +1,6 @@
 """Joints of two bodies whose boundary lines touch; their meshes do not match."""
+import math
+
 from .deck import Deck
 from .fill import arc, fill, finest, segment
 from .mesh import first_free
@@ -18,7 +20,7 @@ def nearest(mesh, place, nodes=None):
     return min(nodes or range(len(mesh.point)), key=lambda n: (mesh.point[n][0] - place[0]) ** 2 + (mesh.point[n][1] - place[1]) ** 2)
 
 
-def joint_lines(load=110.0, pull=400.0, clearance=0.01, mouth=1.5, tip=1.5, fine=0.16, growth=0.5, elastic=False):
+def joint_lines(load=110.0, pull=400.0, clearance=0.01, mouth=3.0, tip=3.0, fine=0.16, growth=0.5, elastic=False):
     """Tongue in a socket, bent and pulled."""
     inner = 4.0 + clearance
     tongue = fill([("below", arc((-28.0 + tip, -4.0 + tip), tip, 180, 270)),
@@ -67,34 +69,37 @@ def joint_lines(load=110.0, pull=400.0, clearance=0.01, mouth=1.5, tip=1.5, fine
     return deck
 
 
-def ring_joint(press=20000.0, inside=20.0, clearance=0.02, fine=0.3, growth=0.5):
+def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, mouth=6.0, fine=0.12, growth=0.5):
     """Spigot and socket of a pipe: rings, pressed together and under inner pressure."""
-    bore, wall, deep, long, edge = 50.0, 6.0, 30.0, 120.0, 1.2
+    bore, wall, deep, long, flat = 50.0, 6.0, 30.0, 120.0, 2.0
     outer = bore + wall
-    wide = outer + clearance
-    spigot = fill([("nose", arc((bore + edge, edge), edge, 180, 270)), ("nose", segment((bore + edge, 0.0), (outer - edge, 0.0))),
-                   ("nose", arc((outer - edge, edge), edge, -90, 0)),
-                   ("outer", segment((outer, edge), (outer, deep + 4.0))), (None, segment((outer, deep + 4.0), (outer, long))),
-                   ("end", segment((outer, long), (bore, long))), ("bore", segment((bore, long), (bore, edge)))],
-                  finest([((bore + edge, 0.0), fine, 0.5), ((outer - edge, 0.0), fine, 0.5), ((outer, deep - 1.5), 1.3 * fine, 1.0)],
-                         growth, 2.5))
+    wide, middle = outer + clearance, bore + wall / 2
+    turn = math.degrees(math.asin(flat / crown))
+    high = crown - math.sqrt(crown * crown - flat * flat)  # of the nose's edges above its middle
+    spigot = fill([(None, segment((bore, high + 1.0), (middle - flat, high))),
+                   ("nose", arc((middle, crown), crown, -90 - turn, -90)), ("nose", arc((middle, crown), crown, -90, -90 + turn)),
+                   (None, segment((middle + flat, high), (outer, high + 1.0))),
+                   ("outer", segment((outer, high + 1.0), (outer, deep + 4.0))), (None, segment((outer, deep + 4.0), (outer, long))),
+                   ("end", segment((outer, long), (bore, long))), ("bore", segment((bore, long), (bore, high + 1.0)))],
+                  finest([((middle, 0.0), fine / 2, 3 * fine), ((outer, deep - mouth), 1.3 * fine, 3 * fine)], growth, 2.5))
     socket = fill([("shoulder", segment((wide - 1.0, 0.0), (bore, 0.0))), ("bore", segment((bore, 0.0), (bore, -60.0))),
                    ("end", segment((bore, -60.0), (bore + 10.0, -60.0))), (None, segment((bore + 10.0, -60.0), (bore + 10.0, -16.0))),
                    (None, segment((bore + 10.0, -16.0), (wide + 10.0, -10.0))), (None, segment((wide + 10.0, -10.0), (wide + 10.0, deep))),
-                   (None, segment((wide + 10.0, deep), (wide + 1.5, deep))), ("inner", arc((wide + 1.5, deep - 1.5), 1.5, 90, 180)),
-                   ("inner", segment((wide, deep - 1.5), (wide, 1.0))), (None, arc((wide - 1.0, 1.0), 1.0, 0, -90))],
-                  finest([((bore + edge, 0.0), 1.3 * fine, 0.5), ((outer - edge, 0.0), 1.3 * fine, 0.5),
-                          ((wide, deep - 1.5), fine, 1.0), ((wide - 0.5, 0.5), 1.3 * fine, 0.5)], growth, 4.0))
-    area = 3.14159265358979 * (outer ** 2 - bore ** 2)
+                   (None, segment((wide + 10.0, deep), (wide + mouth, deep))), ("inner", arc((wide + mouth, deep - mouth), mouth, 90, 180)),
+                   ("inner", segment((wide, deep - mouth), (wide, 1.0))), (None, arc((wide - 1.0, 1.0), 1.0, 0, -90))],
+                  finest([((middle, 0.0), 1.3 * fine / 2, 3 * fine), ((wide, deep - mouth), fine, 3 * fine),
+                          ((wide - 0.5, 0.5), 0.5, 0.5)], growth, 4.0))
+    area = math.pi * (outer ** 2 - bore ** 2)
     along = -press / area
     hoop = inside * 2 * bore ** 2 / (outer ** 2 - bore ** 2)
     grows = outer / 210000.0 * (hoop - 0.3 * along)
+    b = math.sqrt(8 * press / (2 * math.pi * middle) * crown * 0.91 / (math.pi * 210000.0))
     deck = Deck("SPIGOT AND SOCKET, RINGS", [
         f"A pipe of radii {bore:g} and {outer:g} stands {deep:g} deep in the socket of another, clearance {clearance:g}; pressed down by "
         f"{press:g} in all, inner pressure {inside:g} on both bores. Rings of six nodes (x: radius, y: axis; forces are totals of "
-        "the ring). Two contacts: the spigot's nose on the shoulder, its outside in the socket. Its way down is the SUPORT.",
-        f"Known: the shoulder carries {press:g}, the outside of the spigot, pressed by nothing along the axis, does not; far from the "
-        f"joint the pipe's outside grows by {grows:.7f} (Lame)."], from_geometry=False, rings=True)
+        "the ring). Two contacts: the spigot's nose, rounded, on the shoulder, its outside in the socket. Its way down is the SUPORT.",
+        f"Known: the shoulder carries {press:g}; there, by Hertz, p_max {press / (math.pi * middle) / (math.pi * b):.2f}, half-width {b:.5f}; far "
+        f"from the joint the pipe's outside grows by {grows:.7f} (Lame)."], from_geometry=False, rings=True)
     one, two = bodies(deck, ("Spigot", spigot), ("Socket", socket))
     deck.material(1, 210000.0, 0.3)
     deck.material(2, 210000.0, 0.3)
@@ -112,13 +117,15 @@ def ring_joint(press=20000.0, inside=20.0, clearance=0.02, fine=0.3, growth=0.5)
     return deck
 
 
-def flange(bolt=960.0, pull=400.0, fine=0.6, growth=0.5):
+def flange(bolt=960.0, pull=400.0, edge=30.0, fine=0.25, growth=0.5):
     """Bolted flanges that open: half of a T-stub on another."""
     def half(thick, width, high, up, name, size):
         """Web at x = 0..5, flange up to `width`; upwards, or its image below."""
         s = 1 if up else -1
-        curves = [(name, segment((0.0, 0.0), (width - 1.0, 0.0))), (name, arc((width - 1.0, s * 1.0), 1.0, -s * 90, 0)),
-                  (None, segment((width, s * 1.0), (width, s * thick))), (None, segment((width, s * thick), (38.0, s * thick))),
+        turn = math.degrees(math.asin(5.0 / edge))
+        low = edge - math.sqrt(edge * edge - 25.0)
+        curves = [(name, segment((0.0, 0.0), (width - 5.0, 0.0))), (name, arc((width - 5.0, s * edge), edge, -s * 90, s * (turn - 90))),
+                  (None, segment((width, s * low), (width, s * thick))), (None, segment((width, s * thick), (38.0, s * thick))),
                   ("head", segment((38.0, s * thick), (26.0, s * thick))), (None, segment((26.0, s * thick), (10.0, s * thick))),
                   (None, arc((10.0, s * (thick + 5.0)), 5.0, -s * 90, -s * 180)),
                   (None, segment((5.0, s * (thick + 5.0)), (5.0, s * high))), ("end", segment((5.0, s * high), (0.0, s * high))),
@@ -127,12 +134,12 @@ def flange(bolt=960.0, pull=400.0, fine=0.6, growth=0.5):
             curves = [(n, lambda t, c=c: c(1.0 - t)) for n, c in reversed(curves)]
         return fill(curves, size)
 
-    upper = half(12.0, 50.0, 50.0, True, "joint", finest([((49.0, 0.0), fine, 1.0), ((32.0, 0.0), 2.5 * fine, 10.0)], growth, 5.0))
-    lower = half(18.0, 56.0, 50.0, False, "joint", finest([((49.0, 0.0), 1.4 * fine, 1.0), ((32.0, 0.0), 3.5 * fine, 10.0)], growth, 6.0))
+    upper = half(12.0, 50.0, 50.0, True, "joint", finest([((45.0, 0.0), fine, 1.0), ((32.0, 0.0), 6 * fine, 10.0)], growth, 5.0))
+    lower = half(18.0, 56.0, 50.0, False, "joint", finest([((45.0, 0.0), 1.3 * fine, 1.0), ((32.0, 0.0), 8 * fine, 10.0)], growth, 6.0))
     deck = Deck("BOLTED FLANGES, RECEDING JOINT", [
         f"Half of two flanges (x = 0: symmetry), 12 and 18 thick, drawn together by a bolt of {bolt:g} a mm (pressure under head and nut, x = 26 to "
         f"38) and pulled apart by {pull:g} at the webs. All gaps are zero at first; the joint opens at the web and is pressed at its outer "
-        "edge (prying). Outer edges rounded.",
+        f"edge (prying). There the faces fall off with R = {edge:g} over the last 5, so that pressures converge.",
         f"Known: the contact force is bolt less pull, {bolt - pull:g}."], from_geometry=False)
     one, two = bodies(deck, ("Upper flange", upper), ("Lower flange", lower))
     deck.material(1, 210000.0, 0.3)
