@@ -51,7 +51,7 @@ def patch(bottom, top, left, right):
 
 
 def join(patches, element):
-    """One mesh of patches that share sides. `element`: tria3, tria6, quad4."""
+    """One mesh of patches that share sides. `element`: ctria3, ctria6, cquad4."""
     point, found, cells = [], {}, []
     size = max(abs(x) for rows in patches for row in rows for place in row for x in place)
     grain = 1e-7 * size
@@ -69,13 +69,13 @@ def join(patches, element):
             for i in range(0, len(rows[0]) - 1, 2):
                 a, b, c, d = rows[j][i], rows[j][i + 2], rows[j + 2][i + 2], rows[j + 2][i]
                 ab, bc, cd, da, m = rows[j][i + 1], rows[j + 1][i + 2], rows[j + 2][i + 1], rows[j + 1][i], rows[j + 1][i + 1]
-                if element == "quad4":
+                if element == "cquad4":
                     wanted = [(a, b, c, d)]
                 elif math.dist(a, c) <= math.dist(b, d) * (1 + 1e-9):
                     wanted = [(a, b, c, ab, bc, m), (a, c, d, m, cd, da)]
                 else:
                     wanted = [(a, b, d, ab, m, da), (b, c, d, bc, cd, m)]
-                cells += [nodes[:3] if element == "tria3" else nodes for nodes in wanted]
+                cells += [nodes[:3] if element == "ctria3" else nodes for nodes in wanted]
     return Mesh(point, [tuple(number(place) for place in nodes) for nodes in cells], {})
 
 

@@ -24,7 +24,7 @@ def persson(half):
             2 * b / (math.pi * math.sqrt(c)) + math.log((math.sqrt(c) + b) / (math.sqrt(c) - b)) / (2 * math.pi * b * b * c))
 
 
-def pin_in_lug(half=45.0, around=32, coarser=0.75, size=30.0, element="tria6"):
+def pin_in_lug(half=45.0, around=32, coarser=0.75, size=30.0, element="ctria6"):
     """Pin in the hole of a large lug, unlike meshes: Persson's half angle is chosen, the clearance follows."""
     radius, load, stiff = 10.0, 1000.0, STEEL / (1 - 0.09)
     slack, top = persson(half)
@@ -44,7 +44,7 @@ def pin_in_lug(half=45.0, around=32, coarser=0.75, size=30.0, element="tria6"):
                             straight(places[k + 1], outer[-1], depth)))
     pin = join(square, element)
     hole = radius + clearance
-    outward = halves(graded(math.pi * hole / lug_around, 1.5 if element == "tria6" else 1.3, (size - 1) * radius))
+    outward = halves(graded(math.pi * hole / lug_around, 1.5 if element == "ctria6" else 1.3, (size - 1) * radius))
     turns = even(lug_around)
     lug = join([patch(arc((0.0, 0.0), hole, 90, -90, turns), arc((0.0, 0.0), size * radius, 90, -90, turns),
                       straight((0.0, hole), (0.0, size * radius), outward), straight((0.0, -hole), (0.0, -size * radius), outward))], element)
@@ -69,10 +69,10 @@ def pin_in_lug(half=45.0, around=32, coarser=0.75, size=30.0, element="tria6"):
     return deck
 
 
-def nafems(across=6.0, coarser=0.7, element="tria6"):
+def nafems(across=6.0, coarser=0.7, element="ctria6"):
     """NAFEMS R0094 no. 1: a steel cylinder on an aluminium block."""
     radius, b = 50.0, 6.21463
-    growth = 1.5 if element == "tria6" else 1.25
+    growth = 1.5 if element == "ctria6" else 1.25
 
     def around_core(across, surface, deep, long, below):
         """A core of squares at the contact and two patches round it, right of the axis, y into the body. `surface`: places on it for
@@ -114,15 +114,15 @@ def nafems(across=6.0, coarser=0.7, element="tria6"):
     return deck
 
 
-def layer_lines(n=20, element="tria6"):
+def layer_lines(n=20, element="ctria6"):
     """Layer on a rigid base without friction, point load: receding contact of lines."""
     step = 0.85699 / (n - 0.5)
     xs = [step * i for i in range(int(1.6 / step) + 1)]
     xs += [xs[-1] + x for x in graded(step * 1.2, 1.3, 6.0 - xs[-1])[1:]]
-    rows = 10 if element == "tria6" else 16
+    rows = 10 if element == "ctria6" else 16
     layer = grid(xs, [0.5 * (1 - math.cos(math.pi * j / rows)) for j in range(rows + 1)], element)
     parts = round(0.7 * 1.6 / step)
-    base = grid([1.6 * i / parts for i in range(parts + 1)], [-0.1, 0.0], "tria3" if element == "tria6" else element)
+    base = grid([1.6 * i / parts for i in range(parts + 1)], [-0.1, 0.0], "ctria3" if element == "ctria6" else element)
     deck = Deck("LAYER ON A RIGID BASE, CONTACT BETWEEN LINES", [
         "An elastic layer of height h = 1 lies on a rigid frictionless base (elements whose nodes are all held); P = 100 on a point of "
         "its surface. It lifts off at the sides: receding contact, whose width does not depend on P. Half of the scene, x >= 0; half of P.",
@@ -141,7 +141,7 @@ def layer_lines(n=20, element="tria6"):
     return deck
 
 
-def flat_match(lines=True, element="quad4"):
+def flat_match(lines=True, element="cquad4"):
     """Two blocks with matching meshes at a flat line, pressed by an uneven pressure; as pairs, or as lines."""
     xs = [0.0, 0.6, 1.3, 2.0, 2.8, 3.5, 4.0]
     lower, upper = grid([-2.0, -1.2, -0.5] + xs + [4.6, 5.4, 6.5], [-3.0, -2.0, -1.2, -0.5, 0.0], element), grid(xs, [0.0, 0.6, 1.4, 2.5], element)
