@@ -24,11 +24,13 @@ def finest(places, growth, largest):
 
 
 def divide(curve, size, samples=4000):
-    """Parameters that cut a curve into sides of this size."""
+    """Parameters that cut a curve into sides of this size, that turn by no more than 30 degrees."""
     places = [curve(i / samples) for i in range(samples + 1)]
-    count = [0.0]
+    count, way = [0.0], None
     for p, q in zip(places, places[1:]):
-        count.append(count[-1] + math.dist(p, q) / size((p[0] + q[0]) / 2, (p[1] + q[1]) / 2))
+        before, way = way, math.atan2(q[1] - p[1], q[0] - p[0])
+        turn = 0.0 if before is None else abs(math.remainder(way - before, 2 * math.pi))
+        count.append(count[-1] + max(math.dist(p, q) / size((p[0] + q[0]) / 2, (p[1] + q[1]) / 2), turn / math.radians(30.0)))
     parts = max(1, round(count[-1]))
     cuts, k = [0.0], 0
     for i in range(1, parts):

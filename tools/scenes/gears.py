@@ -70,12 +70,12 @@ def tooth(module, teeth, up, fine, growth, angle=20.0):
     return fill(pieces, finest(spots, growth, 0.8 * module))
 
 
-def gears(module=4.0, z1=20, z2=40, load=600.0, across=3.5, coarser=1.3, growth=0.5):
+def gears(module=4.0, z1=20, z2=40, load=600.0, across=3.5, finer=1.3, growth=0.5):
     """A pair of involute teeth that touch at the pitch point."""
     radius = [module * z / 2 * math.sin(math.radians(20.0)) for z in (z1, z2)]
     b, p0 = hertz(load, 1 / radius[0] + 1 / radius[1])
     one_mesh = tooth(module, z1, True, b / across, growth)
-    two_mesh = tooth(module, z2, False, coarser * b / across, growth)
+    two_mesh = tooth(module, z2, False, b / across / finer, growth)
     deck = Deck("TEETH OF TWO SPUR GEARS", [
         f"A tooth of a gear of {z1} teeth and one of {z2}, module {module:g}, pressure angle 20 degrees, that touch at the pitch point; plane strain. "
         f"The line of action is y. The lower rim moves as one along it, pushed by {load:g} a mm; the upper rim is held. Lines of "
@@ -97,7 +97,7 @@ def gears(module=4.0, z1=20, z2=40, load=600.0, across=3.5, coarser=1.3, growth=
     return deck
 
 
-def roller(radius=5.0, inner=20.0, load=1000.0, across=4.0, coarser=1.35, growth=0.5):
+def roller(radius=5.0, inner=20.0, load=1000.0, across=3.5, finer=1.3, growth=0.5):
     """A roller between the races of a bearing, half of it."""
     outer, wall, opening = inner + 2 * radius, 8.0, 25.0
     wide = [hertz(load, 1 / radius + sign / race) for sign, race in ((1, inner), (-1, outer))]
@@ -114,8 +114,8 @@ def roller(radius=5.0, inner=20.0, load=1000.0, across=4.0, coarser=1.35, growth
                      ("outside", arc((0.0, 0.0), outside, begin, 90)), ("axis", segment((0.0, outside), (0.0, inside)))],
                     finest([(place, *size)], growth, 2.0))
 
-    inside = sector(inner - wall, inner, low, (coarser * b1 / across, 1.5 * b1))
-    outside = sector(outer, outer + wall, high, (coarser * b2 / across, 1.5 * b2))
+    inside = sector(inner - wall, inner, low, (b1 / across / finer, 1.5 * b1))
+    outside = sector(outer, outer + wall, high, (b2 / across / finer, 1.5 * b2))
     deck = Deck("ROLLER BETWEEN TWO RACES", [
         f"A roller, R = {radius:g}, between the inner race of a bearing (R = {inner:g}, convex) and the outer one (R = {outer:g}, hollow); plane "
         f"strain, half of it, x >= 0. The bore of the inner race moves up as one with half of {load:g} a mm; the outside of the outer race "

@@ -1,4 +1,5 @@
-"""Contact between lines on ordered meshes of any element."""
+"""Contact between lines on ordered meshes of any element. The slave line is the coarser one, the master's mesh `finer` times finer: the
+other way round pressures ripple."""
 import math
 
 from .deck import Deck
@@ -24,7 +25,7 @@ def persson(half):
             2 * b / (math.pi * math.sqrt(c)) + math.log((math.sqrt(c) + b) / (math.sqrt(c) - b)) / (2 * math.pi * b * b * c))
 
 
-def pin_in_lug(half=45.0, around=32, coarser=0.75, size=30.0, element="ctria6"):
+def pin_in_lug(half=45.0, around=24, finer=1.3, size=30.0, element="ctria6"):
     """Pin in the hole of a large lug, unlike meshes: Persson's half angle is chosen, the clearance follows."""
     radius, load, stiff = 10.0, 1000.0, STEEL / (1 - 0.09)
     slack, top = persson(half)
@@ -33,7 +34,7 @@ def pin_in_lug(half=45.0, around=32, coarser=0.75, size=30.0, element="ctria6"):
     quarter, c = around // 4, 0.55 * radius
     corner = c / math.sqrt(2)
     depth = even(max(2, round(around * 0.16)))
-    s, lug_around = even(quarter), 2 * round(around * coarser / 2)
+    s, lug_around = even(quarter), 2 * round(around * finer / 2)
     square = [patch(straight((0.0, -corner), (corner, -corner), s), straight((0.0, corner), (corner, corner), s),
                     straight((0.0, -corner), (0.0, corner), even(2 * quarter)), straight((corner, -corner), (corner, corner), even(2 * quarter)))]
     places = [(0.0, -corner), (corner, -corner), (corner, corner), (0.0, corner)]
@@ -69,7 +70,7 @@ def pin_in_lug(half=45.0, around=32, coarser=0.75, size=30.0, element="ctria6"):
     return deck
 
 
-def nafems(across=6.0, coarser=0.7, element="ctria6"):
+def nafems(across=5.0, finer=1.4, element="ctria6"):
     """NAFEMS R0094 no. 1: a steel cylinder on an aluminium block."""
     radius, b = 50.0, 6.21463
     growth = 1.5 if element == "ctria6" else 1.25
@@ -92,7 +93,7 @@ def nafems(across=6.0, coarser=0.7, element="ctria6"):
         return radius * math.sin(angle), radius * (1 - math.cos(angle))
 
     disc = join(around_core(across, on_disc, (25.0, radius), radius * math.pi / 2, (0.0, radius)), element)
-    block = around_core(across * coarser, lambda s: (100.0 * s, 0.0), (100.0, 200.0), 100.0, (0.0, 200.0))
+    block = around_core(across * finer, lambda s: (100.0 * s, 0.0), (100.0, 200.0), 100.0, (0.0, 200.0))
     below = join([[[(x, -y) for x, y in row] for row in rows] for rows in block], element)
     deck = Deck("CYLINDER ON A BLOCK, CONTACT BETWEEN LINES", [
         "A steel cylinder, R = 50 mm, on an aluminium block, 200 x 200 mm; 35 kN a mm of length (NAFEMS R0094 no. 1). Half of "
@@ -121,7 +122,7 @@ def layer_lines(n=20, element="ctria6"):
     xs += [xs[-1] + x for x in graded(step * 1.2, 1.3, 6.0 - xs[-1])[1:]]
     rows = 10 if element == "ctria6" else 16
     layer = grid(xs, [0.5 * (1 - math.cos(math.pi * j / rows)) for j in range(rows + 1)], element)
-    parts = round(0.7 * 1.6 / step)
+    parts = round(1.3 * 1.6 / step)
     base = grid([1.6 * i / parts for i in range(parts + 1)], [-0.1, 0.0], "ctria3" if element == "ctria6" else element)
     deck = Deck("LAYER ON A RIGID BASE, CONTACT BETWEEN LINES", [
         "An elastic layer of height h = 1 lies on a rigid frictionless base (elements whose nodes are all held); P = 100 on a point of "
