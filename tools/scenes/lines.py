@@ -20,33 +20,38 @@ def nearest(mesh, place, nodes=None):
     return min(nodes or range(len(mesh.point)), key=lambda n: (mesh.point[n][0] - place[0]) ** 2 + (mesh.point[n][1] - place[1]) ** 2)
 
 
-def joint_lines(load=110.0, pull=400.0, clearance=0.01, mouth=3.0, tip=3.0, fine=0.2, growth=0.5, elastic=False):
+def lip(radius, long):
+    """An edge that falls off along an arc: by how much, and the angle in degrees to which it turns."""
+    turn = math.asin(long / radius)
+    return radius * (1 - math.cos(turn)), math.degrees(turn)
+
+
+def joint_lines(load=110.0, pull=400.0, clearance=0.01, radius=30.0, edge=4.0, fine=0.16, growth=0.5, elastic=False):
     """Tongue in a socket, bent and pulled."""
-    inner = 4.0 + clearance
-    tongue = fill([("below", arc((-28.0 + tip, -4.0 + tip), tip, 180, 270)),
-                   ("below", segment((-28.0 + tip, -4.0), (4.0, -4.0))), (None, segment((4.0, -4.0), (30.0, -4.0))),
+    inner, tip = 4.0 + clearance, -28.0 + edge
+    fall, turn = lip(radius, edge)
+    tongue = fill([("below", arc((tip, -4.0 + radius), radius, -90 - turn, -90)),
+                   ("below", segment((tip, -4.0), (4.0, -4.0))), (None, segment((4.0, -4.0), (30.0, -4.0))),
                    ("end", segment((30.0, -4.0), (30.0, 4.0))), (None, segment((30.0, 4.0), (4.0, 4.0))),
-                   ("above", segment((4.0, 4.0), (-28.0 + tip, 4.0))), ("above", arc((-28.0 + tip, 4.0 - tip), tip, 90, 180)),
-                   ("face", segment((-28.0, 4.0 - tip), (-28.0, 0.0))), ("face", segment((-28.0, 0.0), (-28.0, -4.0 + tip)))],
-                  finest([((-mouth, -4.0), fine / 1.3, 0.5), ((-28.0 + tip, 4.0), fine, 0.5),
-                          ((-mouth, 4.0), 5 * fine, 0.0), ((-28.0 + tip, -4.0), 5 * fine, 0.0)], growth, 2.5))
-    socket = fill([("below", segment((-29.0, -inner), (-mouth, -inner))), ("below", arc((-mouth, -inner - mouth), mouth, 90, 0)),
-                   (None, segment((0.0, -inner - mouth), (0.0, -20.0))), (None, segment((0.0, -20.0), (-40.0, -20.0))),
+                   ("above", segment((4.0, 4.0), (tip, 4.0))), ("above", arc((tip, 4.0 - radius), radius, 90, 90 + turn)),
+                   ("face", segment((-28.0, 4.0 - fall), (-28.0, 0.0))), ("face", segment((-28.0, 0.0), (-28.0, -4.0 + fall)))],
+                  finest([((-edge, -4.0), fine / 1.3, 0.7), ((tip, 4.0), fine, 0.7)], growth, 2.5))
+    socket = fill([("below", segment((-29.0, -inner), (-edge, -inner))), ("below", arc((-edge, -inner - radius), radius, 90, 90 - turn)),
+                   (None, segment((0.0, -inner - fall), (0.0, -20.0))), (None, segment((0.0, -20.0), (-40.0, -20.0))),
                    ("wall", segment((-40.0, -20.0), (-40.0, 20.0))), (None, segment((-40.0, 20.0), (0.0, 20.0))),
-                   (None, segment((0.0, 20.0), (0.0, inner + mouth))), ("above", arc((-mouth, inner + mouth), mouth, 0, -90)),
-                   ("above", segment((-mouth, inner), (-29.0, inner))), (None, arc((-29.0, inner - 1.0), 1.0, 90, 180)),
+                   (None, segment((0.0, 20.0), (0.0, inner + fall))), ("above", arc((-edge, inner + radius), radius, -90 + turn, -90)),
+                   ("above", segment((-edge, inner), (-29.0, inner))), (None, arc((-29.0, inner - 1.0), 1.0, 90, 180)),
                    (None, segment((-30.0, inner - 1.0), (-30.0, 1.0 - inner))), (None, arc((-29.0, 1.0 - inner), 1.0, 180, 270))],
-                  finest([((-mouth, -inner), fine, 0.5), ((-28.0 + tip, inner), fine / 1.3, 0.5), ((-mouth, inner), 5 * fine, 0.0),
-                          ((-29.0, -inner), 8 * fine, 0.0), ((-29.0, inner), 8 * fine, 0.0)], growth, 6.0))
-    lever = 30.0 + mouth
+                  finest([((-edge, -inner), fine, 0.7), ((tip, inner), fine / 1.3, 0.7)], growth, 6.0))
+    lever, apart = 30.0 + edge, 28.0 - 2 * edge
     deck = Deck("INSERT JOINT, CONTACT BETWEEN LINES", [
         f"A steel tongue, 8 high, sits 28 deep in a socket with a clearance of {clearance:g} above and below. At its end, 30 outside, "
         f"it is bent by {load:g} a mm and pulled by {pull:g}, which a tie at its inner end takes. Up and down and against turning only "
         "contact holds it: two SUPORT freedoms. Lines of unlike meshes; the slave is the coarser one at either place: the "
-        "socket below, the tongue above. The socket's mouth and the tongue's edges are rounded, so that pressures converge.",
+        "socket below, the tongue above. Edges fall off along arcs, so that pressures converge.",
         ("Elastic." if elastic else "Bilinear, E = 210000, yield stress 240, H = 4000.") + f" Known by statics: it touches below at the mouth "
         f"and above at its inner end, the resultants differ by the load; with the two at the ends of the straight parts, {lever:g} and "
-        f"{28.0 - tip - mouth:g} apart: {load * (1 + lever / (28.0 - tip - mouth)):.1f} and {load * lever / (28.0 - tip - mouth):.1f}."],
+        f"{apart:g} apart: {load * (1 + lever / apart):.1f} and {load * lever / apart:.1f}."],
         from_geometry=False)
     one, two = bodies(deck, ("Tongue", tongue), ("Socket", socket))
     for number in (1, 2):
@@ -59,7 +64,7 @@ def joint_lines(load=110.0, pull=400.0, clearance=0.01, mouth=3.0, tip=3.0, fine
     deck.card("SUPORT", one + tied, 2, one + end, 2)
     deck.press(tongue, tongue.line["end"], load / 8.0, one, one, 90.0)
     deck.press(tongue, tongue.line["end"], -pull / 8.0, one, one)
-    deck.press(tongue, tongue.line["face"], -pull / (8.0 - 2 * tip), one, one)
+    deck.press(tongue, tongue.line["face"], -pull / (8.0 - 2 * fall), one, one)
     deck.segments(1, socket.line["below"], two)
     deck.segments(2, tongue.line["below"])
     deck.segments(3, tongue.line["above"])
@@ -69,25 +74,25 @@ def joint_lines(load=110.0, pull=400.0, clearance=0.01, mouth=3.0, tip=3.0, fine
     return deck
 
 
-def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, mouth=6.0, fine=0.24, growth=0.5):
+def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, radius=30.0, edge=5.0, fine=0.24, growth=0.5):
     """Spigot and socket of a pipe: rings, pressed together and under inner pressure."""
     bore, wall, deep, long, flat = 50.0, 6.0, 30.0, 120.0, 2.0
     outer = bore + wall
     wide, middle = outer + clearance, bore + wall / 2
-    turn = math.degrees(math.asin(flat / crown))
-    high = crown - math.sqrt(crown * crown - flat * flat)  # of the nose's edges above its middle
+    (high, turn), (fall, turned) = lip(crown, flat), lip(radius, edge)
     spigot = fill([(None, segment((bore, high + 1.0), (middle - flat, high))),
                    ("nose", arc((middle, crown), crown, -90 - turn, -90)), ("nose", arc((middle, crown), crown, -90, -90 + turn)),
                    (None, segment((middle + flat, high), (outer, high + 1.0))),
                    ("outer", segment((outer, high + 1.0), (outer, deep + 4.0))), (None, segment((outer, deep + 4.0), (outer, long))),
                    ("end", segment((outer, long), (bore, long))), ("bore", segment((bore, long), (bore, high + 1.0)))],
-                  finest([((middle, 0.0), fine / 2, 3 * fine), ((outer, deep - mouth), fine / 1.3, 3 * fine)], growth, 2.5))
+                  finest([((middle, 0.0), fine / 2, 3 * fine), ((outer, deep - edge), fine / 1.3, 3 * fine)], growth, 2.5))
     socket = fill([("shoulder", segment((wide - 1.0, 0.0), (bore, 0.0))), ("bore", segment((bore, 0.0), (bore, -60.0))),
                    ("end", segment((bore, -60.0), (bore + 10.0, -60.0))), (None, segment((bore + 10.0, -60.0), (bore + 10.0, -16.0))),
                    (None, segment((bore + 10.0, -16.0), (wide + 10.0, -10.0))), (None, segment((wide + 10.0, -10.0), (wide + 10.0, deep))),
-                   (None, segment((wide + 10.0, deep), (wide + mouth, deep))), ("inner", arc((wide + mouth, deep - mouth), mouth, 90, 180)),
-                   ("inner", segment((wide, deep - mouth), (wide, 1.0))), (None, arc((wide - 1.0, 1.0), 1.0, 0, -90))],
-                  finest([((middle, 0.0), fine / 2.6, 3 * fine), ((wide, deep - mouth), fine, 3 * fine),
+                   (None, segment((wide + 10.0, deep), (wide + fall, deep))),
+                   ("inner", arc((wide + radius, deep - edge), radius, 180 - turned, 180)),
+                   ("inner", segment((wide, deep - edge), (wide, 1.0))), (None, arc((wide - 1.0, 1.0), 1.0, 0, -90))],
+                  finest([((middle, 0.0), fine / 2.6, 3 * fine), ((wide, deep - edge), fine, 3 * fine),
                           ((wide - 0.5, 0.5), 0.5, 0.5)], growth, 4.0))
     area = math.pi * (outer ** 2 - bore ** 2)
     along = -press / area
@@ -117,14 +122,15 @@ def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, mouth=6.0
     return deck
 
 
-def flange(bolt=960.0, pull=400.0, edge=30.0, fine=0.4, growth=0.5):
+def flange(bolt=960.0, pull=400.0, radius=100.0, edge=10.0, fine=0.4, growth=0.5):
     """Bolted flanges that open: half of a T-stub on another."""
+    low, turn = lip(radius, edge)
+
     def half(thick, width, high, up, name, size):
         """Web at x = 0..5, flange up to `width`; upwards, or its image below."""
         s = 1 if up else -1
-        turn = math.degrees(math.asin(5.0 / edge))
-        low = edge - math.sqrt(edge * edge - 25.0)
-        curves = [(name, segment((0.0, 0.0), (width - 5.0, 0.0))), (name, arc((width - 5.0, s * edge), edge, -s * 90, s * (turn - 90))),
+        curves = [(name, segment((0.0, 0.0), (width - edge, 0.0))),
+                  (name, arc((width - edge, s * radius), radius, -s * 90, s * (turn - 90))),
                   (None, segment((width, s * low), (width, s * thick))), (None, segment((width, s * thick), (38.0, s * thick))),
                   ("head", segment((38.0, s * thick), (26.0, s * thick))), (None, segment((26.0, s * thick), (10.0, s * thick))),
                   (None, arc((10.0, s * (thick + 5.0)), 5.0, -s * 90, -s * 180)),
@@ -134,12 +140,12 @@ def flange(bolt=960.0, pull=400.0, edge=30.0, fine=0.4, growth=0.5):
             curves = [(n, lambda t, c=c: c(1.0 - t)) for n, c in reversed(curves)]
         return fill(curves, size)
 
-    upper = half(12.0, 50.0, 50.0, True, "joint", finest([((45.0, 0.0), fine, 1.0), ((32.0, 0.0), 6 * fine, 10.0)], growth, 5.0))
-    lower = half(18.0, 56.0, 50.0, False, "joint", finest([((45.0, 0.0), fine / 1.3, 1.0), ((32.0, 0.0), 8 * fine, 10.0)], growth, 6.0))
+    upper = half(12.0, 50.0, 50.0, True, "joint", finest([((50.0 - edge, 0.0), fine, 2.0), ((30.0, 0.0), 5 * fine, 10.0)], growth, 5.0))
+    lower = half(18.0, 56.0, 50.0, False, "joint", finest([((50.0 - edge, 0.0), fine / 1.3, 2.0), ((30.0, 0.0), 4 * fine, 10.0)], growth, 6.0))
     deck = Deck("BOLTED FLANGES, RECEDING JOINT", [
         f"Half of two flanges (x = 0: symmetry), 12 and 18 thick, drawn together by a bolt of {bolt:g} a mm (pressure under head and nut, x = 26 to "
         f"38) and pulled apart by {pull:g} at the webs. All gaps are zero at first; the joint opens at the web and is pressed at its outer "
-        f"edge (prying). There the faces fall off with R = {edge:g} over the last 5, so that pressures converge.",
+        f"edge (prying). There the faces fall off with R = {radius:g} over the last {edge:g}, so that pressures converge.",
         f"Known: the contact force is bolt less pull, {bolt - pull:g}."], from_geometry=False)
     one, two = bodies(deck, ("Upper flange", upper), ("Lower flange", lower))
     deck.material(1, 210000.0, 0.3)
