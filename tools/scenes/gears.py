@@ -97,7 +97,7 @@ def gears(module=4.0, z1=20, z2=40, load=600.0, across=3.5, finer=1.3, growth=0.
     return deck
 
 
-def roller(radius=5.0, inner=20.0, load=1000.0, across=3.5, finer=1.3, growth=0.5):
+def roller(radius=5.0, inner=20.0, load=1000.0, across=3.0, finer=1.3, growth=0.5):
     """A roller between the races of a bearing, half of it."""
     outer, wall, opening = inner + 2 * radius, 8.0, 25.0
     wide = [hertz(load, 1 / radius + sign / race) for sign, race in ((1, inner), (-1, outer))]
@@ -105,7 +105,7 @@ def roller(radius=5.0, inner=20.0, load=1000.0, across=3.5, finer=1.3, growth=0.
     low, high, middle = (0.0, inner), (0.0, outer), (0.0, inner + radius)
     body = fill([("below", arc(middle, radius, -90, 0)), ("above", arc(middle, radius, 0, 90)),
                  ("axis", segment(high, middle)), ("axis", segment(middle, low))],
-                finest([(low, b1 / across, 1.5 * b1), (high, b2 / across, 1.5 * b2)], growth, 1.0))
+                finest([(low, b1 / across, 1.4 * b1), (high, b2 / across, 1.4 * b2)], growth, 1.0))
     begin = 90 - opening
 
     def sector(inside, outside, place, size):

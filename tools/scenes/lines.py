@@ -26,7 +26,7 @@ def lip(radius, long):
     return radius * (1 - math.cos(turn)), math.degrees(turn)
 
 
-def joint_lines(load=110.0, pull=400.0, clearance=0.01, radius=30.0, edge=4.0, fine=0.16, growth=0.5, elastic=False):
+def joint_lines(load=110.0, pull=400.0, clearance=0.01, radius=30.0, edge=4.0, fine=0.26, growth=0.5, elastic=False):
     """Tongue in a socket, bent and pulled."""
     inner, tip = 4.0 + clearance, -28.0 + edge
     fall, turn = lip(radius, edge)
@@ -74,9 +74,9 @@ def joint_lines(load=110.0, pull=400.0, clearance=0.01, radius=30.0, edge=4.0, f
     return deck
 
 
-def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, radius=30.0, edge=5.0, fine=0.24, growth=0.5):
+def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, radius=30.0, edge=5.0, fine=0.38, growth=0.7):
     """Spigot and socket of a pipe: rings, pressed together and under inner pressure."""
-    bore, wall, deep, long, flat = 50.0, 6.0, 30.0, 120.0, 2.0
+    bore, wall, deep, long, flat = 50.0, 6.0, 30.0, 110.0, 2.0
     outer = bore + wall
     wide, middle = outer + clearance, bore + wall / 2
     (high, turn), (fall, turned) = lip(crown, flat), lip(radius, edge)
@@ -85,15 +85,15 @@ def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, radius=30
                    (None, segment((middle + flat, high), (outer, high + 1.0))),
                    ("outer", segment((outer, high + 1.0), (outer, deep + 4.0))), (None, segment((outer, deep + 4.0), (outer, long))),
                    ("end", segment((outer, long), (bore, long))), ("bore", segment((bore, long), (bore, high + 1.0)))],
-                  finest([((middle, 0.0), fine / 2, 3 * fine), ((outer, deep - edge), fine / 1.3, 3 * fine)], growth, 2.5))
+                  finest([((middle, 0.0), fine / 7, fine / 2), ((outer, deep - edge), fine / 1.3, fine)], growth, 3.0))
     socket = fill([("shoulder", segment((wide - 1.0, 0.0), (bore, 0.0))), ("bore", segment((bore, 0.0), (bore, -60.0))),
                    ("end", segment((bore, -60.0), (bore + 10.0, -60.0))), (None, segment((bore + 10.0, -60.0), (bore + 10.0, -16.0))),
                    (None, segment((bore + 10.0, -16.0), (wide + 10.0, -10.0))), (None, segment((wide + 10.0, -10.0), (wide + 10.0, deep))),
                    (None, segment((wide + 10.0, deep), (wide + fall, deep))),
                    ("inner", arc((wide + radius, deep - edge), radius, 180 - turned, 180)),
                    ("inner", segment((wide, deep - edge), (wide, 1.0))), (None, arc((wide - 1.0, 1.0), 1.0, 0, -90))],
-                  finest([((middle, 0.0), fine / 2.6, 3 * fine), ((wide, deep - edge), fine, 3 * fine),
-                          ((wide - 0.5, 0.5), 0.5, 0.5)], growth, 4.0))
+                  finest([((middle, 0.0), fine / 9, fine / 2), ((wide, deep - edge), fine, fine),
+                          ((wide - 0.5, 0.5), 0.7, 0.0)], growth, 5.0))
     area = math.pi * (outer ** 2 - bore ** 2)
     along = -press / area
     hoop = inside * 2 * bore ** 2 / (outer ** 2 - bore ** 2)
@@ -122,7 +122,7 @@ def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, radius=30
     return deck
 
 
-def flange(bolt=960.0, pull=400.0, radius=100.0, edge=10.0, fine=0.4, growth=0.5):
+def flange(bolt=960.0, pull=400.0, radius=100.0, edge=10.0, fine=0.5, growth=0.5):
     """Bolted flanges that open: half of a T-stub on another."""
     low, turn = lip(radius, edge)
 
