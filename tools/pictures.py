@@ -81,13 +81,16 @@ def bodies(axes, run, scale, limits, window):
 
 
 def pressures(axes, run, groups, along, formulas):
+    pressed = np.array([[float(p["x"]), float(p["y"])] for _, pairs in groups for p in pairs if float(p["force"]) > 0])
+    along = along or "xy"[int(np.argmax(np.ptp(pressed, axis=0)))]
+
     def abscissa(pair):
         x, y = float(pair["x"]), float(pair["y"])
         return {"x": x, "y": y, "angle": np.degrees(np.arctan2(x, -y))}[along]
 
     shown = []
     for (number, pairs), colour in zip(groups, COLOURS):
-        rows = sorted((abscissa(p), float(p["pressure"])) for p in pairs)
+        rows = sorted((abscissa(p), float(p["pressure"] or 0)) for p in pairs)
         pressed = [i for i, (_, p) in enumerate(rows) if p > 0]
         if not pressed:
             continue
@@ -109,7 +112,7 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     parser.add_argument("--scale", type=float, default=1.0, help="of the displacements, where the whole is drawn")
     parser.add_argument("--near", type=lambda text: [float(v) for v in text.split(",")], action="append", default=[])
-    parser.add_argument("--along", choices=["x", "y", "angle"], default="x")
+    parser.add_argument("--along", choices=["x", "y", "angle"], help="x or y, whichever is longer, if not given")
     parser.add_argument("--split", action="store_true", help="a panel of pressures for each BCONP")
     parser.add_argument("--known", action="append", default=[])
     parser.add_argument("--top", type=float, help="largest stress of the colours (else that of all but 1 %% of the elements)")
