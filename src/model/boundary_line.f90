@@ -33,6 +33,7 @@ module epcont_model_boundary_line
     logical, allocatable :: smooth(:, :)       !! the next side begins with the normal with which this one ends [2, segments]
   contains
     procedure :: longest
+    procedure :: chord_length
     procedure :: outward
     procedure :: face
     procedure :: foot
@@ -121,11 +122,12 @@ contains
     normal = unit([tangent(2), -tangent(1)])
   end function own_normal
 
-  pure real(wp) function chord_length(line, segment)
-    type(boundary_line), intent(in) :: line
+  !> Length of a side, from end to end [length].
+  pure real(wp) function chord_length(self, segment)
+    class(boundary_line), intent(in) :: self
     integer, intent(in) :: segment
 
-    chord_length = norm2(line%x(:, 2, segment) - line%x(:, 1, segment))
+    chord_length = norm2(self%x(:, 2, segment) - self%x(:, 1, segment))
   end function chord_length
 
   !> Length of the longest side, from end to end [length].

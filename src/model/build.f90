@@ -12,6 +12,7 @@ module epcont_model_build
   use epcont_model_loads, only: build_loads
   use epcont_model_mesh, only: build_nodes, build_sections
   use epcont_model_model, only: model_type
+  use epcont_model_pair_checks, only: check_pairs
   use epcont_model_pairs, only: build_pairs
   use epcont_model_reference, only: check_unique, index_of_ids
   use epcont_model_supports, only: build_references, build_supports, build_ties
@@ -44,7 +45,9 @@ contains
     call build_controls(deck, model, faults)
     if (model%elements == 0 .and. faults%error_count() == 0) &
       call faults%add_error(place_type(), 'the deck has no elements', 'CTRIA3 cards')
-    if (faults%error_count() == 0) call find_bodies(model)
+    if (faults%error_count() > 0) return
+    call check_pairs(deck, model, faults)
+    call find_bodies(model)
   end subroutine build_model
 
   !> Bodies: nodes joined by elements or RBE2.

@@ -22,6 +22,9 @@ module epcont_model_mortar
   !> Pieces shorter than this part of a side, and weights below it, are rounding.
   real(wp), parameter :: rounding = 1.0e-12_wp
 
+  !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not need one.
+  real(wp), parameter :: no_area = 1.0e-3_wp
+
   !> Weights gathered in any order: of a node in a row.
   type :: weight_list
     integer :: count = 0
@@ -30,6 +33,7 @@ module epcont_model_mortar
     real(wp), allocatable :: area(:)      !! integral of N_i so far [rows]
   contains
     procedure :: add
+    procedure :: add_own_place
   end type weight_list
 
   !> The integration points of one side.
@@ -55,7 +59,6 @@ contains
     real(wp), allocatable, intent(out) :: weight(:)
     type(weight_list) :: list
     type(side_points) :: points
-    real(wp) :: integral
     integer :: k, row, s
 
     allocate (list%row(0), list%node(0), list%weight(0))
@@ -68,10 +71,8 @@ contains
       end if
       do k = 1, 3
         row = row_of(k, s)
-        if (row == 0) cycle
-        integral = sum(points%weight(:points%count)*points%share(k, :points%count))
-        call list%add(row, master%segment(:, facing(row)%segment), integral*facing(row)%place%share)
-        list%area(row) = list%area(row) + integral
+        if (row > 0) call list%add_own_place(row, master, facing(row), sum(points%weight(:points%count)* &
+                                                                         points%share(k, :points%count)))
       end do
     end do
     call collect(list, start, node, weight)
@@ -146,7 +147,8 @@ contains
         end do
       end associate
     end do
-    if (row(3) == 0) mass(3, 3) = integral(1)   ! no middle node
+    if (row(3) == 0) mass(3, 3) = sum(integral)   ! no middle node
+    integral = max(integral, no_area*sum(integral))
     dual = inverse(mass)
     do k = 1, 3
       dual(k, :) = integral(k)*dual(k, :)
@@ -201,6 +203,18 @@ contains
       self%weight(self%count) = weight(k)
     end do
   end subroutine add
+
+  !> Note what a node faces at its own place.
+  pure subroutine add_own_place(self, row, master, facing, integral)
+    class(weight_list), intent(inout) :: self
+    integer, intent(in) :: row
+    type(boundary_line), intent(in) :: master
+    type(facing_type), intent(in) :: facing
+    real(wp), intent(in) :: integral   !! of the node's shape function, as far as this counts for
+
+    call self%add(row, master%segment(:, facing%segment), integral*facing%place%share)
+    self%area(row) = self%area(row) + integral
+  end subroutine add_own_place
 
   !> The rows: weights of one node added up, over the row's area, without rounding.
   pure subroutine collect(list, start, node, weight)

@@ -3,7 +3,7 @@ module epcont_report_plan
   use epcont_base_kinds, only: i8
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: line_contact, model_type
   use epcont_plan_forecast, only: forecast_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -36,6 +36,11 @@ contains
     else
       text = text//'  flexibility by inversion of the trailing block, simplex with contact entry rule (CONRY)'//newline
     end if
+    do k = 1, min(most, size(model%line_contact))
+      text = text//line_text(model, model%line_contact(k))
+    end do
+    if (size(model%line_contact) > most) &
+      text = text//'  and '//plural(size(model%line_contact) - most, 'further contact')//' of lines'//newline
     do k = 1, min(most, motions%count)
       text = text//'  free motion: GRID '//text_of(model%node_id(motions%node(k)))//' direction '// &
              text_of(motions%component(k))//newline
@@ -53,6 +58,22 @@ contains
     text = text//newline//'  memory for matrices '//text_of((expected%bytes + 999999_i8)/1000000_i8)//' MB, operations '// &
            short_real(expected%operations)//trim(merge(' a solve', '        ', iteration%yields))//newline
   end function plan_text
+
+  !> What came of two lines.
+  pure function line_text(model, contact) result(text)
+    type(model_type), intent(in) :: model
+    type(line_contact), intent(in) :: contact
+    character(len=:), allocatable :: text
+
+    text = '  BCONP '//text_of(contact%id)//': nodes of BLSEG '//text_of(model%line(contact%slave)%id)// &
+           ' against sides of BLSEG '//text_of(model%line(contact%master)%id)//': '// &
+           plural(contact%last - contact%first + 1, 'pair')//', initial gaps '// &
+           short_real(minval(model%initial_gap(contact%first:contact%last)))//' to '// &
+           short_real(maxval(model%initial_gap(contact%first:contact%last)))
+    if (contact%left_out > 0) text = text//'; left out, since they face nothing within '//short_real(contact%search)// &
+                                     ': '//plural(contact%left_out, 'node')
+    text = text//newline
+  end function line_text
 
   !> How often a body is factored.
   pure function factorizations(iteration, body, b) result(text)

@@ -14,6 +14,8 @@ module epcont_result_pressures
 
   !> Corners around a middle, and around a corner, that the polynomial goes through.
   integer, parameter :: around_middle = 4, around_corner = 5
+  !> Of the latter, those before it.
+  integer, parameter :: before = 2
   !> Corners of the least run of sides for which this is done.
   integer, parameter :: least_corners = 4
 
@@ -111,7 +113,7 @@ contains
       ! Of rings the pressure is even in the radius: a smooth function of the area from the axis on.
       mirrored = run%even .and. .not. (model%has_rings() .and. model%x(1, line%node(ends)) == 0.0_wp)
     end associate
-    outside = merge(min(n, around_corner/2), 0, mirrored)
+    outside = merge(min(n, before), 0, mirrored)
     allocate (run%area(1 - outside(1):n + 1 + outside(2)), run%force(1 - outside(1):n + 1 + outside(2)), source=0.0_wp)
     do k = 1, n
       run%area(k + 1) = run%area(k) + line%tributary(run%middle(k))
@@ -150,7 +152,7 @@ contains
       pressure(run%middle(k)) = slope(run, k - 1, around_middle, area_at_middle(model, line, run, k))
     end do
     do k = first, last + 1
-      pressure(run%corner(k)) = slope(run, k - around_corner/2, around_corner, run%area(k))
+      pressure(run%corner(k)) = slope(run, k - before, around_corner, run%area(k))
     end do
   end subroutine derive
 

@@ -1,0 +1,125 @@
+!> Pairs that cannot do what pairs are for: found before solving, and warned of.
+module epcont_model_pair_checks
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
+  use epcont_deck_card_kinds, only: card_bconp, card_cgap
+  use epcont_deck_deck, only: deck_type
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: check_pairs
+
+  !> A normal within 60 degrees of a boundary's own goes its way.
+  real(wp), parameter :: same_way = 0.5_wp
+  !> Sides around a node whose normals cancel to this part of their lengths are all round it.
+  real(wp), parameter :: closed = 1.0e-6_wp
+  !> A component of a normal below this is rounding.
+  real(wp), parameter :: no_component = 1.0e-9_wp
+
+contains
+
+  !> Warn of pairs that point the wrong way, and of those that can neither open nor close.
+  subroutine check_pairs(deck, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(in) :: model
+    type(diagnostics), intent(inout) :: faults
+    real(wp), allocatable :: outward(:, :)
+    integer :: c, k, last
+
+    if (model%pairs == 0) return
+    outward = boundary_normals(model)
+    last = deck%card(card_cgap)%count
+    do k = 1, last
+      associate (a => outward(:, model%pair_node(1, k)), b => outward(:, model%pair_node(2, k)), n => model%normal(:, k))
+        if (dot_product(a, n) >= same_way .or. dot_product(b, n) <= -same_way) cycle
+        if (dot_product(a, n) > -same_way .and. dot_product(b, n) < same_way) cycle
+        call faults%add_warning(deck%place(card_cgap, k, 1), deck%identity(card_cgap, k)// &
+                                ': its normal points the wrong way: into the body of GA, or out of that of GB', &
+                                'GA and GB exchanged, or the x-axis of CID turned round')
+      end associate
+    end do
+    call warn_of_held(deck, model, card_cgap, 1, 1, last, faults)
+    do c = 1, size(model%line_contact)
+      call warn_of_held(deck, model, card_bconp, c, model%line_contact(c)%first, model%line_contact(c)%last, faults)
+    end do
+  end subroutine check_pairs
+
+  !> Outward normals of the boundary at its nodes; zero elsewhere [2, nodes].
+  pure function boundary_normals(model) result(normal)
+    type(model_type), intent(in) :: model
+    real(wp), allocatable :: normal(:, :)
+    real(wp), allocatable :: length(:)
+    real(wp) :: along(2)
+    integer :: e, i, k, side(3)
+
+    allocate (normal(2, model%nodes), length(model%nodes), source=0.0_wp)
+    do e = 1, model%elements
+      do k = 1, model%corners(e)
+        side = model%edge(e, k)
+        along = model%x(:, side(2)) - model%x(:, side(1))
+        do i = 1, 3
+          if (side(i) == 0) cycle
+          ! Of a side that two elements have, the normals cancel.
+          normal(:, side(i)) = normal(:, side(i)) + [along(2), -along(1)]
+          length(side(i)) = length(side(i)) + norm2(along)
+        end do
+      end do
+    end do
+    do i = 1, model%nodes
+      if (norm2(normal(:, i)) > closed*length(i)) then
+        normal(:, i) = normal(:, i)/norm2(normal(:, i))
+      else
+        normal(:, i) = 0.0_wp
+      end if
+    end do
+  end function boundary_normals
+
+  !> One warning for all pairs of a range whose nodes are held along the normal. `card` i is the first pair's, or that of
+  !! their contact. A held overlap is no warning: the run will end with it.
+  subroutine warn_of_held(deck, model, card, i, first, last, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: card, i, first, last
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: which
+    integer :: held, k, row
+
+    held = 0
+    row = i
+    do k = first, last
+      if (.not. is_held(model, k)) cycle
+      held = held + 1
+      if (held > 1) cycle
+      if (card == card_cgap) row = k
+      which = deck%identity(card, row)
+      if (card == card_bconp) which = which//': GRID '//text_of(model%pair_id(k))
+    end do
+    if (held == 0) return
+    if (held > 1) which = which//', and '//text_of(held - 1)//' more'
+    call faults%add_warning(deck%place(card, row, 1), which// &
+                            ': can neither open nor close: the nodes on both sides are held along the normal', &
+                            'a free node on one side, or no pair')
+  end subroutine warn_of_held
+
+  !> Are all nodes of a pair held along its normal, and do they not overlap?
+  pure logical function is_held(model, pair)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: pair
+    real(wp) :: gap
+    integer :: c, i
+
+    gap = model%initial_gap(pair)
+    is_held = .false.
+    do i = model%row_start(pair), model%row_start(pair + 1) - 1
+      do c = 1, 2
+        if (abs(model%normal(c, pair)) <= no_component) cycle
+        associate (leader => model%leader(c, model%row_node(i)))
+          if (.not. model%held(c, leader)) return
+          gap = gap + model%row_weight(i)*model%normal(c, pair)*model%prescribed(c, leader)
+        end associate
+      end do
+    end do
+    is_held = gap >= 0.0_wp
+  end function is_held
+end module epcont_model_pair_checks
