@@ -136,7 +136,7 @@ contains
 
     text = 'usage: epcont [options] DECK...'//newline// &
            newline// &
-           'Solves the contact of plane bodies from card decks. Results go to DECK.lst and DECK.*.csv.'//newline// &
+           'Solves the contact of plane bodies and rings from card decks. Results go to DECK.lst and DECK.*.csv.'//newline// &
            newline// &
            '  -o DIR         write results to DIR (default: the current directory)'//newline// &
            '  --check        read and check the decks, then stop'//newline// &

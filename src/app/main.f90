@@ -1,4 +1,4 @@
-!> epcont: contact of plane bodies, from card decks. The only place that sets the exit status.
+!> epcont: contact of plane bodies and rings, from card decks. The only place that sets the exit status.
 program epcont
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit

@@ -5,5 +5,5 @@ module epcont_base_version
 
   character(len=*), parameter, public :: program_name = 'epcont'
   !> Kept equal to the version in CMakeLists.txt (a test compares them).
-  character(len=*), parameter, public :: program_version = '0.2.0'
+  character(len=*), parameter, public :: program_version = '0.3.0'
 end module epcont_base_version

@@ -103,8 +103,8 @@ contains
     character(len=:), allocatable :: text
     character(len=46) :: head
 
-    write (head, '(a5, 2x, a7, 2x, a5, 2x, a7, 2x, a7, 2x, a5)') &
-      padded(field, 5), padded(columns, 7), padded(name, 5), padded(kind, 7), padded(default, 7), padded(use, 5)
+    write (head, '(a5, 2x, a7, 2x, a6, 1x, a7, 2x, a7, 2x, a5)') &
+      padded(field, 5), padded(columns, 7), padded(name, 6), padded(kind, 7), padded(default, 7), padded(use, 5)
     text = head//'  '//meaning//newline
   end function row
 

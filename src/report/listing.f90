@@ -31,7 +31,7 @@ contains
     type(diagnostics), intent(in) :: faults
     integer :: k
 
-    call file%line(program_name//' '//program_version//'   elastoplastic contact of plane bodies')
+    call file%line(program_name//' '//program_version//'   elastoplastic contact of plane bodies and rings')
     call file%line('')
     if (len(deck%title) > 0) call file%line('  '//printable(deck%title))
     if (len(deck%subtitle) > 0) call file%line('  '//printable(deck%subtitle))
