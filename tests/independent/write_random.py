@@ -238,7 +238,7 @@ def nested(rng):
         bodies.append(at)
         faces.append(row(at, 0 if bodies[1:] else rows, middles))
     for number, face in enumerate(faces, 1):
-        part = face[:-4] if rng.random() < 0.2 else face
+        part = face[:-2] if rng.random() < 0.2 else face
         scene.segments(number, part)
     scene.add("BCONP", 1, *rng.choice([(1, 2), (2, 1)]), "", 1.0, "", 1, 0)
     inside, total = row(bodies[0], 0, False), rng.uniform(0.1, 0.3)
