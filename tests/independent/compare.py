@@ -48,7 +48,7 @@ def compare(found, directory, stem):
                 at = header.index(column)
                 for row in rows:
                     told = theirs[str(row[0])][column]
-                    if told and not np.isnan(row[at]):
+                    if told:
                         pieces.setdefault(kind, []).append((row[at], float(told), f"{name} {row[0]} {column}"))
         if name == "contact":
             for row in rows:

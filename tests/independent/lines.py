@@ -84,7 +84,7 @@ class Segment:
     nodes: list
     x: list
     normal: list = field(default_factory=lambda: [None, None])   # unit, at the ends
-    smooth: list = field(default_factory=lambda: [None, None])   # the common one, where two quadratic sides meet smoothly
+    smooth: list = field(default_factory=lambda: [False, False])  # where two quadratic sides meet smoothly
 
     def __post_init__(self):
         n = len(self.nodes)
@@ -122,12 +122,12 @@ class Segment:
         """(whether beyond the end, shape values, unit normal, gap) of each place that x faces."""
         for s in self.roots(x):
             end, beyond = int(s > 0.5), not -OUTSIDE <= s <= 1 + OUTSIDE
-            if beyond and (len(self.nodes) < 3 or self.smooth[end] is None or not -BESIDE <= s <= 1 + BESIDE):
+            if beyond and (len(self.nodes) < 3 or not self.smooth[end] or not -BESIDE <= s <= 1 + BESIDE):
                 continue
             s = min(max(s, 0.0), 1.0)
             node = min(self.places, key=lambda place: abs(place - s))
             s = node if abs(s - node) <= AT_NODE else s
-            normal = unit(self.smooth[end] if beyond else [value(n, s) for n in self.seen])
+            normal = unit(self.normal[end] if s == end else [value(n, s) for n in self.seen])
             off = [x[c] - value(self.path[c], s) for c in (0, 1)]
             yield beyond, self.values(s), normal, dot(normal, off) - value(self.rise, s)
 
@@ -194,7 +194,7 @@ class Line:
             if dot(one, two) >= BEND:
                 before.normal[1] = after.normal[0] = unit([one[c] * after.chord + two[c] * before.chord for c in (0, 1)])
                 if len(before.nodes) == len(after.nodes) == 3:
-                    before.smooth[1] = after.smooth[0] = before.normal[1]
+                    before.smooth[1] = after.smooth[0] = True
         if not self.closed:
             for segment, end in ((segments[0], 0), (segments[-1], 1)):
                 n = segment.own(float(end))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Write random scenes that yield: stacks of up to four blocks, tongues in sockets held by contact alone, and blocks or rings of
-any element that press one another, node on node or line on line.
+"""Write random scenes that yield: stacks of up to four blocks, tongues in sockets held by contact alone, tubes and hollow balls
+in one another, and blocks or rings of any element that press one another, node on node or line on line.
 
     . tools/venv && python tests/independent/write_random.py DIRECTORY [-n 40] [--seed 1]
     python tests/independent/compare.py build/release/epcont DIRECTORY/*.dat --tolerance 1e-7
@@ -9,6 +9,7 @@ Each block has a material of its own: elastic, bilinear, flat, or a curve of fiv
 meshes with random places, gaps, loads and prescribed displacements. Not kept: the seed makes them again.
 """
 import argparse
+import math
 import pathlib
 import random
 
@@ -216,6 +217,36 @@ def pressed(rng):
     return scene
 
 
+def nested(rng):
+    """A quarter of one tube in another, or of one hollow ball in another, of random elements and columns, line on line; the fit is
+    tight or loose, and the pressure inside varies."""
+    rings = rng.random() < 0.5
+    scene = Scene(rng, rng.random() < 0.5, rings)
+    fit = rng.choice([0.0, 0.0005, 0.001, -0.0003])
+
+    def on_arc(angle, radius):
+        return (radius * math.sin(angle), 0.0 if angle == math.pi / 2 else radius * math.cos(angle))
+
+    bodies, faces = [], []
+    for low, high in ((0.7, 1.0), (1.0 - fit, 1.4)):
+        corners, middles = rng.choice([(3, False), (3, True)] if rings else [(3, False), (3, True), (4, False)])
+        rows, columns = rng.randint(2, 3), rng.randint(4, 9)
+        around, across = places(rng, 0.0, math.pi / 2, columns), places(rng, low, high, rows)
+        at = scene.mesh(around, across, scene.material(2.0), corners, middles, on_arc)
+        scene.add_long("SPC1", 1, 1, *[n for (i, _), n in at.items() if i == 0])
+        scene.add_long("SPC1", 1, 2, *[n for (i, _), n in at.items() if i == columns])
+        bodies.append(at)
+        faces.append(row(at, 0 if bodies[1:] else rows, middles))
+    for number, face in enumerate(faces, 1):
+        part = face[:-2] if rng.random() < 0.2 else face
+        scene.segments(number, part)
+    scene.add("BCONP", 1, *rng.choice([(1, 2), (2, 1)]), "", 1.0, "", 1, 0)
+    inside, total = row(bodies[0], 0, False), rng.uniform(0.1, 0.3)
+    for a, b in zip(inside, inside[1:]):
+        scene.add("PLOADX1", 1, scene.side[a, b], total * rng.uniform(0.5, 1.5), total * rng.uniform(0.5, 1.5), a, b)
+    return scene
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("directory", type=pathlib.Path)
@@ -225,7 +256,7 @@ def main():
     options.directory.mkdir(parents=True, exist_ok=True)
     for k in range(options.number):
         rng = random.Random(f"{options.seed} {k}")
-        scene = (pressed if k % 2 else tongue if k % 6 == 4 else stack)(rng)
+        scene = (pressed if k % 2 else [stack, nested, tongue][k // 2 % 3])(rng)
         (options.directory / f"scene{k:03}.dat").write_text(scene.text(), encoding="ascii")
 
 
