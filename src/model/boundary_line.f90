@@ -1,9 +1,10 @@
 !> A line of element sides along the boundary of a body, and where a point faces it.
 !>
-!> The line is walked with the body to the left, so that outward is to the right. Where its sides are chords, the
-!> boundary that is meant is the smooth curve through their ends: normals at the nodes come from the two sides that meet
-!> there, exact on a circle, and the gap is measured to the curve (a cubic over each chord) and not to the chord, whose
-!> facets would show in the pressures. Force and counterforce still lie on one line, through the chord.
+!> The line is walked with the body to the left, so that outward is to the right. Normals at the nodes come from the two
+!> sides that meet there, exact on a circle; along a side they turn from one to the other, so that none is met twice and
+!> none left out. Where sides are chords, the boundary that is meant is the smooth curve through their ends: the gap is
+!> measured to it (a cubic over each chord) and not to the chord, whose facets would show in the pressures. Force and
+!> counterforce still lie on one line, through the chord.
 module epcont_model_boundary_line
   use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
@@ -15,8 +16,6 @@ module epcont_model_boundary_line
   real(wp), parameter :: corner_cosine = cos(30.0_wp*acos(-1.0_wp)/180.0_wp)
   !> Part of a side by which a point may stand beyond its end: rounding of coordinates in eight columns.
   real(wp), parameter :: beyond = 1.0e-6_wp
-  !> The same between two curved sides that join smoothly, whose normals differ a little there.
-  real(wp), parameter :: beyond_joint = 0.05_wp
   !> A point so near to a node, as a part of the side, faces the node.
   real(wp), parameter :: at_node = 1.0e-9_wp
   !> Steps of Newton's method, which needs five, and the change that ends it.
@@ -30,7 +29,6 @@ module epcont_model_boundary_line
     integer, allocatable :: element(:)         !! whose sides they are [segments]
     real(wp), allocatable :: x(:, :, :)        !! their coordinates [length] [2, 3, segments]
     real(wp), allocatable :: normal(:, :, :)   !! outward, at start and end of each side [2, 2, segments]
-    logical, allocatable :: smooth(:, :)       !! the next side begins with the normal with which this one ends [2, segments]
   contains
     procedure :: longest
     procedure :: chord_length
@@ -43,7 +41,6 @@ module epcont_model_boundary_line
   !> Where a point faces a line.
   type :: facing_place
     logical :: found = .false.
-    logical :: in_wedge = .false.    !! beyond the end, in the wedge between two curved sides: at their node
     real(wp) :: share(3) = 0.0_wp    !! of start, end and middle of the side in the place [-]
     real(wp) :: normal(2) = 0.0_wp   !! outward
     real(wp) :: gap = 0.0_wp         !! from the curve to the point, along the normal [length]
@@ -62,7 +59,6 @@ contains
 
     n = size(line%element)
     allocate (line%normal(2, 2, n))
-    allocate (line%smooth(2, n), source=.false.)
     known = .false.
     do i = 1, n
       next = i + 1
@@ -74,10 +70,9 @@ contains
       here = unit(chord_length(line, next)*here + chord_length(line, i)*there)
       line%normal(:, 2, i) = here
       line%normal(:, 1, next) = here
-      line%smooth(2, i) = .true.
-      line%smooth(1, next) = .true.
+      known(2, i) = .true.
+      known(1, next) = .true.
     end do
-    known = line%smooth
     if (.not. line%closed) then
       call reflect(mirror(1), own_normal(line, 1, 0.0_wp), line%normal(:, 1, 1), known(1, 1))
       call reflect(mirror(2), own_normal(line, n, 1.0_wp), line%normal(:, 2, n), known(2, n))
@@ -165,15 +160,13 @@ contains
     integer, intent(in) :: segment
     real(wp), intent(in) :: point(2)    !! [length]
     type(facing_place) :: place
-    real(wp) :: room(2), s
+    real(wp) :: s
     logical :: curved, found
 
     curved = self%segment(3, segment) > 0
-    room = merge(beyond_joint, beyond, curved .and. self%smooth(:, segment))
     call find_foot(self, segment, point, s, found)
-    if (.not. found .or. s < -room(1) .or. s > 1.0_wp + room(2)) return
+    if (.not. found .or. s < -beyond .or. s > 1.0_wp + beyond) return
     place%found = .true.
-    place%in_wedge = s < -beyond .or. s > 1.0_wp + beyond
     if (s <= at_node) then
       place%share = [1.0_wp, 0.0_wp, 0.0_wp]
       place%normal = self%normal(:, 1, segment)
@@ -184,7 +177,7 @@ contains
       place%gap = dot_product(place%normal, point - self%x(:, 2, segment))
     else
       place%share = values(curved, s)
-      place%normal = normal_at(self, segment, s)
+      place%normal = unit(scaled_normal(self, segment, s))
       place%gap = dot_product(place%normal, point - matmul(self%x(:, :, segment), place%share))
       if (.not. curved) place%gap = place%gap - rise(self, segment, s)
     end if
@@ -222,36 +215,29 @@ contains
     if (.not. curved) x = x + rise(self, segment, s)*own_normal(self, segment, s)
   end subroutine at
 
-  !> The place of a side at which its normal, between those at its ends or its own if it is curved, leads to a point.
+  !> The place of a side whose normal leads to a point.
   pure subroutine find_foot(line, segment, point, s, found)
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: segment
     real(wp), intent(in) :: point(2)
     real(wp), intent(out) :: s
     logical, intent(out) :: found
-    real(wp) :: away(2), chord(2), slope(2), rate, value, step
+    real(wp) :: away(2), chord(2), slope(2), step, turn(2), rate
     logical :: curved
     integer :: k
 
     curved = line%segment(3, segment) > 0
     chord = line%x(:, 2, segment) - line%x(:, 1, segment)
+    turn = scaled_normal(line, segment, 1.0_wp) - scaled_normal(line, segment, 0.0_wp)
     s = dot_product(point - line%x(:, 1, segment), chord)/dot_product(chord, chord)
     found = .false.
     do k = 1, most_steps
       if (abs(s) > 10.0_wp) return
       away = point - matmul(line%x(:, :, segment), values(curved, s))
       slope = matmul(line%x(:, :, segment), slopes(curved, s))
-      if (curved) then
-        value = dot_product(slope, away)
-        rate = dot_product(matmul(line%x(:, :, segment), [4.0_wp, 4.0_wp, -8.0_wp]), away) - dot_product(slope, slope)
-      else
-        associate (from => line%normal(:, 1, segment), to => line%normal(:, 2, segment))
-          value = cross_product(from + s*(to - from), away)
-          rate = cross_product(to - from, away) - cross_product(from + s*(to - from), slope)
-        end associate
-      end if
+      rate = cross_product(turn, away) - cross_product(scaled_normal(line, segment, s), slope)
       if (rate == 0.0_wp) return
-      step = -value/rate
+      step = -cross_product(scaled_normal(line, segment, s), away)/rate
       s = s + step
       found = abs(step) <= converged*max(1.0_wp, abs(s))
       if (found) return
@@ -259,19 +245,20 @@ contains
     found = abs(step) <= at_node
   end subroutine find_foot
 
-  !> Normal within a side.
-  pure function normal_at(line, segment, s) result(normal)
+  !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is linear between them.)
+  pure function scaled_normal(line, segment, s) result(normal)
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: segment
     real(wp), intent(in) :: s
     real(wp) :: normal(2)
+    real(wp) :: length(2)
+    integer :: k
 
-    if (line%segment(3, segment) > 0) then
-      normal = own_normal(line, segment, s)
-    else
-      normal = unit((1.0_wp - s)*line%normal(:, 1, segment) + s*line%normal(:, 2, segment))
-    end if
-  end function normal_at
+    do k = 1, 2
+      length(k) = norm2(matmul(line%x(:, :, segment), slopes(line%segment(3, segment) > 0, real(k - 1, wp))))
+    end do
+    normal = (1.0_wp - s)*length(1)*line%normal(:, 1, segment) + s*length(2)*line%normal(:, 2, segment)
+  end function scaled_normal
 
   !> How far the smooth curve rises outwards above the chord: the cubic with the normals at its ends [length].
   pure real(wp) function rise(line, segment, s)

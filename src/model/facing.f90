@@ -42,8 +42,7 @@ contains
         best%same_way = .true.
         cycle
       end if
-      if (best%place%found .and. place%in_wedge .and. .not. best%place%in_wedge) cycle
-      if (best%place%found .and. (place%in_wedge .eqv. best%place%in_wedge)) then
+      if (best%place%found) then
         better = abs(best%place%gap) - abs(place%gap)
         if (better < -equal*search) cycle
         if (better <= equal*search .and. dot_product(place%normal, outward) >= dot_product(best%place%normal, outward)) cycle

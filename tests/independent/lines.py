@@ -13,7 +13,7 @@ from deck import DeckError, at, ids, real
 from kinds import GAUSS, solved
 
 BEND, ALONG = cos(radians(30.0)), 0.5
-OUTSIDE, AT_NODE, BESIDE, EQUAL, ROUNDING = 1e-6, 1e-9, 0.05, 1e-9, 1e-12
+OUTSIDE, AT_NODE, EQUAL, ROUNDING = 1e-6, 1e-9, 1e-9, 1e-12
 #: Roots are looked for between these places.
 FROM, TO = -0.1, 1.1
 
@@ -84,7 +84,6 @@ class Segment:
     nodes: list
     x: list
     normal: list = field(default_factory=lambda: [None, None])   # unit, at the ends
-    smooth: list = field(default_factory=lambda: [False, False])  # where two quadratic sides meet smoothly
 
     def __post_init__(self):
         n = len(self.nodes)
@@ -104,11 +103,11 @@ class Segment:
 
     def finish(self):
         """The polynomials of the normal and of the rise above a straight side."""
+        long = [hypot(value(self.tangent[0], s), value(self.tangent[1], s)) for s in (0.0, 1.0)]
+        self.seen = [[long[0] * a, long[1] * b - long[0] * a] for a, b in zip(*self.normal)]
+        self.rise = [0.0]
         if len(self.nodes) == 3:
-            self.seen = [self.tangent[1], [-c for c in self.tangent[0]]]
-            self.rise = [0.0]
             return
-        self.seen = [[a, b - a] for a, b in zip(*self.normal)]
         slopes = [[-self.chord * dot(n, self.along) / dot(n, self.across)] for n in self.normal]
         hermite = solved([[1, 0, 0, 0], [1, 1, 1, 1], [0, 1, 0, 0], [0, 1, 2, 3]], [[0.0], [0.0], *slopes])
         self.rise = [row[0] for row in hermite]
@@ -119,17 +118,17 @@ class Segment:
         return roots(minus(times(off[0], self.seen[1]), times(off[1], self.seen[0])))
 
     def feet(self, x):
-        """(whether beyond the end, shape values, unit normal, gap) of each place that x faces."""
+        """(shape values, unit normal, gap) of each place that x faces."""
         for s in self.roots(x):
-            end, beyond = int(s > 0.5), not -OUTSIDE <= s <= 1 + OUTSIDE
-            if beyond and (len(self.nodes) < 3 or not self.smooth[end] or not -BESIDE <= s <= 1 + BESIDE):
+            if not -OUTSIDE <= s <= 1 + OUTSIDE:
                 continue
+            end = int(s > 0.5)
             s = min(max(s, 0.0), 1.0)
             node = min(self.places, key=lambda place: abs(place - s))
             s = node if abs(s - node) <= AT_NODE else s
             normal = unit(self.normal[end] if s == end else [value(n, s) for n in self.seen])
             off = [x[c] - value(self.path[c], s) for c in (0, 1)]
-            yield beyond, self.values(s), normal, dot(normal, off) - value(self.rise, s)
+            yield self.values(s), normal, dot(normal, off) - value(self.rise, s)
 
     def values(self, s):
         return [value(n, s) for n in self.shape]
@@ -193,8 +192,6 @@ class Line:
             one, two = before.own(1.0), after.own(0.0)
             if dot(one, two) >= BEND:
                 before.normal[1] = after.normal[0] = unit([one[c] * after.chord + two[c] * before.chord for c in (0, 1)])
-                if len(before.nodes) == len(after.nodes) == 3:
-                    before.smooth[1] = after.smooth[0] = True
         if not self.closed:
             for segment, end in ((segments[0], 0), (segments[-1], 1)):
                 n = segment.own(float(end))
@@ -223,16 +220,14 @@ class Line:
 
     def face(self, x, outward, reach, but=None):
         """(nodes of a side, shape values, normal, gap) where a place faces this line, or None: the nearest; of equally near ones
-        that which looks most against it. Beyond the end of a side counts only where no side is faced: there the force would
-        lie beside the node that it pushes."""
-        found = [(beyond, abs(gap), dot(normal, outward), segment.nodes, values, normal, gap) for segment in self.segments
+        that which looks most against it."""
+        found = [(abs(gap), dot(normal, outward), segment.nodes, values, normal, gap) for segment in self.segments
                  if but not in segment.nodes and segment.near(x, reach)
-                 for beyond, values, normal, gap in segment.feet(x) if abs(gap) <= reach and dot(normal, outward) < 0]
+                 for values, normal, gap in segment.feet(x) if abs(gap) <= reach and dot(normal, outward) < 0]
         if not found:
             return None
-        least = min(found, key=lambda f: f[:2])
-        equal = [f for f in found if f[0] == least[0] and f[1] <= least[1] + EQUAL * reach]
-        return min(equal, key=lambda f: f[2])[3:]
+        least = min(f[0] for f in found)
+        return min((f for f in found if f[0] <= least + EQUAL * reach), key=lambda f: f[1])[2:]
 
 
 def averages(ring, slave, master, faced, reach):
