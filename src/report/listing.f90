@@ -18,6 +18,7 @@ module epcont_report_listing
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
+  use epcont_result_locking, only: high_poisson, locking_type
   implicit none
   private
   public :: list_deck, list_outcome, list_contact, list_zones, list_lines, list_nodes, list_elements, list_summary
@@ -272,5 +273,17 @@ contains
     call figure(file, 'digits that rounding leaves, at least', &
                 right(text_of(max(0, floor(-log10(answer%condition*epsilon(1.0_wp))))), 13))
     call figure(file, 'linear residual', right(rounding_number(certificate%equilibrium), 13))
+    if (answer%locking%elements > 0) call list_locking(file, answer%locking)
   end subroutine list_summary
+
+  !> Elements that are too stiff for what their material does.
+  subroutine list_locking(file, locking)
+    type(text_file), intent(in) :: file
+    type(locking_type), intent(in) :: locking
+
+    call figure(file, 'three-node elements of constant volume', right(text_of(locking%elements), 13))
+    call figure(file, 'scatter of their mean stress / equivalent', column_number(locking%scatter, 1.0_wp))
+    call file%line('    (Poisson''s ratio '//short_real(high_poisson)// &
+                   ' or more, as yielding has made it: they are too stiff there; six-node elements and CQUAD4 are not)')
+  end subroutine list_locking
 end module epcont_report_listing

@@ -5,6 +5,7 @@ module epcont_result_answer
   use epcont_plasticity_iteration, only: iteration_record
   use epcont_result_contact_line, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
+  use epcont_result_locking, only: locking_type
   implicit none
   private
   public :: answer_type
@@ -24,6 +25,7 @@ module epcont_result_answer
     real(wp), allocatable :: pressure(:)             !! at the pairs; negative: no boundary there [stress] [pairs]
     type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
+    type(locking_type) :: locking                    !! of three-node elements
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
     type(iteration_record), allocatable :: history(:)  !! every solve
     integer :: factorizations = 0                    !! of bodies

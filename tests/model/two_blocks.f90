@@ -13,6 +13,8 @@ module two_blocks
     real(wp) :: inside = 0.0_wp            !! x where the blocks begin; their width is 1
     real(wp) :: rise = 0.0_wp              !! y of the upper surface of the lower block at its right end
     real(wp) :: pressure = 10.0_wp         !! on top
+    character(len=8) :: poisson = ''       !! of both, if given
+    logical :: stuck = .false.             !! the lower block's base holds sideways too
     real(wp) :: stretch = 1.0_wp           !! of the columns: the last is wider than the first by this factor
   end type blocks_type
 
@@ -27,7 +29,12 @@ contains
     integer :: unit, element
 
     open (newunit=unit, file=path, status='replace')
-    write (unit, '(a)') 'PARAM,GAPGEOM,YES', 'MAT1,1,1000.0,,0.3', 'MAT1,2,500.0,,0.2'
+    write (unit, '(a)') 'PARAM,GAPGEOM,YES'
+    if (blocks%poisson == '') then
+      write (unit, '(a)') 'MAT1,1,1000.0,,0.3', 'MAT1,2,500.0,,0.2'
+    else
+      write (unit, '(a)') 'MAT1,1,1000.0,,'//trim(blocks%poisson), 'MAT1,2,500.0,,'//trim(blocks%poisson)
+    end if
     if (blocks%element(:5) == 'CTRAX') then
       write (unit, '(a)') 'PSOLID,1,1', 'PSOLID,2,2'
     else
@@ -54,7 +61,7 @@ contains
         if (.not. is_six(blocks) .and. (mod(i, 2) + mod(j, 2) > 0)) cycle
         write (unit, '(a, i0, 2(a, f0.14))') 'GRID,', node(which, i, j), ',,', blocks%inside + place(blocks, i, n), ',', &
           height(blocks, which, real(j, wp)/(2*rows), place(blocks, i, n))
-        if (j == 0 .and. which == 1) write (unit, '(a, i0)') 'SPC1,1,2,', node(which, i, j)
+        if (j == 0 .and. which == 1) write (unit, '(2a, i0)') 'SPC1,1,', trim(merge('12,', '2, ', blocks%stuck)), node(which, i, j)
         if (i == 0) write (unit, '(a, i0)') 'SPC1,1,1,', node(which, i, j)
       end do
     end do

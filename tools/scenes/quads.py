@@ -25,7 +25,7 @@ def persson(half):
             2 * b / (math.pi * math.sqrt(c)) + math.log((math.sqrt(c) + b) / (math.sqrt(c) - b)) / (2 * math.pi * b * b * c))
 
 
-def pin_in_lug(half=45.0, around=24, finer=1.3, size=30.0, element="ctria6"):
+def pin_in_lug(half=45.0, around=24, finer=1.4, size=30.0, element="ctria6"):
     """Pin in the hole of a large lug, unlike meshes: Persson's half angle is chosen, the clearance follows."""
     radius, load, stiff = 10.0, 1000.0, STEEL / (1 - 0.09)
     slack, top = persson(half)
