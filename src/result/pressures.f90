@@ -22,7 +22,8 @@ module epcont_result_pressures
   !> A run of sides that touch all along, in their order.
   type :: run_type
     integer, allocatable :: corner(:), middle(:)    !! pairs [sides + 1], [sides]
-    !> Summed up to each corner, and beyond a line of symmetry as mirrored there; corner k has index k.
+    !> Summed up to each corner, and beyond a line of symmetry as mirrored there; corner k has index k. A closed run goes on
+    !! with itself.
     real(wp), allocatable :: area(:), force(:)
     logical :: even(2) = .false.                    !! the pressure goes on evenly beyond the end: symmetry, the axis of rings
   end type run_type
@@ -46,7 +47,7 @@ contains
       if (done(pair) .or. .not. is_whole(line, touching, pair)) cycle
       call find_run(line, touching, pair, run)
       done(run%middle) = .true.
-      call sum_up(model, line, force, run)
+      call sum_up(model, line, touching, force, run)
       call derive(model, line, run, pressure)
     end do
   end function pair_pressures
@@ -97,36 +98,45 @@ contains
     end do
   end subroutine extend
 
-  !> Area and force from the first corner on. What a corner bears goes to its sides as its area does.
-  pure subroutine sum_up(model, line, force, run)
+  !> Area and force from the first corner on. What a corner bears goes to the sides that touch as its area does.
+  pure subroutine sum_up(model, line, touching, force, run)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
+    logical, intent(in) :: touching(:)
     real(wp), intent(in) :: force(:)
     type(run_type), intent(inout) :: run
     integer :: end, k, n, outside(2)
-    real(wp) :: part
-    logical :: mirrored(2)
+    logical :: closed, mirrored(2)
 
     n = size(run%middle)
     associate (ends => run%corner([1, n + 1]))
-      run%even = line%mirrored(ends)
+      closed = ends(1) == ends(2)
+      run%even = line%mirrored(ends) .or. closed
       ! Of rings the pressure is even in the radius: a smooth function of the area from the axis on.
-      mirrored = run%even .and. .not. (model%has_rings() .and. model%x(1, line%node(ends)) == 0.0_wp)
+      mirrored = run%even .and. .not. closed .and. .not. (model%has_rings() .and. model%x(1, line%node(ends)) == 0.0_wp)
     end associate
-    outside = merge(min(n, before), 0, mirrored)
+    outside = merge(min(n, before), 0, mirrored .or. closed)
     allocate (run%area(1 - outside(1):n + 1 + outside(2)), run%force(1 - outside(1):n + 1 + outside(2)), source=0.0_wp)
     do k = 1, n
       run%area(k + 1) = run%area(k) + line%tributary(run%middle(k))
       run%force(k + 1) = run%force(k) + force(run%middle(k))
       do end = 0, 1
         associate (corner => run%corner(k + end))
-          part = sum(line%part(:, corner), mask=line%neighbour(:, corner) == run%middle(k))
-          run%area(k + 1) = run%area(k + 1) + part
-          if (line%tributary(corner) > 0.0_wp) part = part/line%tributary(corner)
-          run%force(k + 1) = run%force(k + 1) + part*force(corner)
+          run%area(k + 1) = run%area(k + 1) + sum(line%part(:, corner), mask=line%neighbour(:, corner) == run%middle(k))
+          run%force(k + 1) = run%force(k + 1) + force(corner)*share_of_side(line, touching, corner, run%middle(k))
         end associate
       end do
     end do
+    if (closed) then
+      do k = 1, before
+        if (k > n) exit
+        run%area(1 - k) = run%area(n + 1 - k) - run%area(n + 1)
+        run%force(1 - k) = run%force(n + 1 - k) - run%force(n + 1)
+        run%area(n + 1 + k) = run%area(n + 1) + run%area(1 + k)
+        run%force(n + 1 + k) = run%force(n + 1) + run%force(1 + k)
+      end do
+      return
+    end if
     do k = 1, outside(1)
       run%area(1 - k) = -run%area(1 + k)
       run%force(1 - k) = -run%force(1 + k)
@@ -136,6 +146,30 @@ contains
       run%force(n + 1 + k) = 2.0_wp*run%force(n + 1) - run%force(n + 1 - k)
     end do
   end subroutine sum_up
+
+  !> The share of a side in what its corner bears: all of it where the next middle does not touch.
+  pure real(wp) function share_of_side(line, touching, corner, middle) result(share)
+    type(contact_line), intent(in) :: line
+    logical, intent(in) :: touching(:)
+    integer, intent(in) :: corner, middle
+    integer :: k
+    real(wp) :: other, own
+
+    own = 0.0_wp
+    other = 0.0_wp
+    do k = 1, 2
+      associate (neighbour => line%neighbour(k, corner))
+        if (neighbour == 0) cycle
+        if (neighbour == middle) then
+          own = own + line%part(k, corner)
+        else if (touching(neighbour)) then
+          other = other + line%part(k, corner)
+        end if
+      end associate
+    end do
+    share = 1.0_wp
+    if (other > 0.0_wp) share = own/(own + other)
+  end function share_of_side
 
   !> Pressures of a run. At an end where contact ends, the last side's own are left: there the pressure has no polynomial.
   pure subroutine derive(model, line, run, pressure)

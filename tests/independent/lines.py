@@ -218,16 +218,18 @@ class Line:
                 found[node] = [so_far[0] + n[0], so_far[1] + n[1]]
         return found
 
-    def face(self, x, outward, reach, but=None):
+    def face(self, x, outward, reach, but=None, like=None):
         """(nodes of a side, shape values, normal, gap) where a place faces this line, or None: the nearest; of equally near ones
-        that which looks most against it."""
+        that which looks most against it; of those too, at a corner, that with a normal most like one given, or the first."""
         found = [(abs(gap), dot(normal, outward), segment.nodes, values, normal, gap) for segment in self.segments
                  if but not in segment.nodes and segment.near(x, reach)
                  for values, normal, gap in segment.feet(x) if abs(gap) <= reach and dot(normal, outward) < 0]
         if not found:
             return None
         least = min(f[0] for f in found)
-        return min((f for f in found if f[0] <= least + EQUAL * reach), key=lambda f: f[1])[2:]
+        equal = [f for f in found if f[0] <= least + EQUAL * reach]
+        against = min(f[1] for f in equal) + EQUAL
+        return max((f for f in equal if f[1] <= against), key=lambda f: dot(f[4], like) if like else 0.0)[2:]
 
 
 def averages(ring, slave, master, faced, reach):
@@ -266,14 +268,16 @@ def mean(found):
     return total
 
 
-def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g):
-    """Of each BCONP the list of (slave node, {master node: weight}, normal, gap). `name`: of the node of an id."""
+def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g, likely=None):
+    """Of each BCONP the list of (slave node, {master node: weight}, normal, gap). `name`: of the node of an id; `likely`: normals
+    by nodes, which decide between places that are equally good."""
     lines = {int(card[1]): Line([name(g) for g in ids(card[2:])], sides, x, held) for card in deck.of("BLSEG")}
     ring, found = any(side.thickness is None for side in sides.values()), []
     for card in deck.of("BCONP"):
         slave, master = lines[int(card[2])], lines[int(card[3])]
         reach = real(parameter.get("SEARCH", ""), 2 * max(s.chord for s in slave.segments + master.segments))
-        faced = {node: master.face(x[node], outward, reach, node) for node, outward in slave.nodes().items()}
+        faced = {node: master.face(x[node], outward, reach, node, (likely or {}).get(node))
+                 for node, outward in slave.nodes().items()}
         faced = {node: face for node, face in faced.items() if face}
         if not faced:
             raise DeckError(f"BCONP {at(card, 1)} pairs nothing")

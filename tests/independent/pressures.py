@@ -3,7 +3,8 @@ each corner over the area summed up there. Standard library only.
 
 The sum is known at the corners of a run of sides that touch all along; a polynomial in Newton's form goes through those around
 a node. Where the run ends on a line of symmetry it goes on mirrored; at the axis of rings it need not, for there a pressure
-that is even in the radius is smooth in the area. Where contact ends, the outermost corner and middle keep force over area.
+that is even in the radius is smooth in the area. A run that closes goes on with itself. Where contact ends, the outermost corner
+and middle keep force over area; what that corner bears belongs to the run alone, unless the next middle touches too.
 """
 from math import hypot, sqrt
 
@@ -76,17 +77,28 @@ def runs(sides, at, own):
 class Run:
     """Sums of area and force up to the corners of a chain, mirrored beyond its ends; the chain's own begin at `first`."""
 
-    def __init__(self, chain, own, force, mirrored, axis):
+    def __init__(self, chain, own, force, mirrored, axis, shared):
+        """`shared`: sides that have a touching middle, by pair number of the corner."""
         self.chain = chain
-        self.even = [mirrored[end] for end in (chain[0], chain[-1])]
+        closed = chain[0] == chain[-1]
+        self.even = [mirrored[end] or closed for end in (chain[0], chain[-1])]
         self.area, self.force, self.first = [0.0], [0.0], 0
         for k in range(1, len(chain), 2):
             both = own[chain[k]].keys() & own[chain[k - 1]].keys() & own[chain[k + 1]].keys()
             parts = [(node, sum(own[node][ends] for ends in both)) for node in chain[k - 1:k + 2]]
-            bear = [part * force[node] / (sum(own[node].values()) or 1.0) for node, part in parts]
+            whole = [part + sum(area for ends, area in own[node].items() if ends not in both and ends in shared[node])
+                     for node, part in parts]
+            bear = [force[node] * (part / total if total else 1.0) for (node, part), total in zip(parts, whole)]
             self.area.append(self.area[-1] + sum(part for _, part in parts))
             self.force.append(self.force[-1] + sum(bear))
         count, beyond = len(self.area), min(len(self.area) - 1, AROUND_CORNER // 2)
+        if closed:
+            self.first = beyond
+            for total in (self.area, self.force):
+                after = [total[-1] + total[k] for k in range(1, beyond + 1)]
+                before = [total[count - 1 - k] - total[-1] for k in range(beyond, 0, -1)]
+                total[:] = before + total + after
+            return
         if self.even[1] and not axis[chain[-1]]:
             for total in (self.area, self.force):
                 total += [2 * total[count - 1] - total[count - 1 - k] for k in range(1, beyond + 1)]
@@ -126,7 +138,8 @@ def pressures(sides, x, held, pairs, groups, forces, touching):
     axis = [ring and p[0] == 0.0 for p in place]
     for group in groups:
         at = {pairs[k][0]: k for k in reversed(group)}
+        shared = {k: {ends for ends in own[k] if any(touching[at[node]] for node in sides[ends].nodes[2:] if node in at)} for k in group}
         for chain in runs(sides, {node: k for node, k in at.items() if touching[k]}, own):
-            for k, pressure in Run(chain, own, forces, mirrored, axis).pressures(place, ring):
+            for k, pressure in Run(chain, own, forces, mirrored, axis, shared).pressures(place, ring):
                 found[k] = pressure
     return found

@@ -23,7 +23,9 @@ class Pair:
 
 
 class Scene:
-    def __init__(self, deck):
+    """`likely`: normals that the program found for slave nodes: they decide only between places that are equally good."""
+
+    def __init__(self, deck, likely=None):
         self.deck = deck
         self.x = {int(c[1]): (real(at(c, 3)), real(at(c, 4))) for c in deck.of("GRID")}
         self.parameter = parameter = {c[1]: c[2] for c in deck.of("PARAM")}
@@ -38,7 +40,7 @@ class Scene:
                 self.element[int(c[1])] = (name, [int(g) for g in c[3:3 + len(kind.nodes)]], self.section[int(c[2] or c[1])])
         self.side = boundary([(KINDS[name], nodes, section.thickness) for name, nodes, section in self.element.values()], self.x)
         self.supports()
-        self.pairs()
+        self.pairs(likely)
         self.loads()
 
     def sections(self):
@@ -71,7 +73,7 @@ class Scene:
                 for digit in set(c[3]) & {"1", "2"}:
                     self.leader[node, int(digit) - 1] = (int(c[2]), int(digit) - 1)
 
-    def pairs(self):
+    def pairs(self, likely):
         frame = {int(c[1]): x_axis([real(at(c, i)) for i in range(3, 12)]) for c in self.deck.of("CORD2R")}
         given = {int(c[1]): real(at(c, 2)) for c in self.deck.of("PGAP")}
         within = {node for _, nodes, _ in self.element.values() for node in nodes}
@@ -85,7 +87,7 @@ class Scene:
                 gap += along[0] * n[0] + along[1] * n[1]
             self.pair[int(c[1])] = Pair(gap, n, {a: -1.0, b: 1.0}, b if b in within else a)
         self.contacts.append(list(self.pair))
-        for contact in pairs_of_lines(self.deck, self.parameter, self.side, self.x, self.held):
+        for contact in pairs_of_lines(self.deck, self.parameter, self.side, self.x, self.held, likely=likely):
             self.contacts.append([node for node, *_ in contact])
             for node, shares, n, gap in contact:
                 if node in self.pair:
