@@ -7,7 +7,7 @@
 module epcont_assembly_stiffness
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_linalg_band, only: band_matrix, new_band_matrix
+  use epcont_linalg_panel, only: panel_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   use epcont_model_model, only: model_type, most_nodes
   use epcont_plan_numbering, only: body_numbering
@@ -16,7 +16,7 @@ module epcont_assembly_stiffness
   public :: body_stiffness, assemble_body
 
   type :: body_stiffness
-    type(band_matrix) :: band                 !! K_bb, then its factor
+    type(panel_matrix) :: band                !! K_bb, then its factor
     real(wp), allocatable :: coupling(:, :)   !! K_br, then W [band, border]
     real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot**2 over its diagonal entry
@@ -37,12 +37,13 @@ contains
     real(wp), intent(in) :: matrix(:, :, :)
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
-    type(body_stiffness), intent(out) :: stiffness
+    type(body_stiffness), intent(inout) :: stiffness
     real(wp), intent(inout) :: settlement(:, :)
     real(wp) :: k(2*most_nodes, 2*most_nodes), forced(2*most_nodes)
     integer :: e, i, n
 
-    stiffness%band = new_band_matrix(body%equations, body%half_bandwidth)
+    call stiffness%band%begin(body%reach)
+    if (allocated(stiffness%coupling)) deallocate (stiffness%coupling, stiffness%schur)
     allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
     do e = 1, size(body%element)
       associate (element => body%element(e))
@@ -73,8 +74,7 @@ contains
       do i = 1, size(number)
         if (number(i) == 0) cycle
         if (number(i) >= number(j) .and. number(j) > 0) then
-          stiffness%band%entries(1 + number(i) - number(j), number(j)) = &
-            stiffness%band%entries(1 + number(i) - number(j), number(j)) + k(i, j)
+          call stiffness%band%add(number(i), number(j), k(i, j))
         else if (number(i) > 0 .and. number(j) < 0) then
           stiffness%coupling(number(i), -number(j)) = stiffness%coupling(number(i), -number(j)) + k(i, j)
         else if (number(i) < 0 .and. number(j) < 0) then

@@ -6,12 +6,27 @@ module epcont_linalg_lapack
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: dgemm, dgemv, dsymv, dsyrk, dtrsm
+  public :: dgemm, dgemv, dsymv, dsyrk, dtrsm, daxpy, ddot
   public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs, dlacn2
   public :: dgetrf, dgetrs, dgeqp3, dorgqr, dgesvd, dsyev
 
   ! BLAS
   interface
+    !> y = a x + y
+    pure subroutine daxpy(n, a, x, incx, y, incy)
+      import :: wp
+      integer, intent(in) :: n, incx, incy
+      real(wp), intent(in) :: a, x(*)
+      real(wp), intent(inout) :: y(*)
+    end subroutine daxpy
+
+    !> x.y
+    pure real(wp) function ddot(n, x, incx, y, incy)
+      import :: wp
+      integer, intent(in) :: n, incx, incy
+      real(wp), intent(in) :: x(*), y(*)
+    end function ddot
+
     !> C = alpha op(A) op(B) + beta C
     pure subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
       import :: wp

@@ -1,6 +1,7 @@
 !> Memory and work that a scene will take, from the numbering alone.
 module epcont_plan_forecast
   use epcont_base_kinds, only: i8, wp
+  use epcont_linalg_panel, only: panel_entries, panel_operations
   use epcont_model_model, only: model_type
   use epcont_plan_numbering, only: numbering_type
   implicit none
@@ -18,7 +19,7 @@ contains
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     type(forecast_type) :: expected
-    real(wp) :: band, contact, n
+    real(wp) :: contact, n
     integer(i8) :: entries
     integer :: b
 
@@ -26,10 +27,10 @@ contains
     n = real(model%pairs, wp)
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
-        band = real(body%half_bandwidth, wp)
         contact = real(body%contact_equations, wp)
         entries = entries + int(body%equations, i8)*body%border + int(body%contact_equations + body%border, i8)**2
-        expected%operations = expected%operations + body%equations*band*(band + 4.0_wp*body%border) + contact**3
+        expected%operations = expected%operations + panel_operations(body%reach) &
+                              + 4.0_wp*body%border*panel_entries(body%reach) + contact**3
       end associate
     end do
     ! F, its scaled copy and the tableau; a pivot runs over the whole tableau, about one pivot a pair.

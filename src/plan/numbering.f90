@@ -3,6 +3,7 @@ module epcont_plan_numbering
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8
   use epcont_base_sorting, only: sorted_order
+  use epcont_linalg_panel, only: panel_entries
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -14,6 +15,7 @@ module epcont_plan_numbering
     integer, allocatable :: element(:)     !! its elements
     integer :: equations = 0               !! in the band
     integer :: contact_equations = 0       !! of these the last, at nodes of pairs
+    integer, allocatable :: reach(:)       !! the last equation that each is coupled with [equations]
     integer :: half_bandwidth = 0
     integer :: border = 0                  !! leaders of ties that nothing holds, kept out of the band
   end type body_numbering
@@ -31,8 +33,12 @@ contains
   !> Entries of all band matrices.
   pure integer(i8) function band_entries(self)
     class(numbering_type), intent(in) :: self
+    integer :: b
 
-    band_entries = sum(int(self%body%equations, i8)*(self%body%half_bandwidth + 1))
+    band_entries = 0
+    do b = 1, size(self%body)
+      band_entries = band_entries + panel_entries(self%body(b)%reach)
+    end do
   end function band_entries
 
   pure function number_equations(model) result(numbering)
@@ -183,11 +189,18 @@ contains
       if (.not. at_contact(node)) before_contact = body%equations
     end do
     body%contact_equations = body%equations - before_contact
+    body%reach = [(e, e=1, body%equations)]
     do e = 1, size(body%element)
       associate (numbers => equation(:, model%connectivity(:model%order(body%element(e)), body%element(e))))
         highest = maxval(numbers)
         lowest = minval(numbers, mask=numbers > 0)
-        if (highest > 0) body%half_bandwidth = max(body%half_bandwidth, highest - lowest)
+        if (highest <= 0) cycle
+        body%half_bandwidth = max(body%half_bandwidth, highest - lowest)
+        do i = 1, size(numbers, 2)
+          do c = 1, 2
+            if (numbers(c, i) > 0) body%reach(numbers(c, i)) = max(body%reach(numbers(c, i)), highest)
+          end do
+        end do
       end associate
     end do
   end subroutine number_body

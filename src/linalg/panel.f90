@@ -1,0 +1,313 @@
+!> Symmetric positive definite matrices in panels of columns, each with its own height: blocked variable-band Cholesky.
+!>
+!> The lower triangle is stored panel by panel: panel p has the columns first(p) to first(p+1)-1, and for all of them the
+!> rows from first(p) to last(p), column by column from entries(start(p)) on. The last rows never go back where panels
+!> overlap, so the factor fills what is stored and nothing else:
+!>
+!>     x .        x: stored, .: stored but above the diagonal, never read
+!>     x x
+!>     x x x .    Of a plain band all panels have the height of the highest; here that of their own:
+!>         x x    about half the operations on graded meshes.
+!>         x x
+module epcont_linalg_panel
+  use epcont_base_kinds, only: i8, wp
+  use epcont_linalg_lapack, only: daxpy, ddot, dgemm, dlacn2, dpotrf, dpotri, dsyrk, dtrsm
+  implicit none
+  private
+  public :: panel_matrix, panel_entries, panel_operations
+
+  !> Columns of a panel, as a part of the mean height, and at least and at most.
+  integer, parameter :: heights_a_width = 4, least_width = 16, most_width = 64
+
+  type :: panel_matrix
+    integer :: order = 0
+    integer :: width = 1                   !! columns of a panel; the last may have fewer
+    integer, allocatable :: first(:)       !! first column of each panel [panels + 1]
+    integer, allocatable :: last(:)        !! last row of each panel [panels]
+    integer(i8), allocatable :: start(:)   !! of each panel in `entries` [panels + 1]
+    real(wp), allocatable :: entries(:)
+    real(wp) :: norm = 0.0_wp              !! 1-norm of the matrix before it was factored
+  contains
+    procedure :: begin
+    procedure :: add
+    procedure :: factor
+    procedure :: solve
+    procedure :: condition
+    procedure :: trailing_inverse
+    procedure, private :: height
+    procedure, private :: columns
+  end type panel_matrix
+
+contains
+
+  !> Begin a matrix of zeros. `reach` is the last row that each column is coupled with [order]. (A function would hand
+  !! back a copy of the whole matrix.)
+  pure subroutine begin(self, reach)
+    class(panel_matrix), intent(inout) :: self
+    integer, intent(in) :: reach(:)
+    integer :: p
+
+    if (.not. allocated(self%entries)) then
+      self%order = size(reach)
+      call find_panels(reach, self%width, self%first, self%last)
+      allocate (self%start(size(self%first)))
+      self%start(1) = 1
+      do p = 1, size(self%last)
+        self%start(p + 1) = self%start(p) + int(self%height(p), i8)*self%columns(p)
+      end do
+      allocate (self%entries(self%start(size(self%start))))   ! one more, behind the last
+    end if
+    self%entries = 0.0_wp
+  end subroutine begin
+
+  !> Panels of a matrix: where each begins, and its last row.
+  pure subroutine find_panels(reach, width, first, last)
+    integer, intent(in) :: reach(:)
+    integer, intent(out) :: width
+    integer, allocatable, intent(out) :: first(:), last(:)
+    integer(i8) :: heights
+    integer :: p, panels
+
+    heights = 0
+    do p = 1, size(reach)
+      heights = heights + (reach(p) - p + 1)
+    end do
+    width = int(heights/max(1, size(reach)))/heights_a_width
+    width = min(most_width, max(least_width, width - mod(width, 8)))
+    panels = (size(reach) + width - 1)/width
+    first = [(1 + (p - 1)*width, p=1, panels), size(reach) + 1]
+    allocate (last(panels))
+    do p = 1, panels
+      last(p) = max(first(p + 1) - 1, maxval(reach(first(p):first(p + 1) - 1)))
+      if (p > 1) then
+        if (last(p - 1) >= first(p)) last(p) = max(last(p), last(p - 1))
+      end if
+    end do
+  end subroutine find_panels
+
+  !> Entries that a matrix takes.
+  pure integer(i8) function panel_entries(reach) result(entries)
+    integer, intent(in) :: reach(:)
+    integer, allocatable :: first(:), last(:)
+    integer :: p, width
+
+    call find_panels(reach, width, first, last)
+    entries = 0
+    do p = 1, size(last)
+      entries = entries + int(last(p) - first(p) + 1, i8)*(first(p + 1) - first(p))
+    end do
+  end function panel_entries
+
+  !> Operations that its factorization takes.
+  pure real(wp) function panel_operations(reach) result(operations)
+    integer, intent(in) :: reach(:)
+    integer, allocatable :: first(:), last(:)
+    integer :: p, width
+
+    call find_panels(reach, width, first, last)
+    operations = 0.0_wp
+    do p = 1, size(last)
+      operations = operations + real(first(p + 1) - first(p), wp)*real(last(p) - first(p) + 1, wp)**2
+    end do
+  end function panel_operations
+
+  pure integer function height(self, panel)
+    class(panel_matrix), intent(in) :: self
+    integer, intent(in) :: panel
+
+    height = self%last(panel) - self%first(panel) + 1
+  end function height
+
+  pure integer function columns(self, panel)
+    class(panel_matrix), intent(in) :: self
+    integer, intent(in) :: panel
+
+    columns = self%first(panel + 1) - self%first(panel)
+  end function columns
+
+  !> Add to the entry of a row and a column, row >= column.
+  pure subroutine add(self, row, column, value)
+    class(panel_matrix), intent(inout) :: self
+    integer, intent(in) :: row, column
+    real(wp), intent(in) :: value
+    integer :: p
+    integer(i8) :: at
+
+    p = (column - 1)/self%width + 1
+    associate (f => self%first(p))
+      at = self%start(p) + int(column - f, i8)*(self%last(p) - f + 1) + (row - f)
+    end associate
+    self%entries(at) = self%entries(at) + value
+  end subroutine add
+
+  !> Replace the matrix by its Cholesky factor. Many singular matrices pass for definite, so the squared ratio of each
+  !! pivot to its diagonal entry is returned as well.
+  pure subroutine factor(self, smallest_ratio, at)
+    class(panel_matrix), intent(inout) :: self
+    real(wp), intent(out) :: smallest_ratio  !! smallest pivot**2 / diagonal; 0 where the matrix is not definite
+    integer, intent(out) :: at               !! its row
+    real(wp), allocatable :: diagonal(:)
+    integer :: info, p
+
+    smallest_ratio = 1.0_wp
+    at = 0
+    if (self%order == 0) return
+    call measure(self, diagonal)
+    do p = 1, size(self%last)
+      associate (h => self%height(p), w => self%columns(p), s => self%start(p))
+        call dpotrf('L', w, self%entries(s), h, info)
+        if (info > 0) then
+          smallest_ratio = 0.0_wp
+          at = self%first(p) - 1 + info
+          return
+        end if
+        call compare_pivots(self, p, diagonal, smallest_ratio, at)
+        if (h == w) cycle
+        call dtrsm('R', 'L', 'T', 'N', h - w, w, 1.0_wp, self%entries(s), h, self%entries(s + w), h)
+      end associate
+      call update(self, p)
+    end do
+  end subroutine factor
+
+  !> Diagonal, and the 1-norm.
+  pure subroutine measure(self, diagonal)
+    class(panel_matrix), intent(inout) :: self
+    real(wp), allocatable, intent(out) :: diagonal(:)
+    real(wp), allocatable :: row_sum(:)
+    real(wp) :: total
+    integer :: i, j, p
+    integer(i8) :: at
+
+    allocate (diagonal(self%order), row_sum(self%order))
+    row_sum = 0.0_wp
+    do p = 1, size(self%last)
+      do j = self%first(p), self%first(p + 1) - 1
+        at = self%start(p) + int(j - self%first(p), i8)*(self%height(p) + 1)   ! of the diagonal entry
+        diagonal(j) = self%entries(at)
+        total = abs(diagonal(j))
+        do i = j + 1, self%last(p)
+          associate (entry => abs(self%entries(at + i - j)))
+            total = total + entry
+            row_sum(i) = row_sum(i) + entry
+          end associate
+        end do
+        row_sum(j) = row_sum(j) + total
+      end do
+    end do
+    self%norm = maxval(row_sum)
+  end subroutine measure
+
+  pure subroutine compare_pivots(self, p, diagonal, smallest_ratio, at)
+    class(panel_matrix), intent(in) :: self
+    integer, intent(in) :: p
+    real(wp), intent(in) :: diagonal(:)
+    real(wp), intent(inout) :: smallest_ratio
+    integer, intent(inout) :: at
+    real(wp) :: ratio
+    integer :: j
+
+    do j = self%first(p), self%first(p + 1) - 1
+      ratio = self%entries(self%start(p) + int(j - self%first(p), i8)*(self%height(p) + 1))**2/diagonal(j)
+      if (at > 0 .and. ratio >= smallest_ratio) cycle
+      smallest_ratio = ratio
+      at = j
+    end do
+  end subroutine compare_pivots
+
+  !> Take a factored panel off the panels that it reaches.
+  pure subroutine update(self, p)
+    class(panel_matrix), intent(inout) :: self
+    integer, intent(in) :: p
+    integer :: h, q, rows, w
+    integer(i8) :: from
+
+    h = self%height(p)
+    do q = p + 1, size(self%last)
+      if (self%first(q) > self%last(p)) exit
+      w = min(self%columns(q), self%last(p) - self%first(q) + 1)
+      rows = self%last(p) - self%first(q) + 1
+      from = self%start(p) + (self%first(q) - self%first(p))
+      call dsyrk('L', 'N', w, self%columns(p), -1.0_wp, self%entries(from), h, 1.0_wp, &
+                 self%entries(self%start(q)), self%height(q))
+      if (rows > w) call dgemm('N', 'T', rows - w, w, self%columns(p), -1.0_wp, self%entries(from + w), h, &
+                               self%entries(from), h, 1.0_wp, self%entries(self%start(q) + w), self%height(q))
+    end do
+  end subroutine update
+
+  !> Solve with the factor, in place. (Column by column: one right-hand side reads the factor once each way, and no
+  !! blocking is faster than memory.)
+  pure subroutine solve(self, x)
+    class(panel_matrix), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: x(:, :)  !! right-hand sides, then solutions [order, any]
+    integer :: j, k, p
+    integer(i8) :: at
+
+    do k = 1, size(x, 2)
+      do p = 1, size(self%last)
+        at = self%start(p)
+        do j = self%first(p), self%first(p + 1) - 1
+          x(j, k) = x(j, k)/self%entries(at)
+          call daxpy(self%last(p) - j, -x(j, k), self%entries(at + 1), 1, x(j + 1:, k), 1)
+          at = at + self%height(p) + 1
+        end do
+      end do
+      do p = size(self%last), 1, -1
+        at = self%start(p) + int(self%columns(p) - 1, i8)*(self%height(p) + 1)
+        do j = self%first(p + 1) - 1, self%first(p), -1
+          x(j, k) = (x(j, k) - ddot(self%last(p) - j, self%entries(at + 1), 1, x(j + 1:, k), 1))/self%entries(at)
+          at = at - self%height(p) - 1
+        end do
+      end do
+    end do
+  end subroutine solve
+
+  !> Estimate of the condition in the 1-norm, from the factor (Hager and Higham's estimator, five solves or so).
+  pure function condition(self) result(number)
+    class(panel_matrix), intent(in) :: self
+    real(wp) :: number
+    real(wp), allocatable :: v(:), x(:, :)
+    real(wp) :: inverse_norm
+    integer, allocatable :: signs(:)
+    integer :: asked, state(3)
+
+    number = 1.0_wp
+    if (self%order == 0) return
+    allocate (v(self%order), x(self%order, 1), source=0.0_wp)
+    allocate (signs(self%order), source=0)
+    asked = 0
+    state = 0
+    inverse_norm = 0.0_wp
+    do
+      call dlacn2(self%order, v, x, signs, inverse_norm, asked, state)
+      if (asked == 0) exit
+      call self%solve(x)  ! the matrix is symmetric: its transpose is asked for in the same way
+    end do
+    number = self%norm*inverse_norm
+  end function condition
+
+  !> Trailing block of the inverse, from the factor: with L22 the trailing block of the factor it is
+  !! (L22 L22')^-1, since all that stands before has been eliminated from it.
+  pure function trailing_inverse(self, count) result(inverse)
+    class(panel_matrix), intent(in) :: self
+    integer, intent(in) :: count              !! rows and columns wanted
+    real(wp), allocatable :: inverse(:, :)    !! full symmetric [count, count]
+    integer :: before, i, info, j, p
+    integer(i8) :: at
+
+    allocate (inverse(count, count), source=0.0_wp)
+    if (count == 0) return
+    before = self%order - count
+    do p = before/self%width + 1, size(self%last)
+      do j = max(self%first(p), before + 1), self%first(p + 1) - 1
+        at = self%start(p) + int(j - self%first(p), i8)*(self%height(p) + 1)
+        do i = j, self%last(p)
+          inverse(i - before, j - before) = self%entries(at + i - j)
+        end do
+      end do
+    end do
+    call dpotri('L', count, inverse, count, info)
+    do j = 2, count
+      inverse(:j - 1, j) = inverse(j, :j - 1)
+    end do
+  end function trailing_inverse
+end module epcont_linalg_panel
