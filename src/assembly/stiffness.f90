@@ -24,7 +24,6 @@ module epcont_assembly_stiffness
   contains
     procedure :: factor
     procedure :: solve
-    procedure :: trailing_compliance
   end type body_stiffness
 
 contains
@@ -113,27 +112,4 @@ contains
     call cholesky_solve(self%schur, border)
     band = band - matmul(self%coupling, border)
   end subroutine solve
-
-  !> Inverse of K over its last band equations and the border, in this order: flexibility by inversion.
-  pure function trailing_compliance(self, count) result(compliance)
-    class(body_stiffness), intent(in) :: self
-    integer, intent(in) :: count                 !! last band equations wanted
-    real(wp), allocatable :: compliance(:, :)    !! [count + border, count + border]
-    real(wp), allocatable :: response(:, :), solved(:, :)
-    integer :: border, i
-
-    border = size(self%schur, 1)
-    allocate (compliance(count + border, count + border), source=0.0_wp)
-    compliance(:count, :count) = self%band%trailing_inverse(count)
-    if (border == 0) return
-    ! K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'
-    allocate (response(count + border, border), source=0.0_wp)
-    response(:count, :) = self%coupling(self%band%order - count + 1:, :)
-    do i = 1, border
-      response(count + i, i) = -1.0_wp
-    end do
-    solved = transpose(response)
-    call cholesky_solve(self%schur, solved)
-    compliance = compliance + matmul(response, solved)
-  end function trailing_compliance
 end module epcont_assembly_stiffness

@@ -2,6 +2,7 @@
 module epcont_flexibility_flexibility
   use epcont_assembly_stiffness, only: body_stiffness
   use epcont_base_kinds, only: wp
+  use epcont_linalg_dense, only: cholesky_solve
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
@@ -18,62 +19,103 @@ contains
     integer, intent(in) :: b                       !! the body
     type(body_stiffness), intent(in) :: stiffness  !! factored
     real(wp), intent(inout) :: flexibility(:, :)
-    real(wp), allocatable :: compliance(:, :), response(:), weight(:)
-    real(wp) :: opening
-    integer, allocatable :: start(:), place(:)
-    integer :: i, j, k, l
+    real(wp), allocatable :: weight(:)
+    integer, allocatable :: start(:), equation(:)
 
     if (numbering%body(b)%contact_equations + numbering%body(b)%border == 0) return
-    call body_rows(model, numbering, b, start, place, weight)
-    compliance = stiffness%trailing_compliance(numbering%body(b)%contact_equations)
-    allocate (response(size(compliance, 1)))
-    do l = 1, model%pairs
+    call body_rows(model, numbering, b, start, equation, weight)
+    if (numbering%body(b)%contact_last) then
+      call add_by_inversion(stiffness, numbering%body(b)%contact_equations, start, equation, weight, flexibility)
+    else
+      call stiffness%band%add_gram(start, equation, weight, flexibility)
+    end if
+    if (numbering%body(b)%border > 0) call add_border(stiffness, start, equation, weight, flexibility)
+  end subroutine add_body_flexibility
+
+  !> Rows of N in one body: the entries start(k) to start(k+1)-1 of pair k are equations, negative ones of the border, and
+  !! their weights in the gap. Freedoms that are held, across the normal or of another body are left out.
+  pure subroutine body_rows(model, numbering, b, start, equation, weight)
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    integer, intent(in) :: b
+    integer, allocatable, intent(out) :: start(:)     !! [pairs + 1]
+    integer, allocatable, intent(out) :: equation(:)  !! [entries]
+    real(wp), allocatable, intent(out) :: weight(:)   !! [entries]
+    integer :: c, i, k, last
+
+    allocate (start(model%pairs + 1))
+    allocate (equation(2*size(model%row_node)), weight(2*size(model%row_node)))
+    last = 0
+    do k = 1, model%pairs
+      start(k) = last + 1
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        if (model%body(model%row_node(i)) /= b) cycle
+        do c = 1, 2
+          associate (number => numbering%equation(c, model%row_node(i)))
+            if (number == 0 .or. model%normal(c, k) == 0.0_wp) cycle
+            last = last + 1
+            equation(last) = number
+            weight(last) = model%row_weight(i)*model%normal(c, k)
+          end associate
+        end do
+      end do
+    end do
+    start(model%pairs + 1) = last + 1
+  end subroutine body_rows
+
+  !> N K_bb^-1 N' of the band alone, whose last equations are the contact's: its trailing inverse, seen by the rows.
+  pure subroutine add_by_inversion(stiffness, count, start, equation, weight, flexibility)
+    type(body_stiffness), intent(in) :: stiffness
+    integer, intent(in) :: count                   !! contact equations
+    integer, intent(in) :: start(:), equation(:)
+    real(wp), intent(in) :: weight(:)
+    real(wp), intent(inout) :: flexibility(:, :)
+    real(wp), allocatable :: compliance(:, :), response(:)
+    real(wp) :: opening
+    integer :: before, i, j, k, l
+
+    compliance = stiffness%band%trailing_inverse(count)
+    before = stiffness%band%order - count
+    allocate (response(count))
+    do l = 1, size(start) - 1
       response = 0.0_wp
       do j = start(l), start(l + 1) - 1
-        response = response + weight(j)*compliance(:, place(j))
+        if (equation(j) > 0) response = response + weight(j)*compliance(:, equation(j) - before)
       end do
-      do k = l, model%pairs
+      do k = l, size(start) - 1
         opening = 0.0_wp
         do i = start(k), start(k + 1) - 1
-          opening = opening + weight(i)*response(place(i))
+          if (equation(i) > 0) opening = opening + weight(i)*response(equation(i) - before)
         end do
         flexibility(k, l) = flexibility(k, l) + opening
         if (k > l) flexibility(l, k) = flexibility(l, k) + opening
       end do
     end do
-  end subroutine add_body_flexibility
+  end subroutine add_by_inversion
 
-  !> Rows of N in one body: the entries start(k) to start(k+1)-1 of pair k are freedoms by their place in the
-  !! compliance, and their weights in the gap. Freedoms that are held or of another body are left out.
-  pure subroutine body_rows(model, numbering, b, start, place, weight)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    integer, intent(in) :: b
-    integer, allocatable, intent(out) :: start(:)    !! [pairs + 1]
-    integer, allocatable, intent(out) :: place(:)    !! [entries]
-    real(wp), allocatable, intent(out) :: weight(:)  !! [entries]
-    integer :: c, first, i, k, number
+  !> What the border adds: K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'.
+  pure subroutine add_border(stiffness, start, equation, weight, flexibility)
+    type(body_stiffness), intent(in) :: stiffness
+    integer, intent(in) :: start(:), equation(:)
+    real(wp), intent(in) :: weight(:)
+    real(wp), intent(inout) :: flexibility(:, :)
+    real(wp), allocatable :: response(:, :), solved(:, :)
+    integer :: i, k
 
-    allocate (start(model%pairs + 1), source=1)
-    allocate (place(2*size(model%row_node)), weight(2*size(model%row_node)))
-    associate (body => numbering%body(b), last => start(model%pairs + 1))
-      first = body%equations - body%contact_equations
-      last = 1
-      do k = 1, model%pairs
-        start(k) = last
-        do i = model%row_start(k), model%row_start(k + 1) - 1
-          if (model%body(model%row_node(i)) /= b) cycle
-          do c = 1, 2
-            number = numbering%equation(c, model%row_node(i))
-            if (number == 0) cycle
-            place(last) = merge(number - first, body%contact_equations - number, number > 0)
-            weight(last) = model%row_weight(i)*model%normal(c, k)
-            last = last + 1
-          end do
-        end do
+    allocate (response(size(start) - 1, size(stiffness%schur, 1)), source=0.0_wp)
+    do k = 1, size(start) - 1
+      do i = start(k), start(k + 1) - 1
+        if (equation(i) > 0) then
+          response(k, :) = response(k, :) + weight(i)*stiffness%coupling(equation(i), :)
+        else
+          response(k, -equation(i)) = response(k, -equation(i)) - weight(i)
+        end if
       end do
-    end associate
-  end subroutine body_rows
+    end do
+    solved = transpose(response)
+    call cholesky_solve(stiffness%schur, solved)
+    flexibility = flexibility + matmul(response, solved)
+  end subroutine add_border
 
   !> Opening of the gaps by displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)

@@ -11,10 +11,11 @@
 !>         x x
 module epcont_linalg_panel
   use epcont_base_kinds, only: i8, wp
+  use epcont_base_sorting, only: sorted_order
   use epcont_linalg_lapack, only: daxpy, ddot, dgemm, dlacn2, dpotrf, dpotri, dsyrk, dtrsm
   implicit none
   private
-  public :: panel_matrix, panel_entries, panel_operations
+  public :: panel_matrix, panel_entries, panel_operations, gram_operations
 
   !> Columns of a panel, as a part of the mean height, and at least and at most.
   integer, parameter :: heights_a_width = 4, least_width = 16, most_width = 64
@@ -34,6 +35,7 @@ module epcont_linalg_panel
     procedure :: solve
     procedure :: condition
     procedure :: trailing_inverse
+    procedure :: add_gram
     procedure, private :: height
     procedure, private :: columns
   end type panel_matrix
@@ -110,6 +112,24 @@ contains
       operations = operations + real(first(p + 1) - first(p), wp)*real(last(p) - first(p) + 1, wp)**2
     end do
   end function panel_operations
+
+  !> Operations of `add_gram` for columns that begin at these equations, ascending.
+  pure real(wp) function gram_operations(reach, begins) result(operations)
+    integer, intent(in) :: reach(:), begins(:)
+    integer, allocatable :: first(:), last(:)
+    integer :: active, p, width
+
+    call find_panels(reach, width, first, last)
+    operations = 0.0_wp
+    active = 0
+    do p = 1, size(last)
+      do while (active < size(begins))
+        if (begins(active + 1) >= first(p + 1)) exit
+        active = active + 1
+      end do
+      operations = operations + real(width, wp)*active*(2.0_wp*(last(p) - first(p) + 1) + active)
+    end do
+  end function gram_operations
 
   pure integer function height(self, panel)
     class(panel_matrix), intent(in) :: self
@@ -310,4 +330,64 @@ contains
       inverse(:j - 1, j) = inverse(j, :j - 1)
     end do
   end function trailing_inverse
+
+  !> Add N K^-1 N' from the factor, N given by rows: entries start(k) to start(k+1)-1 of row k are equations and weights.
+  !! With X = L^-1 N', taken panel by panel through a window as high as the highest, it is X'X: no right-hand side is
+  !! touched before its first equation, and none is ever stored whole.
+  pure subroutine add_gram(self, start, equation, weight, gram)
+    class(panel_matrix), intent(in) :: self
+    integer, intent(in) :: start(:)             !! [rows + 1]
+    integer, intent(in) :: equation(:)          !! those that are not positive count for nothing [entries]
+    real(wp), intent(in) :: weight(:)           !! [entries]
+    real(wp), intent(inout) :: gram(:, :)       !! [rows, rows]
+    real(wp), allocatable :: product(:, :), window(:, :)
+    integer, allocatable :: begins(:), column(:), entry(:), order(:), row_of(:)
+    integer :: active, e, h, highest, k, n, p, w
+
+    n = size(start) - 1
+    allocate (begins(n), source=huge(1))
+    allocate (row_of(start(n + 1) - 1))
+    do k = 1, n
+      row_of(start(k):start(k + 1) - 1) = k
+      associate (own => equation(start(k):start(k + 1) - 1))
+        if (any(own > 0)) begins(k) = minval(own, mask=own > 0)
+      end associate
+    end do
+    order = sorted_order(begins)
+    allocate (column(n))
+    column(order) = [(k, k=1, n)]
+    entry = sorted_order(equation(:size(row_of)))
+    highest = maxval(self%last - self%first(:size(self%last))) + 1
+    allocate (window(highest, n), product(n, n), source=0.0_wp)
+    active = 0
+    e = 1
+    do p = 1, size(self%last)
+      h = self%height(p)
+      w = self%columns(p)
+      do while (e <= size(entry))
+        if (equation(entry(e)) >= self%first(p + 1)) exit
+        associate (i => equation(entry(e)) - self%first(p) + 1)
+          if (i > 0) then
+            k = column(row_of(entry(e)))
+            active = max(active, k)
+            window(i, k) = window(i, k) + weight(entry(e))
+          end if
+        end associate
+        e = e + 1
+      end do
+      if (active == 0) cycle
+      call dtrsm('L', 'L', 'N', 'N', w, active, 1.0_wp, self%entries(self%start(p)), h, window, highest)
+      call dsyrk('L', 'T', active, w, 1.0_wp, window, highest, 1.0_wp, product, n)
+      if (h > w) call dgemm('N', 'N', h - w, active, w, -1.0_wp, self%entries(self%start(p) + w), h, window, highest, 1.0_wp, &
+                            window(w + 1, 1), highest)
+      do k = 1, active
+        window(:h - w, k) = window(w + 1:h, k)
+        window(h - w + 1:h, k) = 0.0_wp
+      end do
+    end do
+    do k = 1, n
+      gram(order(k:), order(k)) = gram(order(k:), order(k)) + product(k:, k)
+      gram(order(k), order(k + 1:)) = gram(order(k), order(k + 1:)) + product(k + 1:, k)
+    end do
+  end subroutine add_gram
 end module epcont_linalg_panel

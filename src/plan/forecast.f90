@@ -1,7 +1,7 @@
 !> Memory and work that a scene will take, from the numbering alone.
 module epcont_plan_forecast
   use epcont_base_kinds, only: i8, wp
-  use epcont_linalg_panel, only: panel_entries, panel_operations
+  use epcont_linalg_panel, only: panel_entries
   use epcont_model_model, only: model_type
   use epcont_plan_numbering, only: numbering_type
   implicit none
@@ -19,22 +19,25 @@ contains
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     type(forecast_type) :: expected
-    real(wp) :: contact, n
-    integer(i8) :: entries
+    integer(i8) :: entries, factor, pairs
     integer :: b
 
-    entries = numbering%band_entries()
-    n = real(model%pairs, wp)
+    pairs = model%pairs
+    entries = 0
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
-        contact = real(body%contact_equations, wp)
-        entries = entries + int(body%equations, i8)*body%border + int(body%contact_equations + body%border, i8)**2
-        expected%operations = expected%operations + panel_operations(body%reach) &
-                              + 4.0_wp*body%border*panel_entries(body%reach) + contact**3
+        factor = panel_entries(body%reach)
+        entries = entries + factor + int(body%equations, i8)*body%border
+        if (body%contact_last) then
+          entries = entries + int(body%contact_equations, i8)**2
+        else
+          entries = entries + pairs*(pairs + body%half_bandwidth)
+        end if
+        expected%operations = expected%operations + body%operations + 4.0_wp*body%border*factor
       end associate
     end do
     ! F, its scaled copy and the tableau; a pivot runs over the whole tableau, about one pivot a pair.
-    expected%bytes = 8_i8*(entries + 3_i8*int(model%pairs, i8)**2)
-    expected%operations = expected%operations + 2.0_wp*n**3
+    expected%bytes = 8_i8*(entries + 3_i8*pairs**2)
+    expected%operations = expected%operations + 2.0_wp*real(pairs, wp)**3
   end function forecast
 end module epcont_plan_forecast

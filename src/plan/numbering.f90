@@ -1,9 +1,9 @@
 !> Numbers of the equations of each body: a narrow band, with the contact freedoms last.
 module epcont_plan_numbering
   use epcont_base_incidence, only: incidence, new_incidence
-  use epcont_base_kinds, only: i8
+  use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_panel, only: panel_entries
+  use epcont_linalg_panel, only: gram_operations, panel_operations
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -14,7 +14,9 @@ module epcont_plan_numbering
     integer, allocatable :: node(:)        !! its nodes, in the order of the equations
     integer, allocatable :: element(:)     !! its elements
     integer :: equations = 0               !! in the band
-    integer :: contact_equations = 0       !! of these the last, at nodes of pairs
+    integer :: contact_equations = 0       !! of these at nodes of pairs
+    logical :: contact_last = .true.       !! the contact equations are the last ones
+    real(wp) :: operations = 0.0_wp        !! of factor and flexibility
     integer, allocatable :: reach(:)       !! the last equation that each is coupled with [equations]
     integer :: half_bandwidth = 0
     integer :: border = 0                  !! leaders of ties that nothing holds, kept out of the band
@@ -24,22 +26,9 @@ module epcont_plan_numbering
     !> Equation of each freedom in its body: positive in the band, negative in the border, 0 held. [2, nodes]
     integer, allocatable :: equation(:, :)
     type(body_numbering), allocatable :: body(:)
-  contains
-    procedure :: band_entries
   end type numbering_type
 
 contains
-
-  !> Entries of all band matrices.
-  pure integer(i8) function band_entries(self)
-    class(numbering_type), intent(in) :: self
-    integer :: b
-
-    band_entries = 0
-    do b = 1, size(self%body)
-      band_entries = band_entries + panel_entries(self%body(b)%reach)
-    end do
-  end function band_entries
 
   pure function number_equations(model) result(numbering)
     type(model_type), intent(in) :: model
@@ -64,8 +53,7 @@ contains
       e_last = e_first - 1 + count_run(element_body(element_order(e_first:)), b)
       associate (body => numbering%body(b))
         body%element = element_order(e_first:e_last)
-        body%node = contact_last_order(model, around, order(first:last), at_contact)
-        call number_body(model, at_contact, numbering%equation, body)
+        call choose_numbers(model, around, order(first:last), at_contact, numbering%equation, body)
       end associate
       first = last + 1
       e_first = e_last + 1
@@ -80,21 +68,50 @@ contains
     if (count_run < 0) count_run = size(keys)
   end function count_run
 
-  !> Reverse Cuthill-McKee order, its levels rooted at the contact nodes so that these come last. The roots
-  !! stand in the order of a first sweep from the body's far end, which runs along the contact.
-  pure function contact_last_order(model, around, nodes, at_contact) result(order)
+  !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come last: then the
+  !! trailing block of the factor alone gives the flexibility. Or, where that widens the band by more than forward
+  !! substitution of all pairs costs, they are rooted at the body's far end.
+  pure subroutine choose_numbers(model, around, nodes, at_contact, equation, body)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: around
     integer, intent(in) :: nodes(:)
     logical, intent(in) :: at_contact(:)
+    integer, intent(inout) :: equation(:, :)
+    type(body_numbering), intent(inout) :: body
+    type(body_numbering) :: plain
     integer, allocatable :: order(:)
 
     order = sweep(model, around, nodes(:1), nodes)
     order = sweep(model, around, order(size(order):), nodes)
     order = sweep(model, around, order(size(order):), nodes)
-    if (any(at_contact(nodes))) order = sweep(model, around, pack(order, at_contact(order)), nodes)
-    order = order(size(order):1:-1)
-  end function contact_last_order
+    plain%element = body%element
+    call number_body(model, at_contact, order(size(order):1:-1), equation, plain)
+    plain%contact_last = .false.
+    plain%operations = panel_operations(plain%reach)
+    if (.not. any(at_contact(nodes))) then
+      body = plain
+      return
+    end if
+    plain%operations = plain%operations + gram_operations(plain%reach, begins(equation, pack(plain%node, at_contact(plain%node))))
+    ! The roots stand in the order of the sweep from the far end, which runs along the contact.
+    order = sweep(model, around, pack(order, at_contact(order)), nodes)
+    call number_body(model, at_contact, order(size(order):1:-1), equation, body)
+    body%operations = panel_operations(body%reach) + real(body%contact_equations, wp)**3
+    if (body%operations <= plain%operations) return
+    call number_body(model, at_contact, plain%node, equation, plain)
+    body = plain
+  end subroutine choose_numbers
+
+  !> First equations of the nodes of pairs, ascending.
+  pure function begins(equation, nodes)
+    integer, intent(in) :: equation(:, :), nodes(:)
+    integer, allocatable :: begins(:)
+    integer :: i
+
+    begins = [(maxval(equation(:, nodes(i))), i=1, size(nodes))]
+    begins = pack(begins, begins > 0)
+    begins = begins(sorted_order(begins))
+  end function begins
 
   !> Breadth-first order from `roots`, at each node its new neighbours by their number of elements. Nodes that
   !! elements do not join to the roots (an RBE2 does) start sweeps of their own.
@@ -156,14 +173,23 @@ contains
 
   !> Number the freedoms of one body along the order of its nodes. A tied freedom has its leader's number; a
   !! leader that is free goes to the border, so that the band never sees a whole line of nodes on one freedom.
-  pure subroutine number_body(model, at_contact, equation, body)
+  pure subroutine number_body(model, at_contact, order, equation, body)
     type(model_type), intent(in) :: model
     logical, intent(in) :: at_contact(:)
+    integer, intent(in) :: order(:)                      !! of its nodes
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
-    integer :: c, e, i, node, before_contact
+    integer :: c, e, i, node
     integer :: lowest, highest
 
+    body%node = order
+    body%border = 0
+    body%equations = 0
+    body%contact_equations = 0
+    body%half_bandwidth = 0
+    do i = 1, size(order)
+      equation(:, order(i)) = 0
+    end do
     do i = 1, size(body%node)
       node = body%node(i)
       do c = 1, 2
@@ -175,7 +201,6 @@ contains
         end associate
       end do
     end do
-    before_contact = 0
     do i = 1, size(body%node)
       node = body%node(i)
       do c = 1, 2
@@ -184,11 +209,10 @@ contains
         else if (.not. (model%held(c, node) .or. model%reference(c, node)) .and. equation(c, node) == 0) then
           body%equations = body%equations + 1
           equation(c, node) = body%equations
+          if (at_contact(node)) body%contact_equations = body%contact_equations + 1
         end if
       end do
-      if (.not. at_contact(node)) before_contact = body%equations
     end do
-    body%contact_equations = body%equations - before_contact
     body%reach = [(e, e=1, body%equations)]
     do e = 1, size(body%element)
       associate (numbers => equation(:, model%connectivity(:model%order(body%element(e)), body%element(e))))

@@ -34,7 +34,7 @@ contains
     if (model%pairs == 0) then
       text = text//'  no pairs: no flexibility, no simplex'//newline
     else
-      text = text//'  flexibility by inversion of the trailing block, simplex with contact entry rule (CONRY)'//newline
+      text = text//'  contact by the simplex with contact entry rule (CONRY)'//newline
     end if
     do k = 1, min(most, size(model%line_contact))
       text = text//line_text(model, model%line_contact(k))
@@ -46,12 +46,13 @@ contains
              text_of(motions%component(k))//newline
     end do
     if (motions%count > most) text = text//'  and '//plural(motions%count - most, 'further free motion')//newline
-    text = text//newline//'   body  nodes  equations  half-bandwidth  contact equations  border  factorizations'//newline
+    text = text//newline//'   body  nodes  equations  half-bandwidth  contact equations  border  factorizations'// &
+           '  flexibility by'//newline
     do b = 1, min(most, model%bodies)
       associate (body => numbering%body(b))
         text = text//right(text_of(b), 7)//right(text_of(size(body%node)), 7)//right(text_of(body%equations), 11)// &
                right(text_of(body%half_bandwidth), 16)//right(text_of(body%contact_equations), 19)// &
-               right(text_of(body%border), 8)//right(factorizations(iteration, body, b), 16)//newline
+               right(text_of(body%border), 8)//right(factorizations(iteration, body, b), 16)//'  '//flexibility_text(body)//newline
       end associate
     end do
     if (model%bodies > most) text = text//'  and '//plural(model%bodies - most, 'further one')//newline
@@ -74,6 +75,16 @@ contains
                                      ': '//plural(contact%left_out, 'node')
     text = text//newline
   end function line_text
+
+  !> How a body's flexibility follows from its factor: by inverting the trailing block, or by forward substitution of
+  !! the pairs.
+  pure function flexibility_text(body) result(text)
+    type(body_numbering), intent(in) :: body
+    character(len=:), allocatable :: text
+
+    text = '-'
+    if (body%contact_equations > 0) text = trim(merge('inversion   ', 'substitution', body%contact_last))
+  end function flexibility_text
 
   !> How often a body is factored.
   pure function factorizations(iteration, body, b) result(text)
