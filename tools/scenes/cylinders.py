@@ -13,7 +13,14 @@ def disc_of(radius, b, wanted, element="ctria3"):
     corners = wanted // 4 if element == "ctria6" else wanted
     candidates = [quarter_disc(radius, b, k / 10) for k in range(10 if corners < wanted else 20, 60 if corners < 400 else 400)
                   if 8.0 * (k / 10) ** 2 < 2 * corners < 60.0 * (k / 10) ** 2]
-    return curved(min(candidates, key=lambda mesh: abs(len(mesh.point) - corners)), radius, element)
+    best = min(candidates or [quarter_disc(radius, b, 40.0)], key=lambda mesh: abs(len(mesh.point) - corners))
+    low, high = 1.0, 64.0
+    if len(best.point) < 0.9 * corners:  # no finer at the contact, but farther away
+        while abs(len(best.point) - corners) > 0.05 * corners and high / low > 1.01:
+            far = math.sqrt(low * high)
+            best = quarter_disc(radius, b, 40.0, 1.0 + 1.0 / 64.0 / far)
+            low, high = (far, high) if len(best.point) < corners else (low, far)
+    return curved(best, radius, element)
 
 
 def curved(mesh, radius, element):
