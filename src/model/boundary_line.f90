@@ -12,8 +12,8 @@ module epcont_model_boundary_line
   private
   public :: boundary_line, facing_place, find_normals
 
-  !> Sides that turn by more than this meet at a corner.
-  real(wp), parameter :: corner_cosine = cos(30.0_wp*acos(-1.0_wp)/180.0_wp)
+  !> Sides that turn by more than this meet at a corner: beyond the 30 degrees of a circle of 12 sides, or of a chamfer.
+  real(wp), parameter :: corner_angle = 35.0_wp*acos(-1.0_wp)/180.0_wp
   !> Part of a side by which a point may stand beyond its end: rounding of coordinates in eight columns.
   real(wp), parameter :: beyond = 1.0e-6_wp
   !> A point so near to a node, as a part of the side, faces the node.
@@ -29,6 +29,9 @@ module epcont_model_boundary_line
     integer, allocatable :: element(:)         !! whose sides they are [segments]
     real(wp), allocatable :: x(:, :, :)        !! their coordinates [length] [2, 3, segments]
     real(wp), allocatable :: normal(:, :, :)   !! outward, at start and end of each side [2, 2, segments]
+    !> At the first and the last node, on a line of symmetry: within that line, though it be a corner there [2, 2]
+    real(wp) :: end_normal(2, 2) = 0.0_wp
+    logical :: mirrored(2) = .false.           !! it is one
   contains
     procedure :: longest
     procedure :: chord_length
@@ -66,7 +69,7 @@ contains
       if (next > n) next = 1
       here = own_normal(line, i, 1.0_wp)
       there = own_normal(line, next, 0.0_wp)
-      if (dot_product(here, there) < corner_cosine) cycle
+      if (dot_product(here, there) < cos(corner_angle)) cycle
       here = unit(chord_length(line, next)*here + chord_length(line, i)*there)
       line%normal(:, 2, i) = here
       line%normal(:, 1, next) = here
@@ -74,8 +77,8 @@ contains
       known(1, next) = .true.
     end do
     if (.not. line%closed) then
-      call reflect(mirror(1), own_normal(line, 1, 0.0_wp), line%normal(:, 1, 1), known(1, 1))
-      call reflect(mirror(2), own_normal(line, n, 1.0_wp), line%normal(:, 2, n), known(2, n))
+      call reflect(line, 1, mirror(1), 1, known(1, 1))
+      call reflect(line, n, mirror(2), 2, known(2, n))
     end if
     do i = 1, n
       chord = own_normal(line, i, 0.5_wp)
@@ -91,19 +94,22 @@ contains
     end do
   end subroutine find_normals
 
-  !> On a line of symmetry the normal lies in it.
-  pure subroutine reflect(direction, own, normal, known)
-    integer, intent(in) :: direction
-    real(wp), intent(in) :: own(2)
-    real(wp), intent(inout) :: normal(2)
-    logical, intent(inout) :: known
+  !> On a line of symmetry the normal lies in it; the side that mirrors the last one joins it smoothly or at a corner.
+  pure subroutine reflect(line, segment, direction, end, smooth)
+    type(boundary_line), intent(inout) :: line
+    integer, intent(in) :: segment
+    integer, intent(in) :: direction       !! across the line of symmetry; 0: there is none
+    integer, intent(in) :: end             !! of the side: 1 or 2
+    logical, intent(inout) :: smooth
+    real(wp) :: own(2)
 
     if (direction == 0) return
-    if (abs(own(direction)) >= 0.5_wp) return
-    normal = own
-    normal(direction) = 0.0_wp
-    normal = unit(normal)
-    known = .true.
+    own = own_normal(line, segment, real(end - 1, wp))
+    if (abs(own(3 - direction)) < abs(own(direction))) return
+    line%mirrored(end) = .true.
+    line%end_normal(3 - direction, end) = sign(1.0_wp, own(3 - direction))
+    smooth = abs(own(direction)) <= sin(0.5_wp*corner_angle)
+    if (smooth) line%normal(:, end, segment) = line%end_normal(:, end)
   end subroutine reflect
 
   !> Outward normal of a side itself, at a place from 0 to 1.
@@ -113,7 +119,7 @@ contains
     real(wp), intent(in) :: s
     real(wp) :: normal(2), tangent(2)
 
-    tangent = matmul(line%x(:, :, segment), slopes(line%segment(3, segment) > 0, s))
+    tangent = matmul(local(line, segment), slopes(line%segment(3, segment) > 0, s))
     normal = unit([tangent(2), -tangent(1)])
   end function own_normal
 
@@ -136,22 +142,17 @@ contains
     end do
   end function longest
 
-  !> Outward normal at a node of a side: 1 its start, 2 its end, 3 its middle. At a corner between the two sides.
+  !> Outward normal at a node of a side: 1 its start, 2 its end, 3 its middle; at a corner the side's own.
   pure function outward(self, segment, which) result(normal)
     class(boundary_line), intent(in) :: self
     integer, intent(in) :: segment, which
     real(wp) :: normal(2)
-    integer :: next
 
     if (which == 3) then
       normal = own_normal(self, segment, 0.5_wp)
-      return
+    else
+      normal = self%normal(:, which, segment)
     end if
-    normal = self%normal(:, which, segment)
-    next = segment + merge(1, -1, which == 2)
-    if (self%closed) next = modulo(next - 1, size(self%element)) + 1
-    if (next < 1 .or. next > size(self%element)) return
-    normal = unit(normal + self%normal(:, 3 - which, next))
   end function outward
 
   !> Where a point faces a side: the place whose normal leads to it.
@@ -170,15 +171,17 @@ contains
     if (s <= at_node) then
       place%share = [1.0_wp, 0.0_wp, 0.0_wp]
       place%normal = self%normal(:, 1, segment)
+      if (segment == 1 .and. self%mirrored(1)) place%normal = self%end_normal(:, 1)
       place%gap = dot_product(place%normal, point - self%x(:, 1, segment))
     else if (s >= 1.0_wp - at_node) then
       place%share = [0.0_wp, 1.0_wp, 0.0_wp]
       place%normal = self%normal(:, 2, segment)
+      if (segment == size(self%element) .and. self%mirrored(2)) place%normal = self%end_normal(:, 2)
       place%gap = dot_product(place%normal, point - self%x(:, 2, segment))
     else
       place%share = values(curved, s)
       place%normal = unit(scaled_normal(self, segment, s))
-      place%gap = dot_product(place%normal, point - matmul(self%x(:, :, segment), place%share))
+      place%gap = dot_product(place%normal, point - self%x(:, 1, segment) - matmul(local(self, segment), place%share))
       if (.not. curved) place%gap = place%gap - rise(self, segment, s)
     end if
   end function face
@@ -211,7 +214,7 @@ contains
     curved = self%segment(3, segment) > 0
     share = values(curved, s)
     x = matmul(self%x(:, :, segment), share)
-    tangent = matmul(self%x(:, :, segment), slopes(curved, s))
+    tangent = matmul(local(self, segment), slopes(curved, s))
     if (.not. curved) x = x + rise(self, segment, s)*own_normal(self, segment, s)
   end subroutine at
 
@@ -222,19 +225,21 @@ contains
     real(wp), intent(in) :: point(2)
     real(wp), intent(out) :: s
     logical, intent(out) :: found
-    real(wp) :: away(2), chord(2), slope(2), step, turn(2), rate
+    real(wp) :: away(2), chord(2), from(2), slope(2), step, turn(2), rate, x(2, 3)
     logical :: curved
     integer :: k
 
     curved = line%segment(3, segment) > 0
-    chord = line%x(:, 2, segment) - line%x(:, 1, segment)
+    x = local(line, segment)
+    chord = x(:, 2)
+    from = point - line%x(:, 1, segment)
     turn = scaled_normal(line, segment, 1.0_wp) - scaled_normal(line, segment, 0.0_wp)
-    s = dot_product(point - line%x(:, 1, segment), chord)/dot_product(chord, chord)
+    s = dot_product(from, chord)/dot_product(chord, chord)
     found = .false.
     do k = 1, most_steps
       if (abs(s) > 10.0_wp) return
-      away = point - matmul(line%x(:, :, segment), values(curved, s))
-      slope = matmul(line%x(:, :, segment), slopes(curved, s))
+      away = from - matmul(x, values(curved, s))
+      slope = matmul(x, slopes(curved, s))
       rate = cross_product(turn, away) - cross_product(scaled_normal(line, segment, s), slope)
       if (rate == 0.0_wp) return
       step = -cross_product(scaled_normal(line, segment, s), away)/rate
@@ -244,6 +249,16 @@ contains
     end do
     found = abs(step) <= at_node
   end subroutine find_foot
+
+  !> Coordinates of a side's nodes from its start: far from the origin they are exact differences.
+  pure function local(line, segment) result(x)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: segment
+    real(wp) :: x(2, 3)
+
+    x = line%x(:, :, segment) - spread(line%x(:, 1, segment), 2, 3)
+    if (line%segment(3, segment) == 0) x(:, 3) = 0.0_wp
+  end function local
 
   !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is linear between them.)
   pure function scaled_normal(line, segment, s) result(normal)
@@ -255,7 +270,7 @@ contains
     integer :: k
 
     do k = 1, 2
-      length(k) = norm2(matmul(line%x(:, :, segment), slopes(line%segment(3, segment) > 0, real(k - 1, wp))))
+      length(k) = norm2(matmul(local(line, segment), slopes(line%segment(3, segment) > 0, real(k - 1, wp))))
     end do
     normal = (1.0_wp - s)*length(1)*line%normal(:, 1, segment) + s*length(2)*line%normal(:, 2, segment)
   end function scaled_normal

@@ -45,7 +45,11 @@ contains
       if (best%place%found) then
         better = abs(best%place%gap) - abs(place%gap)
         if (better < -equal*search) cycle
-        if (better <= equal*search .and. dot_product(place%normal, outward) >= dot_product(best%place%normal, outward)) cycle
+        if (better <= equal*search) then
+          better = dot_product(best%place%normal, outward) - dot_product(place%normal, outward)
+          if (abs(better) <= equal) call take_mean(place, best%place)
+          if (better <= equal) cycle
+        end if
       end if
       best%place = place
       best%segment = i
@@ -53,4 +57,16 @@ contains
     if (abs(best%place%gap) <= roundings*maxval(abs(x))) best%place%gap = 0.0_wp
     best%same_way = best%same_way .and. .not. best%place%found
   end function find_nearest
+
+  !> Of two sides that are faced equally well at their corner none is the better one: between their normals.
+  pure subroutine take_mean(other, place)
+    type(facing_place), intent(in) :: other
+    type(facing_place), intent(inout) :: place
+    real(wp) :: both(2)
+
+    if (maxval(other%share) < 1.0_wp .or. maxval(place%share) < 1.0_wp) return
+    both = place%normal + other%normal
+    place%normal = both/norm2(both)
+    place%gap = (place%gap + other%gap)/norm2(both)
+  end subroutine take_mean
 end module epcont_model_facing

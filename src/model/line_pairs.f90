@@ -21,6 +21,9 @@ module epcont_model_line_pairs
   !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off by 3 % and more.
   real(wp), parameter :: finer = 1.3_wp
 
+  !> Normals that differ by less (cosine) are those of one face.
+  real(wp), parameter :: same_face = 0.9_wp
+
   !> What the nodes of a slave line face.
   type :: faces_type
     integer :: nodes = 0                           !! of the line
@@ -41,7 +44,10 @@ contains
     type(id_index) :: lines
     logical, allocatable :: used(:)
     integer :: i
+    logical :: sound
 
+    ! Without sound elements there is no boundary to look at.
+    sound = faults%error_count() == 0
     call check_unique(deck, [card_bconp], faults)
     lines = index_of_ids(deck, card_blseg)
     allocate (used(size(model%line)), source=.false.)
@@ -52,15 +58,17 @@ contains
           contact%id = nint(bconp%value(1, i))
           call resolve(deck, card_bconp, i, 2, lines, 'BLSEG', faults, contact%slave)
           call resolve(deck, card_bconp, i, 3, lines, 'BLSEG', faults, contact%master)
+          if (contact%slave > 0) used(contact%slave) = .true.
+          if (contact%master > 0) used(contact%master) = .true.
           if (contact%slave == 0 .or. contact%master == 0) cycle
-          used([contact%slave, contact%master]) = .true.
+          call check_once(deck, i, model, faults)
           if (contact%slave == contact%master) then
             call faults%add_error(deck%place(card_bconp, i, 3), deck%identity(card_bconp, i)// &
                                   ': SLAVE and MASTER are one line', 'another BLSEG')
             cycle
           end if
           associate (slave => model%line(contact%slave), master => model%line(contact%master))
-            if (size(slave%element) == 0 .or. size(master%element) == 0) cycle   ! said of the line
+            if (size(slave%element) == 0 .or. size(master%element) == 0 .or. .not. sound) cycle   ! said of line or element
             contact%search = deck%parameter_value('SEARCH', default_search*max(slave%longest(), master%longest()))
             call find_faces(model, slave, master, contact%search, faces)
           end associate
@@ -87,37 +95,54 @@ contains
     real(wp), intent(in) :: search
     type(faces_type), intent(out) :: faces
     type(facing_type) :: facing
-    integer, parameter :: in_turn(3) = [1, 3, 2]
+    integer, parameter :: in_turn(3) = [1, 3, 2]   ! start, middle, end
     integer :: n, s, sides, turn, which
+    logical :: new
 
     sides = size(slave%element)
-    allocate (faces%facing(2*sides + 1), faces%node(2*sides + 1))
+    allocate (faces%facing(4*sides), faces%node(4*sides))
     allocate (faces%row_of(3, sides), source=0)
     n = 0
     do s = 1, sides
       do turn = 1, 3
         which = in_turn(turn)
         if (slave%segment(which, s) == 0) cycle
-        if (which == 1 .and. s > 1) then                        ! the end of the side before
-          faces%row_of(1, s) = faces%row_of(2, s - 1)
-        else if (which == 2 .and. s == sides .and. slave%closed) then
-          faces%row_of(2, s) = faces%row_of(1, 1)
-        else
-          associate (node => slave%segment(which, s))
-            facing = find_nearest(master, model%x(:, node), slave%outward(s, which), search, node)
-            faces%nodes = faces%nodes + 1
+        associate (node => slave%segment(which, s))
+          facing = find_nearest(master, model%x(:, node), slave%outward(s, which), search, node)
+          new = which > 1 .or. s == 1
+          if (which == 1 .and. s > 1) new = .not. joined(faces%row_of(2, s - 1))
+          if (which == 2 .and. s == sides .and. slave%closed) new = .not. joined(faces%row_of(1, 1))
+          if (which > 1 .or. s == 1) then
+            if (.not. (which == 2 .and. s == sides .and. slave%closed)) faces%nodes = faces%nodes + 1
             if (facing%same_way) faces%same_way = faces%same_way + 1
-            if (.not. facing%place%found) cycle
+          end if
+          if (.not. facing%place%found) cycle
+          if (new) then
             n = n + 1
             faces%facing(n) = facing
             faces%node(n) = node
             faces%row_of(which, s) = n
-          end associate
-        end if
+          else if (which == 1) then
+            faces%row_of(1, s) = faces%row_of(2, s - 1)
+          else
+            faces%row_of(2, s) = faces%row_of(1, 1)
+          end if
+        end associate
       end do
     end do
     faces%facing = faces%facing(:n)
     faces%node = faces%node(:n)
+
+  contains
+
+    !> Does the side before, or behind, see the node face the same way? Round a corner each side has a pair of its own.
+    pure logical function joined(row)
+      integer, intent(in) :: row
+
+      joined = .false.
+      if (row == 0 .or. .not. facing%place%found) return
+      joined = dot_product(faces%facing(row)%place%normal, facing%place%normal) > same_face
+    end function joined
   end subroutine find_faces
 
   !> Append pairs, with their rows of N: the slave node is B, the master line's nodes are A.
@@ -154,6 +179,26 @@ contains
     model%row_weight = [model%row_weight, weights]
     model%pairs = contact%last
   end subroutine add_pairs
+
+  !> Two contacts of the same two lines would share their forces.
+  subroutine check_once(deck, i, model, faults)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i
+    type(model_type), intent(in) :: model
+    type(diagnostics), intent(inout) :: faults
+    integer :: k
+
+    do k = 1, i - 1
+      associate (now => model%line_contact(i), earlier => model%line_contact(k))
+        if (.not. all([now%slave, now%master] == [earlier%slave, earlier%master]) .and. &
+            .not. all([now%slave, now%master] == [earlier%master, earlier%slave])) cycle
+        call faults%add_error(deck%place(card_bconp, i, 2), deck%identity(card_bconp, i)//': its lines are those of '// &
+                              deck%identity(card_bconp, k)//': forces would be shared between the two', &
+                              'one BCONP for two lines: contact is exact either way')
+        return
+      end associate
+    end do
+  end subroutine check_once
 
   subroutine add_nothing_faced(deck, i, model, same_way, faults)
     type(deck_type), intent(in) :: deck
@@ -195,7 +240,7 @@ contains
           if (row == 0) cycle
           associate (facing => faces%facing(row))
             if (facing%place%gap > nearest + slave%chord_length(s) .or. master%segment(3, facing%segment) > 0) cycle
-            sides = sides + [slave%chord_length(s), master%chord_length(facing%segment)]
+            sides = sides + [slave%chord_length(s)/merge(2, 1, slave%segment(3, s) > 0), master%chord_length(facing%segment)]
           end associate
         end do
       end do

@@ -45,6 +45,7 @@ contains
         model%line(i)%id = nint(blseg%value(1, i))
         allocate (model%line(i)%segment(3, 0), model%line(i)%element(0))
         call read_nodes(deck, i, nodes, walk, faults)
+        if (walk%sound) call check_repeated(deck, i, model, walk, faults)
         if (walk%sound) call find_sides(deck, i, model, around, walk, faults)
         if (walk%sound) call set_line(model, walk, model%line(i))
       end do
@@ -70,6 +71,7 @@ contains
           call faults%add_error(deck%list_place(card_blseg, k), deck%identity(card_blseg, i)//': there is no GRID '// &
                                 text_of(id), 'the id of a GRID')
           walk%sound = .false.
+          exit   ! of a range the first one
         end do
       end do
       walk%sound = walk%sound .and. blseg%sound(i)
@@ -80,6 +82,31 @@ contains
       end if
     end associate
   end subroutine read_nodes
+
+  !> A node is passed once; but a closed line ends with its first.
+  subroutine check_repeated(deck, i, model, walk, faults)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i
+    type(model_type), intent(in) :: model
+    type(walk_type), intent(inout) :: walk
+    type(diagnostics), intent(inout) :: faults
+    logical, allocatable :: met(:)
+    integer :: k, n
+
+    allocate (met(model%nodes), source=.false.)
+    n = size(walk%node)
+    do k = 1, n
+      associate (node => walk%node(k))
+        if (met(node) .and. .not. (k == n .and. node == walk%node(1) .and. n > 3)) then
+          call faults%add_error(walk%place(k), deck%identity(card_blseg, i)//': GRID '//text_of(model%node_id(node))// &
+                                ' stands in it before', 'each node once; a closed line ends with its first node')
+          walk%sound = .false.
+          return
+        end if
+        met(node) = .true.
+      end associate
+    end do
+  end subroutine check_repeated
 
   !> The sides between consecutive nodes; a middle node between two corners may be listed or left out.
   subroutine find_sides(deck, i, model, around, walk, faults)

@@ -10,8 +10,8 @@ module epcont_result_contact_line
   private
   public :: contact_line, find_contact_line, contact_zone, find_zones
 
-  !> An edge belongs to the contact line where it lies within 45 degrees of the tangent.
-  real(wp), parameter :: along_tangent = sqrt(0.5_wp)
+  !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's corner's too.
+  real(wp), parameter :: along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp)
 
   !> A corner of a curved ring on the axis has no area but for rounding and curvature: less than this part of its side's.
   real(wp), parameter :: no_area = 1.0e-3_wp

@@ -61,7 +61,11 @@ contains
     is_whole = .false.
     if (pair == 0) return
     if (.not. line%middle(pair) .or. any(line%neighbour(:, pair) == 0)) return
-    is_whole = touching(pair) .and. all(touching(line%neighbour(:, pair)))
+    associate (corners => line%neighbour(:, pair))
+      ! Where a line turns a corner, the corner's pair may belong to the other side alone.
+      if (.not. (any(line%neighbour(:, corners(1)) == pair) .and. any(line%neighbour(:, corners(2)) == pair))) return
+      is_whole = touching(pair) .and. all(touching(corners))
+    end associate
   end function is_whole
 
   !> The run that a side belongs to.
@@ -90,13 +94,20 @@ contains
 
     do
       corner = run%corner(size(run%corner))
-      next = sum(line%neighbour(:, corner)) - run%middle(size(run%middle))
+      next = other_than(run%middle(size(run%middle)), line%neighbour(:, corner))
       if (.not. is_whole(line, touching, next)) return
       if (any(run%middle == next)) return
       run%middle = [run%middle, next]
-      run%corner = [run%corner, sum(line%neighbour(:, next)) - corner]
+      run%corner = [run%corner, other_than(corner, line%neighbour(:, next))]
     end do
   end subroutine extend
+
+  !> Of two neighbours the other one.
+  pure integer function other_than(one, both) result(other)
+    integer, intent(in) :: one, both(2)
+
+    other = merge(both(2), both(1), both(1) == one)
+  end function other_than
 
   !> Area and force from the first corner on. What a corner bears goes to the sides that touch as its area does.
   pure subroutine sum_up(model, line, touching, force, run)

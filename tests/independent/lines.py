@@ -7,12 +7,12 @@ The master line's displacement is fitted on each slave side by the slave's shape
 against the fits of its sides, averaged as their lengths (in rings areas) that belong to the node. Standard library only.
 """
 from dataclasses import dataclass, field
-from math import cos, hypot, radians
+from math import cos, hypot, radians, sin
 
 from deck import DeckError, at, ids, real
 from kinds import GAUSS, solved
 
-BEND, ALONG = cos(radians(30.0)), 0.5
+BEND, HALF_BEND = cos(radians(35.0)), sin(radians(17.5))
 OUTSIDE, AT_NODE, EQUAL, ROUNDING = 1e-6, 1e-9, 1e-9, 1e-12
 #: Roots are looked for between these places.
 FROM, TO = -0.1, 1.1
@@ -84,6 +84,7 @@ class Segment:
     nodes: list
     x: list
     normal: list = field(default_factory=lambda: [None, None])   # unit, at the ends
+    upright: list = field(default_factory=lambda: [None, None])  # of an end on a line of symmetry: the normal within that line
 
     def __post_init__(self):
         n = len(self.nodes)
@@ -126,7 +127,7 @@ class Segment:
             s = min(max(s, 0.0), 1.0)
             node = min(self.places, key=lambda place: abs(place - s))
             s = node if abs(s - node) <= AT_NODE else s
-            normal = unit(self.normal[end] if s == end else [value(n, s) for n in self.seen])
+            normal = unit((self.upright[end] or self.normal[end]) if s == end else [value(n, s) for n in self.seen])
             off = [x[c] - value(self.path[c], s) for c in (0, 1)]
             yield self.values(s), normal, dot(normal, off) - value(self.rise, s)
 
@@ -196,9 +197,13 @@ class Line:
             for segment, end in ((segments[0], 0), (segments[-1], 1)):
                 n = segment.own(float(end))
                 directions = [c for c in (0, 1) if (segment.nodes[-end], c) in held]
-                if len(directions) == 1 and abs(n[directions[0]]) < ALONG:
-                    n[directions[0]] = 0.0
-                    segment.normal[end] = unit(n)
+                if len(directions) != 1 or abs(n[1 - directions[0]]) < abs(n[directions[0]]):
+                    continue
+                across = n[directions[0]]
+                n[directions[0]] = 0.0
+                segment.upright[end] = unit(n)
+                if abs(across) <= HALF_BEND:
+                    segment.normal[end] = segment.upright[end]
         for segment in segments:
             known = list(segment.normal)
             for end in (0, 1):
@@ -229,6 +234,10 @@ class Line:
         least = min(f[0] for f in found)
         equal = [f for f in found if f[0] <= least + EQUAL * reach]
         against = min(f[1] for f in equal) + EQUAL
+        corner = [f for f in equal if f[1] <= against and max(f[3]) == 1.0]
+        if len(corner) == 2:  # none is the better one: between them
+            both = [corner[0][4][c] + corner[1][4][c] for c in (0, 1)]
+            return corner[0][2], corner[0][3], unit(both), (corner[0][5] + corner[1][5]) / hypot(*both)
         return max((f for f in equal if f[1] <= against), key=lambda f: dot(f[4], like) if like else 0.0)[2:]
 
 

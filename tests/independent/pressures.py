@@ -10,7 +10,7 @@ from math import hypot, sqrt
 
 from boundary import side_points
 
-ALONG, NO_AREA, UPRIGHT = sqrt(0.5), 1e-3, 0.9
+ALONG, NO_AREA, UPRIGHT = sqrt(0.5) * (1 + 1e-6), 1e-3, 0.9
 AROUND_MIDDLE, AROUND_CORNER, LEAST = 4, 5, 4
 
 
