@@ -2,6 +2,7 @@
 module epcont_plan_forecast
   use epcont_base_kinds, only: i8, wp
   use epcont_model_model, only: model_type
+  use epcont_plan_contact_plan, only: contact_plan
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
@@ -14,9 +15,10 @@ module epcont_plan_forecast
 
 contains
 
-  pure function forecast(model, numbering) result(expected)
+  pure function forecast(model, numbering, plan) result(expected)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
+    type(contact_plan), intent(in) :: plan
     type(forecast_type) :: expected
     real(wp) :: band, contact, n
     integer(i8) :: entries
@@ -32,8 +34,14 @@ contains
         expected%operations = expected%operations + body%equations*band*(band + 4.0_wp*body%border) + contact**3
       end associate
     end do
-    ! F, its scaled copy and the tableau; a pivot runs over the whole tableau, about one pivot a pair.
+    ! F, its scaled copy, and the tableau or factors.
     expected%bytes = 8_i8*(entries + 3_i8*int(model%pairs, i8)**2)
-    expected%operations = expected%operations + 2.0_wp*n**3
+    if (plan%by_blocks) then
+      ! The full set factored twice; the sets on the way to it are smaller, or little of them is factored.
+      expected%operations = expected%operations + 2.0_wp/3.0_wp*n**3
+    else
+      ! A pivot runs over the whole tableau, about one pivot a pair.
+      expected%operations = expected%operations + 2.0_wp*n**3
+    end if
   end function forecast
 end module epcont_plan_forecast
