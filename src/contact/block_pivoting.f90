@@ -25,7 +25,7 @@ module epcont_contact_block_pivoting
   integer, parameter :: patience_limit = 10
   !> Steps in all. A full step costs less than 1/50 of what RULE CONRY takes.
   integer, parameter :: step_limit = 100
-  !> Sets that do not hold the motions, or whose forces depend on each other, before the problem is given up.
+  !> Sets that do not hold the motions before the problem is given up.
   integer, parameter :: repair_limit = 3
   !> Candidates of the first sets, at least.
   integer, parameter :: fewest_candidates = 32
@@ -103,8 +103,10 @@ contains
       sound = factor%sound
       if (sound) call solve_set(factor, scaled, force, gap, sound)
       if (.not. sound) then
+        ! More pairs may hold the motions; forces that depend on each other they do not mend.
         repairs = repairs + 1
-        closed = first_touching
+        if (all(closed .or. .not. first_touching)) repairs = repair_limit + 1
+        closed = closed .or. first_touching
         cycle
       end if
       call find_wrong(scaled, closed, force, gap, first_touching, stride, progress, wrong)

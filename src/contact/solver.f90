@@ -56,13 +56,16 @@ contains
     logical, intent(in), optional :: start(:)           !! [n]
     type(contact_solution) :: trial
     type(contact_state) :: state
+    logical, allocatable :: pressed(:)
 
     trial = solution
     call find_by_blocks(scaled, first_touching, trial, state, trial%by_blocks, start)
     solution%block_steps = trial%block_steps
     if (.not. trial%by_blocks) return
     call settle(scaled, state, trial)
-    if (any(trial%indeterminate) .or. any(trial%motion_free(scaled%kept))) return
+    ! Motions that only touching pairs without force hold back may stand elsewhere too.
+    pressed = trial%force > negligible*maxval([trial%force, 0.0_wp])
+    if (any(trial%indeterminate) .or. any(find_free_motions(scaled, pressed, pressed))) return
     solution = trial
   end subroutine solve_by_blocks
 
