@@ -1,7 +1,7 @@
 !> Time of the contact rules against the number of pairs, beside that of one dgemm of the same size (`tools/bench`).
 !>
 !> The problem is Hertz': pairs at equal distance on a half-plane, F_ij the logarithmic kernel over segments of constant
-!> pressure, a parabolic gap, one free motion, and a load that closes half of the pairs.
+!> pressure, a parabolic gap, one free motion, and a load that closes half of the pairs, or the part that is asked for.
 program benchmark_contact
   use, intrinsic :: iso_fortran_env, only: int64
   use epcont_base_kinds, only: wp
@@ -13,14 +13,20 @@ program benchmark_contact
   integer, parameter :: sizes(*) = [25, 50, 100, 200, 350, 500, 1000, 2000, 3000]
   integer, parameter :: conry_limit = 2000   !! pairs beyond which CONRY is not waited for
   character(len=32) :: argument
+  real(wp) :: touching
   integer :: i, chosen
 
   chosen = 0
+  touching = 0.5_wp
   if (command_argument_count() > 0) then
     call get_command_argument(1, argument)
     read (argument, *) chosen
   end if
-  write (*, '(a)') 'milliseconds, best of some; residual: largest failure of a condition, of |F||R|'
+  if (command_argument_count() > 1) then
+    call get_command_argument(2, argument)
+    read (argument, *) touching
+  end if
+  write (*, '(a)') 'milliseconds, best of some; residual: largest failure of a condition, of |F||R|; T: without CONRY'
   write (*, '(a)') '   pairs  touching     dgemm     CONRY  pivots     BLOCK  steps  exchanged  residual      warm  difference'
   do i = 1, size(sizes)
     if (chosen == 0 .or. chosen == sizes(i)) call measure(sizes(i))
@@ -35,7 +41,7 @@ contains
     real(wp) :: difference, time(4)
     integer :: repeats
 
-    problem = half_plane(n)
+    problem = half_plane(n, touching)
     repeats = max(3, min(200, 100000000/n**2/10))
     time(1) = time_of_product(n, max(3, repeats/10))
     time(2) = -0.001_wp
@@ -92,9 +98,10 @@ contains
     seconds = real(now - began, wp)/real(rate, wp)
   end function since
 
-  !> Width 2, unit modulus; the load is Hertz' for a half-width of 1/2.
-  pure function half_plane(n) result(problem)
+  !> Width 2, unit modulus; the load is Hertz' for the half-width.
+  pure function half_plane(n, half_width) result(problem)
     integer, intent(in) :: n
+    real(wp), intent(in) :: half_width
     type(contact_problem) :: problem
     real(wp), parameter :: pi = acos(-1.0_wp)
     real(wp) :: column(0:n - 1), d, h
@@ -114,7 +121,7 @@ contains
     problem%motion = 1.0_wp
     problem%initial_gap = [((-1.0_wp + (i - 0.5_wp)*h)**2/2, i=1, n)]
     problem%load_gap = 0.0_wp
-    problem%resultant = [pi/8]
+    problem%resultant = [pi*half_width**2/2]
   end function half_plane
 
   !> The integral of log(|x|/20).
