@@ -11,7 +11,11 @@ module epcont_contact_basis
   use epcont_linalg_dense, only: add_product, cholesky_factor, cholesky_solve, pivoted_cholesky
   implicit none
   private
-  public :: contact_basis, new_basis, respond, basic_solution, regular_flexibility, rank_tolerance
+  public :: contact_basis, new_basis, respond, basic_solution, gaps_under
+  public :: regular_flexibility, rank_tolerance, weight_of_motions
+
+  !> Pivots of F_g, parts of the largest flexibility, from which on no force depends on the others whatever the order.
+  real(wp), parameter :: clearly_definite = 1.0e-8_wp
 
   !> A set of pairs in contact whose forces are unique, and the factors that give them.
   type :: contact_basis
@@ -38,9 +42,16 @@ contains
     basis%pairs = pack([(k, k=1, size(chosen))], chosen)
     basis%gamma = weight_of_motions(problem)
     basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
-    call pivoted_cholesky(basis%factor, rank_tolerance(problem), order, rank)
-    basis%pairs = basis%pairs(order(:rank))
-    basis%factor = basis%factor(:rank, :rank)
+    call cholesky_factor(basis%factor, info)
+    if (info == 0) then
+      if (any([(basis%factor(k, k)**2, k=1, size(basis%pairs))] < clearly_definite*largest_flexibility(problem))) info = 1
+    end if
+    if (info /= 0) then   ! the order of pivots, which takes longer, tells who depends on whom
+      basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
+      call pivoted_cholesky(basis%factor, rank_tolerance(problem), order, rank)
+      basis%pairs = basis%pairs(order(:rank))
+      basis%factor = basis%factor(:rank, :rank)
+    end if
 
     basis%carried = problem%motion(basis%pairs, :)
     transposed = transpose(basis%carried)

@@ -47,9 +47,11 @@ module epcont_contact_problem
     logical, allocatable :: overlapping(:)   !! pairs that overlap and cannot give way [n]
     logical, allocatable :: indeterminate(:) !! pairs whose force is not unique: `force` is one choice of many [n]
     logical, allocatable :: motion_free(:)   !! motions that nothing determines; `approach` is one choice of many [m]
-    integer :: pivots = 0                    !! exchanges made
+    logical :: by_blocks = .false.           !! the set was found by RULE BLOCK, not by CONRY
+    integer :: block_steps = 0               !! sets that RULE BLOCK has solved, also where CONRY had to take over
+    integer :: pivots = 0                    !! pairs exchanged by the rule that found the set
     integer :: degenerate_pivots = 0         !! of these, without change of any variable
     integer :: restarts = 0                  !! fresh starts, after a set failed the test at full load
-    type(pivot_record), allocatable :: history(:)  !! the first pivots, at most `history_limit`
+    type(pivot_record), allocatable :: history(:)  !! the first pivots of CONRY, at most `history_limit`
   end type contact_solution
 end module epcont_contact_problem

@@ -334,7 +334,7 @@ contains
     type(field_entry) :: field(10)
 
     field(1) = word_field(3, 'PLANE', 'every PSHELL with blank MID2', choices='STRAIN STRESS')
-    field(2) = word_field(3, 'RULE', 'contact entry rule; default AUTO', choices='AUTO CONRY')
+    field(2) = word_field(3, 'RULE', 'contact entry rule; default AUTO', choices='AUTO CONRY BLOCK')
     field(3) = word_field(3, 'GAPGEOM', 'YES adds the distance of the nodes to each gap; default NO', choices='NO YES')
     field(4) = word_field(3, 'UNITS', 'printed with the results; nothing is converted')
     field(5) = word_field(3, 'METHOD', 'plastic iteration; default AUTO', choices='AUTO SECANT MODSEC INISTR NEWTON')

@@ -4,10 +4,11 @@
 !> is a fault is for the caller to say, in the words of the problem.
 module epcont_linalg_dense
   use epcont_base_kinds, only: wp
-  use epcont_linalg_lapack, only: dgemm, dgesvd, dgetrf, dgetrs, dpotrf, dpotrs, dpstrf
+  use epcont_linalg_lapack, only: dgemm, dgesvd, dgetrf, dgetrs, dpotrf, dpotrs, dpstrf, dsyrk, dtrsm
   implicit none
   private
-  public :: cholesky_factor, cholesky_solve, pivoted_cholesky, lu_solve, add_product, null_space
+  public :: cholesky_factor, cholesky_solve, extend_cholesky, leading_solve, pivoted_cholesky
+  public :: lu_solve, add_product, null_space
 
 contains
 
@@ -28,6 +29,40 @@ contains
 
     if (size(b) > 0) call dpotrs('L', size(factor, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
   end subroutine cholesky_solve
+
+  !> Carry a factor on: of the leading n rows of `a` the first `done` hold L, the others the matrix; then all hold L.
+  !>
+  !>     +-----+
+  !>     | L11 |            L21 = A21 L11'^-1
+  !>     +-----+-----+
+  !>     | A21 | A22 |      L22 L22' = A22 - L21 L21'
+  !>     +-----+-----+
+  pure subroutine extend_cholesky(lda, a, done, n, info)
+    integer, intent(in) :: lda                        !! rows of `a`, at least n
+    real(wp), intent(inout) :: a(lda, *)              !! lower triangle [lda, >= n]
+    integer, intent(in) :: done, n
+    integer, intent(out) :: info          !! 0, or the order of the first minor that is not positive
+    integer :: rest
+
+    rest = n - done
+    info = 0
+    if (rest == 0) return
+    if (done > 0) then
+      call dtrsm('R', 'L', 'T', 'N', rest, done, 1.0_wp, a, lda, a(done + 1, 1), lda)
+      call dsyrk('L', 'N', rest, done, -1.0_wp, a(done + 1, 1), lda, 1.0_wp, a(done + 1, done + 1), lda)
+    end if
+    call dpotrf('L', rest, a(done + 1, done + 1), lda, info)
+    if (info > 0) info = info + done
+  end subroutine extend_cholesky
+
+  !> Replace each column of `b` by the solution of LL'x = b, L being the leading rows of `factor`.
+  pure subroutine leading_solve(factor, b)
+    real(wp), contiguous, intent(in) :: factor(:, :)  !! from `extend_cholesky` [>= n, >= n]
+    real(wp), contiguous, intent(inout) :: b(:, :)    !! right-hand sides, then solutions [n, k]
+    integer :: info
+
+    if (size(b) > 0) call dpotrs('L', size(b, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
+  end subroutine leading_solve
 
   !> Cholesky factor of a semidefinite matrix, largest pivot first: a(order, order) = LL' to rounding.
   pure subroutine pivoted_cholesky(a, tolerance, order, rank)

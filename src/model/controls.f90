@@ -1,4 +1,4 @@
-!> What the deck asks of the plastic iteration.
+!> What the deck asks of the contact solver and of the plastic iteration.
 module epcont_model_controls
   use epcont_base_kinds, only: wp
   implicit none
@@ -10,8 +10,14 @@ module epcont_model_controls
   !> Their names in a deck, from method_auto on.
   character(len=*), parameter, public :: method_name(0:4) = ['AUTO  ', 'SECANT', 'MODSEC', 'INISTR', 'NEWTON']
 
+  !> PARAM RULE.
+  integer, parameter, public :: rule_auto = 0, rule_conry = 1, rule_block = 2
+  !> Their names in a deck, from rule_auto on.
+  character(len=*), parameter, public :: rule_name(0:2) = ['AUTO ', 'CONRY', 'BLOCK']
+
   type :: controls_type
-    integer :: method = method_auto    !! one of the above
+    integer :: rule = rule_auto        !! one of its kind above
+    integer :: method = method_auto    !! one of its kind above
     real(wp) :: tolerance = 0.0_wp     !! PARAM TOL; 0: that of the method
     integer :: most_iterations = 100   !! of a load step
     integer :: load_steps = 1

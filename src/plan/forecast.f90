@@ -3,6 +3,7 @@ module epcont_plan_forecast
   use epcont_base_kinds, only: i8, wp
   use epcont_linalg_panel, only: panel_entries
   use epcont_model_model, only: model_type
+  use epcont_plan_contact_plan, only: contact_plan
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
@@ -15,9 +16,10 @@ module epcont_plan_forecast
 
 contains
 
-  pure function forecast(model, numbering) result(expected)
+  pure function forecast(model, numbering, plan) result(expected)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
+    type(contact_plan), intent(in) :: plan
     type(forecast_type) :: expected
     integer(i8) :: entries, factor, pairs
     integer :: b
@@ -36,8 +38,14 @@ contains
         expected%operations = expected%operations + body%operations + 4.0_wp*body%border*factor
       end associate
     end do
-    ! F, its scaled copy and the tableau; a pivot runs over the whole tableau, about one pivot a pair.
+    ! F, its scaled copy, and the tableau or factors.
     expected%bytes = 8_i8*(entries + 3_i8*pairs**2)
-    expected%operations = expected%operations + 2.0_wp*real(pairs, wp)**3
+    if (plan%by_blocks) then
+      ! The full set factored twice; the sets on the way to it are smaller, or little of them is factored.
+      expected%operations = expected%operations + 2.0_wp/3.0_wp*real(pairs, wp)**3
+    else
+      ! A pivot runs over the whole tableau, about one pivot a pair.
+      expected%operations = expected%operations + 2.0_wp*real(pairs, wp)**3
+    end if
   end function forecast
 end module epcont_plan_forecast

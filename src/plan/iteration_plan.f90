@@ -1,8 +1,9 @@
-!> Which plastic iteration this scene gets, and why.
+!> Which plastic iteration this scene gets, and why; each of its solves finds the contact by the contact plan's rule.
 module epcont_plan_iteration_plan
   use epcont_base_kinds, only: wp
   use epcont_model_controls, only: method_auto, method_newton, method_secant
   use epcont_model_model, only: model_type
+  use epcont_plan_contact_plan, only: contact_plan, plan_contact
   implicit none
   private
   public :: iteration_plan, plan_iteration
@@ -21,6 +22,7 @@ module epcont_plan_iteration_plan
     integer :: method = method_secant
     logical :: chosen_here = .false.       !! the deck leaves the method to us
     real(wp) :: tolerance = 0.0_wp         !! largest change of a displacement that ends the iteration
+    type(contact_plan) :: contact          !! the rule that finds the pairs in contact
     real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
   end type iteration_plan
 
@@ -31,6 +33,7 @@ contains
     type(iteration_plan) :: plan
     integer :: e
 
+    plan%contact = plan_contact(model)
     allocate (plan%body(model%bodies), source=.false.)
     do e = 1, model%elements
       if (model%can_yield(e)) plan%body(model%body(model%connectivity(1, e))) = .true.

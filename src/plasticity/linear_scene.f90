@@ -5,7 +5,7 @@ module epcont_plasticity_linear_scene
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_problem, contact_solved
-  use epcont_contact_simplex, only: solve_contact
+  use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: add_body_flexibility, gap_opening, motion_columns, motion_resultants, &
                                             pair_forces
   use epcont_material_linear_law, only: linear_law
@@ -23,6 +23,7 @@ module epcont_plasticity_linear_scene
     type(contact_problem) :: problem
     logical, allocatable :: yields(:)                !! the body has elements that can yield [bodies]
     real(wp), allocatable :: lasting_flexibility(:, :)  !! of the bodies that cannot, factored once [pairs, pairs]
+    logical :: by_blocks = .false.                   !! contact by RULE BLOCK, else CONRY
     real(wp), allocatable :: resultant(:)            !! of all loads along the free motions [motions]
   contains
     procedure :: set_stiffness
@@ -32,15 +33,17 @@ module epcont_plasticity_linear_scene
 contains
 
   !> What does not change with the law.
-  pure function new_linear_scene(model, motions, yields) result(scene)
+  pure function new_linear_scene(model, motions, yields, by_blocks) result(scene)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     logical, intent(in) :: yields(:)   !! the body has elements that can yield [bodies]
+    logical, intent(in) :: by_blocks   !! contact by RULE BLOCK, else CONRY
     type(linear_scene) :: scene
 
     scene%operator = new_strain_operator(model)
     scene%bodies = new_bodies(model)
     scene%yields = yields
+    scene%by_blocks = by_blocks
     scene%problem%initial_gap = model%initial_gap
     scene%problem%motion = motion_columns(model, motions)
     scene%resultant = motion_resultants(model, motions)
@@ -103,11 +106,7 @@ contains
     if (any(law%initial_stress /= 0.0_wp)) force = force - self%operator%nodal_forces(model, law%initial_stress)
     self%problem%load_gap = gap_opening(model, self%bodies%displacements(model, numbering, force, part))
     self%problem%resultant = part*self%resultant
-    if (allocated(start)) then
-      call solve_contact(self%problem, state%contact, start)
-    else
-      call solve_contact(self%problem, state%contact)
-    end if
+    call solve_contact(self%problem, state%contact, start, self%by_blocks)   ! without a guess `start` is not there
     if (state%contact%state /= contact_solved) return
 
     force = force + pair_forces(model, state%contact%force)

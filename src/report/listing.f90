@@ -5,6 +5,7 @@ module epcont_report_listing
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_base_version, only: program_name, program_version
   use epcont_certificate_certificate, only: certificate_tolerance => tolerance, certificate_type
+  use epcont_contact_problem, only: contact_solution
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: printable, render_notes
@@ -101,10 +102,24 @@ contains
       end associate
     end do
     call file%line('')
-    call file%line('  '//plural(answer%contact%pivots, 'pivot')//', '//text_of(answer%contact%degenerate_pivots)//' degenerate'// &
+    call file%line('  '//exchanges(answer%contact)// &
                    trim(merge(', in the last solve', '                   ', size(answer%history) > 1)))
     call list_pivots(file, model, answer)
   end subroutine list_contact
+
+  !> How the set of contacts was found.
+  pure function exchanges(contact) result(text)
+    type(contact_solution), intent(in) :: contact
+    character(len=:), allocatable :: text
+
+    if (contact%by_blocks) then
+      text = 'block pivoting: '//plural(contact%block_steps, 'set')//', '//plural(contact%pivots, 'exchange')//' of pairs'
+      return
+    end if
+    text = plural(contact%pivots, 'pivot')//', '//text_of(contact%degenerate_pivots)//' degenerate'
+    if (contact%block_steps > 0) &
+      text = text//' (CONRY, after '//plural(contact%block_steps, 'set')//' of block pivoting)'
+  end function exchanges
 
   !> The first pivots.
   subroutine list_pivots(file, model, answer)

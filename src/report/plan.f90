@@ -4,6 +4,7 @@ module epcont_report_plan
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton
   use epcont_model_model, only: line_contact, model_type
+  use epcont_plan_contact_plan, only: contact_plan, many_pairs
   use epcont_plan_forecast, only: forecast_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -34,7 +35,7 @@ contains
     if (model%pairs == 0) then
       text = text//'  no pairs: no flexibility, no simplex'//newline
     else
-      text = text//'  contact by the simplex with contact entry rule (CONRY)'//newline
+      text = text//'  contact by '//rule_text(iteration%contact)//newline
     end if
     do k = 1, min(most, size(model%line_contact))
       text = text//line_text(model, model%line_contact(k))
@@ -59,6 +60,17 @@ contains
     text = text//newline//'  memory for matrices '//text_of((expected%bytes + 999999_i8)/1000000_i8)//' MB, operations '// &
            short_real(expected%operations)//trim(merge(' a solve', '        ', iteration%yields))//newline
   end function plan_text
+
+  !> How the pairs in contact are found.
+  pure function rule_text(plan) result(text)
+    type(contact_plan), intent(in) :: plan
+    character(len=:), allocatable :: text
+
+    text = 'the simplex with contact entry rule (CONRY)'
+    if (.not. plan%by_blocks) return
+    text = 'block pivoting of the contacts (BLOCK)'
+    if (plan%chosen_here) text = text//newline//'    chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on'
+  end function rule_text
 
   !> What came of two lines.
   pure function line_text(model, contact) result(text)

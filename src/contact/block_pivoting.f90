@@ -1,0 +1,181 @@
+!> RULE BLOCK: block principal pivoting. All pairs of wrong sign change sides at once.
+!>
+!> A set of contacts is solved with a Cholesky factor; of its pairs those that pull open, of the others those that
+!> overlap close (Kostreva 1978; Judice and Pires 1994). As this may run in circles, the least number of wrong pairs is
+!> kept: when it has not fallen in `patience` steps, only the last wrong pair changes sides (Murty 1974) until it
+!> falls. Without an earlier set it begins with few candidates, every 2**k-th pair, and makes them twice as many whenever
+!> none of them is wrong: so the large sets are nearly right when they are met.
+!>
+!> Only what is definite is solved here. Where forces or motions of a set are not unique, or the steps are used up, it
+!> says so, and RULE CONRY has the problem.
+module epcont_contact_block_pivoting
+  use epcont_base_kinds, only: wp
+  use epcont_contact_block_factor, only: block_factor, change_set, new_block_factor, solve_set
+  use epcont_contact_problem, only: contact_solution, contact_solved
+  use epcont_contact_scaling, only: scaled_problem
+  use epcont_contact_state, only: contact_state, fresh_state, has_right_signs
+  implicit none
+  private
+  public :: find_by_blocks
+
+  !> Part of the largest force by which forces and gaps may have the wrong sign while there is something to gain. Where
+  !! rounding is larger the steps end without progress, and the test of the fresh solution decides.
+  real(wp), parameter :: sign_tolerance = 1.0e-13_wp
+  !> Steps without fewer wrong pairs before single pairs are exchanged.
+  integer, parameter :: patience_limit = 10
+  !> Steps in all. A full step costs less than 1/50 of what RULE CONRY takes.
+  integer, parameter :: step_limit = 100
+  !> Sets that do not hold the motions before the problem is given up.
+  integer, parameter :: repair_limit = 3
+  !> Candidates of the first sets, at least.
+  integer, parameter :: fewest_candidates = 32
+
+  !> How far the exchanges have come.
+  type :: progress_type
+    integer :: fewest = huge(1)             !! wrong pairs, at best
+    integer :: patience = patience_limit    !! steps left to come below it
+  end type progress_type
+
+contains
+
+  !> Look for the set of contacts. `found`: its fresh solution passes the test of signs and its forces are unique.
+  pure subroutine find_by_blocks(scaled, first_touching, solution, state, found, start)
+    type(scaled_problem), intent(in) :: scaled
+    logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
+    type(contact_solution), intent(inout) :: solution   !! steps, and pairs exchanged
+    type(contact_state), intent(out) :: state
+    logical, intent(out) :: found
+    logical, intent(in), optional :: start(:)           !! guess of the pairs in contact [n]
+    logical, allocatable :: closed(:)
+    integer :: stride
+    logical :: complete
+
+    closed = first_touching
+    stride = first_stride(size(closed))
+    found = .false.
+    if (present(start)) then
+      closed = closed .or. start
+      stride = 1
+      solution%block_steps = 1
+      call test_afresh(scaled, closed, first_touching, state, found)
+    end if
+    if (.not. found) then
+      call exchange_blocks(scaled, first_touching, stride, solution, closed, complete)
+      if (complete) call test_afresh(scaled, closed, first_touching, state, found)
+    end if
+    if (found) solution%state = contact_solved
+  end subroutine find_by_blocks
+
+  !> The fresh solution of a set: are its forces unique and its signs right?
+  pure subroutine test_afresh(scaled, closed, first_touching, state, right)
+    type(scaled_problem), intent(in) :: scaled
+    logical, intent(in) :: closed(:), first_touching(:)   !! [n]
+    type(contact_state), intent(out) :: state
+    logical, intent(out) :: right
+
+    state = fresh_state(scaled, closed, first_touching)
+    right = state%basis%sound .and. size(state%basis%pairs) == count(closed)
+    if (right) right = has_right_signs(scaled, state)
+  end subroutine test_afresh
+
+  !> Exchange until no pair is wrong, or no more steps are left; not `complete`: there were sets without an own solution.
+  pure subroutine exchange_blocks(scaled, first_touching, first, solution, closed, complete)
+    type(scaled_problem), intent(in) :: scaled
+    logical, intent(in) :: first_touching(:)            !! [n]
+    integer, intent(in) :: first                        !! distance of the first candidates
+    type(contact_solution), intent(inout) :: solution
+    logical, intent(inout) :: closed(:)                 !! the set [n]
+    logical, intent(out) :: complete
+    type(block_factor) :: factor
+    type(progress_type) :: progress
+    real(wp), allocatable :: firmness(:), force(:), gap(:)
+    logical, allocatable :: wrong(:)
+    integer :: repairs, stride
+    logical :: sound
+
+    allocate (firmness(size(closed)), force(size(closed)), gap(size(closed)), source=0.0_wp)
+    call new_block_factor(scaled, factor)
+    stride = first
+    repairs = 0
+    do while (solution%block_steps < step_limit .and. repairs <= repair_limit)
+      solution%block_steps = solution%block_steps + 1
+      call change_set(factor, scaled, closed, firmness)
+      sound = factor%sound
+      if (sound) call solve_set(factor, scaled, force, gap, sound)
+      if (.not. sound) then
+        ! More pairs may hold the motions; forces that depend on each other they do not mend.
+        repairs = repairs + 1
+        if (all(closed .or. .not. first_touching)) repairs = repair_limit + 1
+        closed = closed .or. first_touching
+        cycle
+      end if
+      call find_wrong(scaled, closed, force, gap, first_touching, stride, progress, wrong)
+      if (.not. any(wrong)) exit
+      call choose_exchange(wrong, progress)
+      solution%pivots = solution%pivots + count(wrong)
+      firmness = part_of_largest(force) + part_of_largest(-gap)
+      closed = closed .neqv. wrong
+    end do
+    complete = repairs <= repair_limit
+  end subroutine exchange_blocks
+
+  !> Positive values as parts of the largest.
+  pure function part_of_largest(values) result(part)
+    real(wp), intent(in) :: values(:)
+    real(wp) :: part(size(values))
+
+    part = max(values, 0.0_wp)/maxval([values, tiny(1.0_wp)])
+  end function part_of_largest
+
+  !> Distance of the first candidates, a power of two.
+  pure function first_stride(n) result(stride)
+    integer, intent(in) :: n
+    integer :: stride
+
+    stride = 1
+    do while (n/(2*stride) >= fewest_candidates)
+      stride = 2*stride
+    end do
+  end function first_stride
+
+  !> The wrong pairs among the candidates; where there is none, among more of them.
+  pure subroutine find_wrong(scaled, closed, force, gap, first_touching, stride, progress, wrong)
+    type(scaled_problem), intent(in) :: scaled
+    logical, intent(in) :: closed(:), first_touching(:)   !! [n]
+    real(wp), intent(in) :: force(:), gap(:)              !! [n]
+    integer, intent(inout) :: stride
+    type(progress_type), intent(inout) :: progress
+    logical, allocatable, intent(out) :: wrong(:)
+    logical, allocatable :: all_wrong(:)
+    real(wp) :: force_tolerance, gap_tolerance
+    integer :: k
+
+    force_tolerance = sign_tolerance*maxval([abs(force), 1.0_wp])
+    gap_tolerance = force_tolerance + sign_tolerance*maxval([abs(scaled%gap), 0.0_wp])
+    all_wrong = merge(force < -force_tolerance, gap < -gap_tolerance, closed)
+    do
+      wrong = all_wrong .and. (closed .or. first_touching .or. [(mod(k - 1, stride) == 0, k=1, size(gap))])
+      if (any(wrong) .or. stride == 1) exit
+      stride = stride/2
+      progress = progress_type()
+    end do
+  end subroutine find_wrong
+
+  !> All wrong pairs, or the last alone where exchanges of all have led nowhere.
+  pure subroutine choose_exchange(wrong, progress)
+    logical, intent(inout) :: wrong(:)   !! [n]
+    type(progress_type), intent(inout) :: progress
+    integer :: last
+
+    if (count(wrong) < progress%fewest) then
+      progress%fewest = count(wrong)
+      progress%patience = patience_limit
+    else if (progress%patience > 0) then
+      progress%patience = progress%patience - 1
+    else
+      last = findloc(wrong, .true., dim=1, back=.true.)
+      wrong = .false.
+      wrong(last) = .true.
+    end if
+  end subroutine choose_exchange
+end module epcont_contact_block_pivoting

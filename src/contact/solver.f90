@@ -1,0 +1,107 @@
+!> From a contact problem to its answer: scaling, rigid start, the set of contacts by one rule or the other, units.
+module epcont_contact_solver
+  use epcont_base_kinds, only: wp
+  use epcont_contact_block_pivoting, only: find_by_blocks
+  use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, contact_solution
+  use epcont_contact_scaling, only: drop_motions, negligible, restore_units, scale_problem, scaled_problem
+  use epcont_contact_simplex, only: find_contacts, ray_tolerance
+  use epcont_contact_state, only: contact_state, noise
+  use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
+  implicit none
+  private
+  public :: solve_contact
+
+contains
+
+  !> Find forces, gaps and motions of a contact problem, or why there are none.
+  pure subroutine solve_contact(problem, solution, start, by_blocks)
+    type(contact_problem), intent(in) :: problem
+    type(contact_solution), intent(out) :: solution
+    logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
+    logical, intent(in), optional :: by_blocks  !! RULE BLOCK; not given: CONRY
+    type(scaled_problem) :: scaled
+    type(rigid_start) :: rigid
+    type(contact_state) :: state
+    real(wp), allocatable :: ray(:)
+
+    scaled = scale_problem(problem)
+    call clear(scaled, solution)
+    call find_rigid_start(scaled, rigid)
+    if (.not. rigid%balanced) then
+      solution%state = contact_no_equilibrium
+      solution%escape = rigid%escape/scaled%motion_size
+      return
+    end if
+    call drop_motions(scaled, rigid%redundant)
+    solution%motion_free = rigid%redundant
+
+    if (present(by_blocks)) then
+      if (by_blocks) call solve_by_blocks(scaled, rigid%touching, solution, start)
+      if (solution%by_blocks) return
+    end if
+    call find_contacts(scaled, rigid%touching, solution, state, ray, start)
+    if (solution%state == contact_overlap) then
+      solution%overlapping = ray > ray_tolerance*maxval(ray)
+    else
+      call settle(scaled, state, solution)
+    end if
+  end subroutine solve_contact
+
+  !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left of it.
+  pure subroutine solve_by_blocks(scaled, first_touching, solution, start)
+    type(scaled_problem), intent(in) :: scaled
+    logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
+    type(contact_solution), intent(inout) :: solution
+    logical, intent(in), optional :: start(:)           !! [n]
+    type(contact_solution) :: trial
+    type(contact_state) :: state
+    logical, allocatable :: pressed(:)
+
+    trial = solution
+    call find_by_blocks(scaled, first_touching, trial, state, trial%by_blocks, start)
+    solution%block_steps = trial%block_steps
+    if (.not. trial%by_blocks) return
+    call settle(scaled, state, trial)
+    ! Motions that only touching pairs without force hold back may stand elsewhere too.
+    pressed = trial%force > negligible*maxval([trial%force, 0.0_wp])
+    if (any(trial%indeterminate) .or. any(find_free_motions(scaled, pressed, pressed))) return
+    solution = trial
+  end subroutine solve_by_blocks
+
+  !> An answer of no contact at all, to be filled in.
+  pure subroutine clear(scaled, solution)
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_solution), intent(inout) :: solution
+    integer :: m, n
+
+    n = size(scaled%gap)
+    m = size(scaled%resultant)
+    allocate (solution%force(n), solution%approach(m), solution%escape(m), source=0.0_wp)
+    solution%gap = scaled%gap*scaled%gap_unit
+    allocate (solution%touching(n), solution%overlapping(n), solution%indeterminate(n), source=.false.)
+    allocate (solution%motion_free(m), source=.false.)
+    allocate (solution%history(0))
+  end subroutine clear
+
+  !> The answer in the deck's units, and what the conditions leave open in it.
+  pure subroutine settle(scaled, state, solution)
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(inout) :: state
+    type(contact_solution), intent(inout) :: solution
+    logical, allocatable :: pressed(:)
+    real(wp) :: zero   !! force or gap that rounding leaves of none
+
+    zero = negligible*maxval([state%force, 1.0_wp])
+    state%gap(state%basis%pairs) = 0.0_wp
+    solution%touching = state%gap <= zero
+    where (solution%touching) state%gap = 0.0_wp
+    where (state%force <= noise) state%force = 0.0_wp
+    where (abs(state%approach) <= noise) state%approach = 0.0_wp
+    pressed = state%force > zero
+    solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
+    call share_equally(scaled, solution%indeterminate, state%force)
+    solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)
+    call restore_units(scaled, state%force, state%gap, state%approach, solution)
+  end subroutine settle
+end module epcont_contact_solver

@@ -1,0 +1,55 @@
+!> A set of contacts with its solution at full load, fresh from F and A, and the test of its signs.
+module epcont_contact_state
+  use epcont_base_kinds, only: wp
+  use epcont_contact_basis, only: basic_solution, contact_basis, new_basis
+  use epcont_contact_scaling, only: scaled_problem
+  implicit none
+  private
+  public :: contact_state, fresh_state, basic_values, has_right_signs
+
+  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units.
+  real(wp), parameter :: sign_tolerance = 1.0e-10_wp
+  !> Part of a quantity that rounding leaves where it should cancel.
+  real(wp), parameter, public :: noise = 100*epsilon(1.0_wp)
+
+  type :: contact_state
+    type(contact_basis) :: basis
+    real(wp), allocatable :: force(:), gap(:)   !! [n]
+    real(wp), allocatable :: approach(:)        !! [m]
+  end type contact_state
+
+contains
+
+  !> Forces, gaps and motions of a set of contacts, from F and A.
+  pure function fresh_state(scaled, closed, first_touching) result(state)
+    type(scaled_problem), intent(in) :: scaled
+    logical, intent(in) :: closed(:)
+    logical, intent(in) :: first_touching(:)   !! pairs that hold every motion, should `closed` not do so
+    type(contact_state) :: state
+
+    state%basis = new_basis(scaled, closed)
+    if (.not. state%basis%sound) state%basis = new_basis(scaled, closed .or. first_touching)
+    call basic_solution(state%basis, scaled, scaled%gap, scaled%resultant, state%force, state%gap, state%approach)
+  end function fresh_state
+
+  !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
+  pure function basic_values(state) result(values)
+    type(contact_state), intent(in) :: state
+    real(wp), allocatable :: values(:)
+
+    values = state%gap
+    values(state%basis%pairs) = state%force(state%basis%pairs)
+  end function basic_values
+
+  !> The test of the fresh solution: R >= 0 and w >= 0, to the rounding of the largest force and gap.
+  pure function has_right_signs(scaled, state) result(right)
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(in) :: state
+    logical :: right
+    real(wp) :: force_tolerance, gap_tolerance
+
+    force_tolerance = sign_tolerance*maxval([abs(state%force), 1.0_wp])
+    gap_tolerance = force_tolerance + noise*maxval([abs(scaled%gap), 0.0_wp])
+    right = all(state%force >= -force_tolerance) .and. all(state%gap >= -gap_tolerance)
+  end function has_right_signs
+end module epcont_contact_state
