@@ -1,6 +1,6 @@
 """epcont's time, memory and errors beside those of other programs, on this machine.
 
-    tools/bench --quick     up to 11 000 nodes, 3 turns: about a quarter of an hour
+    tools/bench --quick     up to 11 000 nodes, 3 turns: about ten minutes
     tools/bench             up to 42 000 nodes, 5 turns: hours, most of them CalculiX's
     tools/bench --part 2    one part only: its table on standard output, nothing saved
 

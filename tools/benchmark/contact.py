@@ -4,7 +4,7 @@
 
     python contact.py BENCH_CONTACT DIRECTORY REPEATS LIMIT N...      prints a JSON row for each problem, size and program
 
-F is that of strips of uniform pressure on a half-plane. A program that takes longer than LIMIT seconds gets no further size of
+F is that of strips of uniform pressure on a half-plane; two problems take it some strips deep. A program that takes longer than LIMIT seconds gets no further size of
 that problem. Data are in memory before the clock starts; it is the processor's.
 """
 import json
@@ -76,8 +76,10 @@ class Stalled(RuntimeError):
 
 
 class Epcont:
-    def __init__(self, program, place):
-        self.program, self.place = program, place
+    """bench_contact; `options` stand behind its number of repeats."""
+
+    def __init__(self, program, place, *options):
+        self.command, self.place = [program, "problem", "forces", "1", *options], place
 
     def prepare(self, flexibility, gap, load):
         n = len(gap)
@@ -87,7 +89,7 @@ class Epcont:
                 np.ascontiguousarray(part).tofile(file)
 
         def solve():
-            run = subprocess.run([self.program, "problem", "forces"], cwd=self.place, env=ONE_THREAD, capture_output=True, text=True, check=False)
+            run = subprocess.run(self.command, cwd=self.place, env=ONE_THREAD, capture_output=True, text=True, check=False)
             if run.returncode:
                 sys.exit(run.stdout + run.stderr)
             seconds, off, pivots, state = run.stdout.split()
