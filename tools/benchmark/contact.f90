@@ -1,4 +1,4 @@
-!> Time of the contact rules against the number of pairs, beside that of one dgemm of the same size (`tools/bench`).
+!> Time of the contact rules against the number of pairs, beside that of one dgemm of the same size (`tools/bench_rules`).
 !>
 !> The problem is Hertz': pairs at equal distance on a half-plane, F_ij the logarithmic kernel over segments of constant
 !> pressure, a parabolic gap, one free motion, and a load that closes half of the pairs, or the part that is asked for.

@@ -1,0 +1,107 @@
+"""epcont's time, memory and errors beside those of other programs, on this machine.
+
+    tools/bench --quick     up to 11 000 nodes, 3 turns: about ten minutes
+    tools/bench             up to 42 000 nodes, 5 turns: hours, most of them CalculiX's
+    tools/bench --part 2    one part only: its table on standard output, nothing saved
+
+Part 1: two cylinders (`tools/decks hertz N`, CTRIA3), whole programs, against CalculiX and scikit-fem. Part 2: the dense
+contact problem alone, against packages for quadratic programs. Part 3: the factorization's part of dgemm's rate, and how
+time grows. Everything on one thread; the programs take turns, times are medians, ratios the medians of those of each turn.
+Tables go to standard output and with a picture to tools/benchmark/results.md and results.png.
+"""
+import argparse
+import json
+import os
+import pathlib
+import platform
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+TOP = HERE.parent.parent
+sys.path.insert(0, str(HERE.parent))
+
+import cylinders  # noqa: E402
+import report  # noqa: E402
+from process import ONE_THREAD  # noqa: E402
+
+NODES, UNKNOWNS = (330, 1000, 3000, 11000, 42000), (50, 100, 200, 500, 1000, 2000)
+RELEASE = TOP / "build/release"
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def output(*command, **more):
+    return subprocess.run([str(word) for word in command], env=ONE_THREAD, capture_output=True, text=True, check=True, **more).stdout
+
+
+def part1(place, sizes, turns):
+    return [row for n in sizes for plastic in (False, True) for row in cylinders.one(TOP, place / f"{n}{plastic}", n, plastic, turns, say)]
+
+
+def part2(place, sizes, turns, limit):
+    rows = []
+    with subprocess.Popen([sys.executable, HERE / "contact.py", RELEASE / "bench_contact", place, str(turns), str(limit), *map(str, sizes)],
+                          env=ONE_THREAD, stdout=subprocess.PIPE, text=True) as child:
+        for line in child.stdout:
+            rows.append(json.loads(line))
+            say(line.strip())
+    if child.returncode:
+        sys.exit(f"part 2: exit status {child.returncode}")
+    return rows
+
+
+def part3(place, sizes, turns):
+    """Of the first body of each mesh: nodes, equations, half-bandwidth, seconds, operations, rate, part of dgemm's."""
+    matrices, nodes = [], []
+    for n in sizes:
+        mesh = cylinders.mesh_of(n)
+        (place / "plan.dat").write_text(cylinders.cylinders.hertz(mesh).text(), encoding="ascii")
+        body = re.search(r"^ +1 +\d+ +(\d+) +(\d+) ", output(RELEASE / "epcont", "--plan", place / "plan.dat"), re.MULTILINE)
+        matrices += body.groups()
+        nodes.append(len(mesh.point))
+    lines = output(RELEASE / "bench_factor", turns, *matrices).splitlines()
+    return [dict(zip(("equations", "width", "seconds", "operations", "rate", "part"), map(float, line.split())), nodes=n)
+            for n, line in zip([None, *nodes], lines)]
+
+
+def machine():
+    try:
+        model = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.MULTILINE)[1]
+    except (OSError, TypeError):
+        model = platform.machine()
+    version = re.search(r"Version (\S+)", subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout)[1]
+    names = [line.split("==") for line in (HERE / "requirements.txt").read_text().split() if "==" in line]
+    packages = ", ".join(f"{name} {number}" for name, number in names if name not in ("matplotlib",))
+    return (f"{model}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f} at the start. "
+            f"CalculiX {version}, Python {platform.python_version()}, {packages}.")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="tools/bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--part", type=int, choices=(1, 2, 3))
+    parser.add_argument("--turns", type=int)
+    parser.add_argument("--nodes", type=int, nargs="+", help="of part 1 and 3")
+    options = parser.parse_args()
+    turns = options.turns or (3 if options.quick else 5)
+    sizes = options.nodes or (NODES[:-1] if options.quick else NODES)
+    about = machine()
+    with tempfile.TemporaryDirectory() as directory:
+        place = pathlib.Path(directory)
+        does = {1: lambda: part1(place, sizes, turns), 3: lambda: part3(place, sizes, turns),
+                2: lambda: part2(place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 60)}
+        rows = {part: does[part]() for part in ((options.part,) if options.part else (3, 2, 1))}
+    text = report.page(rows, shlex.join(["tools/bench", *sys.argv[1:]]), about)
+    print(text)
+    if not options.part:
+        (HERE / "results.md").write_text(text + "\n", encoding="utf-8")
+        report.draw(rows, HERE / "results.png")
+
+
+main()

@@ -1,0 +1,225 @@
+"""Part 2: the dense contact problem alone, in one process: epcont's contact solver and packages for quadratic programs.
+
+    min 1/2 R'F R + g0'R,  1'R = P,  R >= 0        (one motion; the multiplier of 1'R = P is the approach q)
+
+    python contact.py BENCH_CONTACT DIRECTORY REPEATS LIMIT N...      prints a JSON row for each problem, size and program
+
+F is that of strips of uniform pressure on a half-plane; two problems take it some strips deep. A program that takes longer than LIMIT seconds gets no further size of
+that problem. Data are in memory before the clock starts; it is the processor's.
+"""
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import time
+
+import daqp
+import highspy
+import numpy as np
+import osqp
+import piqp
+import quadprog
+import scipy.sparse as sparse
+
+from process import ONE_THREAD
+
+MODULUS, TOLERANCE = 20400.0 / (2 * (1 - 0.29 ** 2)), 1e-9
+
+
+def half_plane(n, depth=0.0):
+    """n strips on (-1, 1): displacement of their middles, `depth` strips down (that smooths), zero four half-lengths away."""
+    h = 2.0 / n
+    d = h * abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    if depth:
+        mean = np.log(np.hypot(d, depth * h))
+    else:
+        mean = ((d + h / 2) * np.log(d + h / 2) - (d - h / 2) * np.log(abs(d - h / 2))) / h - 1
+    return np.ascontiguousarray(2 / (np.pi * MODULUS) * (np.log(4.0) - mean))
+
+
+def problem(kind, n):
+    """F, g0, P."""
+    x = (2 * np.arange(n) + 1.0) / n - 1
+    if kind == "half-plane":  # a cylinder: two thirds of the nodes touch
+        return half_plane(n), x * x / 100, np.pi * MODULUS * (2 / 3) ** 2 / 200
+    if kind == "flat":
+        return half_plane(n), np.zeros(n), 10.0
+    if kind == "ties":  # stairs: many nodes touch at one load
+        return half_plane(n), np.floor(8 * x * x + 1e-9) / 800, np.pi * MODULUS * (2 / 3) ** 2 / 200
+    flexibility = half_plane(n, depth=SMOOTHED[kind])  # half of the nodes are loaded, the others clear
+    force = np.where(abs(x) < 0.5, 1 + np.cos(2 * np.pi * x), 0.0)
+    clear = np.where(abs(x) < 0.5, 0.0, 1e-4 * (0.1 + abs(x)))
+    gap = clear - flexibility @ force
+    return flexibility, gap - gap.min(), force.sum()
+
+
+#: Badly conditioned: how many strips deep the displacements are taken.
+SMOOTHED = {"half loaded, condition 1e6": 3.0, "half loaded, condition 1e10": 6.0}
+KINDS = ("half-plane", "flat", "ties", *SMOOTHED)
+
+
+def violation(flexibility, gap, load, force):
+    """Largest |min(R/rho, w/omega)| and |sum R - P|/P, rho = max R, omega = rho max F; q is the force's mean of g0 + F R."""
+    w = gap + flexibility @ force
+    w -= w @ force / force.sum()
+    rho = abs(force).max()
+    return float(max(abs(np.minimum(force / rho, w / (rho * abs(flexibility).max()))).max(), abs(force.sum() / load - 1)))
+
+
+class Stalled(RuntimeError):
+    """An end without answer, after so many seconds, its forces this far off."""
+
+    def __init__(self, seconds, off, pivots):
+        super().__init__(f"stalled after {pivots} pivots")
+        self.seconds, self.off = seconds, off
+
+
+class Epcont:
+    """bench_contact; `options` stand behind its number of repeats."""
+
+    def __init__(self, program, place, *options):
+        self.command, self.place = [program, "problem", "forces", "1", *options], place
+
+    def prepare(self, flexibility, gap, load):
+        n = len(gap)
+        with open(self.place / "problem", "wb") as file:
+            np.array([n, 1], np.int32).tofile(file)
+            for part in (flexibility.T, np.ones(n), gap, np.array([load])):
+                np.ascontiguousarray(part).tofile(file)
+
+        def solve():
+            run = subprocess.run(self.command, cwd=self.place, env=ONE_THREAD, capture_output=True, text=True, check=False)
+            if run.returncode:
+                sys.exit(run.stdout + run.stderr)
+            seconds, off, pivots, state = run.stdout.split()
+            if state != "0":
+                raise Stalled(float(seconds), float(off), pivots)
+            return np.fromfile(self.place / "forces")[:n], float(seconds)
+        return solve
+
+
+def scaled(flexibility, gap, load):
+    """Forces in units of the mean one, so that the packages' tolerances mean something."""
+    unit = load / len(gap)
+    top = abs(flexibility).max() * unit
+    return unit, flexibility * (unit / top), gap / top, len(gap)
+
+
+def by_quadprog(flexibility, gap, load):
+    unit, f, g, total = scaled(flexibility, gap, load)
+    n = len(g)
+    c, b = np.hstack([np.ones((n, 1)), np.eye(n)]), np.append(float(total), np.zeros(n))
+    return lambda: unit * quadprog.solve_qp(f, -g, c, b, 1)[0]
+
+
+def by_daqp(flexibility, gap, load):
+    unit, f, g, total = scaled(flexibility, gap, load)
+    n = len(g)
+    a = np.ones((1, n))
+    upper, lower = np.append(np.full(n, 1e30), float(total)), np.append(np.zeros(n), float(total))
+    sense = np.append(np.zeros(n), 5).astype(np.int32)
+
+    def solve():
+        x, _, flag, _ = daqp.solve(f, g, a, upper, lower, sense, primal_tol=TOLERANCE)
+        if flag < 1:
+            raise RuntimeError(f"flag {flag}")
+        return unit * x
+    return solve
+
+
+def by_piqp(flexibility, gap, load):
+    unit, f, g, total = scaled(flexibility, gap, load)
+    n = len(g)
+    f, a = np.asfortranarray(f), np.asfortranarray(np.ones((1, n)))
+
+    def solve():
+        solver = piqp.DenseSolver()
+        solver.settings.eps_abs = solver.settings.eps_rel = TOLERANCE
+        solver.setup(f, g, a, np.array([float(total)]), x_l=np.zeros(n))
+        if solver.solve() != piqp.PIQP_SOLVED:
+            raise RuntimeError(str(solver.result.info.status))
+        return unit * np.array(solver.result.x)
+    return solve
+
+
+def by_osqp(flexibility, gap, load):
+    unit, f, g, total = scaled(flexibility, gap, load)
+    n = len(g)
+    f = sparse.csc_matrix(np.triu(f))
+    a = sparse.vstack([sparse.csc_matrix(np.ones((1, n))), sparse.eye(n)], format="csc")
+    lower, upper = np.append(float(total), np.zeros(n)), np.append(float(total), np.full(n, np.inf))
+
+    def solve():
+        solver = osqp.OSQP()
+        solver.setup(f, g, a, lower, upper, verbose=False, eps_abs=TOLERANCE, eps_rel=TOLERANCE, max_iter=20000, polishing=True,
+                     time_limit=float(sys.argv[4]))
+        found = solver.solve(raise_error=False)
+        return unit * found.x
+    return solve
+
+
+def by_highs(flexibility, gap, load):
+    unit, f, g, total = scaled(flexibility, gap, load)
+    n = len(g)
+    lower = sparse.csc_matrix(np.tril(f))
+    model = highspy.HighsModel()
+    lp = model.lp_
+    lp.num_col_, lp.num_row_ = n, 1
+    lp.col_cost_, lp.col_lower_, lp.col_upper_ = g, np.zeros(n), np.full(n, highspy.kHighsInf)
+    lp.row_lower_ = lp.row_upper_ = np.array([float(total)])
+    lp.a_matrix_.format_ = highspy.MatrixFormat.kColwise
+    lp.a_matrix_.start_, lp.a_matrix_.index_, lp.a_matrix_.value_ = np.arange(n + 1), np.zeros(n, int), np.ones(n)
+    model.hessian_.dim_, model.hessian_.format_ = n, highspy.HessianFormat.kTriangular
+    model.hessian_.start_, model.hessian_.index_, model.hessian_.value_ = lower.indptr, lower.indices, lower.data
+
+    def solve():
+        solver = highspy.Highs()
+        for name, value in (("output_flag", False), ("threads", 1), ("time_limit", float(sys.argv[4])), ("primal_feasibility_tolerance", TOLERANCE),
+                            ("dual_feasibility_tolerance", TOLERANCE), ("qp_regularization_value", 0.0)):
+            solver.setOptionValue(name, value)
+        solver.passModel(model)
+        solver.run()
+        if solver.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+            raise RuntimeError(str(solver.getModelStatus()))
+        return unit * np.array(solver.getSolution().col_value)
+    return solve
+
+
+def main():
+    ours = Epcont(sys.argv[1], pathlib.Path(sys.argv[2]))
+    repeats, limit, sizes = int(sys.argv[3]), float(sys.argv[4]), [int(n) for n in sys.argv[5:]]
+    programs = {"epcont": ours.prepare, "quadprog": by_quadprog, "HiGHS": by_highs, "DAQP": by_daqp, "PIQP": by_piqp, "OSQP": by_osqp}
+    for kind in KINDS:
+        tried = list(programs)
+        for n in sizes:
+            data = problem(kind, n)
+            condition = float(np.linalg.cond(data[0]))
+            solve, spent, worst, note = {name: programs[name](*data) for name in tried}, {}, {}, {}
+            for turn in range(repeats if n > 200 else 3 * repeats):
+                for name in [name for name in tried if name not in note]:
+                    begun = time.process_time()
+                    try:
+                        force = solve[name]()
+                    except (RuntimeError, ValueError) as error:
+                        note[name] = str(error).strip().splitlines()[-1]
+                        spent.setdefault(name, []).append(getattr(error, "seconds", time.process_time() - begun))
+                        worst[name] = getattr(error, "off", None)
+                        continue
+                    taken = time.process_time() - begun
+                    if name == "epcont":
+                        force, taken = force
+                    spent.setdefault(name, []).append(taken)
+                    if np.isfinite(force).all() and abs(force).max() > 0:
+                        worst[name] = max(worst.get(name) or 0.0, violation(*data, force))
+                    else:
+                        note[name] = "no answer"
+            for name in tried:
+                print(json.dumps({"problem": kind, "n": n, "condition": condition, "program": name, "cpu": statistics.median(spent[name]),
+                                  "violation": worst.get(name), "note": note.get(name, ""),
+                                  "ratio": None if "epcont" in note else statistics.median(a / b for a, b in zip(spent[name], spent["epcont"]))}),
+                      flush=True)
+            tried = [name for name in tried if statistics.median(spent[name]) < limit or name == "epcont"]
+
+
+main()

@@ -1,0 +1,101 @@
+!> Times epcont's contact solver alone: contact_only PROBLEM FORCES [REPEATS]
+!>
+!> PROBLEM is a stream: n, m (4-byte integers), then doubles: F [n, n], A [n, m], g0 [n], P [m]. FORCES gets R [n], q [m].
+!> Prints: seconds of processor (median of the repeats), largest violation of the conditions, pivots, state.
+program contact_only
+  use, intrinsic :: iso_fortran_env, only: int32
+  use epcont_base_kinds, only: wp
+  use epcont_contact_problem, only: contact_problem, contact_solution
+  use epcont_contact_simplex, only: solve_contact
+  implicit none
+  type(contact_problem) :: problem
+  type(contact_solution) :: solution
+  real(wp), allocatable :: seconds(:)
+  real(wp) :: begun, ended
+  integer :: k, repeats
+
+  call read_problem(argument(1), problem)
+  repeats = 1
+  if (command_argument_count() > 2) repeats = number(argument(3))
+  allocate (seconds(repeats))
+  do k = 1, repeats
+    call cpu_time(begun)
+    call solve_contact(problem, solution)
+    call cpu_time(ended)
+    seconds(k) = ended - begun
+  end do
+  call write_forces(argument(2), solution)
+  print '(2es12.4,2i8)', median(seconds), violation(problem, solution), solution%pivots, solution%state
+
+contains
+
+  function argument(k) result(text)
+    integer, intent(in) :: k
+    character(:), allocatable :: text
+    integer :: length
+
+    call get_command_argument(k, length=length)
+    allocate (character(length) :: text)
+    call get_command_argument(k, text)
+  end function argument
+
+  integer function number(text)
+    character(*), intent(in) :: text
+
+    read (text, *) number
+  end function number
+
+  subroutine read_problem(path, problem)
+    character(*), intent(in) :: path
+    type(contact_problem), intent(out) :: problem
+    integer(int32) :: m, n
+    integer :: unit
+
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', action='read')
+    read (unit) n, m
+    allocate (problem%flexibility(n, n), problem%motion(n, m), problem%initial_gap(n), problem%resultant(m))
+    allocate (problem%load_gap(n), source=0.0_wp)
+    read (unit) problem%flexibility, problem%motion, problem%initial_gap, problem%resultant
+    close (unit)
+  end subroutine read_problem
+
+  subroutine write_forces(path, solution)
+    character(*), intent(in) :: path
+    type(contact_solution), intent(in) :: solution
+    integer :: unit
+
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='replace', action='write')
+    write (unit) solution%force, solution%approach
+    close (unit)
+  end subroutine write_forces
+
+  !> Of w = g0 + F R - A q >= 0, R >= 0, R.w = 0 and A'R = P: largest |min(R/rho, w/omega)| and |A'R - P|/|P|, with rho the
+  !! largest force and omega = rho max|F|. As in contact.py, but with the solver's own q.
+  real(wp) function violation(problem, solution)
+    type(contact_problem), intent(in) :: problem
+    type(contact_solution), intent(in) :: solution
+    real(wp) :: rho, omega
+
+    rho = maxval(abs(solution%force))
+    omega = rho*maxval(abs(problem%flexibility))
+    associate (gap => problem%initial_gap + matmul(problem%flexibility, solution%force) &
+               - matmul(problem%motion, solution%approach))
+      violation = maxval(abs(min(solution%force/rho, gap/omega)))
+    end associate
+    associate (carried => matmul(solution%force, problem%motion))
+      violation = max(violation, maxval(abs(carried - problem%resultant))/maxval(abs(problem%resultant)))
+    end associate
+  end function violation
+
+  real(wp) function median(values)
+    real(wp), intent(in) :: values(:)
+    logical :: left(size(values))
+    integer :: k
+
+    left = .true.
+    do k = 1, (size(values) - 1)/2
+      left(minloc(values, mask=left, dim=1)) = .false.
+    end do
+    median = minval(values, mask=left)
+  end function median
+end program contact_only

@@ -1,0 +1,126 @@
+"""The page and the picture of tools/bench."""
+import math
+
+COLOURS = {"epcont": "#cc3311", "CalculiX": "#4477aa", "scikit-fem": "#228833", "quadprog": "#4477aa", "HiGHS": "#228833", "DAQP": "#ccbb44",
+           "PIQP": "#aa3377", "OSQP": "#888888"}
+KINDS = ("elastic", "elastoplastic")
+
+
+def table(head, rows):
+    return "\n".join(["| " + " | ".join(head) + " |", "| " + " | ".join("---" for _ in head) + " |",
+                      *("| " + " | ".join("" if cell is None else str(cell) for cell in row) + " |" for row in rows)])
+
+
+def short(value, digits=3):
+    if value is None or math.isnan(value):
+        return ""
+    return f"{value:.{digits}g}" if abs(value) < 10 ** digits else f"{value:.0f}"
+
+
+def per_cent(value):
+    return "" if math.isnan(value) else f"{100 * value:+.2f}"
+
+
+def best(rows, kind, program):
+    return [row for row in rows if row["kind"] == kind and row["program"] == program and row["best"]]
+
+
+def exponent(points):
+    """Slope of the logarithms, least squares."""
+    logs = [(math.log(x), math.log(y)) for x, y in points]
+    mx, my = (sum(values) / len(logs) for values in zip(*logs))
+    return sum((x - mx) * (y - my) for x, y in logs) / sum((x - mx) ** 2 for x, _ in logs)
+
+
+def ratios(rows):
+    lines = []
+    for kind in KINDS:
+        for ours in best(rows, kind, "epcont"):
+            of = {p: next((r for r in best(rows, kind, p) if r["nodes"] == ours["nodes"]), None) for p in ("CalculiX", "scikit-fem")}
+            direct = [r for r in rows if r["kind"] == kind and r["nodes"] == ours["nodes"] and "SPOOLES" in r["setting"] and r["wall"]]
+            direct = min(direct, key=lambda r: r["cpu"], default=None)
+            ccx, skfem = of["CalculiX"], of["scikit-fem"]
+            lines.append([kind, ours["nodes"], short(ours["cpu"]), short(ccx["cpu"]), short(ccx["cpu_ratio"]), short(ccx["wall_ratio"]),
+                          ccx["setting"], short(direct["cpu_ratio"]) if direct else "", direct["setting"].replace(", SPOOLES", "") if direct else "",
+                          short(ours["memory"]), short(ccx["memory_ratio"]), short(skfem["cpu_ratio"]) if skfem else "",
+                          short(skfem["rest"] / ours["cpu"]) if skfem else ""])
+    return table(["", "nodes", "epcont, s", "CalculiX, s", "ratio", "of wall", "its fastest sound setting", "ratio, SPOOLES", "with",
+                  "epcont, MB", "ratio, CalculiX", "ratio, scikit-fem", "without imports"], lines)
+
+
+def cylinders(rows):
+    lines = [[row["kind"], row["nodes"], row["program"], row["setting"], row["runs"], short(row["cpu"]), short(row["wall"]), short(row["memory"]),
+              short(row["p_max"], 4), per_cent(row["p_error"]), f"{row['approach']:.6f}", per_cent(row["d_error"]), short(row["cpu_ratio"]),
+              short(row["wall_ratio"]), short(row["memory_ratio"]), row["note"]] for row in rows]
+    return "\n\n".join([
+        "## Two cylinders: whole programs",
+        "Seconds of processor (user and system) and of wall, peak memory of the process. Ratios: the program's over epcont's. CalculiX: GAPUNI with "
+        "a *PLASTIC card that elastic runs never reach, or NODE TO SURFACE contact, closed gaps 1e5 E stiff; SPOOLES is its default and direct, "
+        "ITERATIVE CHOLESKY its conjugate gradients. Each setting runs once (wall empty: only once); those near the fastest sound "
+        "one, and the fastest with SPOOLES, take turns with epcont. Sound: whole load, approach within 1 % of epcont's, p_max within 1 % "
+        "(elastoplastic: 6 %). epcont elastoplastic: NEWTON to 1e-8.",
+        ratios(rows),
+        "Errors in per cent: elastic p_max against Hertz, approach against Johnson; elastoplastic against epcont's converged total theory (198.4, "
+        "0.001419). CalculiX has flow theory: its lower p_max is no error but another theory. scikit-fem ends with "
+        "displacements and contact forces (no stresses, tables, certificate).",
+        table(["", "nodes", "program", "setting", "runs", "CPU, s", "wall, s", "MB", "p_max", "%", "approach", "%", "CPU ratio", "wall ratio",
+               "memory ratio", ""], lines)])
+
+
+def contact(rows):
+    lines = [[row["problem"], row["n"], f"{row['condition']:.0e}", row["program"], short(row["cpu"]), short(row["ratio"]),
+              "" if row["violation"] is None else f"{row['violation']:.0e}", row["note"]] for row in rows]
+    return "\n\n".join([
+        "## Dense contact problem alone",
+        "Strips on a half-plane, one motion. Seconds of processor; ratio over epcont's (below 1: faster than epcont). Violation: largest of |min(R/rho, "
+        "w/omega)| and of the load's relative error, rho = max R, omega = rho max F; the packages are asked for 1e-9. A program that took too long "
+        "is left out at the next size.",
+        table(["problem", "n", "condition of F", "program", "CPU, s", "ratio", "violation", ""], lines)])
+
+
+def factor(rows, runs):
+    lines = [["dgemm, n = 1000" if row["nodes"] is None else row["nodes"], int(row["equations"]), int(row["width"]), short(row["seconds"]),
+              f"{row['rate'] / 1e9:.1f}", f"{100 * row['part']:.0f}"] for row in rows]
+    text = ["## Factorization", "Operations: n w^2 of the band, 2 n^3 of dgemm.",
+            table(["nodes", "equations", "half-bandwidth", "seconds", "1e9 operations/s", "% of dgemm"], lines)]
+    growth = [("factorization", [(row["equations"], row["seconds"]) for row in rows if row["nodes"] and row["nodes"] > 900])]
+    growth += [(f"{program}, {kind}, whole", [(row["nodes"], row["cpu"]) for row in best(runs, kind, program) if row["nodes"] > 900])
+               for program in ("epcont", "CalculiX", "scikit-fem") for kind in KINDS]
+    text += ["Time grows with the unknowns to the power (1 000 nodes and more, least squares):",
+             table(["", "power"], [[name, f"{exponent(points):.2f}"] for name, points in growth if len(points) > 1])]
+    return "\n\n".join(text)
+
+
+def page(rows, command, about):
+    text = ["# Benchmarks", f"`{command}` on {about}", "Measured once by that command, one thread each; another machine, or a busy one, gives other "
+            "times. Ratios are steadier."]
+    text += [cylinders(rows[1])] if 1 in rows else []
+    text += [contact(rows[2])] if 2 in rows else []
+    text += [factor(rows[3], rows.get(1, []))] if 3 in rows else []
+    return "\n\n".join(text)
+
+
+def draw(rows, path):
+    import matplotlib  # here: what drives the runs stays small
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8, "legend.frameon": False})
+    figure, panels = plt.subplots(2, 2, figsize=(10.0, 7.6), layout="constrained")
+    for axes, kind, what, title in ((panels[0][0], "elastic", "cpu", "two cylinders, elastic"), (panels[0][1], "elastoplastic", "cpu", "two cylinders, elastoplastic"),
+                                    (panels[1][0], "elastic", "memory", "two cylinders, elastic")):
+        for program in ("CalculiX", "scikit-fem", "epcont"):
+            found = best(rows[1], kind, program)
+            if found:
+                axes.loglog([r["nodes"] for r in found], [r[what] for r in found], "o-", ms=4, lw=1.3, color=COLOURS[program], label=program)
+        axes.set(title=title, xlabel="nodes", ylabel="processor time, s" if what == "cpu" else "peak memory, MB")
+    axes = panels[1][1]
+    for program in ("quadprog", "HiGHS", "DAQP", "PIQP", "OSQP", "epcont"):
+        found = [r for r in rows[2] if r["problem"] == "half-plane" and r["program"] == program]
+        axes.loglog([r["n"] for r in found], [r["cpu"] for r in found], "o-", ms=4, lw=1.3, color=COLOURS[program], label=program)
+    axes.set(title="dense contact problem alone, half-plane", xlabel="pairs", ylabel="processor time, s")
+    for axes in panels.flat:
+        axes.legend(fontsize=9)
+        axes.grid(alpha=0.25, lw=0.6)
+    figure.savefig(path, dpi=110, metadata={"Software": None})
