@@ -6,7 +6,7 @@ program contact_only
   use, intrinsic :: iso_fortran_env, only: int32
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_problem, contact_solution
-  use epcont_contact_simplex, only: solve_contact
+  use epcont_contact_solver, only: solve_contact
   implicit none
   type(contact_problem) :: problem
   type(contact_solution) :: solution
