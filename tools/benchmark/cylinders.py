@@ -135,7 +135,7 @@ def one(top, place, wanted, plastic, repeats, say):
         sys.exit(f"epcont: {ours.out}")
     # One run may mislead: those near the fastest take their turns too. So does CalculiX's default, the direct solver.
     chosen = [ours]
-    for name, among, near in (("CalculiX", "", 1.5), ("CalculiX", "SPOOLES", 1.0), ("scikit-fem", "", 1.5)):
+    for name, among, near in (("CalculiX", "", 2.0), ("CalculiX", "SPOOLES", 1.0), ("scikit-fem", "", 2.0)):
         found = [p for p in others if p.name == name and among in p.setting and sound(p, ours, plastic)]
         limit = near * min((p.first for p in found), default=0.0)
         chosen += [p for p in found if p.first <= limit and p not in chosen]
