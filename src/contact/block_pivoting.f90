@@ -39,13 +39,13 @@ module epcont_contact_block_pivoting
 contains
 
   !> Look for the set of contacts. `found`: its fresh solution passes the test of signs and its forces are unique.
-  pure subroutine find_by_blocks(scaled, first_touching, solution, state, found, start)
+  pure subroutine find_by_blocks(scaled, first_touching, guess, solution, state, found)
     type(scaled_problem), intent(in) :: scaled
     logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
+    logical, allocatable, intent(in) :: guess(:)        !! of the pairs in contact, if allocated [n]
     type(contact_solution), intent(inout) :: solution   !! steps, and pairs exchanged
     type(contact_state), intent(out) :: state
     logical, intent(out) :: found
-    logical, intent(in), optional :: start(:)           !! guess of the pairs in contact [n]
     logical, allocatable :: closed(:)
     integer :: stride
     logical :: complete
@@ -53,8 +53,8 @@ contains
     closed = first_touching
     stride = first_stride(size(closed))
     found = .false.
-    if (present(start)) then
-      closed = closed .or. start
+    if (allocated(guess)) then
+      closed = closed .or. guess
       stride = 1
       solution%block_steps = 1
       call test_afresh(scaled, closed, first_touching, state, found)

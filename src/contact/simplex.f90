@@ -24,22 +24,22 @@ module epcont_contact_simplex
 contains
 
   !> Follow the load from one set of contacts to the next until a fresh solution passes the test of signs.
-  pure subroutine find_contacts(scaled, first_touching, solution, state, ray, start)
+  pure subroutine find_contacts(scaled, first_touching, guess, solution, state, ray)
     type(scaled_problem), intent(in) :: scaled
     logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
+    logical, allocatable, intent(in) :: guess(:)        !! of the pairs in contact, if allocated [n]
     type(contact_solution), intent(inout) :: solution   !! state, and the record of the pivots
     type(contact_state), intent(out) :: state
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
-    logical, intent(in), optional :: start(:)
     real(wp), allocatable :: lifted(:)
     logical, allocatable :: closed(:)
     integer :: attempt, outcome
 
     closed = first_touching
-    if (present(start)) closed = closed .or. start
+    if (allocated(guess)) closed = closed .or. guess
     state = fresh_state(scaled, closed, first_touching)
     lifted = unloaded_values(scaled, state)
-    if (present(start)) lifted = max(basic_values(state), 0.0_wp)
+    if (allocated(guess)) lifted = max(basic_values(state), 0.0_wp)
     do attempt = 0, restart_limit
       solution%state = contact_solved
       if (has_right_signs(scaled, state)) return

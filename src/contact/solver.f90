@@ -24,7 +24,9 @@ contains
     type(rigid_start) :: rigid
     type(contact_state) :: state
     real(wp), allocatable :: ray(:)
+    logical, allocatable :: guess(:)   !! allocated where there is one
 
+    if (present(start)) guess = start
     scaled = scale_problem(problem)
     call clear(scaled, solution)
     call find_rigid_start(scaled, rigid)
@@ -37,10 +39,10 @@ contains
     solution%motion_free = rigid%redundant
 
     if (present(by_blocks)) then
-      if (by_blocks) call solve_by_blocks(scaled, rigid%touching, solution, start)
+      if (by_blocks) call solve_by_blocks(scaled, rigid%touching, guess, solution)
       if (solution%by_blocks) return
     end if
-    call find_contacts(scaled, rigid%touching, solution, state, ray, start)
+    call find_contacts(scaled, rigid%touching, guess, solution, state, ray)
     if (solution%state == contact_overlap) then
       solution%overlapping = ray > ray_tolerance*maxval(ray)
     else
@@ -49,17 +51,17 @@ contains
   end subroutine solve_contact
 
   !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left of it.
-  pure subroutine solve_by_blocks(scaled, first_touching, solution, start)
+  pure subroutine solve_by_blocks(scaled, first_touching, guess, solution)
     type(scaled_problem), intent(in) :: scaled
     logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
+    logical, allocatable, intent(in) :: guess(:)        !! of the pairs in contact, if allocated [n]
     type(contact_solution), intent(inout) :: solution
-    logical, intent(in), optional :: start(:)           !! [n]
     type(contact_solution) :: trial
     type(contact_state) :: state
     logical, allocatable :: pressed(:)
 
     trial = solution
-    call find_by_blocks(scaled, first_touching, trial, state, trial%by_blocks, start)
+    call find_by_blocks(scaled, first_touching, guess, trial, state, trial%by_blocks)
     solution%block_steps = trial%block_steps
     if (.not. trial%by_blocks) return
     call settle(scaled, state, trial)
