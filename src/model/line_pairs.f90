@@ -240,6 +240,7 @@ contains
           if (row == 0) cycle
           associate (facing => faces%facing(row))
             if (facing%place%gap > nearest + slave%chord_length(s) .or. master%segment(3, facing%segment) > 0) cycle
+            if (all(model%held(:, master%segment(:2, facing%segment)))) cycle   ! rigid: it does not bend at all
             sides = sides + [slave%chord_length(s)/merge(2, 1, slave%segment(3, s) > 0), master%chord_length(facing%segment)]
           end associate
         end do
