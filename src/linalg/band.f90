@@ -4,19 +4,19 @@
 !> entries(1 + i - j, j).
 module epcont_linalg_band
   use epcont_base_kinds, only: wp
-  use epcont_linalg_lapack, only: dlacn2, dpbtrf, dpbtrs, dpotri
+  use epcont_linalg_dense, only: cholesky_inverse
+  use epcont_linalg_factored, only: factored_matrix
+  use epcont_linalg_lapack, only: dpbtrf, dpbtrs
   implicit none
   private
   public :: band_matrix, new_band_matrix
 
-  type :: band_matrix
-    integer :: order = 0, half_bandwidth = 0
+  type, extends(factored_matrix) :: band_matrix
+    integer :: half_bandwidth = 0
     real(wp), allocatable :: entries(:, :)  !! [half_bandwidth + 1, order]
-    real(wp) :: norm = 0.0_wp               !! 1-norm of the matrix before it was factored
   contains
     procedure :: factor
     procedure :: solve
-    procedure :: condition
     procedure :: trailing_inverse
   end type band_matrix
 
@@ -76,38 +76,13 @@ contains
                 x, self%order, info)
   end subroutine solve
 
-  !> Estimate of the condition in the 1-norm, from the factor (Hager and Higham's estimator, five solves or so;
-  !! `dpbcon` guards its solves against overflow by a search over the whole column in every step: ten times slower).
-  pure function condition(self) result(number)
-    class(band_matrix), intent(in) :: self
-    real(wp) :: number
-    real(wp), allocatable :: v(:), x(:, :)
-    real(wp) :: inverse_norm
-    integer, allocatable :: signs(:)
-    integer :: asked, state(3)
-
-    number = 1.0_wp
-    if (self%order == 0) return
-    allocate (v(self%order), x(self%order, 1), source=0.0_wp)
-    allocate (signs(self%order), source=0)
-    asked = 0
-    state = 0
-    inverse_norm = 0.0_wp
-    do
-      call dlacn2(self%order, v, x, signs, inverse_norm, asked, state)
-      if (asked == 0) exit
-      call self%solve(x)  ! the matrix is symmetric: its transpose is asked for in the same way
-    end do
-    number = self%norm*inverse_norm
-  end function condition
-
   !> Trailing block of the inverse, from the factor: with L22 the trailing block of the factor it is
   !! (L22 L22')^-1, since all that stands before has been eliminated from it.
   pure function trailing_inverse(self, count) result(inverse)
     class(band_matrix), intent(in) :: self
     integer, intent(in) :: count              !! rows and columns wanted
     real(wp), allocatable :: inverse(:, :)    !! full symmetric [count, count]
-    integer :: info, j, length, first
+    integer :: j, length, first
 
     allocate (inverse(count, count), source=0.0_wp)
     if (count == 0) return
@@ -116,9 +91,6 @@ contains
       length = min(self%half_bandwidth + 1, count - j + 1)
       inverse(j:j + length - 1, j) = self%entries(:length, first + j)
     end do
-    call dpotri('L', count, inverse, count, info)
-    do j = 2, count
-      inverse(:j - 1, j) = inverse(j, :j - 1)
-    end do
+    call cholesky_inverse(inverse)
   end function trailing_inverse
 end module epcont_linalg_band

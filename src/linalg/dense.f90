@@ -4,10 +4,10 @@
 !> is a fault is for the caller to say, in the words of the problem.
 module epcont_linalg_dense
   use epcont_base_kinds, only: wp
-  use epcont_linalg_lapack, only: dgemm, dgesvd, dgetrf, dgetrs, dpotrf, dpotrs, dpstrf, dsyrk, dtrsm
+  use epcont_linalg_lapack, only: dgemm, dgesvd, dgetrf, dgetrs, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
   implicit none
   private
-  public :: cholesky_factor, cholesky_solve, extend_cholesky, leading_solve, pivoted_cholesky
+  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky, leading_solve, pivoted_cholesky
   public :: lu_solve, add_product, null_space
 
 contains
@@ -63,6 +63,18 @@ contains
 
     if (size(b) > 0) call dpotrs('L', size(b, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
   end subroutine leading_solve
+
+  !> Replace a Cholesky factor L by the inverse of LL', whole.
+  pure subroutine cholesky_inverse(a)
+    real(wp), contiguous, intent(inout) :: a(:, :)    !! lower triangle: L; then both triangles of the inverse [n, n]
+    integer :: info, j
+
+    if (size(a) == 0) return
+    call dpotri('L', size(a, 1), a, size(a, 1), info)
+    do j = 2, size(a, 2)
+      a(:j - 1, j) = a(j, :j - 1)
+    end do
+  end subroutine cholesky_inverse
 
   !> Cholesky factor of a semidefinite matrix, largest pivot first: a(order, order) = LL' to rounding.
   pure subroutine pivoted_cholesky(a, tolerance, order, rank)

@@ -12,7 +12,9 @@
 module epcont_linalg_panel
   use epcont_base_kinds, only: i8, wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_lapack, only: daxpy, ddot, dgemm, dlacn2, dpotrf, dpotri, dsyrk, dtrsm
+  use epcont_linalg_dense, only: cholesky_inverse
+  use epcont_linalg_factored, only: factored_matrix
+  use epcont_linalg_lapack, only: daxpy, ddot, dgemm, dpotrf, dsyrk, dtrsm
   implicit none
   private
   public :: panel_matrix, panel_entries, panel_operations, gram_operations
@@ -20,20 +22,17 @@ module epcont_linalg_panel
   !> Columns of a panel, as a part of the mean height, and at least and at most.
   integer, parameter :: heights_a_width = 4, least_width = 16, most_width = 64
 
-  type :: panel_matrix
-    integer :: order = 0
+  type, extends(factored_matrix) :: panel_matrix
     integer :: width = 1                   !! columns of a panel; the last may have fewer
     integer, allocatable :: first(:)       !! first column of each panel [panels + 1]
     integer, allocatable :: last(:)        !! last row of each panel [panels]
     integer(i8), allocatable :: start(:)   !! of each panel in `entries` [panels + 1]
     real(wp), allocatable :: entries(:)
-    real(wp) :: norm = 0.0_wp              !! 1-norm of the matrix before it was factored
   contains
     procedure :: begin
     procedure :: add
     procedure :: factor
     procedure :: solve
-    procedure :: condition
     procedure :: trailing_inverse
     procedure :: add_gram
     procedure, private :: height
@@ -281,37 +280,13 @@ contains
     end do
   end subroutine solve
 
-  !> Estimate of the condition in the 1-norm, from the factor (Hager and Higham's estimator, five solves or so).
-  pure function condition(self) result(number)
-    class(panel_matrix), intent(in) :: self
-    real(wp) :: number
-    real(wp), allocatable :: v(:), x(:, :)
-    real(wp) :: inverse_norm
-    integer, allocatable :: signs(:)
-    integer :: asked, state(3)
-
-    number = 1.0_wp
-    if (self%order == 0) return
-    allocate (v(self%order), x(self%order, 1), source=0.0_wp)
-    allocate (signs(self%order), source=0)
-    asked = 0
-    state = 0
-    inverse_norm = 0.0_wp
-    do
-      call dlacn2(self%order, v, x, signs, inverse_norm, asked, state)
-      if (asked == 0) exit
-      call self%solve(x)  ! the matrix is symmetric: its transpose is asked for in the same way
-    end do
-    number = self%norm*inverse_norm
-  end function condition
-
   !> Trailing block of the inverse, from the factor: with L22 the trailing block of the factor it is
   !! (L22 L22')^-1, since all that stands before has been eliminated from it.
   pure function trailing_inverse(self, count) result(inverse)
     class(panel_matrix), intent(in) :: self
     integer, intent(in) :: count              !! rows and columns wanted
     real(wp), allocatable :: inverse(:, :)    !! full symmetric [count, count]
-    integer :: before, i, info, j, p
+    integer :: before, i, j, p
     integer(i8) :: at
 
     allocate (inverse(count, count), source=0.0_wp)
@@ -325,10 +300,7 @@ contains
         end do
       end do
     end do
-    call dpotri('L', count, inverse, count, info)
-    do j = 2, count
-      inverse(:j - 1, j) = inverse(j, :j - 1)
-    end do
+    call cholesky_inverse(inverse)
   end function trailing_inverse
 
   !> Add N K^-1 N' from the factor, N given by rows: entries start(k) to start(k+1)-1 of row k are equations and weights.

@@ -225,7 +225,7 @@ contains
     real(wp), intent(in) :: point(2)
     real(wp), intent(out) :: s
     logical, intent(out) :: found
-    real(wp) :: away(2), chord(2), from(2), slope(2), step, turn(2), rate, x(2, 3)
+    real(wp) :: away(2), chord(2), from(2), normal(2), rate, slope(2), start(2), step, turn(2), x(2, 3)
     logical :: curved
     integer :: k
 
@@ -233,16 +233,18 @@ contains
     x = local(line, segment)
     chord = x(:, 2)
     from = point - line%x(:, 1, segment)
-    turn = scaled_normal(line, segment, 1.0_wp) - scaled_normal(line, segment, 0.0_wp)
+    start = scaled_normal(line, segment, 0.0_wp)
+    turn = scaled_normal(line, segment, 1.0_wp) - start
     s = dot_product(from, chord)/dot_product(chord, chord)
     found = .false.
     do k = 1, most_steps
       if (abs(s) > 10.0_wp) return
       away = from - matmul(x, values(curved, s))
       slope = matmul(x, slopes(curved, s))
-      rate = cross_product(turn, away) - cross_product(scaled_normal(line, segment, s), slope)
+      normal = start + s*turn
+      rate = cross_product(turn, away) - cross_product(normal, slope)
       if (rate == 0.0_wp) return
-      step = -cross_product(scaled_normal(line, segment, s), away)/rate
+      step = -cross_product(normal, away)/rate
       s = s + step
       found = abs(step) <= converged*max(1.0_wp, abs(s))
       if (found) return

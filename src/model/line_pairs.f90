@@ -107,6 +107,12 @@ contains
       do turn = 1, 3
         which = in_turn(turn)
         if (slave%segment(which, s) == 0) cycle
+        if (which == 1 .and. s > 1) then
+          if (all(slave%normal(:, 1, s) == slave%normal(:, 2, s - 1))) then   ! looked at from the side before
+            faces%row_of(1, s) = faces%row_of(2, s - 1)
+            cycle
+          end if
+        end if
         associate (node => slave%segment(which, s))
           facing = find_nearest(master, model%x(:, node), slave%outward(s, which), search, node)
           new = which > 1 .or. s == 1

@@ -7,7 +7,7 @@ module epcont_model_loads
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_elements, only: element_name
-  use epcont_model_model, only: axisymmetric, model_type
+  use epcont_model_model, only: model_type
   use epcont_model_reference, only: resolve
   use epcont_model_sets, only: chosen_set
   implicit none
@@ -91,8 +91,7 @@ contains
       direction = inward
       if (theta /= 0.0_wp) direction = [cos(theta*degree)*inward(1) - sin(theta*degree)*inward(2), &
                                         sin(theta*degree)*inward(1) + cos(theta*degree)*inward(2)]
-      depth = model%thickness(model%section(element))
-      if (model%kinematics(model%section(element)) == axisymmetric) depth = 2.0_wp*acos(-1.0_wp)*point(p)%x(1)
+      depth = model%depth(element, point(p)%x(1))
       value = at_ends(1) + (at_ends(2) - at_ends(1))*point(p)%along
       do k = 1, size(ends)
         if (ends(k) > 0) model%load(:, ends(k)) = model%load(:, ends(k)) + value*depth*point(p)%values(k)*direction

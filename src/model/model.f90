@@ -64,6 +64,7 @@ module epcont_model_model
     procedure :: corners
     procedure :: edge
     procedure :: edge_coordinates
+    procedure :: depth
     procedure :: has_rings
     procedure :: can_yield
     procedure :: has_flat_curve
@@ -110,6 +111,18 @@ contains
 
     x = self%x(:, edge(:size(x, 2)))
   end function edge_coordinates
+
+  !> What belongs to a length in the plane at a radius: the thickness of an element, or the way round its ring [length].
+  pure real(wp) function depth(self, element, radius)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: element
+    real(wp), intent(in) :: radius   !! x [length]
+
+    associate (section => self%section(element))
+      depth = self%thickness(section)
+      if (self%kinematics(section) == axisymmetric) depth = 2.0_wp*acos(-1.0_wp)*radius
+    end associate
+  end function depth
 
   !> Are the elements rings? (All are, or none.)
   pure logical function has_rings(self)

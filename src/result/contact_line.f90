@@ -5,7 +5,7 @@ module epcont_result_contact_line
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
-  use epcont_model_model, only: axisymmetric, model_type
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: contact_line, find_contact_line, contact_zone, find_zones
@@ -113,8 +113,7 @@ contains
     point = edge_points(model%edge_coordinates(side))
     share = 0.0_wp
     do p = 1, edge_point_count
-      depth = model%thickness(model%section(element))
-      if (model%kinematics(model%section(element)) == axisymmetric) depth = 2.0_wp*acos(-1.0_wp)*point(p)%x(1)
+      depth = model%depth(element, point(p)%x(1))
       share = share + depth*point(p)%values(findloc(side, node, dim=1))*abs(cross_product(point(p)%tangent, n))
     end do
   end function share

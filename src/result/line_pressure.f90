@@ -4,7 +4,7 @@ module epcont_result_line_pressure
   use epcont_base_edge, only: edge_point, edge_point_count, edge_points
   use epcont_base_kinds, only: wp
   use epcont_model_boundary_line, only: boundary_line
-  use epcont_model_model, only: axisymmetric, line_contact, model_type
+  use epcont_model_model, only: line_contact, model_type
   implicit none
   private
   public :: line_pressure, compare_sides
@@ -81,15 +81,12 @@ contains
     do i = 1, size(line%element)
       side = line%segment(:, i)
       point = edge_points(model%edge_coordinates(side))
-      associate (section => model%section(line%element(i)))
-        do p = 1, edge_point_count
-          depth = model%thickness(section)
-          if (model%kinematics(section) == axisymmetric) depth = 2.0_wp*acos(-1.0_wp)*point(p)%x(1)
-          do k = 1, 3
-            if (side(k) > 0) area(side(k)) = area(side(k)) + depth*point(p)%values(k)*norm2(point(p)%tangent)
-          end do
+      do p = 1, edge_point_count
+        depth = model%depth(line%element(i), point(p)%x(1))
+        do k = 1, 3
+          if (side(k) > 0) area(side(k)) = area(side(k)) + depth*point(p)%values(k)*norm2(point(p)%tangent)
         end do
-      end associate
+      end do
     end do
   end function node_areas
 end module epcont_result_line_pressure

@@ -7,6 +7,7 @@ program contact_only
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_problem, contact_solution
   use epcont_contact_solver, only: solve_contact
+  use statistics, only: median
   implicit none
   type(contact_problem) :: problem
   type(contact_solution) :: solution
@@ -86,16 +87,4 @@ contains
       violation = max(violation, maxval(abs(carried - problem%resultant))/maxval(abs(problem%resultant)))
     end associate
   end function violation
-
-  real(wp) function median(values)
-    real(wp), intent(in) :: values(:)
-    logical :: left(size(values))
-    integer :: k
-
-    left = .true.
-    do k = 1, (size(values) - 1)/2
-      left(minloc(values, mask=left, dim=1)) = .false.
-    end do
-    median = minval(values, mask=left)
-  end function median
 end program contact_only

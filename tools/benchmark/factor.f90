@@ -6,6 +6,7 @@ program bench_factor
   use epcont_base_kinds, only: wp
   use epcont_linalg_band, only: band_matrix, new_band_matrix
   use epcont_linalg_lapack, only: dgemm
+  use statistics, only: median
   implicit none
   integer, parameter :: dense = 1000
   real(wp), parameter :: least = 0.05_wp   !! seconds that are timed at once
@@ -81,16 +82,4 @@ contains
     end do
     factor_time = spent/times
   end function factor_time
-
-  real(wp) function median(values)
-    real(wp), intent(in) :: values(:)
-    logical :: left(size(values))
-    integer :: k
-
-    left = .true.
-    do k = 1, (size(values) - 1)/2
-      left(minloc(values, mask=left, dim=1)) = .false.
-    end do
-    median = minval(values, mask=left)
-  end function median
 end program bench_factor
