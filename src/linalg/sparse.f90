@@ -4,7 +4,7 @@
 !> ascending, the diagonal first. The pattern is set and analysed once; then, as often as one likes, `clear`, `add` and
 !> `factor`. Where the program is built without MUMPS (`sparse_available`), `analyse` fails.
 module epcont_linalg_sparse
-  use, intrinsic :: iso_c_binding, only: c_associated, c_bool, c_double, c_int, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_bool, c_double, c_int, c_loc, c_null_ptr, c_ptr
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
   use epcont_base_sorting, only: sorted_order
@@ -13,8 +13,9 @@ module epcont_linalg_sparse
   private
   public :: sparse_matrix, sparse_available
 
-  !> Assignment copies the matrix and leaves analysis and factor behind. gfortran 12 finalizes neither results of
-  !! functions nor arguments of intent(out): the matrix is built in place and given back by `release` or at the end of its scope.
+  !> What hangs on `solver` belongs to the matrix that was analysed; in a copy of it, which stands elsewhere, it is nothing, so that
+  !! it is given back once, and a copy has the entries but must be analysed. (Defined assignment would do it, but gfortran 12
+  !! fails on types with such a component.) `release` a matrix before something is assigned to it: gfortran 12 does not finalize it.
   type :: sparse_matrix
     integer :: order = 0
     integer, allocatable :: start(:)        !! [order + 1]
@@ -23,6 +24,7 @@ module epcont_linalg_sparse
     real(wp) :: norm = 0.0_wp               !! 1-norm of the matrix last factored
     integer(i8) :: bytes = 0                !! that factoring will take, from the analysis; 0: not analysed
     type(c_ptr), private :: solver = c_null_ptr
+    type(c_ptr), private :: home = c_null_ptr   !! where the matrix stood when it was analysed
     logical, private :: factored = .false.
   contains
     procedure :: set_pattern
@@ -34,8 +36,7 @@ module epcont_linalg_sparse
     procedure :: condition
     procedure :: trailing_inverse
     procedure :: release
-    procedure, private :: copy
-    generic :: assignment(=) => copy
+    procedure, private :: at_home
     final :: finalize
   end type sparse_matrix
 
@@ -214,15 +215,25 @@ contains
     end do
   end function position
 
+  !> Whether there is an analysis, and it is of this matrix.
+  pure logical function at_home(self)
+    class(sparse_matrix), intent(in), target :: self
+
+    at_home = c_associated(self%solver)
+    if (at_home) at_home = c_associated(self%home, c_loc(self%order))
+  end function at_home
+
   !> Choose the order of elimination for all factorizations to come; `self%bytes` then says what they will take.
   pure subroutine analyse(self, reused)
-    class(sparse_matrix), intent(inout) :: self
+    class(sparse_matrix), intent(inout), target :: self
     logical, intent(in) :: reused    !! there will be several factorizations
     integer :: megabytes
 
     self%factored = .false.
     self%bytes = 0
     if (self%order == 0) return
+    if (.not. self%at_home()) self%solver = c_null_ptr
+    self%home = c_loc(self%order)
     call mumps_analyse(self%solver, self%order, self%start, self%row, &
                        merge(scotch, amf, reused .and. self%order >= scotch_from), megabytes)
     self%bytes = 1000000_i8*megabytes
@@ -242,7 +253,7 @@ contains
     self%norm = norm_of(self)
     self%factored = .false.
     smallest_ratio = 0.0_wp
-    if (.not. c_associated(self%solver)) return
+    if (.not. self%at_home()) return
     call mumps_factor(self%solver, size(self%entries), self%entries, smallest_ratio, info)
     if (info < 0) return
     self%factored = info == 0
@@ -303,7 +314,7 @@ contains
     class(sparse_matrix), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)  !! right-hand sides, then solutions [order, any]
 
-    if (size(x) == 0 .or. .not. self%factored) return
+    if (size(x) == 0 .or. .not. (self%factored .and. self%at_home())) return
     call mumps_solve(self%solver, self%order, size(x, 2), x)
   end subroutine solve
 
@@ -342,7 +353,7 @@ contains
     integer :: j, k
 
     allocate (inverse(count, count), source=0.0_wp)
-    if (count == 0 .or. .not. self%factored) return
+    if (count == 0 .or. .not. (self%factored .and. self%at_home())) return
     allocate (column(count*(count + 1)/2))
     call mumps_inverse_entries(self%solver, self%order, count, column)
     k = 0
@@ -357,7 +368,8 @@ contains
   elemental subroutine release(self)
     class(sparse_matrix), intent(inout) :: self
 
-    call mumps_release(self%solver)
+    if (self%at_home()) call mumps_release(self%solver)
+    self%solver = c_null_ptr
     self%order = 0
     self%bytes = 0
     self%norm = 0.0_wp
@@ -370,28 +382,6 @@ contains
   elemental subroutine finalize(self)
     type(sparse_matrix), intent(inout) :: self
 
-    call mumps_release(self%solver)
+    if (self%at_home()) call mumps_release(self%solver)
   end subroutine finalize
-
-  !> The matrix without its analysis and factor.
-  elemental subroutine copy(self, other)
-    class(sparse_matrix), intent(inout) :: self
-    type(sparse_matrix), intent(in) :: other
-    integer, allocatable :: start(:), row(:)
-    real(wp), allocatable :: entries(:)
-    integer :: order
-
-    order = other%order
-    if (allocated(other%start)) then
-      start = other%start
-      row = other%row
-      entries = other%entries
-    end if
-    call self%release()
-    self%order = order
-    if (.not. allocated(start)) return
-    call move_alloc(start, self%start)
-    call move_alloc(row, self%row)
-    call move_alloc(entries, self%entries)
-  end subroutine copy
 end module epcont_linalg_sparse
