@@ -36,18 +36,20 @@ contains
     available = .true.
   end function mumps_available
 
-  !> Begin, and choose the order of elimination; `megabytes` is what factoring will take, 0 where analysis failed.
-  subroutine mumps_analyse(solver, order, start, row, ordering, megabytes) bind(c, name='epcont_mumps_analyse')
+  !> Begin, and choose the order of elimination.
+  subroutine mumps_analyse(solver, order, start, row, ordering, megabytes, operations) bind(c, name='epcont_mumps_analyse')
     type(c_ptr), intent(inout) :: solver
     integer(c_int), value, intent(in) :: order
     integer(c_int), intent(in) :: start(order + 1), row(*)   !! lower triangle by columns
     integer(c_int), value, intent(in) :: ordering            !! ICNTL(7)
-    integer(c_int), intent(out) :: megabytes
+    integer(c_int), intent(out) :: megabytes                 !! that factoring will take; 0: the analysis failed
+    real(c_double), intent(out) :: operations                !! of factoring
     type(dmumps_struc), pointer :: id
     integer :: j
 
     call mumps_release(solver)
     megabytes = 0
+    operations = 0.0_c_double
     allocate (id)
     id%comm = 0
     id%par = 1
@@ -78,6 +80,7 @@ contains
       call mumps_release(solver)
     else
       megabytes = max(id%infog(17), 1)
+      operations = id%rinfog(1)
     end if
   end subroutine mumps_analyse
 

@@ -13,14 +13,16 @@ contains
     available = .false.
   end function mumps_available
 
-  subroutine mumps_analyse(solver, order, start, row, ordering, megabytes) bind(c, name='epcont_mumps_analyse')
+  subroutine mumps_analyse(solver, order, start, row, ordering, megabytes, operations) bind(c, name='epcont_mumps_analyse')
     type(c_ptr), intent(inout) :: solver
     integer(c_int), value, intent(in) :: order
     integer(c_int), intent(in) :: start(order + 1), row(*)
     integer(c_int), value, intent(in) :: ordering
     integer(c_int), intent(out) :: megabytes
+    real(c_double), intent(out) :: operations
 
     megabytes = 0
+    operations = 0.0_c_double
   end subroutine mumps_analyse
 
   subroutine mumps_factor(solver, entries, a, smallest_ratio, info) bind(c, name='epcont_mumps_factor')

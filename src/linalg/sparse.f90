@@ -5,10 +5,9 @@
 !> `factor`. Where the program is built without MUMPS (`sparse_available`), `analyse` fails.
 module epcont_linalg_sparse
   use, intrinsic :: iso_c_binding, only: c_associated, c_bool, c_double, c_int, c_loc, c_null_ptr, c_ptr
-  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_sorting, only: sorted_order
   use epcont_linalg_lapack, only: dlacn2
+  use epcont_linalg_sparse_pattern, only: find_pattern
   implicit none
   private
   public :: sparse_matrix, sparse_available
@@ -40,11 +39,12 @@ module epcont_linalg_sparse
     final :: finalize
   end type sparse_matrix
 
-  !> ICNTL(7) of MUMPS. Of AMD, AMF, SCOTCH and PORD (Debian's has no METIS) AMF leads for one factorization at all sizes;
-  !! SCOTCH takes four times as long to order and leaves less to do on graded meshes: 270 for 330 ms of AMF at 134 000 unknowns,
-  !! 610 for 970 at 262 000; nothing below 100 000, nor on regular grids.
-  integer, parameter :: amf = 2, scotch = 3
-  integer, parameter :: scotch_from = 100000
+  !> ICNTL(7) of MUMPS. Of AMD, AMF, SCOTCH and PORD (Debian's has no METIS) AMF orders fastest and leaves less to do than AMD
+  !! at all sizes. PORD takes four times as long to order; on graded meshes from 100 000 unknowns on it saves a quarter of each
+  !! factorization and half of the inverse, on regular grids it loses as much. SCOTCH is level with PORD, but its threads do
+  !! not give the same order on every run.
+  integer, parameter :: amf = 2, pord = 4
+  integer, parameter :: pord_from = 100000
   !> A ratio below this is worth two solves to find out where.
   real(wp), parameter :: suspect_ratio = 1.0e-10_wp
   !> Relative to the diagonal: well above the rounding of large systems, well below the ratios of sound ones.
@@ -57,13 +57,14 @@ module epcont_linalg_sparse
       logical(c_bool) :: available
     end function mumps_available
 
-    pure subroutine mumps_analyse(solver, order, start, row, ordering, megabytes) bind(c, name='epcont_mumps_analyse')
-      import :: c_int, c_ptr
+    pure subroutine mumps_analyse(solver, order, start, row, ordering, megabytes, operations) bind(c, name='epcont_mumps_analyse')
+      import :: c_double, c_int, c_ptr
       type(c_ptr), intent(inout) :: solver
       integer(c_int), value, intent(in) :: order
       integer(c_int), intent(in) :: start(order + 1), row(*)
       integer(c_int), value, intent(in) :: ordering
       integer(c_int), intent(out) :: megabytes
+      real(c_double), intent(out) :: operations
     end subroutine mumps_analyse
 
     pure subroutine mumps_factor(solver, entries, a, smallest_ratio, info) bind(c, name='epcont_mumps_factor')
@@ -108,70 +109,12 @@ contains
     class(sparse_matrix), intent(inout) :: self
     integer, intent(in) :: order
     integer, intent(in) :: numbers(:, :)   !! equations of each element; 0 and less: none [any, elements]
-    type(incidence) :: around
-    integer, allocatable :: seen(:), column(:)
-    integer :: e, filled, i, j, k
 
     call self%release()
     self%order = order
-    around = new_incidence(packed(numbers), order)
-    allocate (self%start(order + 1), seen(order), source=0)
-    allocate (column(order), self%row(0))
-    filled = 0
-    do j = 1, order
-      self%start(j) = filled + 1
-      k = 1
-      column(1) = j
-      seen(j) = j
-      do e = around%start(j), around%start(j + 1) - 1
-        do i = 1, size(numbers, 1)
-          associate (number => numbers(i, around%group(e)))
-            if (number <= j) cycle
-            if (seen(number) == j) cycle
-            seen(number) = j
-            k = k + 1
-            column(k) = number
-          end associate
-        end do
-      end do
-      call reserve(self%row, filled + k)
-      self%row(filled + 1:filled + k) = column(sorted_order(column(:k)))
-      filled = filled + k
-    end do
-    self%start(order + 1) = filled + 1
-    self%row = self%row(:filled)
-    allocate (self%entries(filled), source=0.0_wp)
+    call find_pattern(order, numbers, self%start, self%row)
+    allocate (self%entries(size(self%row)), source=0.0_wp)
   end subroutine set_pattern
-
-  !> Equations of each element that are in the matrix, put first; then zeros.
-  pure function packed(numbers) result(member)
-    integer, intent(in) :: numbers(:, :)
-    integer, allocatable :: member(:, :)
-    integer :: e, i, k
-
-    allocate (member(size(numbers, 1), size(numbers, 2)), source=0)
-    do e = 1, size(numbers, 2)
-      k = 0
-      do i = 1, size(numbers, 1)
-        if (numbers(i, e) <= 0) cycle
-        if (any(member(:k, e) == numbers(i, e))) cycle
-        k = k + 1
-        member(k, e) = numbers(i, e)
-      end do
-    end do
-  end function packed
-
-  !> Make room for `length` elements, and for as many again.
-  pure subroutine reserve(list, length)
-    integer, allocatable, intent(inout) :: list(:)
-    integer, intent(in) :: length
-    integer, allocatable :: longer(:)
-
-    if (size(list) >= length) return
-    allocate (longer(2*length))
-    longer(:size(list)) = list
-    call move_alloc(longer, list)
-  end subroutine reserve
 
   !> Set all entries to zero.
   pure subroutine clear(self)
@@ -227,15 +170,27 @@ contains
   pure subroutine analyse(self, reused)
     class(sparse_matrix), intent(inout), target :: self
     logical, intent(in) :: reused    !! there will be several factorizations
-    integer :: megabytes
+    type(c_ptr) :: other
+    real(wp) :: operations, fewer
+    integer :: megabytes, other_megabytes
 
     self%factored = .false.
     self%bytes = 0
     if (self%order == 0) return
     if (.not. self%at_home()) self%solver = c_null_ptr
     self%home = c_loc(self%order)
-    call mumps_analyse(self%solver, self%order, self%start, self%row, &
-                       merge(scotch, amf, reused .and. self%order >= scotch_from), megabytes)
+    call mumps_analyse(self%solver, self%order, self%start, self%row, amf, megabytes, operations)
+    if (reused .and. self%order >= pord_from .and. megabytes > 0) then
+      other = c_null_ptr
+      call mumps_analyse(other, self%order, self%start, self%row, pord, other_megabytes, fewer)
+      if (other_megabytes > 0 .and. fewer < operations) then
+        call mumps_release(self%solver)
+        self%solver = other
+        megabytes = other_megabytes
+      else
+        call mumps_release(other)
+      end if
+    end if
     self%bytes = 1000000_i8*megabytes
   end subroutine analyse
 
