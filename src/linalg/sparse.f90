@@ -39,10 +39,10 @@ module epcont_linalg_sparse
     final :: finalize
   end type sparse_matrix
 
-  !> ICNTL(7) of MUMPS. Of AMD, AMF, SCOTCH and PORD (Debian's has no METIS) AMF orders fastest and leaves less to do than AMD
-  !! at all sizes. PORD takes four times as long to order; on graded meshes from 100 000 unknowns on it saves a quarter of each
-  !! factorization and half of the inverse, on regular grids it loses as much. SCOTCH is level with PORD, but its threads do
-  !! not give the same order on every run.
+  !> ICNTL(7) of MUMPS. Of AMD, AMF, SCOTCH and PORD (Debian's has no METIS) AMF orders fastest and leaves no more to do than AMD.
+  !! PORD takes four times as long to order; on graded meshes from 100 000 unknowns on it saves a quarter of each factorization
+  !! and half of the inverse, on a regular grid it lost a tenth. SCOTCH is level with PORD, but its smallest pivots, and so
+  !! its order, were seen to change from run to run.
   integer, parameter :: amf = 2, pord = 4
   integer, parameter :: pord_from = 100000
   !> A ratio below this is worth two solves to find out where.
