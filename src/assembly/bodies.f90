@@ -31,7 +31,7 @@ contains
   end function new_bodies
 
   !> Assemble and factor one body, afresh if it was before. `sound` is false where the factor failed.
-  pure subroutine factor_body(self, model, operator, matrix, numbering, b, sound)
+  subroutine factor_body(self, model, operator, matrix, numbering, b, sound)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
