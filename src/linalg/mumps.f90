@@ -21,6 +21,10 @@ module epcont_linalg_mumps
 
   !> Values of JOB.
   integer, parameter :: job_begin = -1, job_end = -2, job_analyse = 1, job_factor = 2, job_solve = 3
+  !> ICNTL(7). Of AMD, AMF, QAMD, SCOTCH and PORD (Debian's has no METIS) AMF orders fastest and leaves least to do up to 100 000
+  !! equations. Beyond, PORD saves a quarter of each factorization but orders for as long as four; SCOTCH is level with it, but its
+  !! order was seen to change from run to run.
+  integer, parameter :: amf = 2
   !> Right-hand sides that ICNTL(30) takes at a time; 64 are up to a fifth slower.
   integer, parameter :: block_size = 256
   !> INFOG(1): the work space was too small.
@@ -37,19 +41,18 @@ contains
   end function mumps_available
 
   !> Begin, and choose the order of elimination.
-  subroutine mumps_analyse(solver, order, start, row, ordering, megabytes, operations) bind(c, name='epcont_mumps_analyse')
+  subroutine mumps_analyse(solver, order, start, row, blocks, first, megabytes) bind(c, name='epcont_mumps_analyse')
     type(c_ptr), intent(inout) :: solver
     integer(c_int), value, intent(in) :: order
     integer(c_int), intent(in) :: start(order + 1), row(*)   !! lower triangle by columns
-    integer(c_int), value, intent(in) :: ordering            !! ICNTL(7)
+    integer(c_int), value, intent(in) :: blocks
+    integer(c_int), intent(in) :: first(blocks + 1)          !! equation of each block: its equations have one pattern
     integer(c_int), intent(out) :: megabytes                 !! that factoring will take; 0: the analysis failed
-    real(c_double), intent(out) :: operations                !! of factoring
     type(dmumps_struc), pointer :: id
-    integer :: j
+    integer :: j, status
 
     call mumps_release(solver)
     megabytes = 0
-    operations = 0.0_c_double
     allocate (id)
     id%comm = 0
     id%par = 1
@@ -63,24 +66,28 @@ contains
     solver = c_loc(id)
     id%icntl(1:3) = -1   ! no messages
     id%icntl(4) = 0
-    id%icntl(7) = ordering
+    id%icntl(7) = amf
     id%icntl(8) = 1      ! scaled to a diagonal of ones, so that a pivot is its ratio to its diagonal entry
+    id%icntl(15) = 1     ! analysis of blocks
     id%icntl(16) = 1     ! one thread
     id%icntl(28) = 1     ! sequential analysis
     id%n = order
     id%nnz = start(order + 1) - 1
-    allocate (id%irn(id%nnz), id%jcn(id%nnz))
-    id%irn = row(:id%nnz)
-    do j = 1, order
-      id%jcn(start(j):start(j + 1) - 1) = j
-    end do
-    id%job = job_analyse
-    call dmumps(id)
-    if (id%infog(1) < 0) then
+    id%nblk = blocks
+    allocate (id%irn(id%nnz), id%jcn(id%nnz), id%blkptr(blocks + 1), stat=status)
+    if (status == 0) then
+      id%irn = row(:id%nnz)
+      do j = 1, order
+        id%jcn(start(j):start(j + 1) - 1) = j
+      end do
+      id%blkptr = first
+      id%job = job_analyse
+      call dmumps(id)
+    end if
+    if (status /= 0 .or. id%infog(1) < 0) then
       call mumps_release(solver)
     else
       megabytes = max(id%infog(17), 1)
-      operations = id%rinfog(1)
     end if
   end subroutine mumps_analyse
 
@@ -129,28 +136,26 @@ contains
     nullify (id%rhs)
   end subroutine mumps_solve
 
-  !> Entries of the inverse: its last `count` rows and columns, lower triangle packed by columns.
-  subroutine mumps_inverse_entries(solver, order, count, packed) bind(c, name='epcont_mumps_inverse_entries')
+  !> Entries of the inverse in some rows and columns, lower triangle packed by columns.
+  subroutine mumps_inverse_entries(solver, order, count, equation, packed) bind(c, name='epcont_mumps_inverse_entries')
     type(c_ptr), value, intent(in) :: solver
     integer(c_int), value, intent(in) :: order, count
+    integer(c_int), intent(in) :: equation(count)   !! ascending
     real(c_double), target, intent(out) :: packed(count*(count + 1)/2)
     type(dmumps_struc), pointer :: id
-    integer :: first, i, j, k
+    integer :: j, k, last
 
     call c_f_pointer(solver, id)
-    first = order - count
-    k = size(packed)
-    allocate (id%irhs_ptr(order + 1), id%irhs_sparse(k))
-    id%irhs_ptr(:first) = 1
+    allocate (id%irhs_ptr(order + 1), id%irhs_sparse(size(packed)))
+    last = 0
     k = 1
-    do j = first + 1, order
-      id%irhs_ptr(j) = k
-      do i = j, order
-        id%irhs_sparse(k) = i
-        k = k + 1
-      end do
+    do j = 1, count
+      id%irhs_ptr(last + 1:equation(j)) = k
+      last = equation(j)
+      id%irhs_sparse(k:k + count - j) = equation(j:)
+      k = k + count - j + 1
     end do
-    id%irhs_ptr(order + 1) = k
+    id%irhs_ptr(last + 1:) = k
     packed = 0.0_c_double
     id%rhs_sparse => packed
     id%nz_rhs = size(packed)
@@ -171,7 +176,9 @@ contains
 
     if (.not. c_associated(solver)) return
     call c_f_pointer(solver, id)
-    if (associated(id%irn)) deallocate (id%irn, id%jcn)
+    if (associated(id%irn)) deallocate (id%irn)
+    if (associated(id%jcn)) deallocate (id%jcn)
+    if (associated(id%blkptr)) deallocate (id%blkptr)
     id%job = job_end
     call dmumps(id)
     deallocate (id)

@@ -13,16 +13,15 @@ contains
     available = .false.
   end function mumps_available
 
-  subroutine mumps_analyse(solver, order, start, row, ordering, megabytes, operations) bind(c, name='epcont_mumps_analyse')
+  subroutine mumps_analyse(solver, order, start, row, blocks, first, megabytes) bind(c, name='epcont_mumps_analyse')
     type(c_ptr), intent(inout) :: solver
     integer(c_int), value, intent(in) :: order
     integer(c_int), intent(in) :: start(order + 1), row(*)
-    integer(c_int), value, intent(in) :: ordering
+    integer(c_int), value, intent(in) :: blocks
+    integer(c_int), intent(in) :: first(blocks + 1)
     integer(c_int), intent(out) :: megabytes
-    real(c_double), intent(out) :: operations
 
     megabytes = 0
-    operations = 0.0_c_double
   end subroutine mumps_analyse
 
   subroutine mumps_factor(solver, entries, a, smallest_ratio, info) bind(c, name='epcont_mumps_factor')
@@ -42,9 +41,10 @@ contains
     real(c_double), intent(inout) :: x(order*columns)
   end subroutine mumps_solve
 
-  subroutine mumps_inverse_entries(solver, order, count, packed) bind(c, name='epcont_mumps_inverse_entries')
+  subroutine mumps_inverse_entries(solver, order, count, equation, packed) bind(c, name='epcont_mumps_inverse_entries')
     type(c_ptr), value, intent(in) :: solver
     integer(c_int), value, intent(in) :: order, count
+    integer(c_int), intent(in) :: equation(count)
     real(c_double), intent(out) :: packed(count*(count + 1)/2)
 
     packed = 0.0_c_double
