@@ -194,7 +194,7 @@ contains
       begun(7) = now()
       least = min(least, begun(2:) - begun(:6))
     end do
-    print '(i10, i8, 2x, a6, 6f9.1, f7.0, es12.2)', body%order, body%contact, merge('SPARSE', 'BAND  ', sparse), least, 1.0e-6_wp*bytes, &
-      ratio
+    print '(i10, i8, 2x, a6, 6f9.1, f7.0, es12.2)', body%order, body%contact, merge('SPARSE', 'BAND  ', sparse), least, &
+      1.0e-6_wp*bytes, ratio
   end subroutine time_matrix
 end program bench_sparse
