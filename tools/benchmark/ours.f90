@@ -3,7 +3,7 @@
 !> Prints the number of equations; seconds of processor of numbering, factor, F, gaps that the loads open (N K^-1 f), contact,
 !> displacements; of all these; of seven times more from the factor on; of assembly (it clears the storage of the factor, too)
 !> and the estimate of the condition, which are in no sum. All bodies, elastic. Medians of as many runs as fit into a tenth of a second, the first of several left out.
-!> SYSTEM gets what tools/benchmark/bare.c reads, in the order of the nodes.
+!> SYSTEM gets what tools/benchmark/bare reads, in the order of the nodes.
 program bench_ours
   use epcont_assembly_bodies, only: factored_bodies, new_bodies
   use epcont_assembly_stiffness, only: assemble_body

@@ -119,11 +119,12 @@ def solve_part(rows):
     return "\n\n".join([
         "## Solve part",
         "Two cylinders, elastic, milliseconds of processor: numbering, factor, F, contact and displacements by epcont, and by the best libraries "
-        "bare (`bare.c`: CHOLMOD, MUMPS, OpenBLAS; the fastest of 12 ways at each size), that get the matrix ready made and are told which pairs touch. "
+        "bare (`bare/`: LAPACK's band, CHOLMOD, MUMPS, all with OpenBLAS; the fastest of 14 ways at each size), that get the matrix ready made and are "
+        "told which pairs touch. "
         "Seven more: factor to displacements with the same ordering. Ratio below 1: epcont is faster.",
         table(["equations", "epcont", "bare", "ratio", "by", "seven more", "bare", "ratio", "by"], ratios),
-        "By stages. The libraries have no loads inside the bodies to open gaps with: epcont solves for them all the same. Assembly, which "
-        "clears the storage of the factor too, and the estimate of the condition are in no sum.",
+        "By stages. Load gaps: the loads here act on SUPORT freedoms and open none; the libraries leave that solution out, epcont does not. Its "
+        "assembly, which clears the storage of the factor too, and its estimate of the condition are in no sum.",
         table(["equations", "", *STAGES.values(), "assembly", "condition"], stages)])
 
 

@@ -1,4 +1,4 @@
-"""Part 4: numbering to displacements, by epcont's own stages and by the best libraries bare (bare.c), on the same systems.
+"""Part 4: numbering to displacements, by epcont's own stages and by the best libraries bare (bare/), on the same systems.
 
 Part 3 takes from here how time and memory grow, and what the smallest deck costs.
 """
@@ -17,6 +17,8 @@ OURS = ("equations", "ordering", "factor", "flexibility", "load_gap", "contact",
 BARE = ("ordering", "factor", "flexibility", "contact", "displacements", "all", "more")
 #: Methods so many times slower than the fastest take no further turns.
 NEAR = 1.3
+#: Runs of fewer seconds take more turns: the processor's pace changes between them.
+SHORT = 0.01
 #: Displacements of the libraries that differ by more than this part of the largest are those of another system.
 SAME = 1e-8
 
@@ -64,7 +66,8 @@ def one(release, place, nodes, repeats, say):
     ours(release, deck, system)
     found = bare(release, system)
     chosen = [name for name in found if name in near(found, "all") | near(found, "more")]
-    turns = [(ours(release, deck), bare(release, system, chosen)) for _ in range(repeats)]
+    many = repeats if min(seconds["all"] for seconds in found.values()) > SHORT else 3 * repeats
+    turns = [(ours(release, deck), bare(release, system, chosen)) for _ in range(many)]
     mine, theirs = middle([turn[0] for turn in turns]), {name: middle([turn[1][name] for turn in turns]) for name in chosen}
     row = {"equations": int(mine["equations"]), "ours": mine}
     for what in ("all", "more"):
