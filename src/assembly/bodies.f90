@@ -88,7 +88,7 @@ contains
             if (number < 0) border(-number, 1) = border(-number, 1) + total
           end do
         end do
-        call self%body(b)%solve(band, border)
+        if (any(band /= 0.0_wp) .or. any(border /= 0.0_wp)) call self%body(b)%solve(band, border)
         do i = 1, size(body%node)
           node = body%node(i)
           do c = 1, 2

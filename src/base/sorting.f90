@@ -9,6 +9,7 @@ module epcont_base_sorting
     private
     integer, allocatable :: key(:)       !! the ids, ascending [n]
     integer, allocatable :: position(:)  !! where each stood in the original list [n]
+    logical :: unbroken = .false.        !! each id is one more than that before: it need not be looked for
   contains
     procedure :: find
     procedure :: within
@@ -63,6 +64,9 @@ contains
 
     index%position = sorted_order(ids)
     index%key = ids(index%position)
+    associate (n => size(ids))
+      if (n > 0) index%unbroken = all(index%key(2:) - index%key(:n - 1) == 1)
+    end associate
   end function new_id_index
 
   !> Position of `id` in the original list; 0 where it is absent.
@@ -72,8 +76,12 @@ contains
     integer :: position
     integer :: at
 
-    at = first_not_below(self%key, id)
     position = 0
+    if (self%unbroken) then
+      if (id >= self%key(1) .and. id <= self%key(size(self%key))) position = self%position(id - self%key(1) + 1)
+      return
+    end if
+    at = first_not_below(self%key, id)
     if (at > size(self%key)) return
     if (self%key(at) == id) position = self%position(at)
   end function find

@@ -263,14 +263,8 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to
 
-    do while (from <= to)
-      if (text(to:to) /= ' ') exit
-      to = to - 1
-    end do
-    do while (from < to)
-      if (text(from:from) /= ' ') exit
-      from = from + 1
-    end do
+    to = from - 1 + len_trim(text(from:to))
+    if (from < to) from = from - 1 + verify(text(from:to), ' ')
   end subroutine trim_blanks
 
   !> Room for `slots` slots.

@@ -92,7 +92,10 @@ contains
 
     n = model%corners(e)
     x = model%x(:, model%connectivity(:n, e))
-    longest = maxval(sum((x - cshift(x, 1, dim=2))**2, dim=1))
+    longest = 0.0_wp
+    do k = 1, n
+      longest = max(longest, sum((x(:, k) - x(:, mod(k, n) + 1))**2))
+    end do
     area = polygon_area(x)
     if (n == 3 .and. abs(area) <= sliver*longest) then
       call faults%add_error(deck%place(card, i, 4), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &
