@@ -127,7 +127,7 @@ contains
     comma = 0
     do at = lines%first(line), lines%last(line)
       code = iachar(lines%text(at:at))
-      if (code > iachar(',') .and. code < 127) cycle
+      if (code == 32 .or. (code > iachar(',') .and. code < 127)) cycle   ! as most are
       if (code < 32 .or. code > 126) then
         call add_character_fault(lines%columns(line, at, at), code, faults)
         sound = .false.
