@@ -123,8 +123,8 @@ def solve_part(rows):
         "told which pairs touch. "
         "Seven more: factor to displacements with the same ordering. Ratio below 1: epcont is faster.",
         table(["equations", "epcont", "bare", "ratio", "by", "seven more", "bare", "ratio", "by"], ratios),
-        "By stages. Load gaps: the loads here act on SUPORT freedoms and open none; the libraries leave that solution out, epcont does not. Its "
-        "assembly, which clears the storage of the factor too, and its estimate of the condition are in no sum.",
+        "By stages. Load gaps: the loads here act on SUPORT freedoms and open none; the libraries are not asked for them. epcont's assembly, "
+        "which clears the storage of the factor too, and its estimate of the condition are in no sum.",
         table(["equations", "", *STAGES.values(), "assembly", "condition"], stages)])
 
 
