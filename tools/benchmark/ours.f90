@@ -115,11 +115,13 @@ contains
   subroutine solve_once(spent)
     real(wp), intent(inout) :: spent(times)
     logical, allocatable :: start(:)   !! no guess
+    logical :: all_changed(model%elements)
     integer :: b
 
+    all_changed = .true.
     begun = now()
     do b = 1, model%bodies
-      call assemble_body(model, operator, law%matrix, numbering%equation, numbering%body(b), bodies%body(b), bodies%settlement)
+      call assemble_body(model, operator, law%matrix, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
     end do
     spent(assembly) = lap()
     do b = 1, model%bodies

@@ -176,7 +176,7 @@ contains
     type(sparse_matrix) :: matrix
     real(wp) :: least(6), ratio, begun(7)
     real(wp), allocatable :: inverse(:, :), x(:, :)
-    integer :: at, e, run
+    integer :: at, e, from, run
 
     least = huge(1.0_wp)
     allocate (x(body%order, 1), source=1.0_wp)
@@ -186,7 +186,8 @@ contains
       begun(2) = now()
       call matrix%analyse(reused)
       begun(3) = now()
-      call matrix%clear()
+      from = 1
+      call matrix%clear(from)
       do e = 1, size(body%numbers, 2)
         call matrix%add(body%stiffness(:, :, e), body%numbers(:, e))
       end do
