@@ -25,48 +25,71 @@ module epcont_assembly_stiffness
     integer :: weakest = 0                    !! its equation
   contains
     procedure :: factor
+    procedure :: is_sound
     procedure :: solve
   end type body_stiffness
 
 contains
 
-  !> Assemble the elements of a body; `matrix` is that of the material at each point [4, 4, points]. `settlement`
-  !! receives the forces that prescribed displacements exert on the free freedoms: minus K_fp u_p [force] [2, nodes].
-  subroutine assemble_body(model, operator, matrix, equation, body, stiffness, settlement)
+  !> Assemble the elements of a body; `matrix` is that of the material at each point [4, 4, points]. Where only some
+  !! elements have changed since it was factored, nothing is touched that stands before their first equation.
+  subroutine assemble_body(model, operator, matrix, changed, equation, body, stiffness)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
     real(wp), intent(in) :: matrix(:, :, :)
+    logical, intent(in) :: changed(:)        !! [elements]
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
     type(body_stiffness), intent(inout) :: stiffness
-    real(wp), intent(inout) :: settlement(:, :)
-    real(wp) :: k(2*most_nodes, 2*most_nodes), forced(2*most_nodes)
-    integer :: e, i, n, number(2*most_nodes)
+    real(wp) :: k(2*most_nodes, 2*most_nodes)
+    integer :: e, from, i, n, number(2*most_nodes)
 
-    call begin(model, equation, body, stiffness%matrix)
+    from = 1
+    if (allocated(stiffness%matrix)) then
+      if (stiffness%is_sound() .and. body%border == 0) from = first_change(model, changed, equation, body)
+      call stiffness%matrix%clear(from)
+    else
+      call begin(model, equation, body, stiffness%matrix)
+    end if
     if (allocated(stiffness%coupling)) deallocate (stiffness%coupling, stiffness%schur)
     if (stiffness%matrix%lacks_memory) return
     allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
     do e = 1, size(body%element)
       associate (element => body%element(e))
-        n = model%order(element)
+        n = 2*model%order(element)
+        do i = 1, n/2
+          number(2*i - 1:2*i) = equation(:, model%connectivity(i, element))
+        end do
+        if (maxval(number(:n)) < from .and. body%border == 0) cycle
         call operator%element_stiffness(model, element, matrix, k)
-        associate (node => model%connectivity(:n, element))
-          number(:2*n) = reshape(equation(:, node), [2*n])
-          call stiffness%matrix%add(k(:2*n, :2*n), number(:2*n))
-          if (body%border > 0) call add_to_border(k(:2*n, :2*n), number(:2*n), stiffness)
-          do i = 1, n
-            forced(2*i - 1) = model%prescribed(1, model%leader(1, node(i)))
-            forced(2*i) = model%prescribed(2, model%leader(2, node(i)))
-          end do
-          if (all(forced(:2*n) == 0.0_wp)) cycle
-          settlement(:, node) = settlement(:, node) - reshape(matmul(k(:2*n, :2*n), forced(:2*n)), [2, n])
-        end associate
+        call stiffness%matrix%add(k(:n, :n), number(:n))
+        if (body%border > 0) call add_to_border(k(:n, :n), number(:n), stiffness)
       end associate
     end do
   end subroutine assemble_body
 
-  !> A matrix of zeros, of the kind that the plan has chosen. What is known of it lasts from one iteration to the next.
+  !> First equation of the elements that have changed; that behind the last where none has.
+  pure integer function first_change(model, changed, equation, body) result(first)
+    type(model_type), intent(in) :: model
+    logical, intent(in) :: changed(:)
+    integer, intent(in) :: equation(:, :)
+    type(body_numbering), intent(in) :: body
+    integer :: c, e, i
+
+    first = body%equations + 1
+    do e = 1, size(body%element)
+      if (.not. changed(body%element(e))) cycle
+      do i = 1, model%order(body%element(e))
+        do c = 1, 2
+          associate (number => equation(c, model%connectivity(i, body%element(e))))
+            if (number > 0) first = min(first, number)
+          end associate
+        end do
+      end do
+    end do
+  end function first_change
+
+  !> A matrix of zeros, of the kind that the plan has chosen.
   subroutine begin(model, equation, body, matrix)
     type(model_type), intent(in) :: model
     integer, intent(in) :: equation(:, :)
@@ -75,10 +98,6 @@ contains
     type(panel_matrix), allocatable :: panels
     type(sparse_matrix), allocatable :: sparse
 
-    if (allocated(matrix)) then
-      call matrix%clear()
-      return
-    end if
     if (body%sparse) then
       allocate (sparse)
       call sparse%begin(body%equations, element_numbers(model, equation, body))
@@ -142,6 +161,13 @@ contains
     self%smallest_ratio = 0.0_wp
     self%weakest = -info
   end subroutine factor
+
+  !> Is the factor one that can be solved with?
+  pure logical function is_sound(self)
+    class(body_stiffness), intent(in) :: self
+
+    is_sound = self%smallest_ratio > epsilon(1.0_wp)
+  end function is_sound
 
   !> Solve for one right-hand side, in place.
   pure subroutine solve(self, inner, border)

@@ -17,13 +17,15 @@ module epcont_linalg_assembled
   end type assembled_matrix
 
   abstract interface
-    !> Set all entries to zero.
-    pure subroutine clear_entries(self)
+    !> Make ready to be filled anew where only the equations from `from` on have changed: entries of the lower triangle in
+    !! the columns from there on are zero, those before remain as they are, even factored.
+    pure subroutine clear_entries(self, from)
       import :: assembled_matrix
       class(assembled_matrix), intent(inout) :: self
+      integer, intent(inout) :: from         !! on return the first column to be filled, which may stand earlier
     end subroutine clear_entries
 
-    !> Add an element matrix; rows and columns of number 0 and less are left out.
+    !> Add an element matrix; rows and columns of number 0 and less are left out, and columns that have not been cleared.
     pure subroutine add_element(self, k, numbers)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(inout) :: self

@@ -117,10 +117,12 @@ contains
     self%lacks_memory = megabytes == 0
   end subroutine begin
 
-  !> Set all entries to zero.
-  pure subroutine clear(self)
+  !> All of it: MUMPS factors the whole.
+  pure subroutine clear(self, from)
     class(sparse_matrix), intent(inout) :: self
+    integer, intent(inout) :: from
 
+    from = 1
     self%entries = 0.0_wp
   end subroutine clear
 

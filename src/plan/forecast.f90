@@ -1,7 +1,7 @@
 !> Memory and work that a scene will take, from the numbering alone.
 module epcont_plan_forecast
   use epcont_base_kinds, only: i8, wp
-  use epcont_linalg_panel, only: panel_entries
+  use epcont_linalg_panel_layout, only: panel_entries
   use epcont_model_model, only: model_type
   use epcont_plan_contact_plan, only: contact_plan
   use epcont_plan_numbering, only: numbering_type

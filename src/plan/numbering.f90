@@ -3,7 +3,7 @@ module epcont_plan_numbering
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_panel, only: gram_operations, panel_operations
+  use epcont_linalg_panel_layout, only: gram_operations, panel_operations
   use epcont_linalg_sparse, only: sparse_available
   use epcont_model_controls, only: solver_auto, solver_sparse
   use epcont_model_model, only: model_type
@@ -86,7 +86,7 @@ contains
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
     type(body_numbering) :: plain
-    integer, allocatable :: order(:)
+    integer, allocatable :: numbers(:, :), order(:)
 
     if (model%controls%solver == solver_sparse .and. size(body%element) > 0) then
       call number_body(model, at_contact, nodes, equation, body)
@@ -97,6 +97,8 @@ contains
     order = sweep(model, around, nodes(:1), nodes)
     order = sweep(model, around, order(size(order):), nodes)
     order = sweep(model, around, order(size(order):), nodes)
+    ! The contact comes late in the reversed order, and with it what yields: what stands before is factored once.
+    if (mean_place(order, at_contact) > 0.5_wp) order = sweep(model, around, order(size(order):), nodes)
     plain%element = body%element
     call number_body(model, at_contact, order(size(order):1:-1), equation, plain)
     plain%contact_last = .false.
@@ -107,14 +109,24 @@ contains
       return
     end if
     plain%operations = plain%operations + gram_operations(plain%reach, begins(equation, pack(plain%node, at_contact(plain%node))))
+    numbers = equation(:, nodes)
     ! The roots stand in the order of the sweep from the far end, which runs along the contact.
     order = sweep(model, around, pack(order, at_contact(order)), nodes)
     call number_body(model, at_contact, order(size(order):1:-1), equation, body)
     body%operations = panel_operations(body%reach) + real(body%contact_equations, wp)**3
     if (body%operations <= plain%operations) return
-    call number_body(model, at_contact, plain%node, equation, plain)
+    equation(:, nodes) = numbers
     body = plain
   end subroutine choose_numbers
+
+  !> Mean place of the marked nodes in an order, from 0 to 1; 0 where there is none.
+  pure real(wp) function mean_place(order, marked)
+    integer, intent(in) :: order(:)
+    logical, intent(in) :: marked(:)
+    integer :: i
+
+    mean_place = sum(pack([(real(i, wp), i=1, size(order))], marked(order)))/(max(1, count(marked(order)))*real(size(order), wp))
+  end function mean_place
 
   !> First equations of the nodes of pairs, ascending.
   pure function begins(equation, nodes)
@@ -193,8 +205,7 @@ contains
     integer, intent(in) :: order(:)                      !! of its nodes
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
-    integer :: c, e, i, node
-    integer :: lowest, highest
+    integer :: c, e, highest, i, node
 
     body%node = order
     body%border = 0
@@ -229,17 +240,20 @@ contains
     end do
     body%reach = [(e, e=1, body%equations)]
     do e = 1, size(body%element)
-      associate (numbers => equation(:, model%connectivity(:model%order(body%element(e)), body%element(e))))
-        highest = maxval(numbers)
-        lowest = minval(numbers, mask=numbers > 0)
-        if (highest <= 0) cycle
-        body%half_bandwidth = max(body%half_bandwidth, highest - lowest)
-        do i = 1, size(numbers, 2)
+      associate (node => model%connectivity(:, body%element(e)), n => model%order(body%element(e)))
+        highest = 0
+        do i = 1, n
+          highest = max(highest, equation(1, node(i)), equation(2, node(i)))
+        end do
+        do i = 1, n
           do c = 1, 2
-            if (numbers(c, i) > 0) body%reach(numbers(c, i)) = max(body%reach(numbers(c, i)), highest)
+            associate (number => equation(c, node(i)))
+              if (number > 0) body%reach(number) = max(body%reach(number), highest)
+            end associate
           end do
         end do
       end associate
     end do
+    if (body%equations > 0) body%half_bandwidth = maxval(body%reach - [(e, e=1, body%equations)])
   end subroutine number_body
 end module epcont_plan_numbering

@@ -180,7 +180,7 @@ contains
     if (loop%stiff .and. (method%keeps_stiffness .or. loop%elastic .and. loop%yielded == 0)) return
     loop%elastic = loop%yielded == 0
     do
-      call loop%scene%set_stiffness(model, numbering, loop%law%matrix, singular)
+      call loop%scene%set_stiffness(model, numbering, loop%law, singular)
       loop%stiff = .true.
       if (singular == 0 .or. loop%scene%bodies%lacks_memory()) return
       call method%stiffen(model, loop%material, loop%about%strain, loop%law, possible)
