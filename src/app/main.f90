@@ -4,6 +4,7 @@ program epcont
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use epcont_app_arguments, only: arguments_type, help_text, read_arguments
   use epcont_app_driver, only: run_deck
+  use epcont_base_large_pages, only: prepare_heap
   use epcont_base_error, only: error_type, status_usage, status_valid
   use epcont_base_version, only: program_name, program_version
   use epcont_deck_manual, only: manual
@@ -17,6 +18,7 @@ program epcont
   end interface
   integer :: status
 
+  call prepare_heap()
   call run(status)
   flush (output_unit)
   flush (error_unit)

@@ -31,7 +31,7 @@ contains
   end function new_bodies
 
   !> Assemble and factor one body, afresh if it was before. `sound` is false where the factor failed.
-  pure subroutine factor_body(self, model, operator, matrix, numbering, b, sound)
+  subroutine factor_body(self, model, operator, matrix, numbering, b, sound)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
@@ -88,7 +88,7 @@ contains
             if (number < 0) border(-number, 1) = border(-number, 1) + total
           end do
         end do
-        call self%body(b)%solve(band, border)
+        if (any(band /= 0.0_wp) .or. any(border /= 0.0_wp)) call self%body(b)%solve(band, border)
         do i = 1, size(body%node)
           node = body%node(i)
           do c = 1, 2

@@ -30,7 +30,7 @@ contains
 
   !> Assemble the elements of a body; `matrix` is that of the material at each point [4, 4, points]. `settlement`
   !! receives the forces that prescribed displacements exert on the free freedoms: minus K_fp u_p [force] [2, nodes].
-  pure subroutine assemble_body(model, operator, matrix, equation, body, stiffness, settlement)
+  subroutine assemble_body(model, operator, matrix, equation, body, stiffness, settlement)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
     real(wp), intent(in) :: matrix(:, :, :)

@@ -15,7 +15,7 @@ contains
 
     area = 0.0_wp
     do k = 2, size(x, 2) - 1
-      area = area + 0.5_wp*cross_product(x(:, k) - x(:, 1), x(:, k + 1) - x(:, 1))
+      area = area + 0.5_wp*cross_product(x(:2, k) - x(:2, 1), x(:2, k + 1) - x(:2, 1))
     end do
   end function polygon_area
 

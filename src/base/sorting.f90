@@ -7,8 +7,8 @@ module epcont_base_sorting
   !> Finds the position of an id in the list it was made from.
   type :: id_index
     private
-    integer, allocatable :: key(:)       !! the ids, ascending [n]
-    integer, allocatable :: position(:)  !! where each stood in the original list [n]
+    integer, allocatable :: key(:)       !! the ids, ascending, each once [n]
+    integer, allocatable :: position(:)  !! where each first stood in the original list [n]
   contains
     procedure :: find
     procedure :: within
@@ -60,8 +60,13 @@ contains
   pure function new_id_index(ids) result(index)
     integer, intent(in) :: ids(:)
     type(id_index) :: index
+    integer :: n
 
     index%position = sorted_order(ids)
+    index%key = ids(index%position)
+    n = size(ids)
+    if (n < 2) return
+    index%position = pack(index%position, [.true., index%key(2:) /= index%key(:n - 1)])
     index%key = ids(index%position)
   end function new_id_index
 
@@ -72,10 +77,14 @@ contains
     integer :: position
     integer :: at
 
-    at = first_not_below(self%key, id)
     position = 0
-    if (at > size(self%key)) return
-    if (self%key(at) == id) position = self%position(at)
+    associate (n => size(self%key))
+      if (n == 0) return
+      if (id < self%key(1) .or. id > self%key(n)) return
+      at = min(id - self%key(1) + 1, n)   ! its place if no id before it is left out, as is mostly so
+      if (self%key(at) /= id) at = first_not_below(self%key, id)
+      if (self%key(at) == id) position = self%position(at)
+    end associate
   end function find
 
   !> Positions of all ids from `first` to `last`, in ascending order of id.

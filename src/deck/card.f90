@@ -127,6 +127,7 @@ contains
     comma = 0
     do at = lines%first(line), lines%last(line)
       code = iachar(lines%text(at:at))
+      if (code == 32 .or. (code > iachar(',') .and. code < 127)) cycle   ! as most are
       if (code < 32 .or. code > 126) then
         call add_character_fault(lines%columns(line, at, at), code, faults)
         sound = .false.
@@ -263,14 +264,8 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to
 
-    do while (from <= to)
-      if (text(to:to) /= ' ') exit
-      to = to - 1
-    end do
-    do while (from < to)
-      if (text(from:from) /= ' ') exit
-      from = from + 1
-    end do
+    to = from - 1 + len_trim(text(from:to))
+    if (from < to) from = from - 1 + verify(text(from:to), ' ')
   end subroutine trim_blanks
 
   !> Room for `slots` slots.

@@ -6,8 +6,8 @@ module epcont_linalg_lapack
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: dgemm, dgemv, dsymv, dsyrk, dtrsm, daxpy, ddot
-  public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs, dlacn2
+  public :: dgemm, dgemv, dsymv, dsyrk, dtrsm, dtrsv, daxpy, ddot
+  public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs
   public :: dgetrf, dgetrs, dgeqp3, dorgqr, dgesvd, dsyev
 
   ! BLAS
@@ -56,6 +56,15 @@ module epcont_linalg_lapack
       real(wp), intent(in) :: a(lda, *), x(*)
       real(wp), intent(inout) :: y(*)
     end subroutine dsymv
+
+    !> Solve op(A) x = b, A triangular
+    pure subroutine dtrsv(uplo, trans, diag, n, a, lda, x, incx)
+      import :: wp
+      character(len=1), intent(in) :: uplo, trans, diag
+      integer, intent(in) :: n, lda, incx
+      real(wp), intent(in) :: a(lda, *)
+      real(wp), intent(inout) :: x(*)
+    end subroutine dtrsv
 
     !> C = alpha A A' + beta C (or A'A), one triangle of C
     pure subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
@@ -137,14 +146,6 @@ module epcont_linalg_lapack
       real(wp), intent(inout) :: b(ldb, *)
       integer, intent(out) :: info
     end subroutine dpbtrs
-
-    !> One step of the estimate of the 1-norm of an operator, by reverse communication
-    pure subroutine dlacn2(n, v, x, isgn, est, kase, isave)
-      import :: wp
-      integer, intent(in) :: n
-      real(wp), intent(inout) :: v(*), x(*), est
-      integer, intent(inout) :: isgn(*), kase, isave(3)
-    end subroutine dlacn2
 
     !> Eigenvalues, ascending, and eigenvectors of a symmetric matrix
     pure subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)

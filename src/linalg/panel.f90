@@ -11,10 +11,11 @@
 !>         x x
 module epcont_linalg_panel
   use epcont_base_kinds, only: i8, wp
+  use epcont_base_large_pages, only: use_large_pages
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_dense, only: cholesky_inverse
   use epcont_linalg_factored, only: factored_matrix
-  use epcont_linalg_lapack, only: daxpy, ddot, dgemm, dpotrf, dsyrk, dtrsm
+  use epcont_linalg_lapack, only: dgemm, dgemv, dpotrf, dsyrk, dtrsm, dtrsv
   implicit none
   private
   public :: panel_matrix, panel_entries, panel_operations, gram_operations
@@ -43,7 +44,7 @@ contains
 
   !> Begin a matrix of zeros. `reach` is the last row that each column is coupled with [order]. (A function would hand
   !! back a copy of the whole matrix.)
-  pure subroutine begin(self, reach)
+  subroutine begin(self, reach)
     class(panel_matrix), intent(inout) :: self
     integer, intent(in) :: reach(:)
     integer :: p
@@ -57,6 +58,7 @@ contains
         self%start(p + 1) = self%start(p) + int(self%height(p), i8)*self%columns(p)
       end do
       allocate (self%entries(self%start(size(self%start))))   ! one more, behind the last
+      call use_large_pages(self%entries)
     end if
     self%entries = 0.0_wp
   end subroutine begin
@@ -253,30 +255,27 @@ contains
     end do
   end subroutine update
 
-  !> Solve with the factor, in place. (Column by column: one right-hand side reads the factor once each way, and no
-  !! blocking is faster than memory.)
+  !> Solve with the factor, in place. Each panel is taken from memory once each way, for all right-hand sides.
   pure subroutine solve(self, x)
     class(panel_matrix), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)  !! right-hand sides, then solutions [order, any]
-    integer :: j, k, p
-    integer(i8) :: at
+    integer :: k, p
 
-    do k = 1, size(x, 2)
-      do p = 1, size(self%last)
-        at = self%start(p)
-        do j = self%first(p), self%first(p + 1) - 1
-          x(j, k) = x(j, k)/self%entries(at)
-          call daxpy(self%last(p) - j, -x(j, k), self%entries(at + 1), 1, x(j + 1:, k), 1)
-          at = at + self%height(p) + 1
+    do p = 1, size(self%last)
+      associate (h => self%height(p), w => self%columns(p), s => self%start(p), f => self%first(p))
+        do k = 1, size(x, 2)
+          call dtrsv('L', 'N', 'N', w, self%entries(s), h, x(f:, k), 1)
+          if (h > w) call dgemv('N', h - w, w, -1.0_wp, self%entries(s + w), h, x(f:, k), 1, 1.0_wp, x(f + w:, k), 1)
         end do
-      end do
-      do p = size(self%last), 1, -1
-        at = self%start(p) + int(self%columns(p) - 1, i8)*(self%height(p) + 1)
-        do j = self%first(p + 1) - 1, self%first(p), -1
-          x(j, k) = (x(j, k) - ddot(self%last(p) - j, self%entries(at + 1), 1, x(j + 1:, k), 1))/self%entries(at)
-          at = at - self%height(p) - 1
+      end associate
+    end do
+    do p = size(self%last), 1, -1
+      associate (h => self%height(p), w => self%columns(p), s => self%start(p), f => self%first(p))
+        do k = 1, size(x, 2)
+          if (h > w) call dgemv('T', h - w, w, -1.0_wp, self%entries(s + w), h, x(f + w:, k), 1, 1.0_wp, x(f:, k), 1)
+          call dtrsv('L', 'T', 'N', w, self%entries(s), h, x(f:, k), 1)
         end do
-      end do
+      end associate
     end do
   end subroutine solve
 

@@ -87,28 +87,46 @@ contains
     integer, intent(in) :: card, i, e
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
-    real(wp) :: area, longest, x(2, model%corners(e))
+    real(wp) :: area, longest, x(2, 4)
     integer :: k, n
 
     n = model%corners(e)
-    x = model%x(:, model%connectivity(:n, e))
-    longest = maxval(sum((x - cshift(x, 1, dim=2))**2, dim=1))
-    area = polygon_area(x)
+    do k = 1, n
+      x(:, k) = model%x(:, model%connectivity(k, e))
+    end do
+    longest = 0.0_wp
+    do k = 1, n
+      longest = max(longest, sum((x(:, k) - x(:, mod(k, n) + 1))**2))
+    end do
+    area = polygon_area(x(:, :n))
     if (n == 3 .and. abs(area) <= sliver*longest) then
       call faults%add_error(deck%place(card, i, 4), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &
                             ' lie on one line', 'corners that span an area')
       return
     end if
-    if (area < 0.0_wp) call turn(model%connectivity(:model%order(e), e))
-    x = model%x(:, model%connectivity(:n, e))
-    do k = 1, n
-      if (cross_product(x(:, k) - x(:, mod(k + n - 2, n) + 1), x(:, mod(k, n) + 1) - x(:, k)) > sliver*longest) cycle
+    if (n == 4 .and. .not. bends_one_way(x, sign(1.0_wp, area), sliver*longest)) then
       call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &
                             ' cross over, bend inwards or lie on one line', 'four corners in turn, each bending the same way')
       return
-    end do
+    end if
+    if (area < 0.0_wp) call turn(model%connectivity(:model%order(e), e))
     if (model%order(e) == 6) call check_middles(deck, card, i, model%coordinates(e), faults)
   end subroutine check_shape
+
+  !> Does the boundary of a quadrilateral bend by more than `least` at each corner, to the left where `way` is 1, else
+  !! to the right?
+  pure logical function bends_one_way(x, way, least)
+    real(wp), intent(in) :: x(:, :)   !! [2, 4]
+    real(wp), intent(in) :: way       !! 1 or -1
+    real(wp), intent(in) :: least     !! [length**2]
+    integer :: k
+
+    bends_one_way = .false.
+    do k = 1, 4
+      if (way*cross_product(x(:, k) - x(:, mod(k + 2, 4) + 1), x(:, mod(k, 4) + 1) - x(:, k)) <= least) return
+    end do
+    bends_one_way = .true.
+  end function bends_one_way
 
   !> The ids of an element's corners.
   pure function corner_ids(model, e) result(ids)

@@ -59,7 +59,7 @@ contains
 
     position = 0
     if (.not. deck%card(card)%given(column, i)) return  ! the reader has said so
-    position = index%find(nint(deck%card(card)%value(column, i)))
+    position = index%find(int(deck%card(card)%value(column, i)))
     if (position > 0 .or. .not. deck%card(card)%sound(i)) return
     article = 'the id of a '
     if (wanted == 'element') article = 'the id of an '

@@ -79,27 +79,29 @@ contains
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
     type(body_numbering) :: plain
-    integer, allocatable :: order(:)
+    integer, allocatable :: from_contact(:), order(:)
+    logical :: touches
 
     order = sweep(model, around, nodes(:1), nodes)
     order = sweep(model, around, order(size(order):), nodes)
     order = sweep(model, around, order(size(order):), nodes)
     plain%element = body%element
+    touches = any(at_contact(nodes))
+    if (touches) then
+      ! The roots stand in the order of the sweep from the far end, which runs along the contact.
+      from_contact = sweep(model, around, pack(order, at_contact(order)), nodes)
+      call number_body(model, at_contact, from_contact(size(order):1:-1), equation, body)
+      body%operations = panel_operations(body%reach) + real(body%contact_equations, wp)**3
+    end if
     call number_body(model, at_contact, order(size(order):1:-1), equation, plain)
     plain%contact_last = .false.
-    plain%operations = panel_operations(plain%reach)
-    if (.not. any(at_contact(nodes))) then
+    plain%operations = panel_operations(plain%reach) &
+                       + gram_operations(plain%reach, begins(equation, pack(plain%node, at_contact(plain%node))))
+    if (touches .and. body%operations <= plain%operations) then
+      call number_body(model, at_contact, from_contact(size(order):1:-1), equation, body)
+    else
       body = plain
-      return
     end if
-    plain%operations = plain%operations + gram_operations(plain%reach, begins(equation, pack(plain%node, at_contact(plain%node))))
-    ! The roots stand in the order of the sweep from the far end, which runs along the contact.
-    order = sweep(model, around, pack(order, at_contact(order)), nodes)
-    call number_body(model, at_contact, order(size(order):1:-1), equation, body)
-    body%operations = panel_operations(body%reach) + real(body%contact_equations, wp)**3
-    if (body%operations <= plain%operations) return
-    call number_body(model, at_contact, plain%node, equation, plain)
-    body = plain
   end subroutine choose_numbers
 
   !> First equations of the nodes of pairs, ascending.
@@ -179,8 +181,7 @@ contains
     integer, intent(in) :: order(:)                      !! of its nodes
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
-    integer :: c, e, i, node
-    integer :: lowest, highest
+    integer :: c, e, highest, i, node
 
     body%node = order
     body%border = 0
@@ -215,17 +216,20 @@ contains
     end do
     body%reach = [(e, e=1, body%equations)]
     do e = 1, size(body%element)
-      associate (numbers => equation(:, model%connectivity(:model%order(body%element(e)), body%element(e))))
-        highest = maxval(numbers)
-        lowest = minval(numbers, mask=numbers > 0)
-        if (highest <= 0) cycle
-        body%half_bandwidth = max(body%half_bandwidth, highest - lowest)
-        do i = 1, size(numbers, 2)
+      associate (node => model%connectivity(:, body%element(e)), n => model%order(body%element(e)))
+        highest = 0
+        do i = 1, n
+          highest = max(highest, equation(1, node(i)), equation(2, node(i)))
+        end do
+        do i = 1, n
           do c = 1, 2
-            if (numbers(c, i) > 0) body%reach(numbers(c, i)) = max(body%reach(numbers(c, i)), highest)
+            associate (number => equation(c, node(i)))
+              if (number > 0) body%reach(number) = max(body%reach(number), highest)
+            end associate
           end do
         end do
       end associate
     end do
+    if (body%equations > 0) body%half_bandwidth = maxval(body%reach - [(e, e=1, body%equations)])
   end subroutine number_body
 end module epcont_plan_numbering

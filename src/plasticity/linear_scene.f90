@@ -51,7 +51,7 @@ contains
 
   !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield. `singular` is
   !! a body whose stiffness could not be factored, 0 where all could.
-  pure subroutine set_stiffness(self, model, numbering, matrix, singular)
+  subroutine set_stiffness(self, model, numbering, matrix, singular)
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
