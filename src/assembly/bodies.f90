@@ -17,6 +17,7 @@ module epcont_assembly_bodies
     procedure :: factor_body
     procedure :: displacements
     procedure :: condition
+    procedure :: lacks_memory
   end type factored_bodies
 
 contains
@@ -52,6 +53,17 @@ contains
     sound = self%body(b)%smallest_ratio > epsilon(1.0_wp)
   end subroutine factor_body
 
+  !> Whether there was not enough memory for the factor of a body.
+  pure logical function lacks_memory(self)
+    class(factored_bodies), intent(in) :: self
+    integer :: b
+
+    lacks_memory = .false.
+    do b = 1, size(self%body)
+      if (allocated(self%body(b)%matrix)) lacks_memory = lacks_memory .or. self%body(b)%matrix%lacks_memory
+    end do
+  end function lacks_memory
+
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies.
   pure real(wp) function condition(self)
     class(factored_bodies), intent(in) :: self
@@ -59,7 +71,7 @@ contains
 
     condition = 1.0_wp
     do b = 1, size(self%body)
-      condition = max(condition, self%body(b)%band%condition())
+      condition = max(condition, self%body(b)%matrix%condition())
     end do
   end function condition
 

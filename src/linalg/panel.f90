@@ -13,8 +13,8 @@ module epcont_linalg_panel
   use epcont_base_kinds, only: i8, wp
   use epcont_base_large_pages, only: use_large_pages
   use epcont_base_sorting, only: sorted_order
+  use epcont_linalg_assembled, only: add_seen_through, assembled_matrix
   use epcont_linalg_dense, only: cholesky_inverse
-  use epcont_linalg_factored, only: factored_matrix
   use epcont_linalg_lapack, only: dgemm, dgemv, dpotrf, dsyrk, dtrsm, dtrsv
   implicit none
   private
@@ -23,14 +23,16 @@ module epcont_linalg_panel
   !> Columns of a panel, as a part of the mean height, and at least and at most.
   integer, parameter :: heights_a_width = 4, least_width = 16, most_width = 64
 
-  type, extends(factored_matrix) :: panel_matrix
+  type, extends(assembled_matrix) :: panel_matrix
     integer :: width = 1                   !! columns of a panel; the last may have fewer
     integer, allocatable :: first(:)       !! first column of each panel [panels + 1]
     integer, allocatable :: last(:)        !! last row of each panel [panels]
     integer(i8), allocatable :: start(:)   !! of each panel in `entries` [panels + 1]
     real(wp), allocatable :: entries(:)
+    integer :: trailing = 0                !! last equations, the only ones that `add_gram` is asked for; 0: any
   contains
     procedure :: begin
+    procedure :: clear
     procedure :: add
     procedure :: factor
     procedure :: solve
@@ -44,24 +46,32 @@ contains
 
   !> Begin a matrix of zeros. `reach` is the last row that each column is coupled with [order]. (A function would hand
   !! back a copy of the whole matrix.)
-  subroutine begin(self, reach)
+  subroutine begin(self, reach, trailing)
     class(panel_matrix), intent(inout) :: self
     integer, intent(in) :: reach(:)
-    integer :: p
+    integer, intent(in) :: trailing        !! as above
+    integer :: p, status
 
-    if (.not. allocated(self%entries)) then
-      self%order = size(reach)
-      call find_panels(reach, self%width, self%first, self%last)
-      allocate (self%start(size(self%first)))
-      self%start(1) = 1
-      do p = 1, size(self%last)
-        self%start(p + 1) = self%start(p) + int(self%height(p), i8)*self%columns(p)
-      end do
-      allocate (self%entries(self%start(size(self%start))))   ! one more, behind the last
-      call use_large_pages(self%entries)
-    end if
-    self%entries = 0.0_wp
+    self%order = size(reach)
+    self%trailing = trailing
+    call find_panels(reach, self%width, self%first, self%last)
+    allocate (self%start(size(self%first)))
+    self%start(1) = 1
+    do p = 1, size(self%last)
+      self%start(p + 1) = self%start(p) + int(self%height(p), i8)*self%columns(p)
+    end do
+    allocate (self%entries(self%start(size(self%start))), stat=status)   ! one more, behind the last
+    self%lacks_memory = status /= 0
+    if (self%lacks_memory) return
+    call use_large_pages(self%entries)
+    call self%clear()
   end subroutine begin
+
+  pure subroutine clear(self)
+    class(panel_matrix), intent(inout) :: self
+
+    self%entries = 0.0_wp
+  end subroutine clear
 
   !> Panels of a matrix: where each begins, and its last row.
   pure subroutine find_panels(reach, width, first, last)
@@ -146,27 +156,29 @@ contains
     columns = self%first(panel + 1) - self%first(panel)
   end function columns
 
-  !> Add to the entry of a row and a column, row >= column.
-  pure subroutine add(self, row, column, value)
+  pure subroutine add(self, k, numbers)
     class(panel_matrix), intent(inout) :: self
-    integer, intent(in) :: row, column
-    real(wp), intent(in) :: value
-    integer :: p
-    integer(i8) :: at
+    real(wp), intent(in) :: k(:, :)
+    integer, intent(in) :: numbers(:)
+    integer :: i, j, p
+    integer(i8) :: above
 
-    p = (column - 1)/self%width + 1
-    associate (f => self%first(p))
-      at = self%start(p) + int(column - f, i8)*(self%last(p) - f + 1) + (row - f)
-    end associate
-    self%entries(at) = self%entries(at) + value
+    do j = 1, size(numbers)
+      if (numbers(j) <= 0) cycle
+      p = (numbers(j) - 1)/self%width + 1
+      associate (f => self%first(p))
+        above = self%start(p) + int(numbers(j) - f, i8)*(self%last(p) - f + 1) - f   ! where row 0 of the column would be
+      end associate
+      do i = 1, size(numbers)
+        if (numbers(i) >= numbers(j)) self%entries(above + numbers(i)) = self%entries(above + numbers(i)) + k(i, j)
+      end do
+    end do
   end subroutine add
 
-  !> Replace the matrix by its Cholesky factor. Many singular matrices pass for definite, so the squared ratio of each
-  !! pivot to its diagonal entry is returned as well.
   pure subroutine factor(self, smallest_ratio, at)
     class(panel_matrix), intent(inout) :: self
-    real(wp), intent(out) :: smallest_ratio  !! smallest pivot**2 / diagonal; 0 where the matrix is not definite
-    integer, intent(out) :: at               !! its row
+    real(wp), intent(out) :: smallest_ratio
+    integer, intent(out) :: at
     real(wp), allocatable :: diagonal(:)
     integer :: info, p
 
@@ -302,15 +314,26 @@ contains
     call cholesky_inverse(inverse)
   end function trailing_inverse
 
-  !> Add N K^-1 N' from the factor, N given by rows: entries start(k) to start(k+1)-1 of row k are equations and weights.
-  !! With X = L^-1 N', taken panel by panel through a window as high as the highest, it is X'X: no right-hand side is
-  !! touched before its first equation, and none is ever stored whole.
   pure subroutine add_gram(self, start, equation, weight, gram)
     class(panel_matrix), intent(in) :: self
-    integer, intent(in) :: start(:)             !! [rows + 1]
-    integer, intent(in) :: equation(:)          !! those that are not positive count for nothing [entries]
-    real(wp), intent(in) :: weight(:)           !! [entries]
-    real(wp), intent(inout) :: gram(:, :)       !! [rows, rows]
+    integer, intent(in) :: start(:), equation(:)
+    real(wp), intent(in) :: weight(:)
+    real(wp), intent(inout) :: gram(:, :)
+
+    if (self%trailing > 0) then
+      call add_seen_through(self%trailing_inverse(self%trailing), start, equation - (self%order - self%trailing), weight, gram)
+    else
+      call substitute(self, start, equation, weight, gram)
+    end if
+  end subroutine add_gram
+
+  !> The same for any equations. With X = L^-1 N', taken panel by panel through a window as high as the highest, it is
+  !! X'X: no right-hand side is touched before its first equation, and none is ever stored whole.
+  pure subroutine substitute(self, start, equation, weight, gram)
+    class(panel_matrix), intent(in) :: self
+    integer, intent(in) :: start(:), equation(:)
+    real(wp), intent(in) :: weight(:)
+    real(wp), intent(inout) :: gram(:, :)
     real(wp), allocatable :: product(:, :), window(:, :)
     integer, allocatable :: begins(:), column(:), entry(:), order(:), row_of(:)
     integer :: active, e, h, highest, k, n, p, w
@@ -360,5 +383,5 @@ contains
       gram(order(k:), order(k)) = gram(order(k:), order(k)) + product(k:, k)
       gram(order(k), order(k + 1:)) = gram(order(k), order(k + 1:)) + product(k + 1:, k)
     end do
-  end subroutine add_gram
+  end subroutine substitute
 end module epcont_linalg_panel
