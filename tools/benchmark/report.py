@@ -72,9 +72,10 @@ def contact(rows):
               "" if row["violation"] is None else f"{row['violation']:.0e}", row["note"]] for row in rows]
     return "\n\n".join([
         "## Dense contact problem alone",
-        "Strips on a half-plane, one motion. Seconds of processor; ratio over epcont's (below 1: faster than epcont). Violation: largest of |min(R/rho, "
-        "w/omega)| and of the load's relative error, rho = max R, omega = rho max F; the packages are asked for 1e-9. A program that took too long "
-        "is left out at the next size.",
+        "Strips on a half-plane, one motion. epcont: by the rule that AUTO takes, CONRY below 100 pairs, then BLOCK; WARM is BLOCK from the right set, dgemm one "
+        "product of matrices of that size. Seconds of processor; ratio over epcont's (below 1: faster than epcont). Violation: largest of |min(R/|R|, "
+        "w/(|F||R|))| and of the load's relative error, |R| the largest force, |F| the largest sum of a row; the packages are asked for 1e-9. A program that "
+        "took too long is left out at the next size.",
         table(["problem", "n", "condition of F", "program", "CPU, s", "ratio", "violation", ""], lines)])
 
 
