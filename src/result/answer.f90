@@ -13,6 +13,7 @@ module epcont_result_answer
   type :: answer_type
     real(wp), allocatable :: displacement(:, :)      !! [length] [2, nodes]
     real(wp), allocatable :: reaction(:, :)          !! of the supports [force] [2, nodes]
+    real(wp), allocatable :: deformation(:, :)       !! displacements before the rigid motions are added [length] [2, nodes]
     real(wp), allocatable :: point_stress(:, :)      !! xx, yy, zz, xy [stress] [4, points]
     ! Of the elements: means over their points, by volume.
     real(wp), allocatable :: stress(:, :)            !! xx, yy, zz, xy [stress] [4, elements]
