@@ -70,6 +70,7 @@ contains
     answer%runs_away = run%runs_away
     answer%load_factor = run%load_factor
     answer%condition = run%condition
+    answer%weakest = run%weakest
     answer%unloaded = run%unloaded
     answer%first_unloaded = run%first_unloaded
   end subroutine take_over
