@@ -31,6 +31,7 @@ module epcont_certificate_certificate
     real(wp) :: force_gap = 0.0_wp        !! largest |R gap| [force*length]
     real(wp) :: off_curve = 0.0_wp        !! largest difference of a stress from its curve / largest stress
     real(wp) :: motion_strain = 0.0_wp    !! largest strain of the rigid motions / its rounding
+    real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes / largest stress
     real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of all |terms|
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
@@ -62,6 +63,7 @@ contains
     call sum_elements(model, deformation, displacement - deformation, stress, residual, element_force, stored, largest_stress, &
                       certificate)
     certificate%off_curve = ratio(certificate%off_curve, largest_stress)
+    certificate%lost_stress = ratio(certificate%lost_stress, largest_stress)
     residual = residual - load - reaction
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     forces = sum(abs(load)) + sum(abs(reaction)) + sum(abs(force))
@@ -94,7 +96,7 @@ contains
   end function ratio
 
   !> Internal forces at the nodes, work of the stresses on the strains, largest stress; its largest distance from the curve
-  !! and what rigid motions strain go into the certificate.
+  !! and what roundings and rigid motions strain go into the certificate.
   pure subroutine sum_elements(model, deformation, motion, stress, internal, magnitude, stored, largest, certificate)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: deformation(:, :), motion(:, :), stress(:, :)
@@ -114,6 +116,9 @@ contains
             certificate%off_curve = max(certificate%off_curve, maxval(abs(s - stress_on_curve(model, model%section(e), strain))))
             largest = max(largest, maxval(abs(s)))
             stored = stored + volume(p)*dot_product(s, strain)
+          end associate
+          associate (rounding => epsilon(1.0_wp)*maxval(abs(deformation(:, node)))*maxval(abs(unit(:, :, :size(node), p))))
+            certificate%lost_stress = max(certificate%lost_stress, model%young(model%section(e))*rounding)
           end associate
           if (.not. moves) cycle
           strain = strain_at(model, e, motion, unit(:, :, :, p))

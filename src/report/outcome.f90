@@ -20,7 +20,7 @@ module epcont_report_outcome
   end type outcome_type
 
   character(len=*), parameter :: reason = &
-    'its elements differ too much in size or stiffness, or a Poisson''s ratio is too near 0.5'
+    'elements differ too much in size or stiffness, hardly anything resists a motion, or a Poisson''s ratio is too near 0.5'
   character(len=*), parameter :: axis(2) = ['x', 'y']
   !> Largest part that rounding may take of a pivot in a valid answer. The certificate need not see it: rigid motions of a
   !! stiff part upon a soft one are wrong by 1 to 30 times as much, in equilibrium.
@@ -112,6 +112,9 @@ contains
       if (len(text) > 0) text = text//'; '
       text = text//'rounding takes '//short_real(loss_of(answer))//' of a pivot in the stiffness of the body of GRID '// &
              first_node(model, answer%weakest%body)//': '//reason
+    else if (certificate%lost_stress > 0.1_wp*tolerance) then
+      text = text//'; the rounding of displacements is '//short_real(certificate%lost_stress)// &
+             ' of the largest stress: elements too small or too stiff for how far they travel'
     else if (answer%condition*epsilon(1.0_wp) > 0.1_wp*tolerance) then
       text = text//'; the condition of the stiffness is '//short_real(answer%condition)// &
              ': slender bodies or elements, or SUPORT nodes that are near each other'
