@@ -103,7 +103,7 @@ contains
     real(wp), intent(inout) :: internal(:, :), magnitude(:), stored, largest
     type(certificate_type), intent(inout) :: certificate
     logical :: moves
-    real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), strain(4), force(2)
+    real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), strain(4), force(2), rounding
     integer :: c, e, k, p, places
 
     moves = any(motion /= 0.0_wp)
@@ -117,15 +117,13 @@ contains
             largest = max(largest, maxval(abs(s)))
             stored = stored + volume(p)*dot_product(s, strain)
           end associate
-          associate (rounding => epsilon(1.0_wp)*maxval(abs(deformation(:, node)))*maxval(abs(unit(:, :, :size(node), p))))
-            certificate%lost_stress = max(certificate%lost_stress, model%young(model%section(e))*rounding)
-          end associate
+          rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :size(node), p)))   ! of a strain by unit displacements
+          certificate%lost_stress = max(certificate%lost_stress, &
+                                        model%young(model%section(e))*rounding*maxval(abs(deformation(:, node))))
           if (.not. moves) cycle
           strain = strain_at(model, e, motion, unit(:, :, :, p))
-          associate (rounding => epsilon(1.0_wp)*maxval(abs(motion(:, node)) + abs(deformation(:, node))) &
-                     *maxval(abs(unit(:, :, :size(node), p))))
-            certificate%motion_strain = max(certificate%motion_strain, ratio(maxval(abs(strain)), rounding))
-          end associate
+          rounding = rounding*maxval(abs(motion(:, node)) + abs(deformation(:, node)))
+          certificate%motion_strain = max(certificate%motion_strain, ratio(maxval(abs(strain)), rounding))
         end do
         do k = 1, size(node)
           do c = 1, 2
