@@ -43,6 +43,7 @@ contains
     call choose_method(plan%method, method)
     call follow_loads(model, motions, numbering, plan, method, run)
     singular = run%singular
+    answer%lacks_memory = run%lacks_memory
     if (singular > 0) return
     answer%contact = run%state%contact
     if (answer%contact%state /= contact_solved) return

@@ -20,6 +20,7 @@ module epcont_app_driver
   use epcont_report_outcome, only: judge, outcome_type
   use epcont_report_plan, only: plan_text
   use epcont_report_results, only: run_results, write_results
+  use epcont_report_solver, only: report_solver_fault
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -101,6 +102,7 @@ contains
     if (faults%error_count() > 0) return
     call find_free_motions(model, motions, loose)
     call report_motion_faults(deck, model, loose, faults)
+    call report_solver_fault(deck, model, faults)
   end subroutine prepare
 
   !> Stem, status, largest pressure, first approach.

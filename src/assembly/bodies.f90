@@ -3,6 +3,7 @@ module epcont_assembly_bodies
   use epcont_assembly_stiffness, only: assemble_body, body_stiffness
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
+  use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type
   use epcont_plan_numbering, only: numbering_type
   implicit none
@@ -15,8 +16,10 @@ module epcont_assembly_bodies
     real(wp), allocatable :: settlement(:, :)  !! forces of prescribed displacements on free freedoms [2, nodes]
   contains
     procedure :: factor_body
+    procedure :: settle
     procedure :: displacements
     procedure :: condition
+    procedure :: lacks_memory
   end type factored_bodies
 
 contains
@@ -30,27 +33,53 @@ contains
     allocate (bodies%settlement(2, model%nodes), source=0.0_wp)
   end function new_bodies
 
-  !> Assemble and factor one body, afresh if it was before. `sound` is false where the factor failed.
-  subroutine factor_body(self, model, operator, matrix, numbering, b, sound)
+  !> Assemble and factor one body; if it was before, as far as elements have changed. `sound` is false where the factor
+  !! failed.
+  subroutine factor_body(self, model, operator, matrix, changed, numbering, b, sound)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
     real(wp), intent(in) :: matrix(:, :, :)   !! of the material at each point [stress] [4, 4, points]
+    logical, intent(in) :: changed(:)         !! since the body was factored last [elements]
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
     logical, intent(out) :: sound
-    integer :: i
 
-    associate (node => numbering%body(b)%node)
-      do i = 1, size(node)
-        self%settlement(:, node(i)) = 0.0_wp
-      end do
-    end associate
-    call assemble_body(model, operator, matrix, numbering%equation, numbering%body(b), self%body(b), self%settlement)
+    call assemble_body(model, operator, matrix, changed, numbering%equation, numbering%body(b), self%body(b))
     call self%body(b)%factor()
     if (numbering%body(b)%equations > 0) self%factorizations = self%factorizations + 1
-    sound = self%body(b)%smallest_ratio > epsilon(1.0_wp)
+    sound = self%body(b)%is_sound()
   end subroutine factor_body
+
+  !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
+  pure subroutine settle(self, model, operator, law)
+    class(factored_bodies), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(strain_operator), intent(in) :: operator
+    type(linear_law), intent(in) :: law
+    real(wp), allocatable :: prescribed(:, :)
+    integer :: c, node
+
+    if (all(model%prescribed == 0.0_wp)) return
+    allocate (prescribed(2, model%nodes))
+    do node = 1, model%nodes
+      do c = 1, 2
+        prescribed(c, node) = model%prescribed(c, model%leader(c, node))
+      end do
+    end do
+    self%settlement = -operator%nodal_forces(model, law%increment(operator%strains(model, prescribed)))
+  end subroutine settle
+
+  !> Whether there was not enough memory for the factor of a body.
+  pure logical function lacks_memory(self)
+    class(factored_bodies), intent(in) :: self
+    integer :: b
+
+    lacks_memory = .false.
+    do b = 1, size(self%body)
+      if (allocated(self%body(b)%matrix)) lacks_memory = lacks_memory .or. self%body(b)%matrix%lacks_memory
+    end do
+  end function lacks_memory
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies.
   pure real(wp) function condition(self)
@@ -59,7 +88,7 @@ contains
 
     condition = 1.0_wp
     do b = 1, size(self%body)
-      condition = max(condition, self%body(b)%band%condition())
+      condition = max(condition, self%body(b)%matrix%condition())
     end do
   end function condition
 

@@ -1,14 +1,16 @@
-!> Stiffness of one body, assembled and factored: a band, and a border of the ties' free leaders.
+!> Stiffness of one body, assembled and factored: a band or sparse matrix, and a border of the ties' free leaders.
 !>
-!>     K = [ K_bb  K_br ]   b: band,  r: border (few)
+!>     K = [ K_bb  K_br ]   b: band or sparse,  r: border (few)
 !>         [ K_rb  K_rr ]
 !>
-!> The band is factored alone; the border follows by its Schur complement S = K_rr - K_rb W, W = K_bb^-1 K_br.
+!> K_bb is factored alone; the border follows by its Schur complement S = K_rr - K_rb W, W = K_bb^-1 K_br.
 module epcont_assembly_stiffness
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_linalg_panel, only: panel_matrix
+  use epcont_linalg_assembled, only: assembled_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
+  use epcont_linalg_panel, only: panel_matrix
+  use epcont_linalg_sparse, only: sparse_matrix
   use epcont_model_model, only: model_type, most_nodes
   use epcont_plan_numbering, only: body_numbering
   implicit none
@@ -16,83 +18,143 @@ module epcont_assembly_stiffness
   public :: body_stiffness, assemble_body
 
   type :: body_stiffness
-    type(panel_matrix) :: band                !! K_bb, then its factor
-    real(wp), allocatable :: coupling(:, :)   !! K_br, then W [band, border]
+    class(assembled_matrix), allocatable :: matrix   !! K_bb, then its factor
+    real(wp), allocatable :: coupling(:, :)   !! K_br, then W [equations, border]
     real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
-    real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot**2 over its diagonal entry
+    real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
     integer :: weakest = 0                    !! its equation
   contains
     procedure :: factor
+    procedure :: is_sound
     procedure :: solve
   end type body_stiffness
 
 contains
 
-  !> Assemble the elements of a body; `matrix` is that of the material at each point [4, 4, points]. `settlement`
-  !! receives the forces that prescribed displacements exert on the free freedoms: minus K_fp u_p [force] [2, nodes].
-  subroutine assemble_body(model, operator, matrix, equation, body, stiffness, settlement)
+  !> Assemble the elements of a body; `matrix` is that of the material at each point [4, 4, points]. Where only some
+  !! elements have changed since it was factored, nothing is touched that stands before their first equation.
+  subroutine assemble_body(model, operator, matrix, changed, equation, body, stiffness)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
     real(wp), intent(in) :: matrix(:, :, :)
+    logical, intent(in) :: changed(:)        !! [elements]
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
     type(body_stiffness), intent(inout) :: stiffness
-    real(wp), intent(inout) :: settlement(:, :)
-    real(wp) :: k(2*most_nodes, 2*most_nodes), forced(2*most_nodes)
-    integer :: e, i, n
+    real(wp) :: k(2*most_nodes, 2*most_nodes)
+    integer :: e, from, i, n, number(2*most_nodes)
 
-    call stiffness%band%begin(body%reach)
+    from = 1
+    if (allocated(stiffness%matrix)) then
+      if (stiffness%is_sound() .and. body%border == 0) from = first_change(model, changed, equation, body)
+      call stiffness%matrix%clear(from)
+    else
+      call begin(model, equation, body, stiffness%matrix)
+    end if
     if (allocated(stiffness%coupling)) deallocate (stiffness%coupling, stiffness%schur)
+    if (stiffness%matrix%lacks_memory) return
     allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
     do e = 1, size(body%element)
       associate (element => body%element(e))
-        n = model%order(element)
+        n = 2*model%order(element)
+        do i = 1, n/2
+          number(2*i - 1:2*i) = equation(:, model%connectivity(i, element))
+        end do
+        if (maxval(number(:n)) < from .and. body%border == 0) cycle
         call operator%element_stiffness(model, element, matrix, k)
-        associate (node => model%connectivity(:n, element))
-          call add(k(:2*n, :2*n), reshape(equation(:, node), [2*n]), stiffness)
-          do i = 1, n
-            forced(2*i - 1) = model%prescribed(1, model%leader(1, node(i)))
-            forced(2*i) = model%prescribed(2, model%leader(2, node(i)))
-          end do
-          if (all(forced(:2*n) == 0.0_wp)) cycle
-          settlement(:, node) = settlement(:, node) - reshape(matmul(k(:2*n, :2*n), forced(:2*n)), [2, n])
-        end associate
+        call stiffness%matrix%add(k(:n, :n), number(:n))
+        if (body%border > 0) call add_to_border(k(:n, :n), number(:n), stiffness)
       end associate
     end do
   end subroutine assemble_body
 
-  !> Add an element matrix to the band, the coupling and the border.
-  pure subroutine add(k, number, stiffness)
+  !> First equation of the elements that have changed; that behind the last where none has.
+  pure integer function first_change(model, changed, equation, body) result(first)
+    type(model_type), intent(in) :: model
+    logical, intent(in) :: changed(:)
+    integer, intent(in) :: equation(:, :)
+    type(body_numbering), intent(in) :: body
+    integer :: c, e, i
+
+    first = body%equations + 1
+    do e = 1, size(body%element)
+      if (.not. changed(body%element(e))) cycle
+      do i = 1, model%order(body%element(e))
+        do c = 1, 2
+          associate (number => equation(c, model%connectivity(i, body%element(e))))
+            if (number > 0) first = min(first, number)
+          end associate
+        end do
+      end do
+    end do
+  end function first_change
+
+  !> A matrix of zeros, of the kind that the plan has chosen.
+  subroutine begin(model, equation, body, matrix)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: equation(:, :)
+    type(body_numbering), intent(in) :: body
+    class(assembled_matrix), allocatable, intent(inout) :: matrix
+    type(panel_matrix), allocatable :: panels
+    type(sparse_matrix), allocatable :: sparse
+
+    if (body%sparse) then
+      allocate (sparse)
+      call sparse%begin(body%equations, element_numbers(model, equation, body))
+      call move_alloc(sparse, matrix)
+    else
+      allocate (panels)
+      call panels%begin(body%reach, merge(body%contact_equations, 0, body%contact_last))
+      call move_alloc(panels, matrix)
+    end if
+  end subroutine begin
+
+  !> Equations of the elements of a body, zeros behind [2 most_nodes, elements].
+  pure function element_numbers(model, equation, body) result(numbers)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: equation(:, :)
+    type(body_numbering), intent(in) :: body
+    integer, allocatable :: numbers(:, :)
+    integer :: e, n
+
+    allocate (numbers(2*maxval(model%order(body%element)), size(body%element)), source=0)
+    do e = 1, size(body%element)
+      n = model%order(body%element(e))
+      numbers(:2*n, e) = reshape(equation(:, model%connectivity(:n, body%element(e))), [2*n])
+    end do
+  end function element_numbers
+
+  !> Add an element matrix to the coupling and the border.
+  pure subroutine add_to_border(k, number, stiffness)
     real(wp), intent(in) :: k(:, :)
     integer, intent(in) :: number(:)
     type(body_stiffness), intent(inout) :: stiffness
     integer :: i, j
 
     do j = 1, size(number)
-      if (number(j) == 0) cycle
+      if (number(j) >= 0) cycle
       do i = 1, size(number)
-        if (number(i) == 0) cycle
-        if (number(i) >= number(j) .and. number(j) > 0) then
-          call stiffness%band%add(number(i), number(j), k(i, j))
-        else if (number(i) > 0 .and. number(j) < 0) then
+        if (number(i) > 0) then
           stiffness%coupling(number(i), -number(j)) = stiffness%coupling(number(i), -number(j)) + k(i, j)
-        else if (number(i) < 0 .and. number(j) < 0) then
+        else if (number(i) < 0) then
           stiffness%schur(-number(i), -number(j)) = stiffness%schur(-number(i), -number(j)) + k(i, j)
         end if
       end do
     end do
-  end subroutine add
+  end subroutine add_to_border
 
-  !> Factor the band, then the Schur complement of the border.
+  !> Factor the matrix, then the Schur complement of the border.
   pure subroutine factor(self)
     class(body_stiffness), intent(inout) :: self
     real(wp), allocatable :: coupled(:, :)
     integer :: info
 
-    call self%band%factor(self%smallest_ratio, self%weakest)
+    self%smallest_ratio = 0.0_wp
+    if (self%matrix%lacks_memory) return
+    call self%matrix%factor(self%smallest_ratio, self%weakest)
     if (self%smallest_ratio == 0.0_wp .or. size(self%schur) == 0) return
     coupled = self%coupling
-    call self%band%solve(self%coupling)
+    call self%matrix%solve(self%coupling)
     self%schur = self%schur - matmul(transpose(coupled), self%coupling)
     call cholesky_factor(self%schur, info)
     if (info == 0) return
@@ -100,16 +162,23 @@ contains
     self%weakest = -info
   end subroutine factor
 
-  !> Solve for one right-hand side, in place.
-  pure subroutine solve(self, band, border)
+  !> Is the factor one that can be solved with?
+  pure logical function is_sound(self)
     class(body_stiffness), intent(in) :: self
-    real(wp), contiguous, intent(inout) :: band(:, :)     !! [band, 1]
+
+    is_sound = self%smallest_ratio > epsilon(1.0_wp)
+  end function is_sound
+
+  !> Solve for one right-hand side, in place.
+  pure subroutine solve(self, inner, border)
+    class(body_stiffness), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: inner(:, :)    !! [order of the matrix, 1]
     real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
 
-    border = border - matmul(transpose(self%coupling), band)
-    call self%band%solve(band)
+    border = border - matmul(transpose(self%coupling), inner)
+    call self%matrix%solve(inner)
     if (size(border) == 0) return
     call cholesky_solve(self%schur, border)
-    band = band - matmul(self%coupling, border)
+    inner = inner - matmul(self%coupling, border)
   end subroutine solve
 end module epcont_assembly_stiffness

@@ -13,17 +13,17 @@ module epcont_contact_block_pivoting
   use epcont_contact_block_factor, only: block_factor, change_set, new_block_factor, solve_set
   use epcont_contact_problem, only: contact_solution, contact_solved
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_contact_state, only: contact_state, fresh_state, has_right_signs
+  use epcont_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, sign_tolerance
   implicit none
   private
   public :: find_by_blocks
 
   !> Part of the largest force by which forces and gaps may have the wrong sign while there is something to gain. Where
   !! rounding is larger the steps end without progress, and the test of the fresh solution decides.
-  real(wp), parameter :: sign_tolerance = 1.0e-13_wp
+  real(wp), parameter :: exchange_tolerance = 1.0e-13_wp
   !> Steps without fewer wrong pairs before single pairs are exchanged.
   integer, parameter :: patience_limit = 10
-  !> Steps in all. A full step costs less than 1/50 of what RULE CONRY takes.
+  !> Steps from a guess, and from nothing where that fails. A full step costs less than 1/50 of what RULE CONRY takes.
   integer, parameter :: step_limit = 100
   !> Sets that do not hold the motions before the problem is given up.
   integer, parameter :: repair_limit = 3
@@ -47,57 +47,57 @@ contains
     type(contact_state), intent(out) :: state
     logical, intent(out) :: found
     logical, allocatable :: closed(:)
-    integer :: stride
-    logical :: complete
 
-    closed = first_touching
-    stride = first_stride(size(closed))
     found = .false.
     if (allocated(guess)) then
-      closed = closed .or. guess
-      stride = 1
-      solution%block_steps = 1
-      call test_afresh(scaled, closed, first_touching, state, found)
+      closed = guess .or. first_touching
+      solution%block_steps = solution%block_steps + 1
+      call test_afresh(scaled, closed, first_touching, guess_tolerance, state, found)
+      if (.not. found) call exchange_blocks(scaled, first_touching, 1, guess_tolerance, solution, closed, state, found)
     end if
     if (.not. found) then
-      call exchange_blocks(scaled, first_touching, stride, solution, closed, complete)
-      if (complete) call test_afresh(scaled, closed, first_touching, state, found)
+      closed = first_touching
+      call exchange_blocks(scaled, first_touching, first_stride(size(closed)), sign_tolerance, solution, closed, state, found)
     end if
     if (found) solution%state = contact_solved
   end subroutine find_by_blocks
 
   !> The fresh solution of a set: are its forces unique and its signs right?
-  pure subroutine test_afresh(scaled, closed, first_touching, state, right)
+  pure subroutine test_afresh(scaled, closed, first_touching, tolerance, state, right)
     type(scaled_problem), intent(in) :: scaled
     logical, intent(in) :: closed(:), first_touching(:)   !! [n]
+    real(wp), intent(in) :: tolerance
     type(contact_state), intent(out) :: state
     logical, intent(out) :: right
 
     state = fresh_state(scaled, closed, first_touching)
     right = state%basis%sound .and. size(state%basis%pairs) == count(closed)
-    if (right) right = has_right_signs(scaled, state)
+    if (right) right = has_right_signs(scaled, state, tolerance)
   end subroutine test_afresh
 
-  !> Exchange until no pair is wrong, or no more steps are left; not `complete`: there were sets without an own solution.
-  pure subroutine exchange_blocks(scaled, first_touching, first, solution, closed, complete)
+  !> Exchange until no pair is wrong, or no more steps are left, and test the set. Not if there were sets without an own solution.
+  pure subroutine exchange_blocks(scaled, first_touching, first, tolerance, solution, closed, state, found)
     type(scaled_problem), intent(in) :: scaled
     logical, intent(in) :: first_touching(:)            !! [n]
     integer, intent(in) :: first                        !! distance of the first candidates
+    real(wp), intent(in) :: tolerance                   !! of the test
     type(contact_solution), intent(inout) :: solution
     logical, intent(inout) :: closed(:)                 !! the set [n]
-    logical, intent(out) :: complete
+    type(contact_state), intent(inout) :: state
+    logical, intent(out) :: found
     type(block_factor) :: factor
     type(progress_type) :: progress
     real(wp), allocatable :: firmness(:), force(:), gap(:)
     logical, allocatable :: wrong(:)
-    integer :: repairs, stride
+    integer :: repairs, step, stride
     logical :: sound
 
     allocate (firmness(size(closed)), force(size(closed)), gap(size(closed)), source=0.0_wp)
     call new_block_factor(scaled, factor)
     stride = first
     repairs = 0
-    do while (solution%block_steps < step_limit .and. repairs <= repair_limit)
+    do step = 1, step_limit
+      if (repairs > repair_limit) exit
       solution%block_steps = solution%block_steps + 1
       call change_set(factor, scaled, closed, firmness)
       sound = factor%sound
@@ -116,7 +116,8 @@ contains
       firmness = part_of_largest(force) + part_of_largest(-gap)
       closed = closed .neqv. wrong
     end do
-    complete = repairs <= repair_limit
+    found = repairs <= repair_limit
+    if (found) call test_afresh(scaled, closed, first_touching, tolerance, state, found)
   end subroutine exchange_blocks
 
   !> Positive values as parts of the largest.
@@ -150,8 +151,8 @@ contains
     real(wp) :: force_tolerance, gap_tolerance
     integer :: k
 
-    force_tolerance = sign_tolerance*maxval([abs(force), 1.0_wp])
-    gap_tolerance = force_tolerance + sign_tolerance*maxval([abs(scaled%gap), 0.0_wp])
+    force_tolerance = exchange_tolerance*maxval([abs(force), 1.0_wp])
+    gap_tolerance = force_tolerance + exchange_tolerance*maxval([abs(scaled%gap), 0.0_wp])
     all_wrong = merge(force < -force_tolerance, gap < -gap_tolerance, closed)
     do
       wrong = all_wrong .and. (closed .or. first_touching .or. [(mod(k - 1, stride) == 0, k=1, size(gap))])

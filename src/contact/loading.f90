@@ -41,11 +41,11 @@ contains
         outcome = path_complete
       else if (step%row == 0) then
         outcome = path_ray
-        ray = force_growth(tableau, column)
+        ray = force_growth(tableau, column, step%slope)
       end if
       if (outcome /= path_endless .or. count == pivot_limit) exit
       left = tableau%basic(step%row)
-      call pivot(tableau, step%row, column)
+      call pivot(tableau, step%row, column, step%slope)
       call record(tableau, entering, left, step%ratio, solution)
       entering = next_to_enter(left)
     end do
@@ -76,15 +76,16 @@ contains
   end function basic_forces
 
   !> Growth of each force with the entering variable.
-  pure function force_growth(tableau, column) result(growth)
+  pure function force_growth(tableau, column, slope) result(growth)
     type(contact_tableau), intent(in) :: tableau
     integer, intent(in) :: column
+    real(wp), intent(in) :: slope(:)   !! change of the basic variables [n]
     real(wp), allocatable :: growth(:)
     integer :: i
 
     allocate (growth(size(tableau%basic)), source=0.0_wp)
     do i = 1, size(tableau%basic)
-      if (tableau%basic(i) > 0) growth(tableau%basic(i)) = tableau%entry(i, column)
+      if (tableau%basic(i) > 0) growth(tableau%basic(i)) = slope(i)
     end do
     if (tableau%nonbasic(column) > 0) growth(tableau%nonbasic(column)) = 1.0_wp
   end function force_growth

@@ -2,13 +2,19 @@
 !>
 !> The set found is never trusted: forces and gaps are solved afresh from F and A, and if one of them
 !> has the wrong sign the simplex goes on from there. A guessed set is treated in the same way.
+!>
+!> On smooth, badly conditioned flexibilities (1e10) pairs close and open again many times while the load grows: the path
+!> takes some n**2/20 pivots, and the tableau's entries, which go up to the condition number and back, lose as many digits on
+!> it. Such a path is not followed to its end: block pivoting decides, which solves each set by a factor of its own; where forces
+!> depend on each other, once each pair has a hair of flexibility of its own.
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: basic_solution
+  use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_loading, only: follow_load, path_complete, path_ray
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: negligible, scaled_problem
-  use epcont_contact_state, only: basic_values, contact_state, fresh_state, has_right_signs
+  use epcont_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, has_right_signs, sign_tolerance
   use epcont_contact_tableau, only: contact_tableau, new_tableau
   implicit none
   private
@@ -16,8 +22,10 @@ module epcont_contact_simplex
 
   !> Part of its forces by which a ray may miss F z = 0 and A'z = 0.
   real(wp), parameter, public :: ray_tolerance = 1.0e-7_wp
-  !> Pivots allowed for each unknown before the order of ties is given up for broken.
-  integer, parameter :: pivots_per_unknown = 10
+  !> Pivots allowed for each unknown before rounding is taken to have broken the path; sound ones were seen to take up to 2.
+  integer, parameter :: pivots_per_unknown = 4
+  !> Flexibility of its own that tells pairs apart whose forces depend on each other; it opens gaps by less than their rounding.
+  real(wp), parameter :: own_flexibility = 1.0e-10_wp
   !> Fresh starts before the problem is given up.
   integer, parameter :: restart_limit = 10
 
@@ -34,6 +42,7 @@ contains
     real(wp), allocatable :: lifted(:)
     logical, allocatable :: closed(:)
     integer :: attempt, outcome
+    logical :: found
 
     closed = first_touching
     if (allocated(guess)) closed = closed .or. guess
@@ -42,22 +51,59 @@ contains
     if (allocated(guess)) lifted = max(basic_values(state), 0.0_wp)
     do attempt = 0, restart_limit
       solution%state = contact_solved
-      if (has_right_signs(scaled, state)) return
+      if (has_right_signs(scaled, state, merge(guess_tolerance, sign_tolerance, attempt == 0))) return
       solution%restarts = attempt
       call follow_load_from(scaled, state, lifted, solution, outcome, closed, ray)
       if (outcome == path_ray .and. is_overlap(scaled, ray)) then
         solution%state = contact_overlap
         return
-      else if (outcome == path_complete .and. mod(attempt, 2) == 0) then
+      end if
+      if (outcome == path_complete .and. mod(attempt, 2) == 0) then
         state = fresh_state(scaled, closed, first_touching)
         lifted = max(basic_values(state), 0.0_wp)
+        if (has_right_signs(scaled, state, sign_tolerance)) return
       else
         state = fresh_state(scaled, first_touching, first_touching)
         lifted = lifted_apart(state, attempt)
       end if
+      if (attempt > 1) cycle
+      call exchange_afresh(scaled, attempt*own_flexibility, first_touching, solution, state, found)
+      if (found) return
     end do
-    if (.not. has_right_signs(scaled, state)) solution%state = contact_stalled
+    if (.not. has_right_signs(scaled, state, sign_tolerance)) solution%state = contact_stalled
   end subroutine find_contacts
+
+  !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless the set is right
+  !! without that too.
+  pure subroutine exchange_afresh(scaled, own, first_touching, solution, state, found)
+    type(scaled_problem), intent(in) :: scaled
+    real(wp), intent(in) :: own                         !! part of the largest flexibility
+    logical, intent(in) :: first_touching(:)            !! [n]
+    type(contact_solution), intent(inout) :: solution
+    type(contact_state), intent(inout) :: state
+    logical, intent(out) :: found
+    type(scaled_problem) :: softer
+    type(contact_solution) :: trial
+    type(contact_state) :: better
+    logical, allocatable :: closed(:)   !! no guess, then the set found [n]
+    integer :: k
+
+    softer = scaled
+    do k = 1, size(scaled%gap)
+      softer%flexibility(k, k) = softer%flexibility(k, k) + own*maxval(abs(scaled%flexibility))
+    end do
+    trial%pivots = solution%pivots
+    call find_by_blocks(softer, first_touching, closed, trial, better, found)
+    if (.not. found) return
+    closed = first_touching
+    closed(better%basis%pairs) = .true.
+    better = fresh_state(scaled, closed, first_touching)
+    found = has_right_signs(scaled, better, sign_tolerance)
+    if (.not. found) return
+    solution%pivots = trial%pivots
+    solution%state = contact_solved
+    state = better
+  end subroutine exchange_afresh
 
   !> One run of the simplex from `lifted` at no load to the state at full load.
   pure subroutine follow_load_from(scaled, state, lifted, solution, outcome, closed, ray)

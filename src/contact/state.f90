@@ -7,8 +7,9 @@ module epcont_contact_state
   private
   public :: contact_state, fresh_state, basic_values, has_right_signs
 
-  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units.
-  real(wp), parameter :: sign_tolerance = 1.0e-10_wp
+  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can be asked where
+  !! the flexibility is badly conditioned, and what is asked of a guess, from which better sets may be found.
+  real(wp), parameter, public :: sign_tolerance = 1.0e-10_wp, guess_tolerance = 1.0e-12_wp
   !> Part of a quantity that rounding leaves where it should cancel.
   real(wp), parameter, public :: noise = 100*epsilon(1.0_wp)
 
@@ -42,13 +43,14 @@ contains
   end function basic_values
 
   !> The test of the fresh solution: R >= 0 and w >= 0, to the rounding of the largest force and gap.
-  pure function has_right_signs(scaled, state) result(right)
+  pure function has_right_signs(scaled, state, tolerance) result(right)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(in) :: state
+    real(wp), intent(in) :: tolerance   !! one of the above
     logical :: right
     real(wp) :: force_tolerance, gap_tolerance
 
-    force_tolerance = sign_tolerance*maxval([abs(state%force), 1.0_wp])
+    force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
     gap_tolerance = force_tolerance + noise*maxval([abs(scaled%gap), 0.0_wp])
     right = all(state%force >= -force_tolerance) .and. all(state%gap >= -gap_tolerance)
   end function has_right_signs

@@ -10,6 +10,9 @@
 !>          +---------------+--------+
 !>     R, w |     entry     |  x - c |  row k: the basic one of R_k, w_k, at first
 !>          +---------------+--------+
+!>
+!> A pivot adds a column times a row to the entries. These are kept apart until there are `panel` of them, and then added by
+!> one dgemm; a column or a row of the tableau is put together when it is asked for:  entry = settled + left right.
 module epcont_contact_tableau
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, respond
@@ -17,13 +20,19 @@ module epcont_contact_tableau
   use epcont_linalg_dense, only: add_product
   implicit none
   private
-  public :: contact_tableau, new_tableau, pivot, row_of, column_of
+  public :: contact_tableau, new_tableau, pivot, row_of, column_of, entries_of_column, entries_of_rows
 
   !> The variable that carries the load from 0 to 1.
   integer, parameter, public :: load_factor = 0
 
+  !> Pivots whose products are added together.
+  integer, parameter :: panel = 16
+
   type :: contact_tableau
-    real(wp), allocatable :: entry(:, :)   !! [n, n + 1]
+    real(wp), allocatable :: settled(:, :) !! the entries but for the last pivots [n, n + 1]
+    integer :: pending = 0                 !! of these there are so many
+    real(wp), allocatable :: left(:, :)    !! [n, panel]
+    real(wp), allocatable :: right(:, :)   !! [panel, n + 1]
     real(wp), allocatable :: value(:)      !! basic variables [n]
     integer, allocatable :: basic(:)       !! variable of each row [n]
     integer, allocatable :: nonbasic(:)    !! variable of each column [n + 1]
@@ -54,9 +63,9 @@ contains
     end do
     tableau%place(load_factor) = -(n + 1)
     tableau%value = start
-    allocate (tableau%entry(n, n + 1))
-    call fill_entries(problem, basis, tableau%entry(:, :n))
-    tableau%entry(:, n + 1) = goal - start
+    allocate (tableau%settled(n, n + 1), tableau%left(n, panel), tableau%right(panel, n + 1))
+    call fill_entries(problem, basis, tableau%settled(:, :n))
+    tableau%settled(:, n + 1) = goal - start
   end function new_tableau
 
   !> Response of the basic variables to unit nonbasic ones: gaps of the pairs in contact, forces of the others.
@@ -101,25 +110,60 @@ contains
     column = max(-tableau%place(variable), 0)
   end function column_of
 
+  !> The entries of a column.
+  pure function entries_of_column(tableau, column) result(entry)
+    type(contact_tableau), intent(in) :: tableau
+    integer, intent(in) :: column
+    real(wp), allocatable :: entry(:)
+    integer :: i
+
+    entry = tableau%settled(:, column)
+    do i = 1, tableau%pending
+      if (tableau%right(i, column) /= 0.0_wp) entry = entry + tableau%right(i, column)*tableau%left(:, i)
+    end do
+  end function entries_of_column
+
+  !> Those of some rows in a column.
+  pure function entries_of_rows(tableau, rows, column) result(entry)
+    type(contact_tableau), intent(in) :: tableau
+    integer, intent(in) :: rows(:), column
+    real(wp) :: entry(size(rows))
+    integer :: i
+
+    entry = tableau%settled(rows, column)
+    do i = 1, tableau%pending
+      entry = entry + tableau%right(i, column)*tableau%left(rows, i)
+    end do
+  end function entries_of_rows
+
   !> Exchange the basic variable of `row` with the nonbasic one of `column`.
-  pure subroutine pivot(tableau, row, column)
+  pure subroutine pivot(tableau, row, column, slope)
     type(contact_tableau), intent(inout) :: tableau
     integer, intent(in) :: row, column
-    real(wp), allocatable :: slope(:)   !! change of each basic variable with the entering one [n]
-    real(wp) :: coefficient, divisor, ratio
+    real(wp), intent(in) :: slope(:)   !! entries of the column: change of the basic variables with the entering one [n]
+    real(wp) :: ratio
     integer :: entering, j, leaving
 
-    slope = tableau%entry(:, column)
-    divisor = slope(row)
-    ratio = max(tableau%value(row), 0.0_wp)/(-divisor)
-    do j = 1, size(tableau%nonbasic)
-      coefficient = -tableau%entry(row, j)/divisor
-      if (j == column .or. coefficient == 0.0_wp) cycle
-      tableau%entry(:, j) = tableau%entry(:, j) + coefficient*slope
-      tableau%entry(row, j) = coefficient
-    end do
-    tableau%entry(:, column) = slope/divisor
-    tableau%entry(row, column) = 1.0_wp/divisor
+    ratio = max(tableau%value(row), 0.0_wp)/(-slope(row))
+    if (tableau%pending == panel) then
+      call add_product(1.0_wp, tableau%left, tableau%right, tableau%settled)
+      tableau%pending = 0
+    end if
+    ! The entering row and the leaving column are replaced as a whole by the product; the others change by it.
+    associate (p => tableau%pending + 1)
+      do j = 1, size(tableau%nonbasic)
+        tableau%right(p, j) = -(tableau%settled(row, j) + dot_product(tableau%left(row, :p - 1), tableau%right(:p - 1, j))) &
+                              /slope(row)
+        tableau%settled(row, j) = 0.0_wp
+      end do
+      tableau%right(:p - 1, column) = 0.0_wp
+      tableau%right(p, column) = 1.0_wp/slope(row)
+      tableau%settled(:, column) = 0.0_wp
+      tableau%left(row, :p - 1) = 0.0_wp
+      tableau%left(:, p) = slope
+      tableau%left(row, p) = 1.0_wp
+    end associate
+    tableau%pending = tableau%pending + 1
     tableau%value = tableau%value + ratio*slope
     tableau%value(row) = ratio
 

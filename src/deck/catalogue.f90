@@ -331,7 +331,7 @@ contains
 
   !> All PARAMs: the field VALUE for each NAME.
   function parameters() result(field)
-    type(field_entry) :: field(10)
+    type(field_entry) :: field(11)
 
     field(1) = word_field(3, 'PLANE', 'every PSHELL with blank MID2', choices='STRAIN STRESS')
     field(2) = word_field(3, 'RULE', 'contact entry rule; default AUTO', choices='AUTO CONRY BLOCK')
@@ -348,6 +348,8 @@ contains
     field(9) = integer_field(3, 'NLOAD', 'load steps; default 1', 1, 10000)
     field(10) = positive(real_field(3, 'SEARCH', 'how far BCONP looks for a segment; default twice the longest segment of the'// &
                                     ' two lines', 'length'))
+    field(11) = word_field(3, 'SOLVER', 'matrices of the bodies: panels of a band, or MUMPS; default AUTO', &
+                           choices='AUTO BAND SPARSE')
     field%required = .true.
   end function parameters
 

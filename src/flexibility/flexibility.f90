@@ -24,11 +24,7 @@ contains
 
     if (numbering%body(b)%contact_equations + numbering%body(b)%border == 0) return
     call body_rows(model, numbering, b, start, equation, weight)
-    if (numbering%body(b)%contact_last) then
-      call add_by_inversion(stiffness, numbering%body(b)%contact_equations, start, equation, weight, flexibility)
-    else
-      call stiffness%band%add_gram(start, equation, weight, flexibility)
-    end if
+    call stiffness%matrix%add_gram(start, equation, weight, flexibility)
     if (numbering%body(b)%border > 0) call add_border(stiffness, start, equation, weight, flexibility)
   end subroutine add_body_flexibility
 
@@ -62,36 +58,6 @@ contains
     end do
     start(model%pairs + 1) = last + 1
   end subroutine body_rows
-
-  !> N K_bb^-1 N' of the band alone, whose last equations are the contact's: its trailing inverse, seen by the rows.
-  pure subroutine add_by_inversion(stiffness, count, start, equation, weight, flexibility)
-    type(body_stiffness), intent(in) :: stiffness
-    integer, intent(in) :: count                   !! contact equations
-    integer, intent(in) :: start(:), equation(:)
-    real(wp), intent(in) :: weight(:)
-    real(wp), intent(inout) :: flexibility(:, :)
-    real(wp), allocatable :: compliance(:, :), response(:)
-    real(wp) :: opening
-    integer :: before, i, j, k, l
-
-    compliance = stiffness%band%trailing_inverse(count)
-    before = stiffness%band%order - count
-    allocate (response(count))
-    do l = 1, size(start) - 1
-      response = 0.0_wp
-      do j = start(l), start(l + 1) - 1
-        if (equation(j) > 0) response = response + weight(j)*compliance(:, equation(j) - before)
-      end do
-      do k = l, size(start) - 1
-        opening = 0.0_wp
-        do i = start(k), start(k + 1) - 1
-          if (equation(i) > 0) opening = opening + weight(i)*response(equation(i) - before)
-        end do
-        flexibility(k, l) = flexibility(k, l) + opening
-        if (k > l) flexibility(l, k) = flexibility(l, k) + opening
-      end do
-    end do
-  end subroutine add_by_inversion
 
   !> What the border adds: K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'.
   pure subroutine add_border(stiffness, start, equation, weight, flexibility)

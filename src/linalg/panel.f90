@@ -13,24 +13,27 @@ module epcont_linalg_panel
   use epcont_base_kinds, only: i8, wp
   use epcont_base_large_pages, only: use_large_pages
   use epcont_base_sorting, only: sorted_order
+  use epcont_linalg_assembled, only: add_seen_through, assembled_matrix
   use epcont_linalg_dense, only: cholesky_inverse
-  use epcont_linalg_factored, only: factored_matrix
   use epcont_linalg_lapack, only: dgemm, dgemv, dpotrf, dsyrk, dtrsm, dtrsv
+  use epcont_linalg_panel_layout, only: find_panels
   implicit none
   private
-  public :: panel_matrix, panel_entries, panel_operations, gram_operations
+  public :: panel_matrix
 
-  !> Columns of a panel, as a part of the mean height, and at least and at most.
-  integer, parameter :: heights_a_width = 4, least_width = 16, most_width = 64
-
-  type, extends(factored_matrix) :: panel_matrix
+  type, extends(assembled_matrix) :: panel_matrix
     integer :: width = 1                   !! columns of a panel; the last may have fewer
     integer, allocatable :: first(:)       !! first column of each panel [panels + 1]
     integer, allocatable :: last(:)        !! last row of each panel [panels]
     integer(i8), allocatable :: start(:)   !! of each panel in `entries` [panels + 1]
     real(wp), allocatable :: entries(:)
+    integer :: trailing = 0                !! last equations, the only ones that `add_gram` is asked for; 0: any
+    integer :: kept = 0                    !! panels at the front whose factor stands: the others are filled and factored anew
+    real(wp), allocatable :: pivot_ratio(:)   !! pivot**2 over the diagonal entry [order]
+    real(wp), allocatable :: row_sum(:)       !! of magnitudes, what each panel adds to those of its rows [heights of all panels]
   contains
     procedure :: begin
+    procedure :: clear
     procedure :: add
     procedure :: factor
     procedure :: solve
@@ -44,93 +47,37 @@ contains
 
   !> Begin a matrix of zeros. `reach` is the last row that each column is coupled with [order]. (A function would hand
   !! back a copy of the whole matrix.)
-  subroutine begin(self, reach)
+  subroutine begin(self, reach, trailing)
     class(panel_matrix), intent(inout) :: self
     integer, intent(in) :: reach(:)
-    integer :: p
+    integer, intent(in) :: trailing        !! as above
+    integer :: from, p, status
 
-    if (.not. allocated(self%entries)) then
-      self%order = size(reach)
-      call find_panels(reach, self%width, self%first, self%last)
-      allocate (self%start(size(self%first)))
-      self%start(1) = 1
-      do p = 1, size(self%last)
-        self%start(p + 1) = self%start(p) + int(self%height(p), i8)*self%columns(p)
-      end do
-      allocate (self%entries(self%start(size(self%start))))   ! one more, behind the last
-      call use_large_pages(self%entries)
-    end if
-    self%entries = 0.0_wp
+    self%order = size(reach)
+    self%trailing = trailing
+    call find_panels(reach, self%width, self%first, self%last)
+    allocate (self%start(size(self%first)))
+    self%start(1) = 1
+    do p = 1, size(self%last)
+      self%start(p + 1) = self%start(p) + int(self%height(p), i8)*self%columns(p)
+    end do
+    allocate (self%entries(self%start(size(self%start))), stat=status)   ! one more, behind the last
+    self%lacks_memory = status /= 0
+    if (self%lacks_memory) return
+    call use_large_pages(self%entries)
+    allocate (self%pivot_ratio(self%order), self%row_sum(sum(self%last - self%first(:size(self%last)) + 1)))
+    from = 1
+    call self%clear(from)
   end subroutine begin
 
-  !> Panels of a matrix: where each begins, and its last row.
-  pure subroutine find_panels(reach, width, first, last)
-    integer, intent(in) :: reach(:)
-    integer, intent(out) :: width
-    integer, allocatable, intent(out) :: first(:), last(:)
-    integer(i8) :: heights
-    integer :: p, panels
+  pure subroutine clear(self, from)
+    class(panel_matrix), intent(inout) :: self
+    integer, intent(inout) :: from
 
-    heights = 0
-    do p = 1, size(reach)
-      heights = heights + (reach(p) - p + 1)
-    end do
-    width = int(heights/max(1, size(reach)))/heights_a_width
-    width = min(most_width, max(least_width, width - mod(width, 8)))
-    panels = (size(reach) + width - 1)/width
-    first = [(1 + (p - 1)*width, p=1, panels), size(reach) + 1]
-    allocate (last(panels))
-    do p = 1, panels
-      last(p) = max(first(p + 1) - 1, maxval(reach(first(p):first(p + 1) - 1)))
-      if (p > 1) then
-        if (last(p - 1) >= first(p)) last(p) = max(last(p), last(p - 1))
-      end if
-    end do
-  end subroutine find_panels
-
-  !> Entries that a matrix takes.
-  pure integer(i8) function panel_entries(reach) result(entries)
-    integer, intent(in) :: reach(:)
-    integer, allocatable :: first(:), last(:)
-    integer :: p, width
-
-    call find_panels(reach, width, first, last)
-    entries = 0
-    do p = 1, size(last)
-      entries = entries + int(last(p) - first(p) + 1, i8)*(first(p + 1) - first(p))
-    end do
-  end function panel_entries
-
-  !> Operations that its factorization takes.
-  pure real(wp) function panel_operations(reach) result(operations)
-    integer, intent(in) :: reach(:)
-    integer, allocatable :: first(:), last(:)
-    integer :: p, width
-
-    call find_panels(reach, width, first, last)
-    operations = 0.0_wp
-    do p = 1, size(last)
-      operations = operations + real(first(p + 1) - first(p), wp)*real(last(p) - first(p) + 1, wp)**2
-    end do
-  end function panel_operations
-
-  !> Operations of `add_gram` for columns that begin at these equations, ascending.
-  pure real(wp) function gram_operations(reach, begins) result(operations)
-    integer, intent(in) :: reach(:), begins(:)
-    integer, allocatable :: first(:), last(:)
-    integer :: active, p, width
-
-    call find_panels(reach, width, first, last)
-    operations = 0.0_wp
-    active = 0
-    do p = 1, size(last)
-      do while (active < size(begins))
-        if (begins(active + 1) >= first(p + 1)) exit
-        active = active + 1
-      end do
-      operations = operations + real(width, wp)*active*(2.0_wp*(last(p) - first(p) + 1) + active)
-    end do
-  end function gram_operations
+    self%kept = (from - 1)/self%width
+    from = self%first(self%kept + 1)
+    self%entries(self%start(self%kept + 1):) = 0.0_wp
+  end subroutine clear
 
   pure integer function height(self, panel)
     class(panel_matrix), intent(in) :: self
@@ -146,35 +93,45 @@ contains
     columns = self%first(panel + 1) - self%first(panel)
   end function columns
 
-  !> Add to the entry of a row and a column, row >= column.
-  pure subroutine add(self, row, column, value)
+  pure subroutine add(self, k, numbers)
     class(panel_matrix), intent(inout) :: self
-    integer, intent(in) :: row, column
-    real(wp), intent(in) :: value
-    integer :: p
-    integer(i8) :: at
+    real(wp), intent(in) :: k(:, :)
+    integer, intent(in) :: numbers(:)
+    integer :: i, j, p
+    integer(i8) :: above
 
-    p = (column - 1)/self%width + 1
-    associate (f => self%first(p))
-      at = self%start(p) + int(column - f, i8)*(self%last(p) - f + 1) + (row - f)
-    end associate
-    self%entries(at) = self%entries(at) + value
+    do j = 1, size(numbers)
+      if (numbers(j) <= 0) cycle
+      p = (numbers(j) - 1)/self%width + 1
+      if (p <= self%kept) cycle
+      associate (f => self%first(p))
+        above = self%start(p) + int(numbers(j) - f, i8)*(self%last(p) - f + 1) - f   ! where row 0 of the column would be
+      end associate
+      do i = 1, size(numbers)
+        if (numbers(i) >= numbers(j)) self%entries(above + numbers(i)) = self%entries(above + numbers(i)) + k(i, j)
+      end do
+    end do
   end subroutine add
 
-  !> Replace the matrix by its Cholesky factor. Many singular matrices pass for definite, so the squared ratio of each
-  !! pivot to its diagonal entry is returned as well.
+  !> Panel by panel: measured, rid of what the panels before take off it, factored. Thus each is brought from memory once.
   pure subroutine factor(self, smallest_ratio, at)
     class(panel_matrix), intent(inout) :: self
-    real(wp), intent(out) :: smallest_ratio  !! smallest pivot**2 / diagonal; 0 where the matrix is not definite
-    integer, intent(out) :: at               !! its row
-    real(wp), allocatable :: diagonal(:)
-    integer :: info, p
+    real(wp), intent(out) :: smallest_ratio
+    integer, intent(out) :: at
+    integer :: before, info, p, q
 
     smallest_ratio = 1.0_wp
     at = 0
     if (self%order == 0) return
-    call measure(self, diagonal)
-    do p = 1, size(self%last)
+    before = 1
+    do p = self%kept + 1, size(self%last)
+      call measure(self, p)
+      do while (self%last(before) < self%first(p))
+        before = before + 1
+      end do
+      do q = before, p - 1
+        call take_off(self, q, p)
+      end do
       associate (h => self%height(p), w => self%columns(p), s => self%start(p))
         call dpotrf('L', w, self%entries(s), h, info)
         if (info > 0) then
@@ -182,78 +139,91 @@ contains
           at = self%first(p) - 1 + info
           return
         end if
-        call compare_pivots(self, p, diagonal, smallest_ratio, at)
-        if (h == w) cycle
-        call dtrsm('R', 'L', 'T', 'N', h - w, w, 1.0_wp, self%entries(s), h, self%entries(s + w), h)
+        if (h > w) call dtrsm('R', 'L', 'T', 'N', h - w, w, 1.0_wp, self%entries(s), h, self%entries(s + w), h)
       end associate
-      call update(self, p)
+      call compare_pivots(self, p)
     end do
+    self%norm = largest_row_sum(self)
+    at = minloc(self%pivot_ratio, dim=1)
+    smallest_ratio = self%pivot_ratio(at)
   end subroutine factor
 
-  !> Diagonal, and the 1-norm.
-  pure subroutine measure(self, diagonal)
+  !> Diagonal of a panel, and its part of the sums of the rows.
+  pure subroutine measure(self, p)
     class(panel_matrix), intent(inout) :: self
-    real(wp), allocatable, intent(out) :: diagonal(:)
-    real(wp), allocatable :: row_sum(:)
+    integer, intent(in) :: p
     real(wp) :: total
-    integer :: i, j, p
+    integer :: i, j
     integer(i8) :: at
 
-    allocate (diagonal(self%order), row_sum(self%order))
-    row_sum = 0.0_wp
-    do p = 1, size(self%last)
-      do j = self%first(p), self%first(p + 1) - 1
-        at = self%start(p) + int(j - self%first(p), i8)*(self%height(p) + 1)   ! of the diagonal entry
-        diagonal(j) = self%entries(at)
-        total = abs(diagonal(j))
+    associate (f => self%first(p), row_sum => self%row_sum(rows_before(self, p) + 1:rows_before(self, p) + self%height(p)))
+      row_sum = 0.0_wp
+      do j = f, self%first(p + 1) - 1
+        at = self%start(p) + int(j - f, i8)*(self%height(p) + 1)   ! of the diagonal entry
+        self%pivot_ratio(j) = self%entries(at)
+        total = abs(self%entries(at))
         do i = j + 1, self%last(p)
           associate (entry => abs(self%entries(at + i - j)))
             total = total + entry
-            row_sum(i) = row_sum(i) + entry
+            row_sum(i - f + 1) = row_sum(i - f + 1) + entry
           end associate
         end do
-        row_sum(j) = row_sum(j) + total
+        row_sum(j - f + 1) = row_sum(j - f + 1) + total
       end do
-    end do
-    self%norm = maxval(row_sum)
+    end associate
   end subroutine measure
 
-  pure subroutine compare_pivots(self, p, diagonal, smallest_ratio, at)
-    class(panel_matrix), intent(in) :: self
+  !> Rows of all panels before one, which all have the full width.
+  pure integer function rows_before(self, p)
+    type(panel_matrix), intent(in) :: self
     integer, intent(in) :: p
-    real(wp), intent(in) :: diagonal(:)
-    real(wp), intent(inout) :: smallest_ratio
-    integer, intent(inout) :: at
-    real(wp) :: ratio
+
+    rows_before = int((self%start(p) - 1)/self%width)
+  end function rows_before
+
+  !> The 1-norm of the symmetric matrix.
+  pure real(wp) function largest_row_sum(self)
+    type(panel_matrix), intent(in) :: self
+    real(wp), allocatable :: total(:)
+    integer :: p
+
+    allocate (total(self%order), source=0.0_wp)
+    do p = 1, size(self%last)
+      associate (f => self%first(p), l => self%last(p), before => rows_before(self, p))
+        total(f:l) = total(f:l) + self%row_sum(before + 1:before + l - f + 1)
+      end associate
+    end do
+    largest_row_sum = maxval(total)
+  end function largest_row_sum
+
+  !> Compare the pivots of a factored panel with the diagonal that `measure` has put aside.
+  pure subroutine compare_pivots(self, p)
+    class(panel_matrix), intent(inout) :: self
+    integer, intent(in) :: p
     integer :: j
 
     do j = self%first(p), self%first(p + 1) - 1
-      ratio = self%entries(self%start(p) + int(j - self%first(p), i8)*(self%height(p) + 1))**2/diagonal(j)
-      if (at > 0 .and. ratio >= smallest_ratio) cycle
-      smallest_ratio = ratio
-      at = j
+      self%pivot_ratio(j) = self%entries(self%start(p) + int(j - self%first(p), i8)*(self%height(p) + 1))**2 &
+                            /self%pivot_ratio(j)
     end do
   end subroutine compare_pivots
 
-  !> Take a factored panel off the panels that it reaches.
-  pure subroutine update(self, p)
+  !> Take off a panel what a factored one before it, which reaches it, eliminates from it.
+  pure subroutine take_off(self, factored, p)
     class(panel_matrix), intent(inout) :: self
-    integer, intent(in) :: p
-    integer :: h, q, rows, w
+    integer, intent(in) :: factored, p
+    integer :: h, rows, w
     integer(i8) :: from
 
-    h = self%height(p)
-    do q = p + 1, size(self%last)
-      if (self%first(q) > self%last(p)) exit
-      w = min(self%columns(q), self%last(p) - self%first(q) + 1)
-      rows = self%last(p) - self%first(q) + 1
-      from = self%start(p) + (self%first(q) - self%first(p))
-      call dsyrk('L', 'N', w, self%columns(p), -1.0_wp, self%entries(from), h, 1.0_wp, &
-                 self%entries(self%start(q)), self%height(q))
-      if (rows > w) call dgemm('N', 'T', rows - w, w, self%columns(p), -1.0_wp, self%entries(from + w), h, &
-                               self%entries(from), h, 1.0_wp, self%entries(self%start(q) + w), self%height(q))
-    end do
-  end subroutine update
+    h = self%height(factored)
+    rows = self%last(factored) - self%first(p) + 1
+    w = min(self%columns(p), rows)
+    from = self%start(factored) + (self%first(p) - self%first(factored))
+    call dsyrk('L', 'N', w, self%columns(factored), -1.0_wp, self%entries(from), h, 1.0_wp, &
+               self%entries(self%start(p)), self%height(p))
+    if (rows > w) call dgemm('N', 'T', rows - w, w, self%columns(factored), -1.0_wp, self%entries(from + w), h, &
+                             self%entries(from), h, 1.0_wp, self%entries(self%start(p) + w), self%height(p))
+  end subroutine take_off
 
   !> Solve with the factor, in place. Each panel is taken from memory once each way, for all right-hand sides.
   pure subroutine solve(self, x)
@@ -302,15 +272,26 @@ contains
     call cholesky_inverse(inverse)
   end function trailing_inverse
 
-  !> Add N K^-1 N' from the factor, N given by rows: entries start(k) to start(k+1)-1 of row k are equations and weights.
-  !! With X = L^-1 N', taken panel by panel through a window as high as the highest, it is X'X: no right-hand side is
-  !! touched before its first equation, and none is ever stored whole.
   pure subroutine add_gram(self, start, equation, weight, gram)
     class(panel_matrix), intent(in) :: self
-    integer, intent(in) :: start(:)             !! [rows + 1]
-    integer, intent(in) :: equation(:)          !! those that are not positive count for nothing [entries]
-    real(wp), intent(in) :: weight(:)           !! [entries]
-    real(wp), intent(inout) :: gram(:, :)       !! [rows, rows]
+    integer, intent(in) :: start(:), equation(:)
+    real(wp), intent(in) :: weight(:)
+    real(wp), intent(inout) :: gram(:, :)
+
+    if (self%trailing > 0) then
+      call add_seen_through(self%trailing_inverse(self%trailing), start, equation - (self%order - self%trailing), weight, gram)
+    else
+      call substitute(self, start, equation, weight, gram)
+    end if
+  end subroutine add_gram
+
+  !> The same for any equations. With X = L^-1 N', taken panel by panel through a window as high as the highest, it is
+  !! X'X: no right-hand side is touched before its first equation, and none is ever stored whole.
+  pure subroutine substitute(self, start, equation, weight, gram)
+    class(panel_matrix), intent(in) :: self
+    integer, intent(in) :: start(:), equation(:)
+    real(wp), intent(in) :: weight(:)
+    real(wp), intent(inout) :: gram(:, :)
     real(wp), allocatable :: product(:, :), window(:, :)
     integer, allocatable :: begins(:), column(:), entry(:), order(:), row_of(:)
     integer :: active, e, h, highest, k, n, p, w
@@ -360,5 +341,5 @@ contains
       gram(order(k:), order(k)) = gram(order(k:), order(k)) + product(k:, k)
       gram(order(k), order(k + 1:)) = gram(order(k), order(k + 1:)) + product(k + 1:, k)
     end do
-  end subroutine add_gram
+  end subroutine substitute
 end module epcont_linalg_panel

@@ -14,6 +14,7 @@ module epcont_material_linear_law
     real(wp), allocatable :: initial_stress(:, :)   !! [stress] [4, points]
   contains
     procedure :: stress
+    procedure :: increment
   end type linear_law
 
 contains
@@ -39,11 +40,20 @@ contains
     class(linear_law), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [4, points]
     real(wp), allocatable :: stress(:, :)
+
+    stress = self%increment(strain) + self%initial_stress
+  end function stress
+
+  !> What a strain adds to the stress of each point [4, points].
+  pure function increment(self, strain)
+    class(linear_law), intent(in) :: self
+    real(wp), intent(in) :: strain(:, :)   !! [4, points]
+    real(wp), allocatable :: increment(:, :)
     integer :: p
 
-    allocate (stress, mold=strain)
+    allocate (increment, mold=strain)
     do p = 1, size(strain, 2)
-      stress(:, p) = matmul(self%matrix(:, :, p), strain(:, p)) + self%initial_stress(:, p)
+      increment(:, p) = matmul(self%matrix(:, :, p), strain(:, p))
     end do
-  end function stress
+  end function increment
 end module epcont_material_linear_law

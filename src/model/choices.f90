@@ -4,7 +4,7 @@ module epcont_model_choices
   use epcont_deck_card_kinds, only: card_param, card_pshell, card_psolid
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_model_controls, only: method_name, method_newton, rule_name
+  use epcont_model_controls, only: method_name, method_newton, rule_name, solver_name
   use epcont_model_model, only: model_type, plane_strain
   implicit none
   private
@@ -27,6 +27,10 @@ contains
     word = deck%parameter_word('RULE', 'AUTO')
     do k = lbound(rule_name, 1), ubound(rule_name, 1)
       if (rule_name(k) == word) model%controls%rule = k
+    end do
+    word = deck%parameter_word('SOLVER', 'AUTO')
+    do k = lbound(solver_name, 1), ubound(solver_name, 1)
+      if (solver_name(k) == word) model%controls%solver = k
     end do
     model%controls%tolerance = deck%parameter_value('TOL', 0.0_wp)
     model%controls%most_iterations = nint(deck%parameter_value('MAXIT', 100.0_wp))

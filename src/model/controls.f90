@@ -1,4 +1,4 @@
-!> What the deck asks of the contact solver and of the plastic iteration.
+!> What the deck asks of the solvers, of contact and of equations, and of the plastic iteration.
 module epcont_model_controls
   use epcont_base_kinds, only: wp
   implicit none
@@ -15,9 +15,15 @@ module epcont_model_controls
   !> Their names in a deck, from rule_auto on.
   character(len=*), parameter, public :: rule_name(0:2) = ['AUTO ', 'CONRY', 'BLOCK']
 
+  !> PARAM SOLVER.
+  integer, parameter, public :: solver_auto = 0, solver_band = 1, solver_sparse = 2
+  !> Their names in a deck, from solver_auto on.
+  character(len=*), parameter, public :: solver_name(0:2) = ['AUTO  ', 'BAND  ', 'SPARSE']
+
   type :: controls_type
     integer :: rule = rule_auto        !! one of its kind above
     integer :: method = method_auto    !! one of its kind above
+    integer :: solver = solver_auto    !! one of its kind above
     real(wp) :: tolerance = 0.0_wp     !! PARAM TOL; 0: that of the method
     integer :: most_iterations = 100   !! of a load step
     integer :: load_steps = 1

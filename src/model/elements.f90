@@ -104,7 +104,7 @@ contains
                             ' lie on one line', 'corners that span an area')
       return
     end if
-    if (n == 4 .and. .not. bends_one_way(x, sign(1.0_wp, area), sliver*longest)) then
+    if (.not. bends_one_way(x(:, :n), sign(1.0_wp, area), sliver*longest)) then
       call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &
                             ' cross over, bend inwards or lie on one line', 'four corners in turn, each bending the same way')
       return
@@ -113,17 +113,17 @@ contains
     if (model%order(e) == 6) call check_middles(deck, card, i, model%coordinates(e), faults)
   end subroutine check_shape
 
-  !> Does the boundary of a quadrilateral bend by more than `least` at each corner, to the left where `way` is 1, else
-  !! to the right?
+  !> Does a boundary bend by more than `least` at each corner, to the left where `way` is 1, else to the right?
   pure logical function bends_one_way(x, way, least)
-    real(wp), intent(in) :: x(:, :)   !! [2, 4]
+    real(wp), intent(in) :: x(:, :)   !! corners [2, any]
     real(wp), intent(in) :: way       !! 1 or -1
     real(wp), intent(in) :: least     !! [length**2]
-    integer :: k
+    integer :: k, n
 
+    n = size(x, 2)
     bends_one_way = .false.
-    do k = 1, 4
-      if (way*cross_product(x(:, k) - x(:, mod(k + 2, 4) + 1), x(:, mod(k, 4) + 1) - x(:, k)) <= least) return
+    do k = 1, n
+      if (way*cross_product(x(:2, k) - x(:2, mod(k + n - 2, n) + 1), x(:2, mod(k, n) + 1) - x(:2, k)) <= least) return
     end do
     bends_one_way = .true.
   end function bends_one_way

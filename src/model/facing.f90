@@ -2,6 +2,7 @@
 module epcont_model_facing
   use epcont_base_kinds, only: wp
   use epcont_model_boundary_line, only: boundary_line, facing_place
+  use epcont_model_side_boxes, only: side_boxes
   implicit none
   private
   public :: facing_type, find_nearest
@@ -10,6 +11,9 @@ module epcont_model_facing
   real(wp), parameter :: equal = 1.0e-9_wp
   !> A gap below so many roundings of the coordinates is none.
   real(wp), parameter :: roundings = 16.0_wp*epsilon(1.0_wp)
+  !> Most points have the line before their eyes: it is looked for within search/widening**rounds first.
+  real(wp), parameter :: widening = 8.0_wp
+  integer, parameter :: rounds = 3
 
   type :: facing_type
     type(facing_place) :: place
@@ -21,21 +25,39 @@ contains
 
   !> The side of a line that a point faces nearest by, not farther than `search`; `outward` is the normal of the boundary
   !! to which the point belongs. Sides that end at node `except` do not count.
-  pure function find_nearest(line, x, outward, search, except) result(best)
+  pure function find_nearest(line, boxes, x, outward, search, except) result(best)
     type(boundary_line), intent(in) :: line
+    type(side_boxes), intent(in) :: boxes   !! of the line
+    real(wp), intent(in) :: x(2), outward(2), search
+    integer, intent(in) :: except
+    type(facing_type) :: best
+    real(wp) :: within
+    integer :: round
+
+    do round = rounds, 0, -1
+      within = search/widening**round
+      best = nearest_of(line, boxes%near(x, within), x, outward, search, except)
+      ! Sides that were left out are farther than `within`.
+      if (best%place%found .and. abs(best%place%gap) < within - 2.0_wp*equal*search) exit
+    end do
+    if (abs(best%place%gap) <= roundings*maxval(abs(x))) best%place%gap = 0.0_wp
+    best%same_way = best%same_way .and. .not. best%place%found
+  end function find_nearest
+
+  !> The same among a few sides of the line.
+  pure function nearest_of(line, sides, x, outward, search, except) result(best)
+    type(boundary_line), intent(in) :: line
+    integer, intent(in) :: sides(:)
     real(wp), intent(in) :: x(2), outward(2), search
     integer, intent(in) :: except
     type(facing_type) :: best
     type(facing_place) :: place
-    real(wp) :: better, reach
-    integer :: i
+    real(wp) :: better
+    integer :: i, k
 
-    do i = 1, size(line%element)
+    do k = 1, size(sides)
+      i = sides(k)
       if (any(line%segment(:, i) == except) .and. except > 0) cycle
-      associate (a => line%x(:, 1, i), b => line%x(:, 2, i))
-        reach = search + norm2(b - a)
-        if (any(abs(x - 0.5_wp*(a + b)) > reach)) cycle
-      end associate
       place = line%face(i, x)
       if (.not. place%found .or. abs(place%gap) > search) cycle
       if (dot_product(place%normal, outward) >= 0.0_wp) then
@@ -54,9 +76,7 @@ contains
       best%place = place
       best%segment = i
     end do
-    if (abs(best%place%gap) <= roundings*maxval(abs(x))) best%place%gap = 0.0_wp
-    best%same_way = best%same_way .and. .not. best%place%found
-  end function find_nearest
+  end function nearest_of
 
   !> Of two sides that are faced equally well at their corner none is the better one: between their normals.
   pure subroutine take_mean(other, place)

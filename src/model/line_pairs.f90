@@ -12,6 +12,7 @@ module epcont_model_line_pairs
   use epcont_model_model, only: axisymmetric, line_contact, model_type
   use epcont_model_mortar, only: mortar_rows
   use epcont_model_reference, only: check_unique, index_of_ids, resolve
+  use epcont_model_side_boxes, only: new_side_boxes, side_boxes
   implicit none
   private
   public :: build_line_pairs
@@ -42,6 +43,7 @@ contains
     type(diagnostics), intent(inout) :: faults
     type(faces_type) :: faces
     type(id_index) :: lines
+    type(side_boxes) :: boxes   !! of the master line
     logical, allocatable :: used(:)
     integer :: i
     logical :: sound
@@ -70,13 +72,14 @@ contains
           associate (slave => model%line(contact%slave), master => model%line(contact%master))
             if (size(slave%element) == 0 .or. size(master%element) == 0 .or. .not. sound) cycle   ! said of line or element
             contact%search = deck%parameter_value('SEARCH', default_search*max(slave%longest(), master%longest()))
-            call find_faces(model, slave, master, contact%search, faces)
+            boxes = new_side_boxes(master)
+            call find_faces(model, slave, master, boxes, contact%search, faces)
           end associate
           if (size(faces%node) == 0) then
             call add_nothing_faced(deck, i, model, faces%same_way, faults)
             cycle
           end if
-          call add_pairs(faces, model, contact)
+          call add_pairs(faces, boxes, model, contact)
           call warn_of_overlap(deck, i, model, contact, faults)
           call warn_of_finer_slave(deck, i, model, faces, faults)
         end associate
@@ -89,9 +92,10 @@ contains
   end subroutine build_line_pairs
 
   !> What the nodes of one line face of another, in their order along the line.
-  pure subroutine find_faces(model, slave, master, search, faces)
+  pure subroutine find_faces(model, slave, master, boxes, search, faces)
     type(model_type), intent(in) :: model
     type(boundary_line), intent(in) :: slave, master
+    type(side_boxes), intent(in) :: boxes   !! of the master line
     real(wp), intent(in) :: search
     type(faces_type), intent(out) :: faces
     type(facing_type) :: facing
@@ -114,7 +118,7 @@ contains
           end if
         end if
         associate (node => slave%segment(which, s))
-          facing = find_nearest(master, model%x(:, node), slave%outward(s, which), search, node)
+          facing = find_nearest(master, boxes, model%x(:, node), slave%outward(s, which), search, node)
           new = which > 1 .or. s == 1
           if (which == 1 .and. s > 1) new = .not. joined(faces%row_of(2, s - 1))
           if (which == 2 .and. s == sides .and. slave%closed) new = .not. joined(faces%row_of(1, 1))
@@ -152,32 +156,34 @@ contains
   end subroutine find_faces
 
   !> Append pairs, with their rows of N: the slave node is B, the master line's nodes are A.
-  subroutine add_pairs(faces, model, contact)
+  subroutine add_pairs(faces, boxes, model, contact)
     type(faces_type), intent(in) :: faces
+    type(side_boxes), intent(in) :: boxes   !! of the master line
     type(model_type), intent(inout) :: model
     type(line_contact), intent(inout) :: contact
-    integer, allocatable :: start(:), node(:), nodes(:)
+    integer, allocatable :: start(:), node(:), nodes(:), most(:), row_end(:)
     real(wp), allocatable :: weight(:), weights(:)
     integer :: i, n
 
     n = size(faces%node)
     associate (slave => model%line(contact%slave), master => model%line(contact%master))
-      call mortar_rows(slave, master, faces%row_of, faces%facing, contact%search, &
+      call mortar_rows(slave, master, boxes, faces%row_of, faces%facing, contact%search, &
                        model%kinematics(model%section(slave%element(1))) == axisymmetric, start, node, weight)
     end associate
-    allocate (nodes(0), weights(0))
+    allocate (nodes(n + size(node)), weights(n + size(node)), most(n), row_end(n))
     do i = 1, n
       associate (first => start(i), last => start(i + 1) - 1)
-        nodes = [nodes, faces%node(i), node(first:last)]
-        weights = [weights, 1.0_wp, -weight(first:last)]
-        model%row_start = [model%row_start, size(model%row_node) + size(nodes) + 1]
-        model%pair_node = reshape([model%pair_node, node(first - 1 + maxloc(weight(first:last), dim=1)), faces%node(i)], &
-                                  [2, model%pairs + i])
+        nodes(first + i - 1:last + i) = [faces%node(i), node(first:last)]
+        weights(first + i - 1:last + i) = [1.0_wp, -weight(first:last)]
+        most(i) = node(first - 1 + maxloc(weight(first:last), dim=1))
+        row_end(i) = last + i
       end associate
     end do
     contact%first = model%pairs + 1
     contact%last = model%pairs + n
     contact%left_out = faces%nodes - n
+    model%row_start = [model%row_start, size(model%row_node) + row_end + 1]
+    model%pair_node = reshape([model%pair_node, (most(i), faces%node(i), i=1, n)], [2, contact%last])
     model%pair_id = [model%pair_id, model%node_id(faces%node)]
     model%normal = reshape([model%normal, (faces%facing(i)%place%normal, i=1, n)], [2, contact%last])
     model%initial_gap = [model%initial_gap, faces%facing%place%gap]

@@ -11,6 +11,7 @@ module epcont_model_mortar
   use epcont_base_sorting, only: sorted_order
   use epcont_model_boundary_line, only: boundary_line
   use epcont_model_facing, only: facing_type, find_nearest
+  use epcont_model_side_boxes, only: side_boxes
   implicit none
   private
   public :: mortar_rows
@@ -49,8 +50,9 @@ contains
 
   !> Rows of master nodes and weights, one for each slave node that has a pair; the weights of a row sum to 1. Row k is the
   !! entries start(k) to start(k+1)-1.
-  pure subroutine mortar_rows(slave, master, row_of, facing, search, ring, start, node, weight)
+  pure subroutine mortar_rows(slave, master, boxes, row_of, facing, search, ring, start, node, weight)
     type(boundary_line), intent(in) :: slave, master
+    type(side_boxes), intent(in) :: boxes          !! of the master line
     integer, intent(in) :: row_of(:, :)            !! of each side's nodes; 0: they face nothing [3, sides]
     type(facing_type), intent(in) :: facing(:)     !! what the nodes face [rows]
     real(wp), intent(in) :: search
@@ -64,7 +66,7 @@ contains
     allocate (list%row(0), list%node(0), list%weight(0))
     allocate (list%area(size(facing)), source=0.0_wp)
     do s = 1, size(slave%element)
-      call cut_side(slave, s, master, search, ring, points)
+      call cut_side(slave, s, master, boxes, search, reach_of(slave, s, row_of(:, s), facing, search), ring, points)
       if (points%covered .and. all(row_of(:, s) > 0 .or. slave%segment(:, s) == 0)) then
         call add_dual(master, points, row_of(:, s), list)
         cycle
@@ -78,18 +80,37 @@ contains
     call collect(list, start, node, weight)
   end subroutine mortar_rows
 
-  !> Integration points of a side, cut where nodes of the other line face it.
-  pure subroutine cut_side(slave, side, master, search, ring, points)
-    type(boundary_line), intent(in) :: slave, master
+  !> How far from a side the part of the other line lies that it faces, at most: twice as far as its nodes say, or its length.
+  pure real(wp) function reach_of(slave, side, row, facing, search)
+    type(boundary_line), intent(in) :: slave
     integer, intent(in) :: side
+    integer, intent(in) :: row(3)                  !! of its nodes; 0: they face nothing, or there is none
+    type(facing_type), intent(in) :: facing(:)     !! what the nodes face [rows]
     real(wp), intent(in) :: search
+    integer :: k
+
+    reach_of = search
+    if (any(row == 0 .and. slave%segment(:, side) > 0)) return
+    reach_of = 2.0_wp*slave%chord_length(side)
+    do k = 1, 3
+      if (row(k) > 0) reach_of = max(reach_of, 2.0_wp*abs(facing(row(k))%place%gap))
+    end do
+    reach_of = min(reach_of, search)
+  end function reach_of
+
+  !> Integration points of a side, cut where nodes of the other line face it.
+  pure subroutine cut_side(slave, side, master, boxes, search, reach, ring, points)
+    type(boundary_line), intent(in) :: slave, master
+    type(side_boxes), intent(in) :: boxes
+    integer, intent(in) :: side
+    real(wp), intent(in) :: search, reach     !! what it faces, and the part of the other line that may cut it, lie within
     logical, intent(in) :: ring
     type(side_points), intent(out) :: points
     real(wp), allocatable :: cut(:)
     real(wp) :: s, x(2), tangent(2)
     integer :: i, k
 
-    cut = cuts_of(slave, side, master, search)
+    cut = cuts_of(slave, side, master, boxes, reach)
     allocate (points%share(3, gauss_points*size(cut)), points%weight(gauss_points*size(cut)))
     allocate (points%facing(gauss_points*size(cut)))
     do i = 2, size(cut)
@@ -101,32 +122,56 @@ contains
           call slave%at(side, s, points%share(:, p), x, tangent)
           points%weight(p) = gauss_weight(k)*(cut(i) - cut(i - 1))*norm2(tangent)
           if (ring) points%weight(p) = points%weight(p)*dot_product(points%share(:, p), slave%x(1, :, side))
-          points%facing(p) = find_nearest(master, x, [tangent(2), -tangent(1)], search, 0)
+          points%facing(p) = find_nearest(master, boxes, x, [tangent(2), -tangent(1)], search, 0)
           points%covered = points%covered .and. points%facing(p)%place%found
         end associate
       end do
     end do
   end subroutine cut_side
 
-  !> Places along a side, from 0 to 1, at which the ends of the other line's sides face it.
-  pure function cuts_of(slave, side, master, search) result(cut)
+  !> Places along a side, from 0 to 1, at which the ends of the other line's sides, within `reach`, face it.
+  pure function cuts_of(slave, side, master, boxes, reach) result(cut)
     type(boundary_line), intent(in) :: slave, master
+    type(side_boxes), intent(in) :: boxes
     integer, intent(in) :: side
-    real(wp), intent(in) :: search
+    real(wp), intent(in) :: reach
     real(wp), allocatable :: cut(:)
+    integer, allocatable :: near(:)
     real(wp) :: s
-    integer :: i, k
+    integer :: i, k, n
     logical :: found
 
-    cut = [0.0_wp, 1.0_wp]
-    do i = 1, size(master%element)
+    near = boxes%near(0.5_wp*(slave%x(:, 1, side) + slave%x(:, 2, side)), reach + slave%chord_length(side))
+    allocate (cut(2*size(near) + 2))
+    cut(:2) = [1.0_wp, 0.0_wp]
+    n = 2
+    do i = 1, size(near)
       do k = 1, 2
-        if (k == 2 .and. i < size(master%element)) cycle   ! the start of the next
-        call slave%foot(side, master%x(:, k, i), search, s, found)
-        if (found) cut = [pack(cut, cut < s), s, pack(cut, cut >= s)]
+        if (k == 2 .and. i < size(near)) then
+          if (near(i + 1) == near(i) + 1) cycle   ! the start of the next
+        end if
+        call slave%foot(side, master%x(:, k, near(i)), reach, s, found)
+        if (found) call insert(s, n, cut)
       end do
     end do
+    cut = cut(n:1:-1)
   end function cuts_of
+
+  !> Insert a number from 0 to 1 into some in falling order, the last of them 0: lines that face each other are walked in
+  !! opposite directions, so that most come to stand near the end.
+  pure subroutine insert(s, n, falling)
+    real(wp), intent(in) :: s
+    integer, intent(inout) :: n
+    real(wp), intent(inout) :: falling(:)
+    integer :: i
+
+    do i = n, 1, -1
+      if (falling(i) >= s) exit
+      falling(i + 1) = falling(i)
+    end do
+    falling(i + 1) = s
+    n = n + 1
+  end subroutine insert
 
   !> Add the weights of a side that faces the other line all along.
   pure subroutine add_dual(master, points, row, list)

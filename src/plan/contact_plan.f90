@@ -6,9 +6,9 @@ module epcont_plan_contact_plan
   private
   public :: contact_plan, plan_contact
 
-  !> Pairs from which on AUTO is BLOCK. It is level with CONRY at 30 to 50 pairs and twice as fast from 100 on
-  !! (`tools/bench_rules`); below, both take less than a fifth of a millisecond, and each pivot of CONRY is an event of the
-  !! growing load that the listing can show.
+  !> Pairs from which on AUTO is BLOCK, which is level with CONRY there and faster from 200 on (`tools/bench --part 2`). Below,
+  !! both take less than a fifth of a millisecond, and each pivot of CONRY is an event of the growing load that the listing
+  !! can show.
   integer, parameter, public :: many_pairs = 100
 
   type :: contact_plan

@@ -1,7 +1,7 @@
 !> Memory and work that a scene will take, from the numbering alone.
 module epcont_plan_forecast
   use epcont_base_kinds, only: i8, wp
-  use epcont_linalg_panel, only: panel_entries
+  use epcont_linalg_panel_layout, only: panel_entries
   use epcont_model_model, only: model_type
   use epcont_plan_contact_plan, only: contact_plan
   use epcont_plan_numbering, only: numbering_type
@@ -28,14 +28,15 @@ contains
     entries = 0
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
-        factor = panel_entries(body%reach)
+        factor = merge(sparse_entries(body%equations), panel_entries(body%reach), body%sparse)
         entries = entries + factor + int(body%equations, i8)*body%border
-        if (body%contact_last) then
+        if (body%contact_last .or. body%sparse) then
           entries = entries + int(body%contact_equations, i8)**2
         else
           entries = entries + pairs*(pairs + body%half_bandwidth)
         end if
-        expected%operations = expected%operations + body%operations + 4.0_wp*body%border*factor
+        expected%operations = expected%operations + merge(sparse_operations(body%equations), body%operations, body%sparse) &
+                              + 4.0_wp*body%border*factor
       end associate
     end do
     ! F, its scaled copy, and the tableau or factors.
@@ -48,4 +49,18 @@ contains
       expected%operations = expected%operations + 2.0_wp*real(pairs, wp)**3
     end if
   end function forecast
+
+  !> Entries that MUMPS takes for its factor and its work: of nested fronts in the plane, n log n.
+  pure integer(i8) function sparse_entries(equations)
+    integer, intent(in) :: equations
+
+    sparse_entries = int(12.0_wp*equations*log(real(max(2, equations), wp)), i8)
+  end function sparse_entries
+
+  !> Operations of its factorization, n**1.5.
+  pure real(wp) function sparse_operations(equations)
+    integer, intent(in) :: equations
+
+    sparse_operations = 65.0_wp*real(equations, wp)**1.5_wp
+  end function sparse_operations
 end module epcont_plan_forecast

@@ -3,11 +3,16 @@ module epcont_plan_numbering
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_panel, only: gram_operations, panel_operations
+  use epcont_linalg_panel_layout, only: gram_operations, panel_operations
+  use epcont_linalg_sparse, only: sparse_available
+  use epcont_model_controls, only: solver_auto, solver_sparse
   use epcont_model_model, only: model_type
   implicit none
   private
   public :: body_numbering, numbering_type, number_equations
+
+  !> Operations of the panels' factorization from which on SOLVER AUTO is SPARSE.
+  real(wp), parameter, public :: many_operations = 4.0e9_wp
 
   !> One body's system of equations.
   type :: body_numbering
@@ -16,6 +21,7 @@ module epcont_plan_numbering
     integer :: equations = 0               !! in the band
     integer :: contact_equations = 0       !! of these at nodes of pairs
     logical :: contact_last = .true.       !! the contact equations are the last ones
+    logical :: sparse = .false.            !! for MUMPS, which orders them anew
     real(wp) :: operations = 0.0_wp        !! of factor and flexibility
     integer, allocatable :: reach(:)       !! the last equation that each is coupled with [equations]
     integer :: half_bandwidth = 0
@@ -70,7 +76,7 @@ contains
 
   !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come last: then the
   !! trailing block of the factor alone gives the flexibility. Or, where that widens the band by more than forward
-  !! substitution of all pairs costs, they are rooted at the body's far end.
+  !! substitution of all pairs costs, they are rooted at the body's far end. A sparse matrix has no need of either.
   pure subroutine choose_numbers(model, around, nodes, at_contact, equation, body)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: around
@@ -79,30 +85,47 @@ contains
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
     type(body_numbering) :: plain
-    integer, allocatable :: from_contact(:), order(:)
-    logical :: touches
+    integer, allocatable :: numbers(:, :), order(:)
 
+    if (model%controls%solver == solver_sparse .and. size(body%element) > 0) then
+      call number_body(model, at_contact, nodes, equation, body)
+      body%sparse = body%equations > 0
+      body%contact_last = .false.
+      return
+    end if
     order = sweep(model, around, nodes(:1), nodes)
     order = sweep(model, around, order(size(order):), nodes)
     order = sweep(model, around, order(size(order):), nodes)
+    ! The contact comes late in the reversed order, and with it what yields: what stands before is factored once.
+    if (mean_place(order, at_contact) > 0.5_wp) order = sweep(model, around, order(size(order):), nodes)
     plain%element = body%element
-    touches = any(at_contact(nodes))
-    if (touches) then
-      ! The roots stand in the order of the sweep from the far end, which runs along the contact.
-      from_contact = sweep(model, around, pack(order, at_contact(order)), nodes)
-      call number_body(model, at_contact, from_contact(size(order):1:-1), equation, body)
-      body%operations = panel_operations(body%reach) + real(body%contact_equations, wp)**3
-    end if
     call number_body(model, at_contact, order(size(order):1:-1), equation, plain)
     plain%contact_last = .false.
-    plain%operations = panel_operations(plain%reach) &
-                       + gram_operations(plain%reach, begins(equation, pack(plain%node, at_contact(plain%node))))
-    if (touches .and. body%operations <= plain%operations) then
-      call number_body(model, at_contact, from_contact(size(order):1:-1), equation, body)
-    else
+    plain%operations = panel_operations(plain%reach)
+    plain%sparse = model%controls%solver == solver_auto .and. plain%operations > many_operations .and. sparse_available()
+    if (plain%sparse .or. .not. any(at_contact(nodes))) then
       body = plain
+      return
     end if
+    plain%operations = plain%operations + gram_operations(plain%reach, begins(equation, pack(plain%node, at_contact(plain%node))))
+    numbers = equation(:, nodes)
+    ! The roots stand in the order of the sweep from the far end, which runs along the contact.
+    order = sweep(model, around, pack(order, at_contact(order)), nodes)
+    call number_body(model, at_contact, order(size(order):1:-1), equation, body)
+    body%operations = panel_operations(body%reach) + real(body%contact_equations, wp)**3
+    if (body%operations <= plain%operations) return
+    equation(:, nodes) = numbers
+    body = plain
   end subroutine choose_numbers
+
+  !> Mean place of the marked nodes in an order, from 0 to 1; 0 where there is none.
+  pure real(wp) function mean_place(order, marked)
+    integer, intent(in) :: order(:)
+    logical, intent(in) :: marked(:)
+    integer :: i
+
+    mean_place = sum(pack([(real(i, wp), i=1, size(order))], marked(order)))/(max(1, count(marked(order)))*real(size(order), wp))
+  end function mean_place
 
   !> First equations of the nodes of pairs, ascending.
   pure function begins(equation, nodes)

@@ -43,6 +43,7 @@ module epcont_plasticity_iteration
     logical :: converged = .false.         !! all loads, to the tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
     integer :: singular = 0                !! body that could not be factored
+    logical :: lacks_memory = .false.      !! that was for want of memory
     integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of its stiffness, estimated in the 1-norm
     type(iteration_record), allocatable :: history(:)
@@ -89,6 +90,7 @@ contains
       part = real(step, wp)/plan%load_steps
       call iterate(model, motions, numbering, method, part, loop, run, state, converged)
       run%factorizations = loop%scene%bodies%factorizations
+      run%lacks_memory = loop%scene%bodies%lacks_memory()
       if (run%singular > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) run%state = state
@@ -177,9 +179,9 @@ contains
     if (loop%stiff .and. (method%keeps_stiffness .or. loop%elastic .and. loop%yielded == 0)) return
     loop%elastic = loop%yielded == 0
     do
-      call loop%scene%set_stiffness(model, numbering, loop%law%matrix, singular)
+      call loop%scene%set_stiffness(model, numbering, loop%law, singular)
       loop%stiff = .true.
-      if (singular == 0) return
+      if (singular == 0 .or. loop%scene%bodies%lacks_memory()) return
       call method%stiffen(model, loop%material, loop%about%strain, loop%law, possible)
       if (.not. possible) return
     end do

@@ -20,6 +20,7 @@ module epcont_plasticity_linear_scene
   type :: linear_scene
     type(strain_operator), allocatable :: operator
     type(factored_bodies) :: bodies
+    real(wp), allocatable :: matrix(:, :, :)         !! that the bodies were factored with, where any yields [4, 4, points]
     type(contact_problem) :: problem
     logical, allocatable :: yields(:)                !! the body has elements that can yield [bodies]
     real(wp), allocatable :: lasting_flexibility(:, :)  !! of the bodies that cannot, factored once [pairs, pairs]
@@ -28,6 +29,7 @@ module epcont_plasticity_linear_scene
   contains
     procedure :: set_stiffness
     procedure :: solve
+    procedure, private :: changed_elements
   end type linear_scene
 
 contains
@@ -49,26 +51,29 @@ contains
     scene%resultant = motion_resultants(model, motions)
   end function new_linear_scene
 
-  !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield. `singular` is
-  !! a body whose stiffness could not be factored, 0 where all could.
-  subroutine set_stiffness(self, model, numbering, matrix, singular)
+  !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far as the
+  !! law of their elements has changed. `singular` is a body whose stiffness could not be factored, 0 where all could.
+  subroutine set_stiffness(self, model, numbering, law, singular)
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
-    real(wp), intent(in) :: matrix(:, :, :)      !! of the law at each point [stress] [4, 4, points]
+    type(linear_law), intent(in) :: law
     integer, intent(out) :: singular
+    logical, allocatable :: changed(:)
     logical :: first, sound
     integer :: b
 
     first = .not. allocated(self%lasting_flexibility)
+    changed = self%changed_elements(model, law)
+    if (any(self%yields)) self%matrix = law%matrix
     singular = 0
     do b = 1, model%bodies
       if (.not. (first .or. self%yields(b))) cycle
-      call self%bodies%factor_body(model, self%operator, matrix, numbering, b, sound)
-      if (sound) cycle
-      singular = b
-      return
+      call self%bodies%factor_body(model, self%operator, law%matrix, changed, numbering, b, sound)
+      if (.not. sound .and. singular == 0) singular = b
     end do
+    if (singular > 0) return
+    call self%bodies%settle(model, self%operator, law)
     if (first) then
       allocate (self%lasting_flexibility(model%pairs, model%pairs), source=0.0_wp)
       call add_flexibility(.not. self%yields, self%lasting_flexibility)
@@ -88,6 +93,21 @@ contains
       end do
     end subroutine add_flexibility
   end subroutine set_stiffness
+
+  !> Elements whose law is not that of the factors; all of them the first time [elements].
+  pure function changed_elements(self, model, law) result(changed)
+    class(linear_scene), intent(in) :: self
+    type(model_type), intent(in) :: model
+    type(linear_law), intent(in) :: law
+    logical, allocatable :: changed(:)
+    integer :: p
+
+    allocate (changed(model%elements), source=.not. allocated(self%matrix))
+    if (.not. allocated(self%matrix)) return
+    do p = 1, model%points
+      if (any(law%matrix(:, :, p) /= self%matrix(:, :, p))) changed(model%point_element(p)) = .true.
+    end do
+  end function changed_elements
 
   !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without contact
   !! equilibrium (`state%contact%state`) there are no displacements.

@@ -1,6 +1,6 @@
 !> What came of a run, in a word and a sentence.
 module epcont_report_outcome
-  use epcont_base_error, only: status_no_answer, status_numerical, status_valid
+  use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_certificate_certificate, only: certificate_type
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
@@ -33,7 +33,11 @@ contains
     integer :: k
 
     outcome%sentence = ''
-    if (singular > 0) then
+    if (answer%lacks_memory) then
+      outcome%status = status_usage
+      outcome%word = 'out of memory'
+      outcome%sentence = 'there is not enough memory to factor the body of GRID '//first_node(model, singular)
+    else if (singular > 0) then
       outcome%status = status_numerical
       outcome%word = 'singular stiffness'
       outcome%sentence = 'the stiffness of the body of GRID '//first_node(model, singular)// &

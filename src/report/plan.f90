@@ -2,13 +2,13 @@
 module epcont_report_plan
   use epcont_base_kinds, only: i8
   use epcont_base_text, only: plural, short_real, text_of
-  use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton
+  use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, solver_auto
   use epcont_model_model, only: line_contact, model_type
   use epcont_plan_contact_plan, only: contact_plan, many_pairs
   use epcont_plan_forecast, only: forecast_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_numbering, only: body_numbering, numbering_type
+  use epcont_plan_numbering, only: body_numbering, many_operations, numbering_type
   use epcont_report_layout, only: newline, right
   implicit none
   private
@@ -47,12 +47,13 @@ contains
              text_of(motions%component(k))//newline
     end do
     if (motions%count > most) text = text//'  and '//plural(motions%count - most, 'further free motion')//newline
+    text = text//solver_text(model, numbering)
     text = text//newline//'   body  nodes  equations  half-bandwidth  contact equations  border  factorizations'// &
            '  flexibility by'//newline
     do b = 1, min(most, model%bodies)
       associate (body => numbering%body(b))
         text = text//right(text_of(b), 7)//right(text_of(size(body%node)), 7)//right(text_of(body%equations), 11)// &
-               right(text_of(body%half_bandwidth), 16)//right(text_of(body%contact_equations), 19)// &
+               right(width_text(body), 16)//right(text_of(body%contact_equations), 19)// &
                right(text_of(body%border), 8)//right(factorizations(iteration, body, b), 16)//'  '//flexibility_text(body)//newline
       end associate
     end do
@@ -88,6 +89,29 @@ contains
     text = text//newline
   end function line_text
 
+  !> How bodies are factored, where it is not in panels of their bands alone.
+  pure function solver_text(model, numbering) result(text)
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (.not. any(numbering%body%sparse)) return
+    text = '  bodies factored by MUMPS (SPARSE): '//text_of(count(numbering%body%sparse))//newline
+    if (model%controls%solver /= solver_auto) return
+    text = text//'    chosen here (AUTO): the faster solver where a band (BAND) takes more than '//short_real(many_operations)// &
+           ' operations'//newline
+  end function solver_text
+
+  !> Half-bandwidth; a body that is factored by MUMPS has none.
+  pure function width_text(body) result(text)
+    type(body_numbering), intent(in) :: body
+    character(len=:), allocatable :: text
+
+    text = text_of(body%half_bandwidth)
+    if (body%sparse) text = 'SPARSE'
+  end function width_text
+
   !> How a body's flexibility follows from its factor: by inverting the trailing block, or by forward substitution of
   !! the pairs.
   pure function flexibility_text(body) result(text)
@@ -95,7 +119,7 @@ contains
     character(len=:), allocatable :: text
 
     text = '-'
-    if (body%contact_equations > 0) text = trim(merge('inversion   ', 'substitution', body%contact_last))
+    if (body%contact_equations > 0) text = trim(merge('inversion   ', 'substitution', body%contact_last .or. body%sparse))
   end function flexibility_text
 
   !> How often a body is factored.

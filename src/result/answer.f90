@@ -29,6 +29,7 @@ module epcont_result_answer
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
     type(iteration_record), allocatable :: history(:)  !! every solve
     integer :: factorizations = 0                    !! of bodies
+    logical :: lacks_memory = .false.                !! a body could not be factored for want of memory
     logical :: converged = .false.                   !! all of the load, to the tolerance of the iteration
     logical :: runs_away = .false.                   !! no equilibrium: the displacements grow without end
     real(wp) :: load_factor = 1.0_wp                 !! part of the loads for which this is

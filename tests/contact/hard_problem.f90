@@ -8,9 +8,10 @@ module hard_problem
   public :: hard
 
   !> Kinds of problem, and what they are called.
-  integer, parameter, public :: kinds = 9
-  character(len=16), parameter, public :: kind_name(kinds) = [character(len=16) :: 'parabola', 'flat', 'ties', 'duplicated', &
-                                                             'badly scaled', 'three motions', 'held', 'rough', 'overlaps']
+  integer, parameter, public :: kinds = 13
+  character(len=16), parameter, public :: kind_name(kinds) = [character(len=16) :: 'parabola', 'flat', 'ties', 'twice', &
+                                                             'badly scaled', 'three motions', 'held', 'rough', 'overlaps', &
+                                                             'flat, turning', 'smooth', 'very smooth', 'smooth twice']
 
 contains
 
@@ -33,7 +34,7 @@ contains
       problem%initial_gap = 0.0_wp
     case ('ties')
       problem%initial_gap = real(nint(8*abs(place)), wp)/64
-    case ('duplicated')
+    case ('twice')
       do k = 2, n, 3
         problem%flexibility(k, :) = problem%flexibility(k - 1, :)
         problem%flexibility(:, k) = problem%flexibility(:, k - 1)
@@ -53,10 +54,45 @@ contains
       problem%initial_gap = problem%initial_gap - 0.3_wp
     case ('rough')
       problem%initial_gap = problem%initial_gap + [(0.05_wp*random%uniform(), i=1, n)]
+    case ('flat, turning')   ! pressed and turned, all gaps zero
+      problem%initial_gap = 0.0_wp
+      problem%motion = reshape([[(1.0_wp, i=1, n)], place], [n, 2])
+      problem%resultant = [1.0_wp, 0.4_wp*(2*random%uniform() - 1)*maxval(place)]
+    case ('smooth')
+      call load_half(place, 3.0_wp, problem)
+    case ('very smooth')
+      call load_half(place, 6.0_wp, problem)
+    case ('smooth twice')
+      call load_half(place, 5.0_wp, problem)
+      do k = 2, n, 5
+        problem%flexibility(k, :) = problem%flexibility(k - 1, :)
+        problem%flexibility(:, k) = problem%flexibility(:, k - 1)
+        problem%initial_gap(k) = problem%initial_gap(k - 1)
+      end do
     case ('overlaps')
       problem%load_gap = [(0.1_wp*(2*random%uniform() - 1), i=1, n)]
     end select
   end function hard
+
+  !> Displacements taken some pairs deep, where forces hardly show one by one: F has a condition of 1e6 at 3, of 1e10 at 6.
+  !> Half of the pairs are loaded, the others clear of contact.
+  pure subroutine load_half(place, depth, problem)
+    real(wp), intent(in) :: place(:), depth
+    type(contact_problem), intent(inout) :: problem
+    real(wp), parameter :: pi = acos(-1.0_wp)
+    real(wp) :: force(size(place))
+    integer :: j, n
+
+    n = size(place)
+    do j = 1, n
+      problem%flexibility(:, j) = log(40.0_wp) - log(hypot(place - place(j), 2*depth/n))
+    end do
+    force = merge(1 + cos(2*pi*place), 0.0_wp, abs(place) < 0.5_wp)
+    problem%initial_gap = merge(0.0_wp, sum(force)*1.0e-3_wp*(0.1_wp + abs(place)), abs(place) < 0.5_wp) &
+                          - matmul(problem%flexibility, force)
+    problem%initial_gap = problem%initial_gap - minval(problem%initial_gap)
+    problem%resultant = [sum(force)]
+  end subroutine load_half
 
   !> -log|x_i - x_j|, over a segment of its own for i = j; the bodies end at a distance of 20.
   pure function kernel(n) result(flexibility)

@@ -2,11 +2,12 @@
 
     tools/bench --quick     up to 11 000 nodes, 3 turns: about ten minutes
     tools/bench             up to 42 000 nodes, 5 turns: hours, most of them CalculiX's
-    tools/bench --part 2    one part only: its table on standard output, nothing saved
+    tools/bench --part 2    one part only: its table on standard output, nothing saved; --quick --part 4: half a minute
 
 Part 1: two cylinders (`tools/decks hertz N`, CTRIA3), whole programs, against CalculiX and scikit-fem. Part 2: the dense
-contact problem alone, against packages for quadratic programs. Part 3: the factorization's part of dgemm's rate, and how
-time grows. Everything on one thread; the programs take turns, times are medians, ratios the medians of those of each turn.
+contact problem alone, against packages for quadratic programs. Part 3: the factorization's part of dgemm's rate, how
+time and memory grow to 170 000 unknowns, and what the deck of 44 nodes costs beside an empty program. Part 4: the solve part,
+numbering to displacements, stage by stage beside the best libraries bare. Everything on one thread; the programs take turns, times are medians, ratios the medians of those of each turn.
 Tables go to standard output and with a picture to tools/benchmark/results.md and results.png.
 """
 import argparse
@@ -26,9 +27,12 @@ sys.path.insert(0, str(HERE.parent))
 
 import cylinders  # noqa: E402
 import report  # noqa: E402
+import solve_part  # noqa: E402
 from process import ONE_THREAD  # noqa: E402
 
 NODES, UNKNOWNS = (330, 1000, 3000, 11000, 42000), (50, 100, 200, 500, 1000, 2000)
+#: Of part 4 and of growth: nodes of meshes with twice as many unknowns.
+SOLVED, GROWING = (330, 930, 3080, 11100, 42500), (3080, 7600, 20200, 42500, 85000)
 RELEASE = TOP / "build/release"
 
 
@@ -56,7 +60,13 @@ def part2(place, sizes, turns, limit):
     return rows
 
 
-def part3(place, sizes, turns):
+def part3(place, sizes, growing, turns):
+    smallest = [solve_part.smallest(RELEASE, TOP / "input/hertz" / deck, place, 50) for deck in ("hertz44_elastic.dat", "hertz44.dat")]
+    growth = [solve_part.growth(RELEASE, place, n, turns, say) for n in growing]
+    return {"factor": factors(place, sizes, turns), "growth": growth, "smallest": smallest}
+
+
+def factors(place, sizes, turns):
     """Of the first body of each mesh: nodes, equations, half-bandwidth, seconds, operations, rate, part of dgemm's."""
     matrices, nodes = [], []
     for n in sizes:
@@ -68,6 +78,10 @@ def part3(place, sizes, turns):
     lines = output(RELEASE / "bench_factor", turns, *matrices).splitlines()
     return [dict(zip(("equations", "width", "seconds", "operations", "rate", "part"), map(float, line.split())), nodes=n)
             for n, line in zip([None, *nodes], lines)]
+
+
+def part4(place, sizes, turns):
+    return [solve_part.one(RELEASE, place, n, turns, say) for n in sizes]
 
 
 def machine():
@@ -85,18 +99,19 @@ def machine():
 def main():
     parser = argparse.ArgumentParser(prog="tools/bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--part", type=int, choices=(1, 2, 3))
+    parser.add_argument("--part", type=int, choices=(1, 2, 3, 4))
     parser.add_argument("--turns", type=int)
-    parser.add_argument("--nodes", type=int, nargs="+", help="of part 1 and 3")
+    parser.add_argument("--nodes", type=int, nargs="+", help="of parts 1, 3 and 4")
     options = parser.parse_args()
     turns = options.turns or (3 if options.quick else 5)
     sizes = options.nodes or (NODES[:-1] if options.quick else NODES)
     about = machine()
     with tempfile.TemporaryDirectory() as directory:
         place = pathlib.Path(directory)
-        does = {1: lambda: part1(place, sizes, turns), 3: lambda: part3(place, sizes, turns),
+        solved, growing = (options.nodes or (all_sizes[:-1] if options.quick else all_sizes) for all_sizes in (SOLVED, GROWING))
+        does = {1: lambda: part1(place, sizes, turns), 3: lambda: part3(place, sizes, growing, turns), 4: lambda: part4(place, solved, turns),
                 2: lambda: part2(place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 60)}
-        rows = {part: does[part]() for part in ((options.part,) if options.part else (3, 2, 1))}
+        rows = {part: does[part]() for part in ((options.part,) if options.part else (4, 3, 2, 1))}
     text = report.page(rows, shlex.join(["tools/bench", *sys.argv[1:]]), about)
     print(text)
     if not options.part:

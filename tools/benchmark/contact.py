@@ -4,6 +4,7 @@
 
     python contact.py BENCH_CONTACT DIRECTORY REPEATS LIMIT N...      prints a JSON row for each problem, size and program
 
+epcont is timed as PARAM RULE AUTO has it, and CONRY and BLOCK from the right set (WARM) by themselves; beside them stands one dgemm of the size of F.
 F is that of strips of uniform pressure on a half-plane; two problems take it some strips deep. A program that takes longer than LIMIT seconds gets no further size of
 that problem. Data are in memory before the clock starts; it is the processor's.
 """
@@ -24,6 +25,7 @@ import scipy.sparse as sparse
 
 from process import ONE_THREAD
 
+MANY_PAIRS = 100  # from here on AUTO is BLOCK: src/plan/contact_plan.f90
 MODULUS, TOLERANCE = 20400.0 / (2 * (1 - 0.29 ** 2)), 1e-9
 
 
@@ -60,26 +62,27 @@ KINDS = ("half-plane", "flat", "ties", *SMOOTHED)
 
 
 def violation(flexibility, gap, load, force):
-    """Largest |min(R/rho, w/omega)| and |sum R - P|/P, rho = max R, omega = rho max F; q is the force's mean of g0 + F R."""
+    """Largest |min(R/|R|, w/(|F||R|))| and |sum R - P|/P, |R| the largest force, |F| the largest sum of a row; q is the force's mean of g0 + F R."""
     w = gap + flexibility @ force
     w -= w @ force / force.sum()
-    rho = abs(force).max()
-    return float(max(abs(np.minimum(force / rho, w / (rho * abs(flexibility).max()))).max(), abs(force.sum() / load - 1)))
+    largest = abs(force).max()
+    size = abs(flexibility).sum(axis=1).max() * largest
+    return float(max(abs(np.minimum(force / largest, w / size)).max(), abs(force.sum() / load - 1)))
 
 
 class Stalled(RuntimeError):
-    """An end without answer, after so many seconds, its forces this far off."""
+    """An end without answer, after so many seconds."""
 
-    def __init__(self, seconds, off, pivots):
+    def __init__(self, seconds, pivots):
         super().__init__(f"stalled after {pivots} pivots")
-        self.seconds, self.off = seconds, off
+        self.seconds = seconds
 
 
 class Epcont:
-    """bench_contact; `options` stand behind its number of repeats."""
+    """bench_contact by one rule; with DGEMM, one product of matrices."""
 
-    def __init__(self, program, place, *options):
-        self.command, self.place = [program, "problem", "forces", "1", *options], place
+    def __init__(self, program, place, rule):
+        self.program, self.place, self.rule = program, place, rule
 
     def prepare(self, flexibility, gap, load):
         n = len(gap)
@@ -87,14 +90,19 @@ class Epcont:
             np.array([n, 1], np.int32).tofile(file)
             for part in (flexibility.T, np.ones(n), gap, np.array([load])):
                 np.ascontiguousarray(part).tofile(file)
+        rule = self.rule or ("BLOCK" if n >= MANY_PAIRS else "CONRY")
+        command = [self.program, "problem", "forces", rule, "3" if n > 200 else "50"]
 
         def solve():
-            run = subprocess.run(self.command, cwd=self.place, env=ONE_THREAD, capture_output=True, text=True, check=False)
+            run = subprocess.run(command, cwd=self.place, env=ONE_THREAD, capture_output=True, text=True, check=False)
             if run.returncode:
                 sys.exit(run.stdout + run.stderr)
-            seconds, off, pivots, state = run.stdout.split()
+            seconds, *rest = run.stdout.split()
+            if not rest:
+                return None, float(seconds)
+            _, pivots, _, state, _ = rest
             if state != "0":
-                raise Stalled(float(seconds), float(off), pivots)
+                raise Stalled(float(seconds), pivots)
             return np.fromfile(self.place / "forces")[:n], float(seconds)
         return solve
 
@@ -187,16 +195,18 @@ def by_highs(flexibility, gap, load):
 
 
 def main():
-    ours = Epcont(sys.argv[1], pathlib.Path(sys.argv[2]))
+    place = pathlib.Path(sys.argv[2])
+    ours = {"epcont": None, "epcont CONRY": "CONRY", "epcont WARM": "WARM", "dgemm": "DGEMM"}
+    programs = {name: Epcont(sys.argv[1], place, rule).prepare for name, rule in ours.items()}
+    programs |= {"quadprog": by_quadprog, "HiGHS": by_highs, "DAQP": by_daqp, "PIQP": by_piqp, "OSQP": by_osqp}
     repeats, limit, sizes = int(sys.argv[3]), float(sys.argv[4]), [int(n) for n in sys.argv[5:]]
-    programs = {"epcont": ours.prepare, "quadprog": by_quadprog, "HiGHS": by_highs, "DAQP": by_daqp, "PIQP": by_piqp, "OSQP": by_osqp}
     for kind in KINDS:
         tried = list(programs)
         for n in sizes:
             data = problem(kind, n)
             condition = float(np.linalg.cond(data[0]))
             solve, spent, worst, note = {name: programs[name](*data) for name in tried}, {}, {}, {}
-            for turn in range(repeats if n > 200 else 3 * repeats):
+            for _ in range(repeats if n > 200 else 3 * repeats):
                 for name in [name for name in tried if name not in note]:
                     begun = time.process_time()
                     try:
@@ -204,13 +214,14 @@ def main():
                     except (RuntimeError, ValueError) as error:
                         note[name] = str(error).strip().splitlines()[-1]
                         spent.setdefault(name, []).append(getattr(error, "seconds", time.process_time() - begun))
-                        worst[name] = getattr(error, "off", None)
                         continue
                     taken = time.process_time() - begun
-                    if name == "epcont":
+                    if name in ours:
                         force, taken = force
                     spent.setdefault(name, []).append(taken)
-                    if np.isfinite(force).all() and abs(force).max() > 0:
+                    if force is None:
+                        worst[name] = None
+                    elif np.isfinite(force).all() and abs(force).max() > 0:
                         worst[name] = max(worst.get(name) or 0.0, violation(*data, force))
                     else:
                         note[name] = "no answer"

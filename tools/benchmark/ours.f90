@@ -1,0 +1,277 @@
+!> The solve part of epcont, stage by stage: bench_ours DECK [SYSTEM]
+!>
+!> Prints the number of equations; seconds of processor of numbering, factor, F, gaps that the loads open (N K^-1 f), contact,
+!> displacements; of all these; of seven times more from the factor on; of assembly (it clears the storage of the factor, too)
+!> and the estimate of the condition, which are in no sum. All bodies, elastic. Medians of as many runs as fit into a tenth of a second, the first of several left out.
+!> SYSTEM gets what tools/benchmark/bare reads, in the order of the nodes.
+program bench_ours
+  use epcont_assembly_bodies, only: factored_bodies, new_bodies
+  use epcont_assembly_stiffness, only: assemble_body
+  use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
+  use epcont_base_error, only: error_type
+  use epcont_base_kinds, only: wp
+  use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved
+  use epcont_contact_solver, only: solve_contact
+  use epcont_deck_deck, only: deck_type, read_deck
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_flexibility_flexibility, only: add_body_flexibility, gap_opening, motion_columns, motion_resultants, &
+                                            pair_forces
+  use epcont_material_curve, only: section_materials
+  use epcont_material_linear_law, only: elastic_law, linear_law
+  use epcont_model_build, only: build_model
+  use epcont_model_model, only: model_type, most_nodes
+  use epcont_plan_contact_plan, only: contact_plan, plan_contact
+  use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_plan_numbering, only: number_equations, numbering_type
+  use statistics, only: median
+  implicit none
+
+  integer, parameter :: ordering = 1, factor = 2, flexibility = 3, load_gap = 4, contact = 5, displacing = 6
+  integer, parameter :: all_stages = 7, more = 8, assembly = 9, conditioning = 10, times = 10
+  integer, parameter :: most_runs = 200, further = 7
+  real(wp), parameter :: least_seconds = 0.1_wp
+
+  type(model_type) :: model
+  type(free_motions) :: motions
+  type(strain_operator) :: operator
+  type(linear_law) :: law
+  type(numbering_type) :: numbering
+  type(factored_bodies) :: bodies
+  type(contact_problem) :: problem
+  type(contact_solution) :: solution
+  type(contact_plan) :: plan
+  real(wp), allocatable :: displacement(:, :)
+  real(wp) :: seconds(times, most_runs), condition, spent
+  real(wp) :: begun = 0.0_wp   !! of what `lap` measures
+  integer :: first, k, runs
+
+  call read_scene(argument(1))
+  runs = 0
+  spent = 0.0_wp
+  do while (runs == 0 .or. (runs < most_runs .and. spent < least_seconds))
+    runs = runs + 1
+    call run_once(seconds(:, runs))
+    spent = spent + sum(seconds(all_stages:, runs))
+  end do
+  first = merge(2, 1, runs > 1)
+  print '(i9, 10es12.4)', sum(numbering%body%equations + numbering%body%border), (median(seconds(k, first:runs)), k=1, times)
+  if (command_argument_count() > 1) call write_system(argument(2))
+
+contains
+
+  function argument(k) result(text)
+    integer, intent(in) :: k
+    character(:), allocatable :: text
+    integer :: length
+
+    call get_command_argument(k, length=length)
+    allocate (character(length) :: text)
+    call get_command_argument(k, text)
+  end function argument
+
+  subroutine read_scene(path)
+    character(*), intent(in) :: path
+    type(deck_type) :: deck
+    type(diagnostics) :: faults
+    type(error_type), allocatable :: error
+    type(motion_fault), allocatable :: loose(:)
+
+    call read_deck(path, deck, faults, error)
+    if (allocated(error)) error stop 'this deck cannot be read'
+    call build_model(deck, model, faults)
+    if (faults%error_count() > 0) error stop 'this deck has faults'
+    call find_free_motions(model, motions, loose)
+    plan = plan_contact(model)
+    operator = new_strain_operator(model)
+    law = elastic_law(model, section_materials(model))
+    problem%initial_gap = model%initial_gap
+    problem%motion = motion_columns(model, motions)
+    problem%resultant = motion_resultants(model, motions)
+  end subroutine read_scene
+
+  !> Everything once, then seven times more with the same numbers.
+  subroutine run_once(spent)
+    real(wp), intent(out) :: spent(times)
+    real(wp) :: again(times)
+    integer :: k
+
+    spent = 0.0_wp
+    begun = now()
+    numbering = number_equations(model)
+    spent(ordering) = lap()
+    bodies = new_bodies(model)
+    call solve_once(spent)
+    spent(all_stages) = sum(spent(ordering:displacing))
+    begun = now()
+    condition = bodies%condition()
+    spent(conditioning) = lap()
+    do k = 1, further
+      call solve_once(again)
+      spent(more) = spent(more) + sum(again(factor:displacing))
+    end do
+  end subroutine run_once
+
+  !> From assembly to displacements.
+  subroutine solve_once(spent)
+    real(wp), intent(inout) :: spent(times)
+    logical, allocatable :: start(:)   !! no guess
+    logical :: all_changed(model%elements)
+    integer :: b
+
+    all_changed = .true.
+    begun = now()
+    do b = 1, model%bodies
+      call assemble_body(model, operator, law%matrix, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
+    end do
+    spent(assembly) = lap()
+    do b = 1, model%bodies
+      call bodies%body(b)%factor()
+    end do
+    spent(factor) = lap()
+    problem%flexibility = reshape([(0.0_wp, b=1, model%pairs**2)], [model%pairs, model%pairs])
+    do b = 1, model%bodies
+      call add_body_flexibility(model, numbering, b, bodies%body(b), problem%flexibility)
+    end do
+    spent(flexibility) = lap()
+    problem%load_gap = gap_opening(model, bodies%displacements(model, numbering, model%load, 1.0_wp))
+    spent(load_gap) = lap()
+    call solve_contact(problem, solution, start, plan%by_blocks)
+    spent(contact) = lap()
+    if (solution%state /= contact_solved) error stop 'no contact found'
+    displacement = bodies%displacements(model, numbering, model%load + pair_forces(model, solution%force), 1.0_wp)
+    spent(displacing) = lap()
+  end subroutine solve_once
+
+  !> Seconds of processor.
+  real(wp) function now()
+    call cpu_time(now)
+  end function now
+
+  !> Seconds since it was called last.
+  real(wp) function lap()
+    real(wp) :: ended
+
+    ended = now()
+    lap = ended - begun
+    begun = ended
+  end function lap
+
+  !> All bodies as one matrix, its equations along the nodes.
+  subroutine write_system(path)
+    character(*), intent(in) :: path
+    integer, allocatable :: column(:), equation(:, :), n_equation(:), n_start(:), row(:)
+    real(wp), allocatable :: force(:, :), n_weight(:), value(:)
+    integer :: n, unit
+
+    call number_along_nodes(equation, n)
+    call list_entries(equation, row, column, value)
+    call list_rows(equation, n_start, n_equation, n_weight)
+    force = model%load + bodies%settlement
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='replace', action='write')
+    write (unit) n, size(row), model%pairs, size(n_equation), motions%count, row, column, value
+    write (unit) n_start, n_equation, n_weight, problem%initial_gap + problem%load_gap, problem%motion, problem%resultant
+    write (unit) merge(1, 0, solution%touching), gathered(equation, n, force), taken(equation, n, displacement)
+    close (unit)
+  end subroutine write_system
+
+  !> One number for each equation of a body, band or border, in the order of the nodes; 0: held.
+  subroutine number_along_nodes(equation, n)
+    integer, allocatable, intent(out) :: equation(:, :)
+    integer, intent(out) :: n
+    integer :: c, node
+
+    allocate (equation(2, model%nodes), source=0)
+    n = 0
+    do node = 1, model%nodes
+      do c = 1, 2
+        if (model%leader(c, node) /= node .or. numbering%equation(c, node) == 0) cycle
+        n = n + 1
+        equation(c, node) = n
+      end do
+    end do
+    do c = 1, 2
+      equation(c, :) = equation(c, model%leader(c, :))
+    end do
+  end subroutine number_along_nodes
+
+  !> Lower triangle, element by element: those of one place add up.
+  subroutine list_entries(equation, row, column, value)
+    integer, intent(in) :: equation(:, :)
+    integer, allocatable, intent(out) :: row(:), column(:)
+    real(wp), allocatable, intent(out) :: value(:)
+    real(wp) :: k(2*most_nodes, 2*most_nodes)
+    integer, allocatable :: number(:)
+    integer :: e, i, j, last, n
+
+    last = sum((2*model%order)**2)
+    allocate (row(last), column(last), value(last))
+    last = 0
+    do e = 1, model%elements
+      n = model%order(e)
+      call operator%element_stiffness(model, e, law%matrix, k)
+      number = reshape(equation(:, model%connectivity(:n, e)), [2*n])
+      do j = 1, 2*n
+        do i = 1, 2*n
+          if (number(j) == 0 .or. number(i) < number(j)) cycle
+          last = last + 1
+          row(last) = number(i)
+          column(last) = number(j)
+          value(last) = k(i, j)
+        end do
+      end do
+    end do
+    row = row(:last)
+    column = column(:last)
+    value = value(:last)
+  end subroutine list_entries
+
+  !> N: the entries start(k) to start(k+1)-1 of pair k.
+  subroutine list_rows(equation, start, number, weight)
+    integer, intent(in) :: equation(:, :)
+    integer, allocatable, intent(out) :: start(:), number(:)
+    real(wp), allocatable, intent(out) :: weight(:)
+    integer :: c, i, k
+
+    allocate (start(1), source=1)
+    allocate (number(0), weight(0))
+    do k = 1, model%pairs
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        do c = 1, 2
+          if (equation(c, model%row_node(i)) == 0 .or. model%normal(c, k) == 0.0_wp) cycle
+          number = [number, equation(c, model%row_node(i))]
+          weight = [weight, model%row_weight(i)*model%normal(c, k)]
+        end do
+      end do
+      start = [start, size(number) + 1]
+    end do
+  end subroutine list_rows
+
+  !> Sums of nodal values over what shares an equation [n].
+  function gathered(equation, n, nodal) result(values)
+    integer, intent(in) :: equation(:, :), n
+    real(wp), intent(in) :: nodal(:, :)
+    real(wp) :: values(n)
+    integer :: c, node
+
+    values = 0.0_wp
+    do node = 1, model%nodes
+      do c = 1, 2
+        if (equation(c, node) > 0) values(equation(c, node)) = values(equation(c, node)) + nodal(c, node)
+      end do
+    end do
+  end function gathered
+
+  !> Nodal values by equation [n].
+  function taken(equation, n, nodal) result(values)
+    integer, intent(in) :: equation(:, :), n
+    real(wp), intent(in) :: nodal(:, :)
+    real(wp) :: values(n)
+    integer :: c, node
+
+    do node = 1, model%nodes
+      do c = 1, 2
+        if (equation(c, node) > 0) values(equation(c, node)) = nodal(c, node)
+      end do
+    end do
+  end function taken
+end program bench_ours

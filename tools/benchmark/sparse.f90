@@ -1,0 +1,214 @@
+!> Times and storage of band and sparse matrices: where one overtakes the other.
+!>
+!>     cmake --build --preset release --target bench_sparse
+!>     build/release/bench_sparse 100 200 DECK...
+!>
+!> A number N is a square of N x N four-node elements, held at its foot, with the top side in contact; a deck gives its largest
+!> body, all of it elastic. CPU times in ms, the least of three.
+program bench_sparse
+  use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
+  use epcont_base_error, only: error_type
+  use epcont_base_kinds, only: wp
+  use epcont_deck_deck, only: deck_type, read_deck
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_linalg_band, only: band_matrix, new_band_matrix
+  use epcont_linalg_sparse, only: sparse_available, sparse_matrix
+  use epcont_material_elasticity, only: isotropic_matrix
+  use epcont_model_build, only: build_model
+  use epcont_model_model, only: model_type, most_nodes
+  use epcont_plan_numbering, only: number_equations, numbering_type
+  implicit none
+
+  !> Element matrices of one body and their equations.
+  type :: system
+    integer :: order = 0, contact = 0, half_bandwidth = 0
+    integer, allocatable :: numbers(:, :)
+    real(wp), allocatable :: stiffness(:, :, :)
+  end type system
+
+  type(system) :: body
+  character(len=1000) :: argument
+  integer :: i, ios, n
+
+  print '(a)', '  unknowns  band contact  method         pattern analyse   add  factor inverse   solve     MB      smallest pivot'
+  do i = 1, command_argument_count()
+    call get_command_argument(i, argument)
+    read (argument, *, iostat=ios) n
+    if (ios == 0 .and. verify(trim(argument), '0123456789') == 0) then
+      call make_square(n, body)
+    else
+      call read_body(trim(argument), body)
+    end if
+    call time_band(body)
+    if (.not. sparse_available()) cycle
+    call time_sparse(body, .false.)
+    call time_sparse(body, .true.)
+  end do
+
+contains
+
+  !> D of a material that all bodies here are made of.
+  pure function elastic_matrix() result(d)
+    real(wp) :: d(4, 4)
+
+    d = isotropic_matrix(1.67_wp, 0.77_wp, .false.)
+  end function elastic_matrix
+
+  subroutine make_square(n, body)
+    integer, intent(in) :: n
+    type(system), intent(out) :: body
+    integer :: c, e, i, r, point(4)
+
+    body%order = 2*n*(n + 1)
+    body%contact = 2*(n + 1)
+    body%half_bandwidth = 2*n + 5
+    allocate (body%numbers(8, n*n), body%stiffness(8, 8, n*n))
+    do r = 1, n
+      do c = 1, n
+        e = (r - 1)*n + c
+        point = (r - 2)*(n + 1) + c + [0, 1, n + 2, n + 1]
+        body%numbers(:, e) = [(2*point(i) - 1, 2*point(i), i=1, 4)]
+        body%stiffness(:, :, e) = square_stiffness()
+      end do
+    end do
+  end subroutine make_square
+
+  !> Bilinear square of side 2, four points.
+  pure function square_stiffness() result(k)
+    real(wp) :: k(8, 8)
+    real(wp), parameter :: x(4) = [-1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp], y(4) = [-1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp]
+    real(wp) :: b(4, 8), at(2)
+    integer :: i, j
+
+    k = 0.0_wp
+    do i = 1, 4
+      at = [x(i), y(i)]/sqrt(3.0_wp)
+      b = 0.0_wp
+      do j = 1, 4
+        b(1, 2*j - 1) = x(j)*(1.0_wp + y(j)*at(2))/4.0_wp
+        b(2, 2*j) = y(j)*(1.0_wp + x(j)*at(1))/4.0_wp
+        b(4, 2*j - 1:2*j) = [b(2, 2*j), b(1, 2*j - 1)]
+      end do
+      k = k + matmul(transpose(b), matmul(elastic_matrix(), b))
+    end do
+  end function square_stiffness
+
+  subroutine read_body(path, body)
+    character(len=*), intent(in) :: path
+    type(system), intent(out) :: body
+    type(deck_type) :: deck
+    type(model_type) :: model
+    type(diagnostics) :: faults
+    type(error_type), allocatable :: error
+    type(numbering_type) :: numbering
+    type(strain_operator) :: operator
+    real(wp), allocatable :: matrix(:, :, :)
+    real(wp) :: k(2*most_nodes, 2*most_nodes)
+    integer :: b, e, n
+
+    call read_deck(path, deck, faults, error)
+    if (allocated(error)) error stop 'this deck cannot be read'
+    call build_model(deck, model, faults)
+    if (faults%error_count() > 0) error stop 'this deck has faults'
+    numbering = number_equations(model)
+    operator = new_strain_operator(model)
+    allocate (matrix(4, 4, model%points), source=spread(elastic_matrix(), 3, model%points))
+    b = maxloc(numbering%body%equations, dim=1)
+    associate (chosen => numbering%body(b))
+      body%order = chosen%equations
+      body%contact = chosen%contact_equations
+      body%half_bandwidth = chosen%half_bandwidth
+      n = 2*maxval(model%order(chosen%element))
+      allocate (body%numbers(n, size(chosen%element)), source=0)
+      allocate (body%stiffness(n, n, size(chosen%element)), source=0.0_wp)
+      do e = 1, size(chosen%element)
+        n = model%order(chosen%element(e))
+        call operator%element_stiffness(model, chosen%element(e), matrix, k)
+        body%stiffness(:2*n, :2*n, e) = k(:2*n, :2*n)
+        body%numbers(:2*n, e) = reshape(numbering%equation(:, model%connectivity(:n, chosen%element(e))), [2*n])
+      end do
+    end associate
+  end subroutine read_body
+
+  !> CPU time [ms].
+  real(wp) function now()
+    call cpu_time(now)
+    now = 1000.0_wp*now
+  end function now
+
+  subroutine time_band(body)
+    type(system), intent(in) :: body
+    type(band_matrix) :: matrix
+    real(wp) :: least(4), ratio, begun(5)
+    real(wp), allocatable :: inverse(:, :), x(:, :)
+    integer :: at, e, i, j, run
+
+    least = huge(1.0_wp)
+    allocate (x(body%order, 1), source=1.0_wp)
+    do run = 1, 3
+      begun(1) = now()
+      matrix = new_band_matrix(body%order, body%half_bandwidth)
+      do e = 1, size(body%numbers, 2)
+        do j = 1, size(body%numbers, 1)
+          do i = 1, size(body%numbers, 1)
+            associate (row => body%numbers(i, e), column => body%numbers(j, e))
+              if (column > 0 .and. row >= column) matrix%entries(1 + row - column, column) = &
+                matrix%entries(1 + row - column, column) + body%stiffness(i, j, e)
+            end associate
+          end do
+        end do
+      end do
+      begun(2) = now()
+      call matrix%factor(ratio, at)
+      begun(3) = now()
+      inverse = matrix%trailing_inverse(body%contact)
+      begun(4) = now()
+      call matrix%solve(x)
+      begun(5) = now()
+      least = min(least, begun(2:) - begun(:4))
+    end do
+    call print_row(body, 'band', [0.0_wp, 0.0_wp, least], 8.0e-6_wp*size(matrix%entries, kind=8), ratio)
+  end subroutine time_band
+
+  subroutine time_sparse(body, reused)
+    type(system), intent(in) :: body
+    logical, intent(in) :: reused
+    type(sparse_matrix) :: matrix
+    real(wp) :: least(6), ratio, begun(7)
+    real(wp), allocatable :: inverse(:, :), x(:, :)
+    integer :: at, e, from, run
+
+    least = huge(1.0_wp)
+    allocate (x(body%order, 1), source=1.0_wp)
+    do run = 1, 3
+      begun(1) = now()
+      call matrix%set_pattern(body%order, body%numbers)
+      begun(2) = now()
+      call matrix%analyse(reused)
+      begun(3) = now()
+      from = 1
+      call matrix%clear(from)
+      do e = 1, size(body%numbers, 2)
+        call matrix%add(body%stiffness(:, :, e), body%numbers(:, e))
+      end do
+      begun(4) = now()
+      call matrix%factor(ratio, at)
+      begun(5) = now()
+      inverse = matrix%trailing_inverse(body%contact)
+      begun(6) = now()
+      call matrix%solve(x)
+      begun(7) = now()
+      least = min(least, begun(2:) - begun(:6))
+    end do
+    call print_row(body, merge('sparse, reused', 'sparse, once  ', reused), least, 1.0e-6_wp*matrix%bytes, ratio)
+  end subroutine time_sparse
+
+  subroutine print_row(body, method, times, megabytes, ratio)
+    type(system), intent(in) :: body
+    character(len=*), intent(in) :: method
+    real(wp), intent(in) :: times(6), megabytes, ratio
+
+    print '(i10, i6, i8, 2x, a15, f7.0, f8.0, f6.0, 3f8.1, f7.0, es20.2)', body%order, body%half_bandwidth, body%contact, &
+      method, times, megabytes, ratio
+  end subroutine print_row
+end program bench_sparse
