@@ -85,7 +85,7 @@ contains
     problem = scale_problem(run%scene%problem)
     basis = new_basis(problem, answer%contact%force > 0.0_wp)
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
-    call assess_zones(model, line, answer, smooth_pressures(model, table, material, line, smooth), accuracy)
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, line, smooth), accuracy)
     if (motions%count > 0) call assess_approach(model, motions, numbering, run, answer, table, material, smooth, &
                                                 unit_forces(problem, basis, motions%count), accuracy)
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
@@ -125,20 +125,32 @@ contains
   end function travel
 
   !> Largest pressures and half-widths.
-  pure subroutine assess_zones(model, line, answer, stress_pressure, accuracy)
+  pure subroutine assess_zones(model, table, line, answer, stress_pressure, accuracy)
     type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     real(wp), intent(in) :: stress_pressure(:)   !! [pairs]
     type(accuracy_type), intent(inout) :: accuracy
     integer :: z
 
-    accuracy%zone = [(estimate_zone(model, line, answer%contact%touching, answer%pressure, stress_pressure, answer%zones(z)), &
-                      z=1, size(answer%zones))]
+    accuracy%zone = [(estimate_zone(model, line, answer%contact%touching, answer%pressure, stress_pressure, &
+                                    order_at(line%node(answer%zones(z)%first)), answer%zones(z)), z=1, size(answer%zones))]
     if (size(accuracy%zone) == 0) return
     z = maxloc(answer%zones%max_pressure, dim=1)
     accuracy%max_pressure = accuracy%zone(z)%pressure
     accuracy%pressure_grows = accuracy%zone(z)%grows
+
+  contains
+
+    !> Nodes of the first element at a node; of none: 3.
+    pure integer function order_at(node) result(order)
+      integer, intent(in) :: node
+
+      order = 3
+      if (table%around%start(node + 1) > table%around%start(node)) &
+        order = model%order(table%around%group(table%around%start(node)))
+    end function order_at
   end subroutine assess_zones
 
   !> Approaches. Under loads at the one SUPORT freedom the error is the energy of the error over the load; else it is the product of

@@ -13,11 +13,13 @@ module epcont_accuracy_zone_error
 
   !> Pairs that the parabola goes through.
   integer, parameter :: around_peak = 7
-  !> Weights in the error of the largest pressure: of the scatter, of the smooth stress; of h/b with linear elements, of (h/b)**2
-  !! with quadratic ones.
-  real(wp), parameter :: of_scatter = 0.6_wp, of_stress = 0.35_wp, of_linear = 0.16_wp, of_quadratic = 0.2_wp
-  !> Parts of a spacing that the end of a zone is uncertain by, with linear and with quadratic elements; and at most.
-  real(wp), parameter :: end_linear = 0.25_wp, end_quadratic = 0.18_wp, end_most = 0.5_wp
+  !> Weights in the error of the largest pressure for elements of 3, 4 and 6 nodes: of the scatter, of the smooth stress, of h/b and
+  !! of (h/b)**2.
+  real(wp), parameter :: of_scatter = 0.6_wp
+  real(wp), parameter :: of_stress(3) = [0.35_wp, 0.1_wp, 0.25_wp]
+  real(wp), parameter :: of_spacing(3) = [0.16_wp, 0.07_wp, 0.0_wp], of_square(3) = [0.0_wp, 0.0_wp, 0.25_wp]
+  !> Part of a spacing that the end of a zone is uncertain by, for the same; and at most.
+  real(wp), parameter :: of_end(3) = [0.25_wp, 0.25_wp, 0.18_wp], end_most = 0.5_wp
   !> Pressures that differ by less than this part are the same all over the zone.
   real(wp), parameter :: uniform = 1.0e-6_wp
   !> Part of the product of its diagonal that the determinant of the normal equations must be.
@@ -37,18 +39,19 @@ module epcont_accuracy_zone_error
 contains
 
   !> `stress_pressure` is the pressure at each pair that the smooth strains give.
-  pure function estimate_zone(model, line, touching, pressure, stress_pressure, zone) result(error)
+  pure function estimate_zone(model, line, touching, pressure, stress_pressure, order, zone) result(error)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     logical, intent(in) :: touching(:)
     real(wp), intent(in) :: pressure(:), stress_pressure(:)   !! [pairs]
+    integer, intent(in) :: order    !! nodes of the elements there: 3, 4 or 6
     type(contact_zone), intent(in) :: zone
     type(zone_error) :: error
     real(wp), allocatable :: s(:)    !! place of each of its pairs, from the first on [length]
     integer, allocatable :: inward(:)   !! its pairs from one end on
     real(wp) :: open, step(2), uncertain(2), beyond(2), spacing, largest
-    logical :: even, linear, mirrored(2), sharp(2)
-    integer :: e, n, peak
+    logical :: even, mirrored(2), sharp(2)
+    integer :: e, kind, n, peak
 
     n = size(zone%pairs)
     peak = maxloc(pressure(zone%pairs), dim=1)
@@ -57,7 +60,7 @@ contains
     if (largest <= 0.0_wp) return
     s = places(model, line, zone%pairs)
     mirrored = line%mirrored(zone%pairs([1, n]))
-    linear = .not. any(line%middle(zone%pairs))
+    kind = findloc([3, 4, 6], order, dim=1)
     beyond = 0.0_wp
     uncertain = 0.0_wp
     sharp = .false.
@@ -72,7 +75,7 @@ contains
         step(e) = max(open, d(min(n, 2)))
         beyond(e) = vanishes(p, d, 2, open)
         uncertain(e) = min(end_most*step(e), abs(beyond(e) - vanishes(p, d, 3, open)) &
-                                             + merge(end_linear, end_quadratic, linear)*step(e))
+                                             + of_end(kind)*step(e))
         sharp(e) = open == 0.0_wp .and. p(1) >= falls*largest .or. n > 3 .and. inward(1) == error%peak
       end associate
     end do
@@ -86,8 +89,8 @@ contains
     if (zone%half_width >= 0.0_wp) error%half_width = sum(uncertain)*merge(1.0_wp, 0.5_wp, any(mirrored))
     if (error%grows) return
     error%pressure = of_scatter*abs(largest - parabola(s, pressure(zone%pairs), mirrored, peak, spacing)) &
-                     + of_stress*abs(largest - stress_pressure(error%peak)) &
-                     + largest*merge(of_linear*error%resolution, of_quadratic*error%resolution**2, linear)
+                     + of_stress(kind)*abs(largest - stress_pressure(error%peak)) &
+                     + largest*(of_spacing(kind)*error%resolution + of_square(kind)*error%resolution**2)
   end function estimate_zone
 
   !> Place of each pair along the zone.

@@ -40,14 +40,24 @@ contains
     call figure(file, 'linear residual', right(rounding_number(certificate%equilibrium), 13))
     if (accuracy%sensitivity%known) then
       associate (found => accuracy%sensitivity)
-        call figure(file, 'relative force error / stiffness error', right(estimate_number(found%amplification), 13))
-        call figure(file, 'rounding in the forces, of the largest', right(rounding_number(found%rounding), 13))
+        call figure(file, 'rounding in the contact forces, at most', right(rounding_number(found%rounding), 13)//'   of the largest')
+        call figure(file, 'they magnify errors of the stiffness', right(amplification(found%amplification), 13)//'   times at most')
       end associate
     end if
     call list_discretisation(file, model, motions, answer, accuracy)
     if (any(accuracy%weak)) call list_weak(file, model, answer, accuracy%weak)
     if (answer%locking%elements > 0) call list_locking(file, answer%locking)
   end subroutine list_accuracy
+
+  !> Beyond so much rounding has a say in the figure itself.
+  pure function amplification(value) result(text)
+    real(wp), intent(in) :: value
+    character(len=:), allocatable :: text
+    real(wp), parameter :: beyond = 1.0e6_wp
+
+    text = estimate_number(value)
+    if (value > beyond) text = '> '//estimate_number(beyond)
+  end function amplification
 
   !> The mesh: its error as a whole, and that of each figure that matters.
   subroutine list_discretisation(file, model, motions, answer, accuracy)
@@ -86,11 +96,15 @@ contains
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: error, value
     logical, intent(in) :: without_end   !! the figure grows with every finer mesh
+    real(wp), parameter :: none = 1.0e-9_wp   ! of the figure: rounding
+    character(len=:), allocatable :: text
 
+    text = '0.0'
     if (without_end) then
       call figure(file, name, grows)
     else if (error >= 0.0_wp) then
-      call figure(file, name, right(estimate_number(error), 13)//'   '//percent(error, value))
+      if (error > none*value) text = estimate_number(error)
+      call figure(file, name, right(text, 13)//'   '//percent(error, value))
     end if
   end subroutine list_estimate
 
@@ -111,7 +125,9 @@ contains
     else
       write (buffer, '(f12.'//text_of(max(0, 1 - floor(log10(1.05_wp*hundredths))))//')') hundredths
     end if
-    text = trim(adjustl(buffer))//' %'
+    text = trim(adjustl(buffer))
+    if (text(len(text):) == '.') text = text(:len(text) - 1)
+    text = text//' %'
   end function percent
 
   !> The elements that would gain most by being smaller.
