@@ -82,10 +82,12 @@ contains
     allocate (accuracy%zone(0))
     if (.not. any(answer%contact%force > 0.0_wp)) return
 
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, line, smooth), accuracy)
+    if (.not. answer%converged) return   ! the scene is that of a load that was not carried
+
     problem = scale_problem(run%scene%problem)
     basis = new_basis(problem, answer%contact%force > 0.0_wp)
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
-    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, line, smooth), accuracy)
     if (motions%count > 0) call assess_approach(model, motions, numbering, run, answer, table, material, smooth, &
                                                 unit_forces(problem, basis, motions%count), accuracy)
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
