@@ -32,7 +32,7 @@ module epcont_accuracy_accuracy
   !> Errors that differ by less than this part are equal.
   real(wp), parameter :: equal = 1.0e-6_wp
   !> An error in the energy norm up to this is rounding.
-  real(wp), parameter :: no_error = 1.0e-6_wp
+  real(wp), parameter :: no_error = 1.0e-9_wp
   !> A part of the resultant at one node of the mesh from which on it is a point load.
   real(wp), parameter :: concentrated = 0.5_wp
 
@@ -74,7 +74,12 @@ contains
                                        sum(accuracy%element) + abs(stored_energy(volume, strain, run%state%stress))))
     end associate
     allocate (accuracy%worst(0))
-    if (accuracy%energy_norm > no_error) accuracy%worst = worst_of(accuracy%element)
+    if (accuracy%energy_norm > no_error) then
+      accuracy%worst = worst_of(accuracy%element)
+    else
+      accuracy%energy_norm = 0.0_wp
+      accuracy%element = 0.0_wp
+    end if
     allocate (accuracy%approach(motions%count), accuracy%approach_grows(motions%count), accuracy%weak(model%pairs))
     accuracy%approach = -1.0_wp
     accuracy%approach_grows = .false.
@@ -175,9 +180,10 @@ contains
       if (answer%contact%motion_free(j) .or. all(unit_force(:, j) == 0.0_wp)) cycle
       accuracy%approach_grows(j) = is_point_load(model, motions, table, j)
       associate (operator => run%scene%operator, resultant => run%scene%problem%resultant(j))
+        accuracy%approach(j) = 0.0_wp
         if (loaded_at_support(model, motions)) then
           accuracy%approach(j) = sum(accuracy%element)/abs(resultant)
-        else
+        else if (accuracy%energy_norm > 0.0_wp) then
           strain = unit_strains(model, numbering, run%scene, unit_force(:, j))
           accuracy%approach(j) = of_product*abs(error_product(model, table, material, operator%volume, run%state%strain, smooth, &
                                                               strain, recover_strains(model, table, operator%volume, strain)))

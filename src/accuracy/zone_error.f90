@@ -24,6 +24,8 @@ module epcont_accuracy_zone_error
   real(wp), parameter :: uniform = 1.0e-6_wp
   !> Part of the product of its diagonal that the determinant of the normal equations must be.
   real(wp), parameter :: dependent = 1.0e-9_wp
+  !> Of the largest pressure: less is rounding.
+  real(wp), parameter :: rounding = 1.0e-9_wp
   !> A pressure that is not below this part of the largest at an end does not fall towards it.
   real(wp), parameter :: falls = 0.5_wp
 
@@ -91,6 +93,7 @@ contains
     error%pressure = of_scatter*abs(largest - parabola(s, pressure(zone%pairs), mirrored, peak, spacing)) &
                      + of_stress(kind)*abs(largest - stress_pressure(error%peak)) &
                      + largest*(of_spacing(kind)*error%resolution + of_square(kind)*error%resolution**2)
+    if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
 
   !> Place of each pair along the zone.

@@ -99,13 +99,14 @@ contains
     real(c_double), intent(out) :: smallest_ratio   !! smallest pivot over its diagonal entry; 0 unless all are positive
     integer(c_int), intent(out) :: info
     type(dmumps_struc), pointer :: id
-    integer :: attempt
+    integer :: attempt, status
 
     call c_f_pointer(solver, id)
     smallest_ratio = 0.0_c_double
     info = -1
     id%icntl(14) = 20
-    allocate (id%a(entries), source=a)
+    allocate (id%a(entries), source=a, stat=status)
+    if (status /= 0) return
     do attempt = 1, 3
       id%job = job_factor
       call dmumps(id)

@@ -99,8 +99,8 @@ contains
     if (.not. any(numbering%body%sparse)) return
     text = '  bodies factored by MUMPS (SPARSE): '//text_of(count(numbering%body%sparse))//newline
     if (model%controls%solver /= solver_auto) return
-    text = text//'    chosen here (AUTO): the faster solver where a band (BAND) takes more than '//short_real(many_operations)// &
-           ' operations'//newline
+    text = text//'    chosen here (AUTO): the faster solver of bodies that cannot yield, where a band (BAND) takes more than '// &
+           short_real(many_operations)//newline//'    operations'//newline
   end function solver_text
 
   !> Half-bandwidth; a body that is factored by MUMPS has none.

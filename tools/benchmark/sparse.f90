@@ -1,17 +1,18 @@
-!> Times and storage of band and sparse matrices: where one overtakes the other.
+!> Times and storage of panels (BAND) and of MUMPS (SPARSE): where one overtakes the other.
 !>
 !>     cmake --build --preset release --target bench_sparse
 !>     build/release/bench_sparse 100 200 DECK...
 !>
 !> A number N is a square of N x N four-node elements, held at its foot, with the top side in contact; a deck gives its largest
-!> body, all of it elastic. CPU times in ms, the least of three.
+!> body, all of it elastic. CPU times in ms, the least of three; for a deck, begin with PARAM SOLVER BAND in it.
 program bench_sparse
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_linalg_band, only: band_matrix, new_band_matrix
+  use epcont_linalg_assembled, only: assembled_matrix
+  use epcont_linalg_panel, only: panel_matrix
   use epcont_linalg_sparse, only: sparse_available, sparse_matrix
   use epcont_material_elasticity, only: isotropic_matrix
   use epcont_model_build, only: build_model
@@ -21,7 +22,8 @@ program bench_sparse
 
   !> Element matrices of one body and their equations.
   type :: system
-    integer :: order = 0, contact = 0, half_bandwidth = 0
+    integer :: order = 0, contact = 0
+    integer, allocatable :: reach(:)         !! the last equation that each is coupled with
     integer, allocatable :: numbers(:, :)
     real(wp), allocatable :: stiffness(:, :, :)
   end type system
@@ -30,7 +32,7 @@ program bench_sparse
   character(len=1000) :: argument
   integer :: i, ios, n
 
-  print '(a)', '  unknowns  band contact  method         pattern analyse   add  factor inverse   solve     MB      smallest pivot'
+  print '(a)', '  unknowns contact  matrix    begin      add   factor        F    condition solve     MB   condition'
   do i = 1, command_argument_count()
     call get_command_argument(i, argument)
     read (argument, *, iostat=ios) n
@@ -39,10 +41,9 @@ program bench_sparse
     else
       call read_body(trim(argument), body)
     end if
-    call time_band(body)
-    if (.not. sparse_available()) cycle
-    call time_sparse(body, .false.)
-    call time_sparse(body, .true.)
+    body%reach = last_coupled(body)
+    call time_matrix(body, .false.)
+    if (sparse_available()) call time_matrix(body, .true.)
   end do
 
 contains
@@ -61,7 +62,6 @@ contains
 
     body%order = 2*n*(n + 1)
     body%contact = 2*(n + 1)
-    body%half_bandwidth = 2*n + 5
     allocate (body%numbers(8, n*n), body%stiffness(8, 8, n*n))
     do r = 1, n
       do c = 1, n
@@ -117,7 +117,6 @@ contains
     associate (chosen => numbering%body(b))
       body%order = chosen%equations
       body%contact = chosen%contact_equations
-      body%half_bandwidth = chosen%half_bandwidth
       n = 2*maxval(model%order(chosen%element))
       allocate (body%numbers(n, size(chosen%element)), source=0)
       allocate (body%stiffness(n, n, size(chosen%element)), source=0.0_wp)
@@ -130,85 +129,72 @@ contains
     end associate
   end subroutine read_body
 
+  pure function last_coupled(body) result(reach)
+    type(system), intent(in) :: body
+    integer, allocatable :: reach(:)
+    integer :: e, i
+
+    reach = [(i, i=1, body%order)]
+    do e = 1, size(body%numbers, 2)
+      associate (numbers => body%numbers(:, e))
+        do i = 1, size(numbers)
+          if (numbers(i) > 0) reach(numbers(i)) = max(reach(numbers(i)), maxval(numbers))
+        end do
+      end associate
+    end do
+  end function last_coupled
+
   !> CPU time [ms].
   real(wp) function now()
     call cpu_time(now)
     now = 1000.0_wp*now
   end function now
 
-  subroutine time_band(body)
+  !> One matrix from nothing to a solution.
+  subroutine time_matrix(body, sparse)
     type(system), intent(in) :: body
-    type(band_matrix) :: matrix
-    real(wp) :: least(4), ratio, begun(5)
-    real(wp), allocatable :: inverse(:, :), x(:, :)
-    integer :: at, e, i, j, run
+    logical, intent(in) :: sparse
+    class(assembled_matrix), allocatable :: matrix
+    type(panel_matrix), allocatable :: panels
+    type(sparse_matrix), allocatable :: by_mumps
+    real(wp) :: bytes, least(6), ratio, begun(7)
+    real(wp), allocatable :: gram(:, :), x(:, :)
+    integer :: at, e, i, run
 
     least = huge(1.0_wp)
     allocate (x(body%order, 1), source=1.0_wp)
+    allocate (gram(body%contact, body%contact), source=0.0_wp)
     do run = 1, 3
+      if (allocated(matrix)) deallocate (matrix)
       begun(1) = now()
-      matrix = new_band_matrix(body%order, body%half_bandwidth)
-      do e = 1, size(body%numbers, 2)
-        do j = 1, size(body%numbers, 1)
-          do i = 1, size(body%numbers, 1)
-            associate (row => body%numbers(i, e), column => body%numbers(j, e))
-              if (column > 0 .and. row >= column) matrix%entries(1 + row - column, column) = &
-                matrix%entries(1 + row - column, column) + body%stiffness(i, j, e)
-            end associate
-          end do
-        end do
-      end do
+      if (sparse) then
+        allocate (by_mumps)
+        call by_mumps%begin(body%order, body%numbers)
+        bytes = real(by_mumps%bytes, wp)
+        call move_alloc(by_mumps, matrix)
+      else
+        allocate (panels)
+        call panels%begin(body%reach, body%contact)
+        bytes = 8.0_wp*size(panels%entries, kind=8)
+        call move_alloc(panels, matrix)
+      end if
       begun(2) = now()
-      call matrix%factor(ratio, at)
-      begun(3) = now()
-      inverse = matrix%trailing_inverse(body%contact)
-      begun(4) = now()
-      call matrix%solve(x)
-      begun(5) = now()
-      least = min(least, begun(2:) - begun(:4))
-    end do
-    call print_row(body, 'band', [0.0_wp, 0.0_wp, least], 8.0e-6_wp*size(matrix%entries, kind=8), ratio)
-  end subroutine time_band
-
-  subroutine time_sparse(body, reused)
-    type(system), intent(in) :: body
-    logical, intent(in) :: reused
-    type(sparse_matrix) :: matrix
-    real(wp) :: least(6), ratio, begun(7)
-    real(wp), allocatable :: inverse(:, :), x(:, :)
-    integer :: at, e, from, run
-
-    least = huge(1.0_wp)
-    allocate (x(body%order, 1), source=1.0_wp)
-    do run = 1, 3
-      begun(1) = now()
-      call matrix%set_pattern(body%order, body%numbers)
-      begun(2) = now()
-      call matrix%analyse(reused)
-      begun(3) = now()
-      from = 1
-      call matrix%clear(from)
       do e = 1, size(body%numbers, 2)
         call matrix%add(body%stiffness(:, :, e), body%numbers(:, e))
       end do
-      begun(4) = now()
+      begun(3) = now()
       call matrix%factor(ratio, at)
+      begun(4) = now()
+      call matrix%add_gram([(i, i=1, body%contact + 1)], [(i, i=body%order - body%contact + 1, body%order)], &
+                           [(1.0_wp, i=1, body%contact)], gram)
       begun(5) = now()
-      inverse = matrix%trailing_inverse(body%contact)
+      ratio = matrix%condition()
       begun(6) = now()
       call matrix%solve(x)
       begun(7) = now()
       least = min(least, begun(2:) - begun(:6))
     end do
-    call print_row(body, merge('sparse, reused', 'sparse, once  ', reused), least, 1.0e-6_wp*matrix%bytes, ratio)
-  end subroutine time_sparse
-
-  subroutine print_row(body, method, times, megabytes, ratio)
-    type(system), intent(in) :: body
-    character(len=*), intent(in) :: method
-    real(wp), intent(in) :: times(6), megabytes, ratio
-
-    print '(i10, i6, i8, 2x, a15, f7.0, f8.0, f6.0, 3f8.1, f7.0, es20.2)', body%order, body%half_bandwidth, body%contact, &
-      method, times, megabytes, ratio
-  end subroutine print_row
+    print '(i10, i8, 2x, a6, 6f9.1, f7.0, es12.2)', body%order, body%contact, merge('SPARSE', 'BAND  ', sparse), least, &
+      1.0e-6_wp*bytes, ratio
+  end subroutine time_matrix
 end program bench_sparse

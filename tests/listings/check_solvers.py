@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""check_solvers.py PROGRAM DECK OUTPUT: a deck must have the same answer by SOLVER BAND and by SOLVER SPARSE.
+
+Exit status, words and whole numbers are to be the same; reals to 1e-9 of the largest of their kind in their table, for two
+factors of one matrix leave different rounding. What measures rounding, and states that are no answers, are not compared.
+"""
+import csv
+import pathlib
+import re
+import subprocess
+import sys
+
+TOLERANCE = 1e-9
+#: An estimate, which depends on the order of the equations: seldom off by more than a third, and then low.
+ESTIMATES = {"condition": 0.1, "rounding_error_force": 0.1}
+#: Columns of one kind: a stress that should be zero is compared with the others, not with itself.
+KINDS = [{"ux", "uy"}, {"rx", "ry"}, {"sx", "sy", "sz", "txy", "equivalent_stress"}]
+#: Tables and rows of the summary that tell of rounding, or of the way.
+WAY = {"equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "stress_off_curve", "energy_balance",
+       "iteration_error_displacement", "iteration_error_force", "pivots"}
+
+
+def run(program, deck, solver, output):
+    """Exit status and tables, {name: rows}."""
+    output.mkdir(parents=True, exist_ok=True)
+    for old in output.glob("*"):
+        old.unlink()
+    copy = output / deck.name
+    copy.write_text(re.sub(r"(?im)^(BEGIN BULK.*)$", rf"\1\nPARAM,SOLVER,{solver}", deck.read_text(), count=1))
+    status = subprocess.run([program, copy, "-o", output, "--tables", "all", "--quiet"], stderr=subprocess.DEVNULL).returncode
+    tables = {path.suffixes[-2][1:]: list(csv.reader(path.open())) for path in sorted(output.glob("*.csv"))}
+    tables.pop("history", None)
+    return status, tables
+
+
+def real(word):
+    """A real number, or None: whole numbers are compared as words."""
+    return float(word) if re.fullmatch(r"[-+]?\d+\.\d*E[-+]\d+", word) else None
+
+
+def scale(name, column, row, rows):
+    """The largest magnitude that a number is compared with; a row of the summary has one of its own."""
+    if name == "summary":
+        return abs(real(row[column]))
+    kind = next((kind for kind in KINDS if rows[0][column] in kind), {rows[0][column]})
+    members = [k for k, title in enumerate(rows[0]) if title in kind]
+    return max(abs(real(other[k]) or 0.0) for other in rows[1:] for k in members)
+
+
+def faults(name, one, other):
+    if [len(row) for row in one] != [len(row) for row in other]:
+        yield f"{name}: rows differ"
+        return
+    scales = {}
+    for mine, its in zip(one[1:], other[1:]):
+        if name == "summary" and mine[0] in WAY:
+            continue
+        for column, (a, b) in enumerate(zip(mine, its)):
+            if real(a) is None or real(b) is None:
+                if a != b:
+                    yield f"{name}: {a} by BAND, {b} by SPARSE in {','.join(mine)}"
+                continue
+            key = column if name != "summary" else (mine[0], column)
+            if key not in scales:
+                scales[key] = scale(name, column, mine, one)
+            if not abs(real(a) - real(b)) <= ESTIMATES.get(mine[0], TOLERANCE) * scales[key]:
+                yield f"{name}: {one[0][column]}: {a} by BAND, {b} by SPARSE in {','.join(mine)}"
+
+
+def main():
+    program, deck, output = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+    band, tables = run(program, deck, "BAND", output / "BAND")
+    sparse, others = run(program, deck, "SPARSE", output / "SPARSE")
+    if band != sparse:
+        sys.exit(f"exit status {band} by BAND, {sparse} by SPARSE")
+    if tables.keys() != others.keys():
+        sys.exit(f"tables {sorted(tables)} by BAND, {sorted(others)} by SPARSE")
+    if band != 0:
+        return
+    if not tables:
+        sys.exit("no tables to compare")
+    found = [fault for name in tables for fault in faults(name, tables[name], others[name])]
+    sys.exit("\n".join(found[:20]) if found else 0)
+
+
+if __name__ == "__main__":
+    main()
