@@ -76,18 +76,20 @@ contains
         open = to_first_open(model, line, touching, inward(1))
         step(e) = max(open, d(min(n, 2)))
         beyond(e) = vanishes(p, d, 2, open)
-        uncertain(e) = min(end_most*step(e), abs(beyond(e) - vanishes(p, d, 3, open)) &
-                                             + of_end(kind)*step(e))
+        uncertain(e) = min(end_most*step(e), abs(beyond(e) - vanishes(p, d, 3, open)) + of_end(kind)*step(e))
         sharp(e) = open == 0.0_wp .and. p(1) >= falls*largest .or. n > 3 .and. inward(1) == error%peak
       end associate
     end do
     error%half_length = 0.5_wp*(s(n) + sum(beyond))
     if (mirrored(1) .neqv. mirrored(2)) error%half_length = 2.0_wp*error%half_length
     if (n > 1) spacing = (s(min(n, peak + 1)) - s(max(1, peak - 1)))/(min(n, peak + 1) - max(1, peak - 1))
-    if (n == 1) spacing = maxval(step, mask=.not. mirrored)
-    even = maxval(pressure(zone%pairs)) - minval(pressure(zone%pairs)) <= uniform*largest .and. n > 1
+    even = n > 1 .and. maxval(pressure(zone%pairs)) - minval(pressure(zone%pairs)) <= uniform*largest
     error%grows = any(sharp) .and. .not. even
-    error%resolution = merge(0.0_wp, min(1.0_wp, spacing/max(error%half_length, tiny(1.0_wp))), even)
+    if (even) then
+      error%resolution = 0.0_wp
+    else if (error%half_length > spacing) then   ! of a single pair it stays 1
+      error%resolution = spacing/error%half_length
+    end if
     if (zone%half_width >= 0.0_wp) error%half_width = sum(uncertain)*merge(1.0_wp, 0.5_wp, any(mirrored))
     if (error%grows) return
     error%pressure = of_scatter*abs(largest - parabola(s, pressure(zone%pairs), mirrored, peak, spacing)) &
