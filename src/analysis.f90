@@ -56,8 +56,8 @@ contains
     answer%pressure = pair_pressures(model, line, answer%contact%touching, answer%contact%force)
     answer%zones = find_zones(model, line, answer%contact%touching, answer%contact%force, answer%pressure)
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
-    call certify(model, load, plan%off_curve, answer%displacement, answer%reaction, answer%point_stress, answer%contact%force, &
-                 certificate)
+    call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
+                 answer%contact%force, certificate)
     call assess(model, motions, numbering, run, line, answer, accuracy)
   end subroutine analyse
 
@@ -67,12 +67,14 @@ contains
     type(answer_type), intent(inout) :: answer
 
     answer%displacement = run%state%displacement
+    answer%deformation = run%state%deformation
     answer%history = run%history
     answer%factorizations = run%factorizations
     answer%converged = run%converged
     answer%runs_away = run%runs_away
     answer%load_factor = run%load_factor
     answer%condition = run%condition
+    answer%weakest = run%weakest
     answer%unloaded = run%unloaded
     answer%first_unloaded = run%first_unloaded
   end subroutine take_over

@@ -5,6 +5,7 @@ program epcont
   use epcont_app_arguments, only: arguments_type, help_text, read_arguments
   use epcont_app_driver, only: run_deck
   use epcont_base_large_pages, only: prepare_heap
+  use epcont_base_one_thread, only: use_one_thread
   use epcont_base_error, only: error_type, status_usage, status_valid
   use epcont_base_version, only: program_name, program_version
   use epcont_deck_manual, only: manual
@@ -19,6 +20,7 @@ program epcont
   integer :: status
 
   call prepare_heap()
+  call use_one_thread()
   call run(status)
   flush (output_unit)
   flush (error_unit)

@@ -1,5 +1,6 @@
 !> The loop of the plastic iteration; it knows nothing of the method that it drives.
 module epcont_plasticity_iteration
+  use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solved
   use epcont_material_curve, only: material_type, section_materials
@@ -46,6 +47,7 @@ module epcont_plasticity_iteration
     logical :: lacks_memory = .false.      !! that was for want of memory
     integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of its stiffness, estimated in the 1-norm
+    type(weak_pivot) :: weakest            !! of its stiffness
     type(iteration_record), allocatable :: history(:)
     integer :: unloaded = 0                !! elements whose strain fell from one load step to the next, after yielding
     integer :: first_unloaded = 0          !! one of them
@@ -98,6 +100,7 @@ contains
       if (converged .or. step == 1) then
         run%load_factor = part
         run%condition = loop%scene%bodies%condition()
+        run%weakest = loop%scene%bodies%weakest()
       end if
       if (.not. converged) exit
       call find_unloaded(model, loop, strained, run)

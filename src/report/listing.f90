@@ -36,7 +36,11 @@ contains
     if (len(deck%title) > 0) call file%line('  '//printable(deck%title))
     if (len(deck%subtitle) > 0) call file%line('  '//printable(deck%subtitle))
     if (len(deck%label) > 0) call file%line('  '//printable(deck%label))
-    call file%line('  units: '//trim(deck%parameter_word('UNITS', 'as the deck has them')))
+    if (len_trim(deck%parameter_word('UNITS', '')) > 0) then
+      call file%line('  units: '//trim(deck%parameter_word('UNITS', '')))
+    else
+      call file%line('  units: as the deck has them')
+    end if
     call heading(file, 'DECK')
     do k = 1, size(deck%card)
       if (deck%card(k)%count > 0) &
