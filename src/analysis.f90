@@ -1,5 +1,6 @@
 !> The story of one scene: from the model to a certified answer.
 module epcont_analysis
+  use epcont_accuracy_accuracy, only: accuracy_type, assess
   use epcont_base_kinds, only: wp
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_contact_problem, only: contact_solved
@@ -25,13 +26,14 @@ contains
 
   !> Solve the scene. `singular` is a body whose stiffness could not be factored (0: none); without contact
   !! equilibrium (`answer%contact%state`) there are no displacements.
-  subroutine analyse(model, motions, numbering, plan, answer, certificate, singular)
+  subroutine analyse(model, motions, numbering, plan, answer, certificate, accuracy, singular)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     type(numbering_type), intent(in) :: numbering
     type(iteration_plan), intent(in) :: plan
     type(answer_type), intent(out) :: answer
     type(certificate_type), intent(out) :: certificate
+    type(accuracy_type), intent(out) :: accuracy
     integer, intent(out) :: singular
     class(plastic_method), allocatable :: method
     type(plastic_run) :: run
@@ -48,14 +50,15 @@ contains
 
     call take_over(run, answer)
     load = run%load_factor*model%load
-    call recover_stresses(model, run%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
-    answer%locking = find_locking(model, run%operator%volume, answer%stress, answer%equivalent_stress, answer%secant_modulus)
+    call recover_stresses(model, run%scene%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
+    answer%locking = find_locking(model, run%scene%operator%volume, answer%stress, answer%equivalent_stress, answer%secant_modulus)
     line = find_contact_line(model)
     answer%pressure = pair_pressures(model, line, answer%contact%touching, answer%contact%force)
     answer%zones = find_zones(model, line, answer%contact%touching, answer%contact%force, answer%pressure)
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
-    call certify(model, load, plan%off_curve, answer%displacement, answer%reaction, answer%point_stress, answer%contact%force, &
-                 certificate)
+    call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
+                 answer%contact%force, certificate)
+    call assess(model, motions, numbering, run, line, answer, accuracy)
   end subroutine analyse
 
   !> What the loop has found, and how.
@@ -64,12 +67,14 @@ contains
     type(answer_type), intent(inout) :: answer
 
     answer%displacement = run%state%displacement
+    answer%deformation = run%state%deformation
     answer%history = run%history
     answer%factorizations = run%factorizations
     answer%converged = run%converged
     answer%runs_away = run%runs_away
     answer%load_factor = run%load_factor
     answer%condition = run%condition
+    answer%weakest = run%weakest
     answer%unloaded = run%unloaded
     answer%first_unloaded = run%first_unloaded
   end subroutine take_over

@@ -60,7 +60,7 @@ contains
       call check_memory(run%model, expected, arguments%memory, error)
       if (allocated(error)) error%message = path//': '//error%message
       if (.not. allocated(error)) then
-        call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, singular)
+        call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular)
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
         status = run%outcome%status
         call write_results(run, output_stem(path, arguments), arguments%all_tables, error)

@@ -8,6 +8,7 @@ program epcont
   use epcont_base_large_pages, only: prepare_heap
   use epcont_base_error, only: error_type, raise, status_usage, status_valid
   use epcont_base_memory, only: has_memory, memory_of_libraries
+  use epcont_base_one_thread, only: use_one_thread
   use epcont_base_version, only: program_name, program_version
   use epcont_deck_manual, only: manual
   use epcont_report_file, only: make_directory
@@ -17,6 +18,7 @@ program epcont
 
   call watch_exit(ended)
   call prepare_heap()
+  call use_one_thread()
   call run(status)
   ended = .true.
   call stop_with(status)

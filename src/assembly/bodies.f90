@@ -8,7 +8,13 @@ module epcont_assembly_bodies
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: factored_bodies, new_bodies
+  public :: factored_bodies, new_bodies, weak_pivot
+
+  !> The pivot that has lost most of its digits to rounding.
+  type :: weak_pivot
+    real(wp) :: ratio = 1.0_wp    !! to its diagonal entry
+    integer :: body = 0           !! 0: all bodies are rigid
+  end type weak_pivot
 
   type :: factored_bodies
     type(body_stiffness), allocatable :: body(:)
@@ -19,6 +25,7 @@ module epcont_assembly_bodies
     procedure :: settle
     procedure :: displacements
     procedure :: condition
+    procedure :: weakest
     procedure :: lacks_memory
   end type factored_bodies
 
@@ -91,6 +98,16 @@ contains
       condition = max(condition, self%body(b)%matrix%condition())
     end do
   end function condition
+
+  !> The weakest pivot of all bodies.
+  pure type(weak_pivot) function weakest(self)
+    class(factored_bodies), intent(in) :: self
+    integer :: b
+
+    do b = 1, size(self%body)
+      if (self%body(b)%smallest_ratio < weakest%ratio) weakest = weak_pivot(self%body(b)%smallest_ratio, b)
+    end do
+  end function weakest
 
   !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero [2, nodes].
   pure function displacements(self, model, numbering, force, part) result(u)

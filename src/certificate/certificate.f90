@@ -18,7 +18,11 @@ module epcont_certificate_certificate
   !> Roundings that a gap is the sum of.
   real(wp), parameter :: roundings = 8.0_wp
   !> Largest part of the bodies' give that the rounding of the gaps may be: a travel far beyond it leaves no digits.
-  real(wp), parameter :: largest_rounding = 1.0e-6_wp
+  real(wp), parameter, public :: largest_rounding = 1.0e-6_wp
+
+  !> A rigid motion strains an element by so many roundings of its displacements, at most: motions of a chain of 40 hinges, sums
+  !! that cancel, were seen to leave 750.
+  real(wp), parameter, public :: most_roundings = 1.0e4_wp
 
   type :: certificate_type
     real(wp) :: equilibrium = 0.0_wp      !! largest unbalanced nodal force / largest sum of element forces at a node
@@ -26,6 +30,8 @@ module epcont_certificate_certificate
     real(wp) :: smallest_gap = 0.0_wp     !! [length]
     real(wp) :: force_gap = 0.0_wp        !! largest |R gap| [force*length]
     real(wp) :: off_curve = 0.0_wp        !! largest difference of a stress from its curve / largest stress
+    real(wp) :: motion_strain = 0.0_wp    !! largest strain of the rigid motions / its rounding
+    real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes / largest stress
     real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of all |terms|
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
@@ -38,11 +44,12 @@ module epcont_certificate_certificate
 contains
 
   !> `curve_tolerance` is how far off its curve the iteration may leave a stress; less than `tolerance` is not asked.
-  pure subroutine certify(model, load, curve_tolerance, displacement, reaction, stress, force, certificate)
+  pure subroutine certify(model, load, curve_tolerance, deformation, displacement, reaction, stress, force, certificate)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: load(:, :)          !! [force] [2, nodes]
     real(wp), intent(in) :: curve_tolerance
-    real(wp), intent(in) :: displacement(:, :)  !! [2, nodes]
+    real(wp), intent(in) :: deformation(:, :)   !! displacements without rigid motions [2, nodes]
+    real(wp), intent(in) :: displacement(:, :)  !! with them [2, nodes]
     real(wp), intent(in) :: reaction(:, :)      !! [2, nodes]
     real(wp), intent(in) :: stress(:, :)        !! xx, yy, zz, xy [4, points]
     real(wp), intent(in) :: force(:)            !! contact forces [pairs]
@@ -53,8 +60,10 @@ contains
     allocate (residual(2, model%nodes), element_force(model%nodes), source=0.0_wp)
     stored = 0.0_wp
     largest_stress = 0.0_wp
-    call sum_elements(model, displacement, stress, residual, element_force, stored, largest_stress, certificate%off_curve)
+    call sum_elements(model, deformation, displacement - deformation, stress, residual, element_force, stored, largest_stress, &
+                      certificate)
     certificate%off_curve = ratio(certificate%off_curve, largest_stress)
+    certificate%lost_stress = ratio(certificate%lost_stress, largest_stress)
     residual = residual - load - reaction
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     forces = sum(abs(load)) + sum(abs(reaction)) + sum(abs(force))
@@ -68,7 +77,8 @@ contains
     call add_pair_work(model, displacement, force, work, terms)
     certificate%energy = ratio(abs(work - stored), terms)
     exact = tolerance*certificate%length_scale + certificate%gap_rounding
-    certificate%balanced = certificate%equilibrium <= tolerance .and. certificate%energy <= tolerance &
+    certificate%balanced = certificate%motion_strain <= most_roundings .and. certificate%equilibrium <= tolerance &
+                           .and. certificate%energy <= tolerance &
                            .and. certificate%smallest_force >= -tolerance*certificate%force_scale &
                            .and. certificate%smallest_gap >= -exact &
                            .and. certificate%force_gap <= exact*certificate%force_scale &
@@ -85,24 +95,35 @@ contains
     if (a > 0.0_wp) ratio = a/max(b, tiny(b))
   end function ratio
 
-  !> Internal forces at the nodes, work of the stresses on the strains, largest stress and largest distance from the curve.
-  pure subroutine sum_elements(model, displacement, stress, internal, magnitude, stored, largest, off)
+  !> Internal forces at the nodes, work of the stresses on the strains, largest stress; its largest distance from the curve
+  !! and what roundings and rigid motions strain go into the certificate.
+  pure subroutine sum_elements(model, deformation, motion, stress, internal, magnitude, stored, largest, certificate)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: displacement(:, :), stress(:, :)
-    real(wp), intent(inout) :: internal(:, :), magnitude(:), stored, largest, off
-    real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), strain(4), force(2)
+    real(wp), intent(in) :: deformation(:, :), motion(:, :), stress(:, :)
+    real(wp), intent(inout) :: internal(:, :), magnitude(:), stored, largest
+    type(certificate_type), intent(inout) :: certificate
+    logical :: moves
+    real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), strain(4), force(2), rounding
     integer :: c, e, k, p, places
 
+    moves = any(motion /= 0.0_wp)
     do e = 1, model%elements
       call unit_strains(model, e, places, unit, volume)
       associate (node => model%connectivity(:model%order(e), e), first => model%first_point(e))
         do p = 1, places
-          strain = strain_at(model, e, displacement, unit(:, :, :, p))
+          strain = strain_at(model, e, deformation, unit(:, :, :, p))
           associate (s => stress(:, first + p - 1))
-            off = max(off, maxval(abs(s - stress_on_curve(model, model%section(e), strain))))
+            certificate%off_curve = max(certificate%off_curve, maxval(abs(s - stress_on_curve(model, model%section(e), strain))))
             largest = max(largest, maxval(abs(s)))
             stored = stored + volume(p)*dot_product(s, strain)
           end associate
+          rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :size(node), p)))   ! of a strain by unit displacements
+          certificate%lost_stress = max(certificate%lost_stress, &
+                                        model%young(model%section(e))*rounding*maxval(abs(deformation(:, node))))
+          if (.not. moves) cycle
+          strain = strain_at(model, e, motion, unit(:, :, :, p))
+          rounding = rounding*maxval(abs(motion(:, node)) + abs(deformation(:, node)))
+          certificate%motion_strain = max(certificate%motion_strain, ratio(maxval(abs(strain)), rounding))
         end do
         do k = 1, size(node)
           do c = 1, 2

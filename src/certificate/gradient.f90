@@ -60,7 +60,8 @@ contains
     associate (s => model%section(element))
       do p = 1, places
         change = differences(n, place(:, p))
-        side = matmul(x(:, :n), transpose(change(:, :n)))   ! d x/d local, one column each
+        ! d x/d local, one column each; from the first node, so that a place far from the origin takes no digits.
+        side = matmul(x(:, :n) - spread(x(:, 1), 2, n), transpose(change(:, :n)))
         determinant = side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1)
         volume(p) = weight(p)*determinant*model%thickness(s)
         strain(:, :, :n, p) = 0.0_wp

@@ -6,9 +6,10 @@ module epcont_deck_point_list
   use epcont_deck_complaint, only: add_fault, add_value_fault, field_text, identity
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_entry, only: card_entry, field_entry, number_of, real_field, slot_of
-  use epcont_deck_field, only: scan_real, scan_sound
+  use epcont_deck_field, only: scan_sound
   use epcont_deck_source, only: source
   use epcont_deck_table, only: card_table
+  use epcont_deck_value, only: read_value
   implicit none
   private
   public :: read_points
@@ -63,6 +64,7 @@ contains
     real(wp), intent(out) :: number
     logical, intent(out) :: sound
     type(field_entry) :: field
+    character(len=8) :: word   ! there is none
     integer :: outcome
 
     number = 0.0_wp
@@ -71,7 +73,7 @@ contains
     if (.not. card%filled(slot)) then
       call add_fault(lines, card, field, 'is blank', 'a real, or '//end_word//' behind the last point', faults)
     else
-      call scan_real(lines%text(card%first(slot):card%last(slot)), number, outcome)
+      call read_value(lines%text(card%first(slot):card%last(slot)), field, number, word, outcome)
       sound = outcome == scan_sound
       if (.not. sound) call add_value_fault(lines, card, slot, field, outcome, faults)
     end if

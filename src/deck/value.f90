@@ -9,7 +9,11 @@ module epcont_deck_value
   public :: read_value, fault_of, out_of_range
 
   !> A fault that is not one of form, beside the outcomes of a scan.
-  integer, parameter :: out_of_range = -1
+  integer, parameter :: out_of_range = -1, out_of_reach = -2
+
+  !> The size of a number that has an effect is at most this, and one that must be above zero is at least 1/this: up to
+  !! their tenth power, products of such numbers are numbers.
+  real(wp), parameter :: farthest = 1.0e30_wp
 
 contains
 
@@ -43,7 +47,12 @@ contains
       outcome = scan_sound
       return
     end select
-    if (outcome == scan_sound .and. .not. within(value, entry)) outcome = out_of_range
+    if (outcome /= scan_sound) return
+    if (.not. within(value, entry)) then
+      outcome = out_of_range
+    else if (entry%used .and. .not. within_reach(value, entry)) then
+      outcome = out_of_reach
+    end if
   end subroutine read_value
 
   pure logical function within(value, entry)
@@ -54,6 +63,14 @@ contains
     if (entry%above_lowest) within = within .and. value > entry%lowest
     if (entry%below_highest) within = within .and. value < entry%highest
   end function within
+
+  pure logical function within_reach(value, entry)
+    real(wp), intent(in) :: value
+    type(field_entry), intent(in) :: entry
+
+    within_reach = abs(value) <= farthest
+    if (entry%lowest == 0.0_wp .and. entry%above_lowest) within_reach = within_reach .and. value >= 1.0_wp/farthest
+  end function within_reach
 
   !> A fault in words: `what` goes behind `field 4 (X1) `.
   pure subroutine fault_of(text, entry, outcome, what, remedy)
@@ -69,10 +86,13 @@ contains
       remedy = 'a real needs a decimal point: '//with_point(text)
     case (scan_too_large)
       what = 'is too large for a number'
-      if (entry%kind == kind_real) remedy = 'at most 1.797E+308'
+      if (entry%kind == kind_real) remedy = 'at most 1.0E+30'
     case (scan_too_small)
       what = 'is too small for a number'
       remedy = '0.0, or at least 2.226E-308'
+    case (out_of_reach)
+      what = 'is too far from 1.0'
+      remedy = 'other units: sizes up to 1.0E+30, and where zero is none, from 1.0E-30'
     case (scan_too_long)
       what = 'has more than 8 characters'
     case (scan_malformed)

@@ -44,15 +44,18 @@ contains
     integer, intent(in) :: kinematics        !! plane_strain, plane_stress or axisymmetric
     real(wp), intent(in) :: thickness        !! of plane ones [length]
     type(element_point), intent(out) :: point(:)   !! [point_count(nodes)]
-    real(wp) :: place(2, most_points), weight(most_points), jacobian(2, 2), determinant, radius
+    real(wp) :: place(2, most_points), weight(most_points), jacobian(2, 2), determinant, radius, from_first(2, most_nodes)
     real(wp) :: slope(2, most_nodes), values(most_nodes)
     integer :: i, n, p
 
     n = size(x, 2)
     call local_points(n, place, weight)
+    do i = 1, n
+      from_first(:, i) = x(:, i) - x(:, 1)   ! far from the origin the sums below would lose the digits of the size
+    end do
     do p = 1, point_count(n)
       slope(:, :n) = local_slopes(n, place(:, p))
-      jacobian = matmul(slope(:, :n), transpose(x))   ! d x_j/d local_i
+      jacobian = matmul(slope(:, :n), transpose(from_first(:, :n)))   ! d x_j/d local_i
       determinant = jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1)
       point(p)%volume = weight(p)*determinant*thickness
       point(p)%b(:, :2*n) = 0.0_wp

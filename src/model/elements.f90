@@ -3,7 +3,7 @@ module epcont_model_elements
   use epcont_base_geometry, only: cross_product, polygon_area
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: short_real, text_of
   use epcont_deck_card_kinds, only: card_cquad4, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_grid, card_pshell, &
                                     card_psolid
   use epcont_deck_deck, only: deck_type
@@ -23,6 +23,8 @@ module epcont_model_elements
 
   !> An area up to this part of the square of the longest side is rounding: the corners lie on one line.
   real(wp), parameter :: sliver = 1.0e-12_wp
+  !> Shorter sides have areas and stiffnesses that are hardly numbers.
+  real(wp), parameter :: shortest_side = 1.0e-30_wp
 
 contains
 
@@ -87,17 +89,23 @@ contains
     integer, intent(in) :: card, i, e
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
-    real(wp) :: area, longest, x(2, 4)
+    real(wp) :: area, extent, longest, x(2, 4)
     integer :: k, n
 
     n = model%corners(e)
     do k = 1, n
       x(:, k) = model%x(:, model%connectivity(k, e))
     end do
+    extent = maxval(maxval(x(:, :n), dim=2) - minval(x(:, :n), dim=2))
     longest = 0.0_wp
     do k = 1, n
       longest = max(longest, sum((x(:, k) - x(:, mod(k, n) + 1))**2))
     end do
+    if (extent > 0.0_wp .and. extent < shortest_side) then
+      call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)//': its sides are shorter than '// &
+                            short_real(shortest_side), 'other units')
+      return
+    end if
     area = polygon_area(x(:, :n))
     if (n == 3 .and. abs(area) <= sliver*longest) then
       call faults%add_error(deck%place(card, i, 4), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &

@@ -130,10 +130,11 @@ contains
     if (state%contact%state /= contact_solved) return
 
     force = force + pair_forces(model, state%contact%force)
-    state%displacement = self%bodies%displacements(model, numbering, force, part)
-    ! The strains come before the rigid motion, whose digits they have no need of.
-    state%strain = self%operator%strains(model, state%displacement)
+    ! Strains are of the deformation: added to a long travel it would lose their digits.
+    state%deformation = self%bodies%displacements(model, numbering, force, part)
+    state%strain = self%operator%strains(model, state%deformation)
     state%stress = law%stress(state%strain)
+    state%displacement = state%deformation
     call add_motions(model, motions, state)
   end subroutine solve
 

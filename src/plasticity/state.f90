@@ -8,6 +8,7 @@ module epcont_plasticity_state
 
   type :: scene_state
     real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), allocatable :: deformation(:, :)    !! displacements before the rigid motions are added [length] [2, nodes]
     real(wp), allocatable :: strain(:, :)         !! xx, yy, zz, xy (engineering) [4, points]
     real(wp), allocatable :: stress(:, :)         !! xx, yy, zz, xy, in equilibrium [stress] [4, points]
     type(contact_solution) :: contact

@@ -1,8 +1,9 @@
 !> What came of a run, in a word and a sentence.
 module epcont_report_outcome
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
+  use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
-  use epcont_certificate_certificate, only: certificate_type
+  use epcont_certificate_certificate, only: certificate_type, largest_rounding, most_roundings, tolerance
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
@@ -18,7 +19,12 @@ module epcont_report_outcome
     logical :: has_answer = .false.             !! displacements and forces were found
   end type outcome_type
 
+  character(len=*), parameter :: reason = &
+    'elements differ too much in size or stiffness, hardly anything resists a motion, or a Poisson''s ratio is too near 0.5'
   character(len=*), parameter :: axis(2) = ['x', 'y']
+  !> Largest part that rounding may take of a pivot in a valid answer. The certificate need not see it: rigid motions of a
+  !! stiff part upon a soft one are wrong by 1 to 30 times as much, in equilibrium.
+  real(wp), parameter :: largest_loss = 1.0e-8_wp
 
 contains
 
@@ -41,7 +47,7 @@ contains
       outcome%status = status_numerical
       outcome%word = 'singular stiffness'
       outcome%sentence = 'the stiffness of the body of GRID '//first_node(model, singular)// &
-                         ' cannot be factored: its elements differ too much in size or stiffness'
+                         ' cannot be factored: '//reason
     else if (answer%contact%state == contact_no_equilibrium) then
       outcome%status = status_no_answer
       outcome%word = 'no equilibrium'
@@ -61,7 +67,7 @@ contains
     else
       outcome%has_answer = .true.
       outcome%word = 'valid'
-      if (answer%converged .and. certificate%valid) return
+      if (answer%converged .and. certificate%valid .and. loss_of(answer) <= largest_loss) return
       if (.not. answer%converged .and. (certificate%balanced .or. answer%runs_away)) then
         outcome%status = status_no_answer
         outcome%word = 'not converged'
@@ -69,10 +75,55 @@ contains
         return
       end if
       outcome%status = status_numerical
-      outcome%word = 'not certified'
-      outcome%sentence = 'the certificate is beyond its tolerance: the figures are not to be trusted'
+      outcome%word = merge('ill-conditioned', 'not certified  ', certificate%valid)
+      outcome%sentence = 'the figures are not to be trusted: '//doubts(model, answer, certificate)
     end if
   end function judge
+
+  !> What rounding has taken of the weakest pivot.
+  pure real(wp) function loss_of(answer) result(loss)
+    type(answer_type), intent(in) :: answer
+
+    loss = epsilon(1.0_wp)/answer%weakest%ratio
+  end function loss_of
+
+  !> What speaks against an answer: the figure of the certificate that is farthest beyond its tolerance, and lost digits.
+  pure function doubts(model, answer, certificate) result(text)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    type(certificate_type), intent(in) :: certificate
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: what(8) = [character(len=70) :: &
+      'equilibrium is off by', 'stresses are off their curve by', 'energy is off by', 'contact forces pull, by', &
+      'gaps overlap, by', 'pressed gaps are open, by', 'the rounding of gaps and travels is, of what the bodies give way,', &
+      'rigid motions strain the bodies; their roundings are']
+    real(wp) :: exact, figure(8), largest(8)
+    integer :: worst
+
+    exact = tolerance*certificate%length_scale + certificate%gap_rounding
+    figure = [certificate%equilibrium, certificate%off_curve, certificate%energy, &
+              -certificate%smallest_force/certificate%force_scale, -certificate%smallest_gap, &
+              certificate%force_gap/certificate%force_scale, certificate%gap_rounding/certificate%length_scale, &
+              certificate%motion_strain]
+    largest = [tolerance, certificate%curve_tolerance, tolerance, tolerance, exact, exact, largest_rounding, most_roundings]
+    worst = maxloc(figure/largest, dim=1)
+    text = ''
+    if (figure(worst) > largest(worst)) &
+      text = trim(what(worst))//' '//short_real(figure(worst))//' (at most '//short_real(largest(worst))//')'
+    if (.not. all(figure <= huge(figure)) .or. certificate%length_scale <= tiny(1.0_wp)) then
+      text = 'the work of the loads is too far from 1.0 for a number: other units'
+    else if (loss_of(answer) > 0.1_wp*tolerance) then
+      if (len(text) > 0) text = text//'; '
+      text = text//'rounding takes '//short_real(loss_of(answer))//' of a pivot in the stiffness of the body of GRID '// &
+             first_node(model, answer%weakest%body)//': '//reason
+    else if (certificate%lost_stress > 0.1_wp*tolerance) then
+      text = text//'; the rounding of displacements is '//short_real(certificate%lost_stress)// &
+             ' of the largest stress: elements too small or too stiff for how far they travel'
+    else if (answer%condition*epsilon(1.0_wp) > 0.1_wp*tolerance) then
+      text = text//'; the condition of the stiffness is '//short_real(answer%condition)// &
+             ': slender bodies or elements, or SUPORT nodes that are near each other'
+    end if
+  end function doubts
 
   !> An iteration that was given up, in words.
   pure function unconverged(model, answer) result(text)

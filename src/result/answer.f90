@@ -1,5 +1,6 @@
 !> The answer to a scene: displacements, contact and stresses, and how they were found.
 module epcont_result_answer
+  use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solution
   use epcont_plasticity_iteration, only: iteration_record
@@ -12,6 +13,7 @@ module epcont_result_answer
 
   type :: answer_type
     real(wp), allocatable :: displacement(:, :)      !! [length] [2, nodes]
+    real(wp), allocatable :: deformation(:, :)       !! displacements before the rigid motions are added [length] [2, nodes]
     real(wp), allocatable :: reaction(:, :)          !! of the supports [force] [2, nodes]
     real(wp), allocatable :: point_stress(:, :)      !! xx, yy, zz, xy [stress] [4, points]
     ! Of the elements: means over their points, by volume.
@@ -27,6 +29,7 @@ module epcont_result_answer
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
     type(locking_type) :: locking                    !! of three-node elements
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
+    type(weak_pivot) :: weakest                      !! of the stiffness
     type(iteration_record), allocatable :: history(:)  !! every solve
     integer :: factorizations = 0                    !! of bodies
     logical :: lacks_memory = .false.                !! a body could not be factored for want of memory

@@ -1,0 +1,38 @@
+!> One thread for the BLAS, whatever the environment says: with more, sums are cut differently, and the last digits of the
+!> tables are others. (Decks run side by side use more cores.)
+module epcont_base_one_thread
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, c_null_char, c_null_ptr, c_ptr
+  implicit none
+  private
+  public :: use_one_thread
+
+  abstract interface
+    subroutine set_threads(count) bind(c)
+      import :: c_int
+      integer(c_int), value :: count
+    end subroutine set_threads
+  end interface
+
+  interface
+    !> Where a name of this process is; without a handle it is looked for everywhere.
+    function c_dlsym(handle, name) bind(c, name='dlsym') result(address)
+      import :: c_char, c_funptr, c_ptr
+      type(c_ptr), value :: handle
+      character(kind=c_char), intent(in) :: name(*)
+      type(c_funptr) :: address
+    end function c_dlsym
+  end interface
+
+contains
+
+  !> Tell OpenBLAS; another BLAS has no such procedure.
+  subroutine use_one_thread()
+    procedure(set_threads), pointer :: set
+    type(c_funptr) :: address
+
+    address = c_dlsym(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
+    if (.not. c_associated(address)) return
+    call c_f_procpointer(address, set)
+    call set(1_c_int)
+  end subroutine use_one_thread
+end module epcont_base_one_thread

@@ -1,0 +1,204 @@
+"""Extremes of pairs: how many, how far apart, how alike."""
+import unittest
+
+from scene import Deck, Extremes
+from test_scales import punch
+
+
+def bar(gap=0.0, load=1.0, pairs=1):
+    """One square of stiffness 1, held below, pushed up against a ceiling: it gives load until the gap is closed. So many
+    equal pairs at each of its two upper nodes."""
+    deck = Deck()
+    deck.material(1, 1.0, 0.0)
+    nodes = deck.block(1, [0.0, 1.0], [0.0, 1.0])
+    deck.hold(12, *nodes[0])
+    deck.hold(1, *nodes[1])
+    deck.press(nodes[1], load, (0.0, 1.0))
+    for k in range(pairs):
+        for i, node in enumerate(nodes[1]):
+            wall = deck.grid(1001 + 2*k + i, *deck.x[node])
+            deck.hold(12, wall)
+            deck.pair(wall, node, wall, gap)
+    deck.nodes = nodes
+    return deck
+
+
+def row(count, gap=lambda k: 0.0, load=1.0, rule=None):
+    """A block of so many cells, a third as high as it is long, pressed on a floor."""
+    deck = Deck()
+    deck.material(1, 1000.0, 0.0)
+    nodes = deck.block(1, [float(k) for k in range(count + 1)], [0.0, count/3.0])
+    deck.floor(nodes[0], [gap(k) for k in range(count + 1)], first=5_000_001)
+    deck.hold(1, nodes[0][0])
+    deck.support(nodes[1][0], 2)
+    deck.support(nodes[1][-1], 2)
+    deck.press(nodes[1], load)
+    if rule:
+        deck.parameter("RULE", rule)
+    return deck
+
+
+class Gaps(Extremes):
+    def test_one_pair(self):
+        for gap, force in ((0.25, 0.75), (0.0, 1.0), (1.5, 0.0), (-0.5, 1.5)):
+            with self.subTest(gap=gap):
+                result = self.valid(bar(gap))
+                self.near(result.force, [force/2.0]*2, scale=1.0)
+                self.near(result.gap, [max(0.0, gap - 1.0)]*2, scale=1.0)
+
+    def test_a_load_that_just_closes_a_pair(self):
+        """Biactive: no force, no gap; a rounding to either side is no other answer."""
+        for gap in (1.0, 1.0 - 2.0**-53, 1.0 + 2.0**-52):
+            result = self.valid(bar(gap))
+            self.near(result.force, [0.0]*2, scale=1.0)
+            self.near(result.gap, [0.0]*2, scale=1.0)
+            self.near([result.nodes[k]["uy"] for k in (3, 4)], [1.0]*2)
+
+    def test_all_gaps_zero(self):
+        for rule in ("CONRY", "BLOCK"):
+            result = self.valid(row(40, rule=rule))
+            self.near(result.force, [1.0/40*(0.5 if k in (0, 40) else 1.0) for k in range(41)])
+
+    def test_gaps_beyond_sight(self):
+        """1e-300 is a gap like any other: of no size."""
+        exact = self.valid(row(20))
+        for size in (1e-300, 2.3e-308, 1e-100, 1e-30):
+            result = self.valid(row(20, lambda k: size*(k % 3)))
+            self.near(result.force, exact.force)
+            self.assertTrue(all(result.touching))
+
+    def test_gaps_within_one_rounding(self):
+        """Ties within one unit of the last place leave no pair out and none in twice."""
+        exact = self.valid(row(20, lambda k: 1.0, load=10.0))
+        for rule in ("CONRY", "BLOCK"):
+            result = self.valid(row(20, lambda k: 1.0 + 2.0**-52*(k % 2), load=10.0, rule=rule))
+            self.near(result.force, exact.force)
+
+    def test_gaps_so_wide_that_the_give_is_rounding(self):
+        """A travel of 1e12 times what the bodies give way: forces would be noise where gaps differ by a rounding."""
+        for gap in (1e-3, 1e6, 1e12, 1e15):
+            deck = row(20, lambda k: gap, load=1e-3)
+            with self.subTest(gap=gap):
+                if gap < 1.0:
+                    self.near(self.valid(deck).force, [1e-3/20*(0.5 if k in (0, 20) else 1.0) for k in range(21)], 1e-6)
+                else:
+                    self.refused(deck, 4, "rounding of gaps and travels")
+
+    def test_pairs_never_reached(self):
+        """Gaps of 1e30 beside one that closes; beyond that is beyond the range of a field."""
+        result = self.valid(row(20, lambda k: 0.0 if k in (0, 20) else 1e30))
+        self.near(result.force, [0.5] + [0.0]*19 + [0.5])
+        self.refused(row(20, lambda k: 0.0 if k in (0, 20) else 1e300), 2, "U0. is too far from 1.0")
+
+    def test_equal_pairs_with_unequal_gaps(self):
+        """Two pairs between the same nodes: the nearer one carries all."""
+        deck = bar(0.25)
+        deck.pair(2001, 3, 1001, 0.25 + 1e-9)
+        deck.pair(2002, 4, 1002, 0.5)
+        result = self.valid(deck)
+        self.near(result.force, [0.375, 0.375, 0.0, 0.0])
+        self.near(result.gap, [0.0, 0.0, 1e-9, 0.25], 1e-12)
+
+
+class Many(Extremes):
+    def test_three_thousand_pairs(self):
+        """Uniform load, uniform forces: a strip lifted against a ceiling, and the block that is free to move, whose condition
+        leaves fewer digits."""
+        deck = Deck()
+        deck.material(1, 1.0, 0.0)
+        nodes = deck.block(1, [float(k) for k in range(3000)], [0.0, 1.0])
+        deck.hold(12, *nodes[0])
+        deck.hold(1, *nodes[1])
+        deck.press(nodes[1], 2999.0, (0.0, 1.0))
+        deck.floor(nodes[1], [0.25]*3000, first=5_000_001, normal=(0.0, -1.0))
+        result = self.valid(deck)
+        self.near(result.force, [0.75*(0.5 if k in (0, 2999) else 1.0) for k in range(3000)])
+        result = self.right_or_refused(row(2999), "condition")
+        if result:
+            self.near(result.force, [1.0/2999*(0.5 if k in (0, 2999) else 1.0) for k in range(3000)], 1e-6)
+
+    def test_every_pair_twice(self):
+        """F is singular: forces of the twins are one choice of many, said so, and their sums are right."""
+        for rule in ("CONRY", "BLOCK"):
+            for copies in (2, 5):
+                once = self.valid(bar(0.25))
+                deck = bar(0.25, pairs=copies)
+                deck.parameter("RULE", rule)
+                result = self.valid(deck)
+                self.near(sum(result.force), sum(once.force))
+                self.near(result.force, [0.375/copies]*2*copies)
+                self.assertEqual(result.listing.count("force not unique"), 2*copies)
+
+    def test_every_second_pair_twice(self):
+        for rule in ("CONRY", "BLOCK"):
+            base = punch()
+            base.parameter("RULE", rule)
+            once = self.valid(base)
+            deck = punch()
+            deck.parameter("RULE", rule)
+            for k in range(1, 9, 2):
+                deck.pair(80001 + k, 70001 + k, 1 + k, (k - 4)**2/256.0)
+            result = self.valid(deck)
+            for k in range(9):
+                twin = result.pairs.get(80001 + k)
+                self.near(result.pairs[70001 + k]["force"] + (twin["force"] if twin else 0.0), once.force[k], scale=40.0)
+                unsure = twin is not None and once.touching[k]
+                lines = [line for line in result.listing.splitlines() if line.split()[:1] == [str(70001 + k)]]
+                self.assertEqual("force not unique" in lines[0], unsure, lines[0])
+
+    def test_two_zones(self):
+        """Feet at both ends: each carries half, the pairs between stay open."""
+        result = self.valid(row(20, lambda k: 0.0 if k < 3 or k > 17 else 1.0))
+        self.near(sum(result.force[:3]), 0.5)
+        self.near(sum(result.force[18:]), 0.5)
+        self.assertEqual(len(result.table("zones")), 2)
+
+
+class Walls(Extremes):
+    def test_pair_between_held_nodes(self):
+        """It can neither open nor close, and says so; closed by its supports it carries nothing."""
+        deck = bar(0.25)
+        for gap in (0.0, 0.5, 1e-300):
+            deck = bar(0.25)
+            for node in (3001, 3002):
+                deck.grid(node, 5.0, 5.0)
+                deck.hold(12, node)
+            deck.pair(3001, 3001, 3002, gap)
+            result = self.valid(deck)
+            self.assertIn("can neither open nor close", result.message)
+            self.near(result.force, [0.375, 0.375, 0.0], scale=1.0)
+
+    def test_rigid_on_rigid_overlap(self):
+        for gap in (-1e-3, -1e-9, -1e9):
+            deck = bar(0.25)
+            for node in (3001, 3002):
+                deck.grid(node, 5.0, 5.0)
+                deck.hold(12, node)
+            deck.pair(3001, 3001, 3002, gap)
+            self.refused(deck, 1, "pairs overlap and nothing can give way: CGAP 3001")
+
+    def test_tongue_between_two_walls(self):
+        """A bar with walls above and below it, loaded either way, or wedged in by an overlap."""
+        for load, above, below in ((1.0, 0.25, 0.1), (-1.0, 0.25, 0.1), (0.0, 0.25, 0.1), (0.0, -0.5, 0.6)):
+            deck = bar(above, load)
+            for k, node in enumerate(deck.nodes[1]):
+                wall = deck.grid(4001 + k, *deck.x[node])
+                deck.hold(12, wall)
+                deck.pair(wall, wall, node, below)
+            result = self.valid(deck)
+            give = min(max(load, -below), above)
+            upper, lower = max(0.0, load - give), max(0.0, give - load)
+            self.near(result.force, [upper/2]*2 + [lower/2]*2, scale=1.0)
+
+    def test_tongue_too_thick(self):
+        """Walls nearer to each other than the tongue is thick cannot both hold the same nodes."""
+        deck = bar(-0.5, 0.0)
+        for k, node in enumerate(deck.nodes[1]):
+            wall = deck.grid(4001 + k, *deck.x[node])
+            deck.hold(12, wall)
+            deck.pair(wall, wall, node, 0.25)
+        self.refused(deck, 1, "pairs overlap and nothing can give way: CGAP 100[12] 400[12]")
+
+
+if __name__ == "__main__":
+    unittest.main()

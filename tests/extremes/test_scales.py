@@ -1,0 +1,119 @@
+"""Extremes of loads, lengths, units, places, and of what numbers are."""
+import unittest
+
+from scene import STEEL, Deck, Extremes
+
+
+def column(load=10.0, size=1.0, young=STEEL[0], poisson=STEEL[1], place=(0.0, 0.0), cells=(2, 3), first=1, triangles=False):
+    """A block of 2 x 3 sizes, pressed on a floor that lets it spread: uniform stress, known exactly. One body-free motion
+    along x is held, the other two are the approach."""
+    deck = Deck()
+    deck.material(1, young, poisson)
+    xs = [place[0] + 2.0*size*k/cells[0] for k in range(cells[0] + 1)]
+    ys = [place[1] + 3.0*size*k/cells[1] for k in range(cells[1] + 1)]
+    deck.nodes = deck.block(1, xs, ys, first, triangles)
+    deck.floor(deck.nodes[0])
+    deck.hold(1, deck.nodes[0][0])
+    deck.press(deck.nodes[-1], load)
+    deck.support(deck.nodes[-1][0], 2)
+    deck.support(deck.nodes[-1][-1], 2)
+    return deck
+
+
+def column_answer(load=10.0, size=1.0, young=STEEL[0], poisson=STEEL[1], cells=2):
+    """Forces of the pairs and the approach."""
+    forces = [load/cells*(0.5 if k in (0, cells) else 1.0) for k in range(cells + 1)]
+    return forces, -load/(2.0*size)*3.0*size*(1.0 - poisson**2)/young
+
+
+def punch(force=1.0, length=1.0, load=40.0, place=(0.0, 0.0)):
+    """A block with a rounded lower side: part of it touches. In units that are so many times smaller."""
+    deck = Deck()
+    deck.material(1, 1000.0*force/length/length, 0.3, thickness=length)
+    xs = [place[0] + length*k for k in range(-4, 5)]
+    deck.nodes = deck.block(1, xs, [place[1] + length*k for k in range(5)])
+    deck.floor(deck.nodes[0], [length*(k - 4)**2/256.0 for k in range(9)])
+    deck.hold(1, deck.nodes[0][4])
+    deck.press(deck.nodes[-1], load*force)
+    deck.support(deck.nodes[-1][0], 2)
+    deck.support(deck.nodes[-1][-1], 2)
+    return deck
+
+
+class Scales(Extremes):
+    def column_is_right(self, relative=1e-10, **scale):
+        result = self.valid(column(**scale))
+        forces, approach = column_answer(**{key: value for key, value in scale.items() if key != "place"})
+        self.near(result.force, forces, relative)
+        self.near(result.approach, [approach]*2, relative)
+
+    def test_loads(self):
+        for exponent in (-100, -29, -12, -6, 0, 6, 12, 29):
+            with self.subTest(load=f"1e{exponent}"):
+                self.column_is_right(load=float(f"1e{exponent}"))
+
+    def test_lengths(self):
+        for exponent in (-29, -9, -6, -3, 0, 3, 6, 9, 29):
+            with self.subTest(length=f"1e{exponent}"):
+                self.column_is_right(size=float(f"1e{exponent}"))
+
+    def test_moduli(self):
+        for exponent in (-30, -12, 0, 12, 30):
+            with self.subTest(young=f"1e{exponent}"):
+                self.column_is_right(young=float(f"1e{exponent}"))
+
+    def test_any_unit(self):
+        base = self.valid(punch())
+        self.assertTrue(0 < sum(base.touching) < 9)
+        for force, length in ((2.0**40, 1.0), (2.0**-40, 1.0), (1.0, 2.0**30), (1.0, 2.0**-30), (2.0**55, 2.0**-15),
+                              (2.0**-55, 2.0**15), (1024.0, 0.125)):
+            with self.subTest(force=force, length=length):
+                self.twins(base, self.valid(punch(force, length)), force, length)
+
+    def test_units_of_ten(self):
+        base = self.valid(punch())
+        for force, length in ((1e12, 1.0), (1e-12, 1.0), (1.0, 1e9), (1.0, 1e-9), (9.80665, 25.4)):
+            with self.subTest(force=force, length=length):
+                self.twins(base, self.valid(punch(force, length)), force, length)
+
+    def test_far_from_the_origin(self):
+        base = self.valid(punch())
+        for far in (2.0**20, -2.0**30, 2.0**40):
+            with self.subTest(place=far):
+                self.twins(base, self.valid(punch(place=(far, -far))))
+
+    def test_far_in_fields_that_round(self):
+        """Coordinates a million times the size keep ten digits of the size: so does what follows from them."""
+        base = self.valid(punch(length=0.3))
+        self.twins(base, self.valid(punch(length=0.3, place=(1e6/3.0, 1e6/7.0))), relative=1e-8)
+
+    def test_so_far_that_nothing_is_left(self):
+        self.refused(punch(place=(1e17, 0.0)), 2, "CQUAD4|GRID")
+
+    def test_numbers_that_are_none(self):
+        deck = column()
+        for written, cause in (("1.0e-310", "too small|too near|nearer"), ("4.9e-324", "too small|too near|nearer"),
+                               ("1.0e309", "too large|beyond"), ("nan", "not a real"), ("inf", "not a real")):
+            with self.subTest(written=written):
+                self.refused(deck.text().replace("MAT1,1,210000.0", "MAT1,1," + written), 2, f"MAT1 1.*(?:{cause})")
+
+    def test_products_beyond_the_largest_number(self):
+        """Each field is a number of its own; stiffness, area or work would be none."""
+        for scale in ({"size": 1e200}, {"young": 1e308}, {"young": 1e-300, "load": 1e300}, {"load": 1e307, "size": 1e-6},
+                      {"size": 1e31}, {"young": 0.9e-30}, {"load": -1e40}):
+            with self.subTest(**scale):
+                self.refused(column(**scale), 2, "is too far from 1.0")
+        for scale in ({"size": 1e-31}, {"size": 1e-160}, {"size": 1e-200}):
+            with self.subTest(**scale):
+                self.refused(column(**scale), 2, "its sides are shorter than 1.000E-30")
+        self.refused(column(load=1e-200), 4, "the work of the loads is too far from 1.0")
+
+    def test_huge_ids(self):
+        base, huge = self.valid(column()), self.valid(column(first=99_999_900))
+        self.near(huge.force, base.force, 0.0)
+        self.near(huge.column("nodes", "uy")[-12:], base.column("nodes", "uy")[:12], 0.0)
+        self.refused(column(first=99_999_990), 2, "GRID.*99999999|GRID.*100000000")
+
+
+if __name__ == "__main__":
+    unittest.main()
