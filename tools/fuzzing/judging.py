@@ -16,8 +16,8 @@ from verification.check import Tables, check  # noqa: E402
 from verification.scene import Scene  # noqa: E402
 
 WORDS = {"valid": 0, "no equilibrium": 1, "overlap": 1, "not converged": 1, "rejected": 2, "out of memory": 3, "singular stiffness": 4,
-         "contact not found": 4, "not certified": 4}
-ANSWERS = {"valid", "not converged", "not certified"}
+         "contact not found": 4, "not certified": 4, "ill-conditioned": 4}
+ANSWERS = {"valid", "not converged", "not certified", "ill-conditioned"}
 BAD_OUTPUT = re.compile(r"Sanitizer|runtime error|Backtrace|Error termination|Fortran runtime|SIG[A-Z]{3,4}\b|glibc|corrupt|IEEE_|internal error")
 BAD_NUMBER = re.compile(rb"\bnan\b|\binf(?:inity)?\b|\*\*\*", re.IGNORECASE)
 PLACE = re.compile(r":\d+:\d+(?:-\d+)?: ")
