@@ -20,8 +20,8 @@ KEYS = {
 }
 
 
-# Of a strain, from displacements of 17 digits.
-ROUNDINGS = 16 * 2.0 ** -52
+# Of a force: sums over some elements of products with the displacements of up to six nodes, which are rounded themselves.
+ROUNDINGS = 128 * 2.0 ** -52
 
 
 class Tables:
