@@ -2,9 +2,11 @@
 module epcont_plan_forecast
   use epcont_base_kinds, only: i8, wp
   use epcont_linalg_panel_layout, only: panel_entries
+  use epcont_model_controls, only: precision_double
   use epcont_model_model, only: model_type
   use epcont_plan_contact_plan, only: contact_plan
   use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_precision_plan, only: plan_precision
   implicit none
   private
   public :: forecast_type, forecast
@@ -21,26 +23,28 @@ contains
     type(numbering_type), intent(in) :: numbering
     type(contact_plan), intent(in) :: plan
     type(forecast_type) :: expected
-    integer(i8) :: entries, factor, pairs
+    integer(i8) :: entries, factor, other, pairs
     integer :: b
 
     pairs = model%pairs
     entries = 0
+    other = 0
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
         factor = merge(sparse_entries(body%equations), panel_entries(body%reach), body%sparse)
-        entries = entries + factor + int(body%equations, i8)*body%border
+        entries = entries + factor
+        other = other + int(body%equations, i8)*body%border
         if (body%contact_last .or. body%sparse) then
-          entries = entries + int(body%contact_equations, i8)**2
+          other = other + int(body%contact_equations, i8)**2
         else
-          entries = entries + pairs*(pairs + body%half_bandwidth)
+          other = other + pairs*(pairs + body%half_bandwidth)
         end if
         expected%operations = expected%operations + merge(sparse_operations(body%equations), body%operations, body%sparse) &
                               + 4.0_wp*body%border*factor
       end associate
     end do
-    ! F, its scaled copy, and the tableau or factors.
-    expected%bytes = 8_i8*(entries + 3_i8*pairs**2)
+    ! Other: F, its scaled copy, and the tableau or factors.
+    expected%bytes = merge(8_i8, 4_i8, plan_precision(model%controls) == precision_double)*entries + 8_i8*(other + 3_i8*pairs**2)
     if (plan%by_blocks) then
       ! The full set factored twice; the sets on the way to it are smaller, or little of them is factored.
       expected%operations = expected%operations + 2.0_wp/3.0_wp*real(pairs, wp)**3

@@ -1,9 +1,10 @@
 !> Which plastic iteration this scene gets, and why; each of its solves finds the contact by the contact plan's rule.
 module epcont_plan_iteration_plan
   use epcont_base_kinds, only: wp
-  use epcont_model_controls, only: method_auto, method_newton, method_secant
+  use epcont_model_controls, only: method_auto, method_newton, method_secant, precision_double
   use epcont_model_model, only: model_type
   use epcont_plan_contact_plan, only: contact_plan, plan_contact
+  use epcont_plan_precision_plan, only: plan_precision
   implicit none
   private
   public :: iteration_plan, plan_iteration
@@ -22,6 +23,7 @@ module epcont_plan_iteration_plan
     integer :: method = method_secant
     logical :: chosen_here = .false.       !! the deck leaves the method to us
     real(wp) :: tolerance = 0.0_wp         !! largest change of a displacement that ends the iteration
+    integer :: precision = precision_double  !! of the factors
     type(contact_plan) :: contact          !! the rule that finds the pairs in contact
     real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
   end type iteration_plan
@@ -34,6 +36,7 @@ contains
     integer :: e
 
     plan%contact = plan_contact(model)
+    plan%precision = plan_precision(model%controls)
     allocate (plan%body(model%bodies), source=.false.)
     do e = 1, model%elements
       if (model%can_yield(e)) plan%body(model%body(model%connectivity(1, e))) = .true.
