@@ -12,7 +12,7 @@ module epcont_analysis
   use epcont_plasticity_iteration, only: follow_loads, plastic_run
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_methods, only: choose_method
-  use epcont_result_answer, only: answer_type
+  use epcont_result_answer, only: answer_type, largest_rounding_error
   use epcont_result_contact_line, only: contact_line, find_contact_line, find_zones
   use epcont_result_line_pressure, only: compare_sides
   use epcont_result_locking, only: find_locking
@@ -21,9 +21,6 @@ module epcont_analysis
   implicit none
   private
   public :: analyse
-
-  !> Of strains and contact forces: what single precision leaves beyond it is worth nothing.
-  real(wp), parameter :: largest_rounding_error = 0.1_wp
 
 contains
 

@@ -1,7 +1,7 @@
 !> Which plastic iteration this scene gets, and why; each of its solves finds the contact by the contact plan's rule.
 module epcont_plan_iteration_plan
   use epcont_base_kinds, only: wp
-  use epcont_model_controls, only: method_auto, method_newton, method_secant, precision_double
+  use epcont_model_controls, only: method_auto, method_newton, method_secant, precision_double, precision_single
   use epcont_model_model, only: model_type
   use epcont_plan_contact_plan, only: contact_plan, plan_contact
   use epcont_plan_precision_plan, only: plan_precision
@@ -11,6 +11,8 @@ module epcont_plan_iteration_plan
 
   !> TOL of NEWTON, which gets there in a step or two more, and of the methods that pay for every digit.
   real(wp), parameter :: newton_tolerance = 1.0e-8_wp, secant_tolerance = 0.01_wp
+  !> TOL of NEWTON with factors in single precision, which leave 1e-6 to 1e-4.
+  real(wp), parameter :: single_tolerance = 1.0e-3_wp
 
   !> The methods but NEWTON stop by the change of displacements, as the paper does. Where a travel or a slender body
   !! hides the strains in it, stresses may still be far off: they may be by no more than this times TOL.
@@ -48,8 +50,11 @@ contains
     ! NEWTON has no tangent for MUP PAPER, which is there to follow the paper: by its own method, then.
     if (plan%chosen_here) plan%method = merge(method_secant, method_newton, model%controls%paper_ratio)
     plan%tolerance = model%controls%tolerance
-    if (plan%tolerance == 0.0_wp) &
-      plan%tolerance = merge(newton_tolerance, secant_tolerance, plan%method == method_newton)
+    if (plan%tolerance == 0.0_wp) then
+      plan%tolerance = secant_tolerance
+      if (plan%method == method_newton) &
+        plan%tolerance = merge(single_tolerance, newton_tolerance, plan%precision == precision_single)
+    end if
     if (plan%yields) plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, plan%method == method_newton)
   end function plan_iteration
 end module epcont_plan_iteration_plan

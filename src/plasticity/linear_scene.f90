@@ -19,7 +19,7 @@ module epcont_plasticity_linear_scene
   public :: linear_scene, new_linear_scene
 
   !> Refinement is over when a step changes no strain by more than this part of the largest: the next would change it by
-  !! the rate less. Where steps no longer halve, rounding is reached, or single precision leaves too little to begin with.
+  !! much less. Where two steps no longer halve it, rounding is reached, or single precision leaves too little to begin with.
   real(wp), parameter :: small_step = 1.0e-11_wp, rounding_step = 1.0e-10_wp, slowest_rate = 0.5_wp
 
   type :: linear_scene
@@ -176,7 +176,7 @@ contains
     logical, allocatable, intent(in) :: start(:)
     type(scene_state), intent(inout) :: state
     logical, allocatable :: touching(:)
-    real(wp) :: change, last
+    real(wp) :: change, before(2)   !! of this step, of the two before
     integer :: step
 
     if (allocated(self%last)) then
@@ -187,19 +187,19 @@ contains
     call self%bodies%prescribe(model, part, state%deformation)
     state%strain = self%operator%strains(model, state%deformation)
     if (allocated(start)) touching = start
-    last = huge(last)
+    before = 0.0_wp
     step = 0
     do
       step = step + 1
       call correct(self, model, numbering, law, part, state, change)
       if (step > 1 .and. change <= small_step) exit
-      ! The first step knows nothing of the contact, and the second brings its forces in.
-      if (step > 2 .and. .not. change <= slowest_rate*last) then
+      ! Steps come in pairs: what one has refined moves the contact forces, and those the next. The first pair brings them in.
+      if (step > 4 .and. .not. change <= slowest_rate*before(1)) then
         if (change <= rounding_step) exit
         state%contact%state = contact_stalled
         return
       end if
-      last = change
+      before = [before(2), change]
       call solve_contact_about(self, model, part, touching, state)
       if (state%contact%state /= contact_solved) return
       touching = state%contact%touching

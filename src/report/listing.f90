@@ -9,6 +9,7 @@ module epcont_report_listing
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: printable, render_notes
+  use epcont_model_controls, only: precision_single
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
@@ -16,6 +17,7 @@ module epcont_report_listing
   use epcont_report_layout, only: figure, heading, lines, right
   use epcont_report_number, only: column_number, rounding_number
   use epcont_report_outcome, only: outcome_type
+  use epcont_report_precision, only: list_precision
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
@@ -289,7 +291,8 @@ contains
     call heading(file, 'ACCURACY')
     if (size(answer%history) > 1) call list_iteration_error(file, model, answer)
     call figure(file, 'condition of the stiffness (1-norm)', right(short_real(answer%condition), 13))
-    call figure(file, 'digits that rounding leaves, at least', &
+    call list_precision(file, answer)
+    if (answer%precision /= precision_single) call figure(file, 'digits that rounding leaves, at least', &
                 right(text_of(max(0, floor(-log10(answer%condition*epsilon(1.0_wp))))), 13))
     call figure(file, 'linear residual', right(rounding_number(certificate%equilibrium), 13))
     if (answer%locking%elements > 0) call list_locking(file, answer%locking)

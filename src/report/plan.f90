@@ -10,6 +10,7 @@ module epcont_report_plan
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: body_numbering, many_operations, numbering_type
   use epcont_report_layout, only: newline, right
+  use epcont_report_precision, only: precision_text
   implicit none
   private
   public :: plan_text
@@ -47,7 +48,7 @@ contains
              text_of(motions%component(k))//newline
     end do
     if (motions%count > most) text = text//'  and '//plural(motions%count - most, 'further free motion')//newline
-    text = text//solver_text(model, numbering)
+    text = text//solver_text(model, numbering)//precision_text(iteration%precision)
     text = text//newline//'   body  nodes  equations  half-bandwidth  contact equations  border  factorizations'// &
            '  flexibility by'//newline
     do b = 1, min(most, model%bodies)

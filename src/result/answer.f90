@@ -12,6 +12,9 @@ module epcont_result_answer
   private
   public :: answer_type
 
+  !> Of strains and contact forces, relative: an answer of single precision that may be wrong by more is not given.
+  real(wp), parameter, public :: largest_rounding_error = 0.01_wp
+
   type :: answer_type
     real(wp), allocatable :: displacement(:, :)      !! [length] [2, nodes]
     real(wp), allocatable :: deformation(:, :)       !! displacements before the rigid motions are added [length] [2, nodes]
