@@ -1,5 +1,6 @@
 !> The story of one scene: from the model to a certified answer.
 module epcont_analysis
+  use epcont_accuracy_accuracy, only: accuracy_type, assess
   use epcont_base_kinds, only: wp
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_contact_problem, only: contact_solved
@@ -26,13 +27,14 @@ contains
 
   !> Solve the scene. `singular` is a body whose stiffness could not be factored (0: none); without contact
   !! equilibrium (`answer%contact%state`) there are no displacements.
-  subroutine analyse(model, motions, numbering, plan, answer, certificate, singular)
+  subroutine analyse(model, motions, numbering, plan, answer, certificate, accuracy, singular)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     type(numbering_type), intent(in) :: numbering
     type(iteration_plan), intent(in) :: plan
     type(answer_type), intent(out) :: answer
     type(certificate_type), intent(out) :: certificate
+    type(accuracy_type), intent(out) :: accuracy
     integer, intent(out) :: singular
     type(plastic_run) :: run
     type(contact_line) :: line
@@ -47,14 +49,15 @@ contains
 
     call take_over(run, answer)
     load = run%load_factor*model%load
-    call recover_stresses(model, run%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
-    answer%locking = find_locking(model, run%operator%volume, answer%stress, answer%equivalent_stress, answer%secant_modulus)
+    call recover_stresses(model, run%scene%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
+    answer%locking = find_locking(model, run%scene%operator%volume, answer%stress, answer%equivalent_stress, answer%secant_modulus)
     line = find_contact_line(model)
     answer%pressure = pair_pressures(model, line, answer%contact%touching, answer%contact%force)
     answer%zones = find_zones(model, line, answer%contact%touching, answer%contact%force, answer%pressure)
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
     call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
                  answer%contact%force, certificate, answer%rounding_error)
+    call assess(model, motions, numbering, run, line, answer, accuracy)
   end subroutine analyse
 
   !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved by others in double.

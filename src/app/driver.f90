@@ -61,7 +61,7 @@ contains
         call raise(error, status_usage, path//': its matrices need '//text_of(expected%bytes/1000000_i8)// &
                    ' MB: --memory GB allows it')
       else
-        call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, singular)
+        call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular)
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
         status = run%outcome%status
         call write_results(run, output_stem(path, arguments), arguments%all_tables, error)

@@ -1,7 +1,6 @@
 !> The loop of the plastic iteration; it knows nothing of the method that it drives.
 module epcont_plasticity_iteration
   use epcont_assembly_bodies, only: weak_pivot
-  use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solved
   use epcont_material_curve, only: material_type, section_materials
@@ -41,7 +40,7 @@ module epcont_plasticity_iteration
   !> What came of the loads, and how.
   type :: plastic_run
     type(scene_state) :: state             !! the answer, or what came nearest to one
-    type(strain_operator), allocatable :: operator   !! of the scene, if there is an answer
+    type(linear_scene), allocatable :: scene   !! as the last solve left it, if there is an answer
     real(wp) :: load_factor = 0.0_wp       !! part of the loads that `state` carries
     logical :: converged = .false.         !! all loads, to the tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
@@ -50,7 +49,7 @@ module epcont_plasticity_iteration
     integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of its stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest            !! of its stiffness
-    real(wp) :: rounding_error = 0.0_wp    !! of strains and contact forces, relative: what single precision has left
+    real(wp) :: rounding_error = 0.0_wp    !! of displacements, strains and forces, relative: what single precision left
     type(iteration_record), allocatable :: history(:)
     integer :: unloaded = 0                !! elements whose strain fell from one load step to the next, after yielding
     integer :: first_unloaded = 0          !! one of them
@@ -60,7 +59,7 @@ module epcont_plasticity_iteration
   type :: loop_type
     type(iteration_plan) :: plan
     type(material_type), allocatable :: material(:)   !! [sections]
-    type(linear_scene) :: scene
+    type(linear_scene), allocatable :: scene
     type(linear_law) :: law
     type(scene_state) :: about                        !! the state that the law is about
     integer :: yielded = 0                            !! elements that yield there
@@ -111,7 +110,7 @@ contains
       call find_unloaded(model, loop, strained, run)
     end do
     run%converged = converged
-    call move_alloc(loop%scene%operator, run%operator)
+    call move_alloc(loop%scene, run%scene)
   end subroutine follow_loads
 
   subroutine begin(model, motions, plan, loop)

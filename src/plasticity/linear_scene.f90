@@ -240,7 +240,7 @@ contains
     call solve_contact(self%problem, state%contact, touching, self%by_blocks)
   end subroutine solve_contact_about
 
-  !> What single precision has left: the change of strains and contact forces, of the largest, by one step of refinement.
+  !> What single precision has left: the change of displacements, strains and contact forces, of the largest of each, by one step of refinement.
   pure subroutine rounding_error(self, model, numbering, law, part, state, error)
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
@@ -254,6 +254,8 @@ contains
 
     refined = state
     call correct(self, model, numbering, law, part, refined, error)
+    error = max(error, maxval(abs(refined%deformation - state%deformation)) &
+                /max(maxval(abs(state%deformation)), tiny(1.0_wp)))
     if (model%pairs == 0) return
     touching = state%contact%touching
     call solve_contact_about(self, model, part, touching, refined)

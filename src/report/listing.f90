@@ -9,19 +9,15 @@ module epcont_report_listing
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: printable, render_notes
-  use epcont_model_controls, only: precision_single
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
-  use epcont_report_iterations, only: list_iteration_error
   use epcont_report_layout, only: figure, heading, lines, right
   use epcont_report_number, only: column_number, rounding_number
   use epcont_report_outcome, only: outcome_type
-  use epcont_report_precision, only: list_precision
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
-  use epcont_result_locking, only: high_poisson, locking_type
   implicit none
   private
   public :: list_deck, list_outcome, list_contact, list_zones, list_lines, list_nodes, list_elements, list_summary
@@ -250,7 +246,7 @@ contains
     end do
   end subroutine list_elements
 
-  !> Summary, certificate and what the figures are worth.
+  !> Summary and certificate.
   subroutine list_summary(file, model, motions, answer, certificate, outcome)
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
@@ -288,24 +284,5 @@ contains
     if (certificate%curve_tolerance > certificate%tolerance) &
       call figure(file, 'of which the iteration may leave', right(short_real(certificate%curve_tolerance), 13))
     call figure(file, 'energy balance', right(rounding_number(certificate%energy), 13))
-    call heading(file, 'ACCURACY')
-    if (size(answer%history) > 1) call list_iteration_error(file, model, answer)
-    call figure(file, 'condition of the stiffness (1-norm)', right(short_real(answer%condition), 13))
-    call list_precision(file, answer)
-    if (answer%precision /= precision_single) call figure(file, 'digits that rounding leaves, at least', &
-                right(text_of(max(0, floor(-log10(answer%condition*epsilon(1.0_wp))))), 13))
-    call figure(file, 'linear residual', right(rounding_number(certificate%equilibrium), 13))
-    if (answer%locking%elements > 0) call list_locking(file, answer%locking)
   end subroutine list_summary
-
-  !> Elements that are too stiff for what their material does.
-  subroutine list_locking(file, locking)
-    type(text_file), intent(in) :: file
-    type(locking_type), intent(in) :: locking
-
-    call figure(file, 'three-node elements of constant volume', right(text_of(locking%elements), 13))
-    call figure(file, 'scatter of their mean stress / equivalent', column_number(locking%scatter, 1.0_wp))
-    call file%line('    (Poisson''s ratio '//short_real(high_poisson)// &
-                   ' or more, as yielding has made it: they are too stiff there; six-node elements and CQUAD4 are not)')
-  end subroutine list_locking
 end module epcont_report_listing

@@ -3,7 +3,7 @@ module epcont_report_number
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: column_number, rounding_number, full_number
+  public :: column_number, estimate_number, rounding_number, full_number
 
   !> A value below this part of its column's scale is rounding and prints as 0.0.
   real(wp), parameter :: noise = 1.0e-12_wp
@@ -40,6 +40,17 @@ contains
     end if
     text = trim(adjustl(buffer))
   end function rounding_number
+
+  !> An estimate: two digits.
+  pure function estimate_number(value) result(text)
+    real(wp), intent(in) :: value
+    character(len=:), allocatable :: text
+    character(len=12) :: buffer
+
+    write (buffer, '(es9.1e2)') value
+    if (value >= 0.94e100_wp .or. value < 1.0e-99_wp) write (buffer, '(es9.1e3)') value
+    text = trim(adjustl(buffer))
+  end function estimate_number
 
   !> A number in full precision: 17 digits.
   pure function full_number(value) result(text)

@@ -1,11 +1,13 @@
 !> All that a run writes: the listing, and the tables beside it.
 module epcont_report_results
+  use epcont_accuracy_accuracy, only: accuracy_type
   use epcont_base_error, only: error_type
   use epcont_certificate_certificate, only: certificate_type
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
+  use epcont_report_accuracy, only: list_accuracy
   use epcont_report_file, only: new_text_file, text_file
   use epcont_report_iterations, only: list_iterations
   use epcont_report_listing, only: list_contact, list_deck, list_elements, list_lines, list_nodes, list_outcome, &
@@ -26,6 +28,7 @@ module epcont_report_results
     character(len=:), allocatable :: plan   !! in words
     type(answer_type) :: answer
     type(certificate_type) :: certificate
+    type(accuracy_type) :: accuracy
     type(outcome_type) :: outcome
   end type run_results
 
@@ -44,7 +47,7 @@ contains
     call write_listing(run, stem, nodes, elements, error)
     associate (model => run%model, answer => run%answer)
       if (.not. allocated(error)) &
-        call write_summary(stem, model, run%motions, answer, run%certificate, run%outcome, error)
+        call write_summary(stem, model, run%motions, answer, run%certificate, run%accuracy, run%outcome, error)
       if (.not. run%outcome%has_answer) return
       if (.not. allocated(error)) call write_contact(stem, model, answer, error)
       if (.not. allocated(error)) call write_zones(stem, model, answer%zones, error)
@@ -77,6 +80,7 @@ contains
         if (nodes) call list_nodes(file, model, answer)
         if (elements) call list_elements(file, model, answer)
         call list_summary(file, model, run%motions, answer, run%certificate, run%outcome)
+        call list_accuracy(file, model, run%motions, answer, run%certificate, run%accuracy)
       end associate
     end if
     call file%finish(error)

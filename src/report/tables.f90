@@ -1,5 +1,6 @@
 !> Result tables in full precision, one value a column (CSV).
 module epcont_report_tables
+  use epcont_accuracy_accuracy, only: accuracy_type
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -19,12 +20,13 @@ module epcont_report_tables
 contains
 
   !> key,value,unit.
-  subroutine write_summary(stem, model, motions, answer, certificate, outcome, error)
+  subroutine write_summary(stem, model, motions, answer, certificate, accuracy, outcome, error)
     character(len=*), intent(in) :: stem
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     type(answer_type), intent(in) :: answer
     type(certificate_type), intent(in) :: certificate
+    type(accuracy_type), intent(in) :: accuracy
     type(outcome_type), intent(in) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(text_file) :: file
@@ -61,6 +63,7 @@ contains
       error_left = estimate_iteration_error(answer%history, answer%load_factor)
       call put('iteration_error_displacement', error_left%displacement, '')
       call put('iteration_error_force', error_left%force, '')
+      call write_accuracy(file, model, motions, accuracy)
     end if
     call file%finish(error)
 
@@ -73,6 +76,43 @@ contains
       call file%line(key//','//full_number(value)//','//unit)
     end subroutine put
   end subroutine write_summary
+
+  !> What the figures are worth; empty where an error is not known, since the figure grows with every finer mesh.
+  subroutine write_accuracy(file, model, motions, accuracy)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(accuracy_type), intent(in) :: accuracy
+    integer :: k
+
+    call put('mesh_error_energy_norm', accuracy%energy_norm, '')
+    if (model%pairs > 0) call put('mesh_error_max_pressure', accuracy%max_pressure, 'force/length2')
+    do k = 1, size(accuracy%zone)
+      call put('mesh_error_pressure_zone_'//text_of(k), accuracy%zone(k)%pressure, 'force/length2')
+      call put('mesh_error_half_width_zone_'//text_of(k), accuracy%zone(k)%half_width, 'length')
+    end do
+    do k = 1, motions%count
+      call put('mesh_error_approach_'//text_of(model%node_id(motions%node(k)))//'_'//text_of(motions%component(k)), &
+               merge(-1.0_wp, accuracy%approach(k), accuracy%approach_grows(k)), 'length')
+    end do
+    if (.not. accuracy%sensitivity%known) return
+    call put('contact_amplification', accuracy%sensitivity%amplification, '')
+    call put('rounding_error_force', accuracy%sensitivity%rounding, '')
+    call file%line('weak_pairs,'//text_of(count(accuracy%weak))//',')
+
+  contains
+
+    subroutine put(key, value, unit)
+      character(len=*), intent(in) :: key, unit
+      real(wp), intent(in) :: value
+
+      if (value >= 0.0_wp) then
+        call file%line(key//','//full_number(value)//','//unit)
+      else
+        call file%line(key//',,'//unit)
+      end if
+    end subroutine put
+  end subroutine write_accuracy
 
   !> One row a pair.
   subroutine write_contact(stem, model, answer, error)

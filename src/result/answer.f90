@@ -34,7 +34,7 @@ module epcont_result_answer
     type(locking_type) :: locking                    !! of three-node elements
     integer :: precision = precision_double          !! of the factors
     integer :: asked_precision = precision_double    !! that did not do, where it is another one
-    real(wp) :: rounding_error = 0.0_wp              !! of strains and contact forces, relative: what single precision has left
+    real(wp) :: rounding_error = 0.0_wp              !! of displacements, strains and forces, relative: what single precision left
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest                      !! of the stiffness
     type(iteration_record), allocatable :: history(:)  !! every solve

@@ -35,6 +35,7 @@ module epcont_result_contact_line
     real(wp) :: max_pressure = 0.0_wp       !! [stress]
     real(wp) :: half_width_pairs = 0.0_wp   !! half of the length between its last pairs [length]
     real(wp) :: half_width = -1.0_wp        !! to where the pressure vanishes; negative: unknown [length]
+    integer, allocatable :: pairs(:)        !! from end to end
   end type contact_zone
 
 contains
@@ -207,6 +208,7 @@ contains
     run = run_from(line, touching, start)
     run = run_from(line, touching, run(size(run)))
     if (run(size(run)) < run(1)) run = run(size(run):1:-1)
+    zone%pairs = run
     zone%first = run(1)
     zone%last = run(size(run))
     zone%force = sum(force(run))

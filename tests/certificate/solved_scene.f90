@@ -1,5 +1,6 @@
 !> Scenes solved from decks that are written in a line.
 module solved_scene
+  use epcont_accuracy_accuracy, only: accuracy_type
   use epcont_analysis, only: analyse
   use epcont_base_error, only: error_type
   use epcont_certificate_certificate, only: certificate_type
@@ -21,6 +22,7 @@ module solved_scene
     type(model_type) :: model
     type(answer_type) :: answer
     type(certificate_type) :: certificate
+    type(accuracy_type) :: accuracy
     integer :: singular = 0
   end type scene
 
@@ -59,6 +61,6 @@ contains
     call find_free_motions(solved%model, motions, loose)
     if (size(loose) > 0) error stop 'solved_scene: a body is loose'
     call analyse(solved%model, motions, number_equations(solved%model), plan_iteration(solved%model), &
-                 solved%answer, solved%certificate, solved%singular)
+                 solved%answer, solved%certificate, solved%accuracy, solved%singular)
   end subroutine solve_file
 end module solved_scene

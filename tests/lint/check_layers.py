@@ -8,7 +8,7 @@ import re
 import sys
 
 LAYERS = ["base", "deck", "model", "element", "material", "linalg", "plan", "assembly", "flexibility", "contact",
-          "plasticity", "result", "certificate", "report", "analysis", "app"]   # analysis: src/analysis.f90
+          "plasticity", "result", "certificate", "accuracy", "report", "analysis", "app"]   # analysis: src/analysis.f90
 # A certificate computed by the code it certifies is worth nothing.
 SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "plasticity"}}
 FILE_LINES, PROCEDURE_LINES, COLUMNS = 400, 80, 132

@@ -12,7 +12,7 @@ import sys
 
 TOLERANCE = 1e-9
 #: An estimate, which depends on the order of the equations: seldom off by more than a third, and then low.
-ESTIMATES = {"condition": 0.1}
+ESTIMATES = {"condition": 0.1, "rounding_error_force": 0.1}
 #: Columns of one kind: a stress that should be zero is compared with the others, not with itself.
 KINDS = [{"ux", "uy"}, {"rx", "ry"}, {"sx", "sy", "sz", "txy", "equivalent_stress"}]
 #: Tables and rows of the summary that tell of rounding, or of the way.

@@ -1,0 +1,250 @@
+!> What the figures of an answer are worth: the error of the mesh in the energy norm, in the approach, in the largest pressure
+!> and the half-width of each zone; what rounding may have done to the contact forces; pairs that may as well be open.
+module epcont_accuracy_accuracy
+  use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
+  use epcont_accuracy_discretisation, only: error_energy, error_product, stored_energy
+  use epcont_accuracy_patches, only: new_patch_table, patch_table
+  use epcont_accuracy_recovery, only: recover_strains
+  use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
+  use epcont_accuracy_unit_motion, only: loaded_at_support, unit_forces, unit_strains
+  use epcont_accuracy_zone_error, only: estimate_zone, zone_error
+  use epcont_base_kinds, only: wp
+  use epcont_contact_basis, only: contact_basis, new_basis
+  use epcont_contact_scaling, only: scale_problem, scaled_problem
+  use epcont_material_curve, only: material_type, section_materials
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
+  use epcont_plan_numbering, only: numbering_type
+  use epcont_plasticity_iteration, only: plastic_run
+  use epcont_result_answer, only: answer_type
+  use epcont_result_contact_line, only: contact_line
+  implicit none
+  private
+  public :: accuracy_type, assess
+
+  !> Elements that are named as the worst.
+  integer, parameter, public :: worst_count = 5
+  !> The nodes of a zone, and not the line between them, are in contact: what that does to the approach, over
+  !! largest pressure (h/b)**2 b/E*. Measured (tests/accuracy).
+  real(wp), parameter :: between_pairs = 0.2_wp
+  !> Safety of an approach's error that is a product of two fields, whose parts may cancel. Measured likewise.
+  real(wp), parameter :: of_product = 1.4_wp
+  !> Errors that differ by less than this part are equal.
+  real(wp), parameter :: equal = 1.0e-6_wp
+  !> An error in the energy norm up to this is rounding.
+  real(wp), parameter :: no_error = 1.0e-9_wp
+  !> A part of the resultant at one node of the mesh from which on it is a point load.
+  real(wp), parameter :: concentrated = 0.5_wp
+
+  type :: accuracy_type
+    real(wp) :: energy_norm = 0.0_wp               !! error of the mesh over the size of the answer, in the energy norm
+    real(wp), allocatable :: element(:)            !! square of each element's error [energy] [elements]
+    integer, allocatable :: worst(:)               !! elements with the largest errors
+    type(zone_error), allocatable :: zone(:)
+    real(wp) :: max_pressure = -1.0_wp             !! error of the largest pressure of all; negative: unknown [stress]
+    logical :: pressure_grows = .false.            !! with every finer mesh
+    real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
+    logical, allocatable :: approach_grows(:)      !! with every finer mesh [motions]
+    type(contact_sensitivity) :: sensitivity
+    logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
+  end type accuracy_type
+
+contains
+
+  pure subroutine assess(model, motions, numbering, run, line, answer, accuracy)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(plastic_run), intent(in) :: run
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(in) :: answer
+    type(accuracy_type), intent(out) :: accuracy
+    type(patch_table) :: table
+    type(material_type), allocatable :: material(:)
+    real(wp), allocatable :: smooth(:, :)
+    type(scaled_problem) :: problem
+    type(contact_basis) :: basis
+
+    table = new_patch_table(model)
+    material = section_materials(model)
+    associate (volume => run%scene%operator%volume, strain => run%state%strain)
+      smooth = recover_strains(model, table, volume, strain)
+      accuracy%element = error_energy(model, table, material, volume, strain, smooth)
+      accuracy%energy_norm = sqrt(part(sum(accuracy%element), &
+                                       sum(accuracy%element) + abs(stored_energy(volume, strain, run%state%stress))))
+    end associate
+    allocate (accuracy%worst(0))
+    if (accuracy%energy_norm > no_error) then
+      accuracy%worst = worst_of(accuracy%element)
+    else
+      accuracy%energy_norm = 0.0_wp
+      accuracy%element = 0.0_wp
+    end if
+    allocate (accuracy%approach(motions%count), accuracy%approach_grows(motions%count), accuracy%weak(model%pairs))
+    accuracy%approach = -1.0_wp
+    accuracy%approach_grows = .false.
+    accuracy%weak = .false.
+    allocate (accuracy%zone(0))
+    if (.not. any(answer%contact%force > 0.0_wp)) return
+
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, line, smooth), accuracy)
+    if (.not. answer%converged) return   ! the scene is that of a load that was not carried
+
+    problem = scale_problem(run%scene%problem)
+    basis = new_basis(problem, answer%contact%force > 0.0_wp)
+    accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
+    if (motions%count > 0) call assess_approach(model, motions, numbering, run, answer, table, material, smooth, &
+                                                unit_forces(problem, basis, motions%count), accuracy)
+    accuracy%weak = find_weak(model, line, answer, run, accuracy)
+  end subroutine assess
+
+  !> a/b, 0 where a is 0.
+  pure real(wp) function part(a, b)
+    real(wp), intent(in) :: a, b
+
+    part = 0.0_wp
+    if (a > 0.0_wp) part = a/b
+  end function part
+
+  !> Elements with the largest errors, largest first; of equal ones, but for rounding, the first. None where there is no error.
+  pure function worst_of(energy) result(worst)
+    real(wp), intent(in) :: energy(:)
+    integer, allocatable :: worst(:)
+    logical :: left(size(energy))
+    integer :: k
+
+    allocate (worst(0))
+    left = .true.
+    do k = 1, min(worst_count, size(energy))
+      worst = [worst, findloc(left .and. energy >= (1.0_wp - equal)*maxval(energy, mask=left), .true., dim=1)]
+      left(worst(k)) = .false.
+    end do
+  end function worst_of
+
+  !> What the gaps of the pairs are the sum of, added up [length] [pairs].
+  pure function travel(run) result(length)
+    type(plastic_run), intent(in) :: run
+    real(wp), allocatable :: length(:)
+
+    associate (problem => run%scene%problem)
+      length = abs(problem%initial_gap) + abs(problem%load_gap) + matmul(abs(problem%motion), abs(run%state%contact%approach))
+    end associate
+  end function travel
+
+  !> Largest pressures and half-widths.
+  pure subroutine assess_zones(model, table, line, answer, stress_pressure, accuracy)
+    type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(in) :: answer
+    real(wp), intent(in) :: stress_pressure(:)   !! [pairs]
+    type(accuracy_type), intent(inout) :: accuracy
+    integer :: z
+
+    accuracy%zone = [(estimate_zone(model, line, answer%contact%touching, answer%pressure, stress_pressure, &
+                                    order_at(line%node(answer%zones(z)%first)), answer%zones(z)), z=1, size(answer%zones))]
+    if (size(accuracy%zone) == 0) return
+    z = maxloc(answer%zones%max_pressure, dim=1)
+    accuracy%max_pressure = accuracy%zone(z)%pressure
+    accuracy%pressure_grows = accuracy%zone(z)%grows
+
+  contains
+
+    !> Nodes of the first element at a node; of none: 3.
+    pure integer function order_at(node) result(order)
+      integer, intent(in) :: node
+
+      order = 3
+      if (table%around%start(node + 1) > table%around%start(node)) &
+        order = model%order(table%around%group(table%around%start(node)))
+    end function order_at
+  end subroutine assess_zones
+
+  !> Approaches. Under loads at the one SUPORT freedom the error is the energy of the error over the load; else it is the product of
+  !! the errors of the scene and of its answer to a unit load there. Contact at nodes alone adds its part.
+  pure subroutine assess_approach(model, motions, numbering, run, answer, table, material, smooth, unit_force, accuracy)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(plastic_run), intent(in) :: run
+    type(answer_type), intent(in) :: answer
+    type(patch_table), intent(in) :: table
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: smooth(:, :)
+    real(wp), intent(in) :: unit_force(:, :)   !! contact forces under unit loads [pairs, motions]
+    type(accuracy_type), intent(inout) :: accuracy
+    real(wp), allocatable :: strain(:, :)
+    integer :: j, z
+
+    do j = 1, motions%count
+      if (answer%contact%motion_free(j) .or. all(unit_force(:, j) == 0.0_wp)) cycle
+      accuracy%approach_grows(j) = is_point_load(model, motions, table, j)
+      associate (operator => run%scene%operator, resultant => run%scene%problem%resultant(j))
+        accuracy%approach(j) = 0.0_wp
+        if (loaded_at_support(model, motions)) then
+          accuracy%approach(j) = sum(accuracy%element)/abs(resultant)
+        else if (accuracy%energy_norm > 0.0_wp) then
+          strain = unit_strains(model, numbering, run%scene, unit_force(:, j))
+          accuracy%approach(j) = of_product*abs(error_product(model, table, material, operator%volume, run%state%strain, smooth, &
+                                                              strain, recover_strains(model, table, operator%volume, strain)))
+        end if
+      end associate
+      do z = 1, size(accuracy%zone)
+        associate (zone => accuracy%zone(z))
+          if (zone%peak == 0) cycle
+          accuracy%approach(j) = accuracy%approach(j) + abs(sum(unit_force(answer%zones(z)%pairs, j)))*between_pairs* &
+            answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length*surface_compliance(model, table, zone%peak)
+        end associate
+      end do
+    end do
+  end subroutine assess_approach
+
+  !> Is a SUPORT freedom the one node of its body's mesh that bears a load?
+  pure logical function is_point_load(model, motions, table, j)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(patch_table), intent(in) :: table
+    integer, intent(in) :: j
+
+    associate (node => motions%node(j), c => motions%component(j))
+      is_point_load = abs(model%load(c, node)) > concentrated*sum(abs(model%load(c, :)), mask=model%body == motions%body(j)) &
+                      .and. count(model%leader(c, :) == node) == 1 .and. table%around%start(node + 1) > table%around%start(node)
+    end associate
+  end function is_point_load
+
+  !> Pairs pressed less than the error of their force, or open less than such a force would close.
+  pure function find_weak(model, line, answer, run, accuracy) result(weak)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(in) :: answer
+    type(plastic_run), intent(in) :: run
+    type(accuracy_type), intent(in) :: accuracy
+    logical, allocatable :: weak(:)
+    real(wp), allocatable :: off(:)   !! error of the pressure [stress] [pairs]
+    real(wp) :: force
+    integer :: i, k, z
+
+    allocate (off(model%pairs), source=0.0_wp)
+    do z = 1, size(accuracy%zone)
+      associate (pairs => answer%zones(z)%pairs)
+        off(pairs) = max(0.0_wp, accuracy%zone(z)%pressure)
+        do i = 1, 2
+          associate (beyond => line%neighbour(:, pairs(merge(1, size(pairs), i == 1))))
+            do k = 1, 2
+              if (beyond(k) > 0) off(beyond(k)) = max(off(beyond(k)), accuracy%zone(z)%pressure)
+            end do
+          end associate
+        end do
+      end associate
+    end do
+    allocate (weak(model%pairs))
+    do k = 1, model%pairs
+      force = off(k)*line%tributary(k) + accuracy%sensitivity%rounding*maxval(answer%contact%force)
+      if (answer%contact%touching(k)) then
+        weak(k) = answer%contact%force(k) <= force
+      else
+        weak(k) = answer%contact%gap(k) <= run%scene%problem%flexibility(k, k)*force
+      end if
+    end do
+  end function find_weak
+end module epcont_accuracy_accuracy

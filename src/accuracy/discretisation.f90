@@ -1,0 +1,194 @@
+!> How far the strains of the elements are from the smooth ones, as an energy (Zienkiewicz and Zhu 1987).
+!>
+!> With s the stress and e the strain of an element, and * for the smooth ones, the square of the error is the integral of
+!> (s* - s).(e* - e), s* being the stress on the material's curve at e*. Of elastic elements that is the energy norm. Of yielding
+!> ones it lies between those of the tangent and of the secant, and vanishes only with the error, whatever the curve.
+module epcont_accuracy_discretisation
+  use epcont_accuracy_patches, only: patch_table
+  use epcont_base_kinds, only: wp
+  use epcont_element_element, only: local_points, most_points, shape_values
+  use epcont_material_curve, only: material_type
+  use epcont_material_total_theory, only: respond, response_type
+  use epcont_model_model, only: model_type, most_nodes
+  implicit none
+  private
+  public :: error_energy, error_product, stored_energy
+
+  !> Places of an element where strains are compared, at most: those of six-node elements. Their integration points would flatter,
+  !! the error there is least; these are exact for polynomials of the fourth degree (Dunavant 1985).
+  integer, parameter :: most_places = 6
+  real(wp), parameter :: near = 0.091576213509771_wp, far = 0.445948490915965_wp
+  real(wp), parameter :: tria6_place(2, most_places) = &
+    reshape([near, near, 1.0_wp - 2.0_wp*near, near, near, 1.0_wp - 2.0_wp*near, &
+             far, far, 1.0_wp - 2.0_wp*far, far, far, 1.0_wp - 2.0_wp*far], [2, most_places])
+  real(wp), parameter :: tria6_part(most_places) = [0.109951743655322_wp, 0.109951743655322_wp, 0.109951743655322_wp, &
+                                                     0.223381589678011_wp, 0.223381589678011_wp, 0.223381589678011_wp]
+
+  !> What is the same in all elements of so many nodes: at each place the smooth strain is smooth(nodes) n, the element's own
+  !! strain(points) p, and the place has the parts v of the points' volumes.
+  type :: kind_type
+    integer :: places = 0
+    real(wp) :: n(most_nodes, most_places) = 0.0_wp
+    real(wp) :: p(most_points, most_places) = 0.0_wp
+    real(wp) :: v(most_points, most_places) = 0.0_wp
+  end type kind_type
+
+contains
+
+  !> Square of the error of each element [energy] [elements].
+  pure function error_energy(model, table, material, volume, strain, smooth) result(energy)
+    type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
+    type(material_type), intent(in) :: material(:)   !! of each section
+    real(wp), intent(in) :: volume(:)                !! of the integration points [points]
+    real(wp), intent(in) :: strain(:, :)             !! [4, points]
+    real(wp), intent(in) :: smooth(:, :)             !! [4, places]
+    real(wp), allocatable :: energy(:)
+
+    energy = integrals(model, table, material, volume, strain, smooth, strain, smooth, .true.)
+  end function error_energy
+
+  !> Of two fields the integral of error times error, with the secant moduli of the first [energy].
+  pure real(wp) function error_product(model, table, material, volume, strain, smooth, strain2, smooth2) result(product)
+    type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: volume(:), strain(:, :), smooth(:, :), strain2(:, :), smooth2(:, :)
+
+    product = sum(integrals(model, table, material, volume, strain, smooth, strain2, smooth2, .false.))
+  end function error_product
+
+  pure function integrals(model, table, material, volume, strain, smooth, strain2, smooth2, same) result(energy)
+    type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: volume(:), strain(:, :), smooth(:, :), strain2(:, :), smooth2(:, :)
+    logical, intent(in) :: same   !! the two fields are one
+    real(wp), allocatable :: energy(:)
+    type(kind_type) :: kind(most_nodes)
+    real(wp) :: own(4, most_places), error(4, most_places), error2(4, most_places)
+    integer :: e, k, n
+
+    kind([3, 4, 6]) = [kind_of(3), kind_of(4), kind_of(6)]
+    allocate (energy(model%elements))
+    do e = 1, model%elements
+      energy(e) = 0.0_wp
+      n = model%order(e)
+      associate (first => model%first_point(e), last => model%first_point(e + 1) - 1)
+        call compare(kind(n), table%place(:n, e), strain(:, first:last), smooth, own, error)
+        if (.not. same) call compare(kind(n), table%place(:n, e), strain2(:, first:last), smooth2, own, error2)
+        do k = 1, kind(n)%places
+          if (same) then
+            energy(e) = energy(e) + sum(kind(n)%v(:last - first + 1, k)*volume(first:last))* &
+              density(material(model%section(e)), own(:, k), error(:, k), error(:, k), same)
+          else
+            energy(e) = energy(e) + sum(kind(n)%v(:last - first + 1, k)*volume(first:last))* &
+              density(material(model%section(e)), own(:, k), error(:, k), error2(:, k), same)
+          end if
+        end do
+      end associate
+    end do
+  end function integrals
+
+  !> An element's own strain at its places, and what the smooth one is beyond it.
+  pure subroutine compare(kind, place, strain, smooth, own, error)
+    type(kind_type), intent(in) :: kind
+    integer, intent(in) :: place(:)
+    real(wp), intent(in) :: strain(:, :)      !! [4, its points]
+    real(wp), intent(in) :: smooth(:, :)      !! [4, places of all]
+    real(wp), intent(inout) :: own(:, :), error(:, :)
+    real(wp) :: middle(4)
+    integer :: i, k
+
+    if (size(place) == 3) then   ! what follows below, for most of all elements
+      middle = 0.5_wp*(smooth(:, place(1)) + smooth(:, place(2)) + smooth(:, place(3))) - strain(:, 1)
+      do k = 1, 3
+        own(:, k) = strain(:, 1)
+        error(:, k) = middle - 0.5_wp*smooth(:, place(k))
+      end do
+      return
+    end if
+    do k = 1, kind%places
+      own(:, k) = 0.0_wp
+      do i = 1, size(strain, 2)
+        own(:, k) = own(:, k) + kind%p(i, k)*strain(:, i)
+      end do
+      error(:, k) = -own(:, k)
+      do i = 1, size(place)
+        error(:, k) = error(:, k) + kind%n(i, k)*smooth(:, place(i))
+      end do
+    end do
+  end subroutine compare
+
+  !> Places and shape functions of the elements of so many nodes.
+  pure type(kind_type) function kind_of(nodes) result(kind)
+    integer, intent(in) :: nodes
+    real(wp) :: place(2, most_points), weight(most_points), l(3)
+    integer :: k
+
+    call local_points(nodes, place, weight)
+    select case (nodes)
+    case (3)   ! the middles of the sides, exact for quadratics
+      kind%places = 3
+      do k = 1, 3
+        kind%n(:3, k) = 0.5_wp
+        kind%n(k, k) = 0.0_wp
+        kind%p(1, k) = 1.0_wp
+        kind%v(1, k) = 1.0_wp/3.0_wp
+      end do
+    case (4)
+      kind%places = 4
+      do k = 1, 4
+        kind%n(:4, k) = shape_values(4, place(:, k))
+        kind%p(k, k) = 1.0_wp
+        kind%v(k, k) = 1.0_wp
+      end do
+    case default
+      kind%places = most_places
+      do k = 1, most_places
+        kind%n(:, k) = shape_values(6, tria6_place(:, k))
+        kind%v(:3, k) = tria6_part(k)
+        l = [1.0_wp - sum(tria6_place(:, k)), tria6_place(:, k)]
+        kind%p(:3, k) = 2.0_wp*l - 1.0_wp/3.0_wp   ! linear, from the integration points at (2/3, 1/6, 1/6)
+      end do
+    end select
+  end function kind_of
+
+  !> Stress error times strain error.
+  pure real(wp) function density(material, own, error, error2, same)
+    type(material_type), intent(in) :: material
+    real(wp), intent(in) :: own(4)                 !! strain of the element
+    real(wp), intent(in) :: error(4), error2(4)    !! smooth less own
+    logical, intent(in) :: same
+    type(response_type) :: response, after
+    real(wp) :: cross, shear
+
+    shear = material%shear
+    if (material%yields) then
+      response = respond(material, own)
+      if (same) then
+        after = respond(material, own + error)
+        if (response%curve%yielded .or. after%curve%yielded) then
+          density = dot_product(after%stress - response%stress, error)
+          return
+        end if
+      end if
+      shear = response%curve%modulus/3.0_wp
+    end if
+    cross = material%bulk - 2.0_wp*shear/3.0_wp
+    if (material%sheet) cross = 2.0_wp*shear*cross/(cross + 2.0_wp*shear)   ! and the strain zz counts as none
+    density = cross*(error(1) + error(2) + error(3))*(error2(1) + error2(2) + error2(3)) &
+              + shear*(2.0_wp*(error(1)*error2(1) + error(2)*error2(2) + error(3)*error2(3)) + error(4)*error2(4))
+  end function density
+
+  !> Work of the stresses on the strains, as `error_energy` measures it [energy].
+  pure real(wp) function stored_energy(volume, strain, stress) result(energy)
+    real(wp), intent(in) :: volume(:), strain(:, :), stress(:, :)
+    integer :: p
+
+    energy = 0.0_wp
+    do p = 1, size(volume)
+      energy = energy + volume(p)*dot_product(strain(:, p), stress(:, p))
+    end do
+  end function stored_energy
+end module epcont_accuracy_discretisation

@@ -1,0 +1,89 @@
+!> What an error of the flexibility and of the gaps does to the contact forces.
+!>
+!> On the pairs in contact the forces are R = -M g + ..., with M = F^-1 - F^-1 A (A'F^-1 A)^-1 A'F^-1. Errors dF and dg move them by
+!> M (dF R + dg), at most |M| (|dF| |R| + |dg|): a bound that no change of units alters (Skeel 1979). Its largest entry is the
+!> 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs are few, else estimated from a few products (Hager 1984).
+module epcont_accuracy_sensitivity
+  use epcont_base_kinds, only: wp
+  use epcont_contact_basis, only: contact_basis, respond
+  use epcont_contact_scaling, only: scaled_problem
+  implicit none
+  private
+  public :: contact_sensitivity, find_sensitivity
+
+  !> Pairs up to which all of M is made: the estimate may stop at one of two nearly equal rows, as rounding has it.
+  integer, parameter :: few_pairs = 200
+  integer, parameter :: most_products = 5
+
+  type :: contact_sensitivity
+    logical :: known = .false.
+    real(wp) :: amplification = 0.0_wp   !! relative error of the forces / relative error of the flexibility, at most
+    real(wp) :: rounding = 0.0_wp        !! what rounding may leave in a force, of the largest
+  end type contact_sensitivity
+
+contains
+
+  pure function find_sensitivity(problem, basis, force, travel, condition) result(found)
+    type(scaled_problem), intent(in) :: problem
+    type(contact_basis), intent(in) :: basis
+    real(wp), intent(in) :: force(:)     !! [force] [pairs]
+    real(wp), intent(in) :: travel(:)    !! what the gap of each pair is the sum of, added up [length] [pairs]
+    real(wp), intent(in) :: condition    !! of the stiffness
+    type(contact_sensitivity) :: found
+    real(wp), allocatable :: opening(:), rounding(:)
+
+    if (.not. basis%sound .or. size(basis%pairs) == 0) return
+    found%known = .true.
+    associate (pairs => basis%pairs)
+      opening = matmul(abs(problem%flexibility(pairs, pairs)), abs(force(pairs)))/problem%force_unit
+      rounding = epsilon(1.0_wp)*(condition*opening + travel(pairs)/problem%gap_unit)
+      found%amplification = largest_change(basis, opening)*problem%force_unit/maxval(force)
+      found%rounding = min(1.0_wp, largest_change(basis, rounding)*problem%force_unit/maxval(force))
+    end associate
+  end function find_sensitivity
+
+  !> 1-norm of D M.
+  pure real(wp) function largest_change(basis, d) result(norm)
+    type(contact_basis), intent(in) :: basis
+    real(wp), intent(in) :: d(:)
+    real(wp), allocatable :: x(:), y(:), turned(:)
+    integer :: k, product
+
+    allocate (x(size(d)))
+    if (size(d) <= few_pairs) then
+      norm = 0.0_wp
+      do k = 1, size(d)
+        x = 0.0_wp
+        x(k) = 1.0_wp
+        norm = max(norm, sum(abs(d*forces_under(basis, x))))
+      end do
+      return
+    end if
+    x = 1.0_wp/size(d)
+    norm = 0.0_wp
+    do product = 1, most_products
+      y = d*forces_under(basis, x)
+      if (sum(abs(y)) <= norm) return
+      norm = sum(abs(y))
+      turned = forces_under(basis, d*sign(1.0_wp, y))
+      k = maxloc(abs(turned), dim=1)
+      if (abs(turned(k)) <= dot_product(turned, x)) return
+      x = 0.0_wp
+      x(k) = 1.0_wp
+    end do
+  end function largest_change
+
+  !> M g.
+  pure function forces_under(basis, gap) result(force)
+    type(contact_basis), intent(in) :: basis
+    real(wp), intent(in) :: gap(:)
+    real(wp), allocatable :: force(:)
+    real(wp) :: opening(size(gap), 1), load(size(basis%resistance, 1), 1)
+    real(wp), allocatable :: change(:, :), approach(:, :)
+
+    opening(:, 1) = gap
+    load = 0.0_wp
+    call respond(basis, opening, load, change, approach)
+    force = -change(:, 1)
+  end function forces_under
+end module epcont_accuracy_sensitivity

@@ -1,0 +1,67 @@
+!> What the scene does under a unit load along each free motion, the pairs in contact held closed: what tells of an error
+!> anywhere how much of it arrives at the approach.
+module epcont_accuracy_unit_motion
+  use epcont_base_kinds, only: wp
+  use epcont_contact_basis, only: contact_basis, respond
+  use epcont_contact_scaling, only: scaled_problem
+  use epcont_flexibility_flexibility, only: pair_forces
+  use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
+  use epcont_plan_numbering, only: numbering_type
+  use epcont_plasticity_linear_scene, only: linear_scene
+  implicit none
+  private
+  public :: unit_forces, unit_strains, loaded_at_support
+
+contains
+
+  !> Contact forces under unit loads [pairs, motions]; zero for motions that are not kept.
+  pure function unit_forces(problem, basis, motions) result(force)
+    type(scaled_problem), intent(in) :: problem
+    type(contact_basis), intent(in) :: basis
+    integer, intent(in) :: motions
+    real(wp), allocatable :: force(:, :)
+    real(wp), allocatable :: opening(:, :), load(:, :), carried(:, :), approach(:, :)
+    integer :: j
+
+    allocate (force(size(problem%gap), motions), source=0.0_wp)
+    if (.not. basis%sound) return
+    allocate (opening(size(basis%pairs), size(problem%kept)), load(size(problem%kept), size(problem%kept)), source=0.0_wp)
+    do j = 1, size(problem%kept)
+      load(j, j) = 1.0_wp/problem%motion_size(problem%kept(j))
+    end do
+    call respond(basis, opening, load, carried, approach)
+    force(basis%pairs, problem%kept) = carried
+  end function unit_forces
+
+  !> Strains of those forces [4, points].
+  pure function unit_strains(model, numbering, scene, force) result(strain)
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    type(linear_scene), intent(in) :: scene
+    real(wp), intent(in) :: force(:)   !! [pairs]
+    real(wp), allocatable :: strain(:, :)
+
+    strain = scene%operator%strains(model, scene%bodies%displacements(model, numbering, pair_forces(model, force), 0.0_wp))
+  end function unit_strains
+
+  !> Do all loads act at the one SUPORT freedom, and nothing else drives the scene?
+  pure logical function loaded_at_support(model, motions)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    real(wp) :: elsewhere
+    integer :: c, node
+
+    loaded_at_support = .false.
+    if (motions%count /= 1) return
+    elsewhere = 0.0_wp
+    do node = 1, model%nodes
+      do c = 1, 2
+        if (model%leader(c, node) == motions%node(1) .and. c == motions%component(1)) cycle
+        if (.not. model%held(c, model%leader(c, node))) elsewhere = max(elsewhere, abs(model%load(c, node)))
+        elsewhere = max(elsewhere, abs(model%prescribed(c, node)))
+      end do
+    end do
+    loaded_at_support = elsewhere == 0.0_wp .and. all(model%initial_gap >= 0.0_wp)
+  end function loaded_at_support
+end module epcont_accuracy_unit_motion

@@ -1,0 +1,194 @@
+!> Errors of a zone's largest pressure and of its half-width.
+!>
+!> Four things tell of them: how the pressures scatter about a parabola through the nearest pairs, the normal stress that the
+!> smooth strains give there, how many pairs the zone has, and how far the half-width changes if the last three pairs say
+!> where the pressure vanishes instead of two. Their weights are measured (tests/accuracy).
+module epcont_accuracy_zone_error
+  use epcont_base_kinds, only: wp
+  use epcont_model_model, only: model_type
+  use epcont_result_contact_line, only: contact_line, contact_zone
+  implicit none
+  private
+  public :: zone_error, estimate_zone
+
+  !> Pairs that the parabola goes through.
+  integer, parameter :: around_peak = 7
+  !> Weights in the error of the largest pressure for elements of 3, 4 and 6 nodes: of the scatter, of the smooth stress, of h/b and
+  !! of (h/b)**2.
+  real(wp), parameter :: of_scatter = 0.6_wp
+  real(wp), parameter :: of_stress(3) = [0.35_wp, 0.1_wp, 0.25_wp]
+  real(wp), parameter :: of_spacing(3) = [0.16_wp, 0.07_wp, 0.0_wp], of_square(3) = [0.0_wp, 0.0_wp, 0.25_wp]
+  !> Part of a spacing that the end of a zone is uncertain by, for the same; and at most.
+  real(wp), parameter :: of_end(3) = [0.25_wp, 0.25_wp, 0.18_wp], end_most = 0.5_wp
+  !> Pressures that differ by less than this part are the same all over the zone.
+  real(wp), parameter :: uniform = 1.0e-6_wp
+  !> Part of the product of its diagonal that the determinant of the normal equations must be.
+  real(wp), parameter :: dependent = 1.0e-9_wp
+  !> Of the largest pressure: less is rounding.
+  real(wp), parameter :: rounding = 1.0e-9_wp
+  !> A pressure that is not below this part of the largest at an end does not fall towards it.
+  real(wp), parameter :: falls = 0.5_wp
+
+  type :: zone_error
+    integer :: peak = 0                  !! pair of the largest pressure
+    logical :: grows = .false.           !! with every finer mesh: a sharp edge
+    real(wp) :: pressure = -1.0_wp       !! of the largest pressure; negative: unknown [stress]
+    real(wp) :: half_width = -1.0_wp     !! negative: unknown [length]
+    real(wp) :: resolution = 1.0_wp      !! spacing of the pairs over half of the zone's length
+    real(wp) :: half_length = 0.0_wp     !! of the zone, to where the pressure vanishes [length]
+  end type zone_error
+
+contains
+
+  !> `stress_pressure` is the pressure at each pair that the smooth strains give.
+  pure function estimate_zone(model, line, touching, pressure, stress_pressure, order, zone) result(error)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    logical, intent(in) :: touching(:)
+    real(wp), intent(in) :: pressure(:), stress_pressure(:)   !! [pairs]
+    integer, intent(in) :: order    !! nodes of the elements there: 3, 4 or 6
+    type(contact_zone), intent(in) :: zone
+    type(zone_error) :: error
+    real(wp), allocatable :: s(:)    !! place of each of its pairs, from the first on [length]
+    integer, allocatable :: inward(:)   !! its pairs from one end on
+    real(wp) :: open, step(2), uncertain(2), beyond(2), spacing, largest
+    logical :: even, mirrored(2), sharp(2)
+    integer :: e, kind, n, peak
+
+    n = size(zone%pairs)
+    peak = maxloc(pressure(zone%pairs), dim=1)
+    error%peak = zone%pairs(peak)
+    largest = pressure(error%peak)
+    if (largest <= 0.0_wp) return
+    s = places(model, line, zone%pairs)
+    mirrored = line%mirrored(zone%pairs([1, n]))
+    kind = findloc([3, 4, 6], order, dim=1)
+    beyond = 0.0_wp
+    uncertain = 0.0_wp
+    sharp = .false.
+    spacing = 0.0_wp
+    step = 0.0_wp
+    do e = 1, 2
+      if (mirrored(e)) cycle
+      if (e == 1) inward = zone%pairs
+      if (e == 2) inward = zone%pairs(n:1:-1)
+      associate (p => pressure(inward), d => abs(s(merge(1, n, e == 1)) - s(merge(1, n, e == 1):merge(n, 1, e == 1):3 - 2*e)))
+        open = to_first_open(model, line, touching, inward(1))
+        step(e) = max(open, d(min(n, 2)))
+        beyond(e) = vanishes(p, d, 2, open)
+        uncertain(e) = min(end_most*step(e), abs(beyond(e) - vanishes(p, d, 3, open)) + of_end(kind)*step(e))
+        sharp(e) = open == 0.0_wp .and. p(1) >= falls*largest .or. n > 3 .and. inward(1) == error%peak
+      end associate
+    end do
+    error%half_length = 0.5_wp*(s(n) + sum(beyond))
+    if (mirrored(1) .neqv. mirrored(2)) error%half_length = 2.0_wp*error%half_length
+    if (n > 1) spacing = (s(min(n, peak + 1)) - s(max(1, peak - 1)))/(min(n, peak + 1) - max(1, peak - 1))
+    even = n > 1 .and. maxval(pressure(zone%pairs)) - minval(pressure(zone%pairs)) <= uniform*largest
+    error%grows = any(sharp) .and. .not. even
+    if (even) then
+      error%resolution = 0.0_wp
+    else if (error%half_length > spacing) then   ! of a single pair it stays 1
+      error%resolution = spacing/error%half_length
+    end if
+    if (zone%half_width >= 0.0_wp) error%half_width = sum(uncertain)*merge(1.0_wp, 0.5_wp, any(mirrored))
+    if (error%grows) return
+    error%pressure = of_scatter*abs(largest - parabola(s, pressure(zone%pairs), mirrored, peak, spacing)) &
+                     + of_stress(kind)*abs(largest - stress_pressure(error%peak)) &
+                     + largest*(of_spacing(kind)*error%resolution + of_square(kind)*error%resolution**2)
+    if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
+  end function estimate_zone
+
+  !> Place of each pair along the zone.
+  pure function places(model, line, pairs) result(s)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    integer, intent(in) :: pairs(:)
+    real(wp), allocatable :: s(:)
+    integer :: k
+
+    allocate (s(size(pairs)))
+    s(1) = 0.0_wp
+    do k = 2, size(pairs)
+      s(k) = s(k - 1) + distance(model, line, pairs(k), pairs(k - 1))
+    end do
+  end function places
+
+  pure real(wp) function distance(model, line, a, b)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    integer, intent(in) :: a, b
+
+    distance = norm2(model%x(:, line%node(a)) - model%x(:, line%node(b)))
+  end function distance
+
+  !> Distance from the end of a zone to the first open pair; 0: there is none, the end is the last candidate.
+  pure real(wp) function to_first_open(model, line, touching, last) result(far)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    logical, intent(in) :: touching(:)
+    integer, intent(in) :: last
+    integer :: k
+
+    far = 0.0_wp
+    do k = 1, 2
+      associate (next => line%neighbour(k, last))
+        if (next == 0) cycle
+        if (.not. touching(next)) far = distance(model, line, last, next)
+      end associate
+    end do
+  end function to_first_open
+
+  !> How far beyond an end the pressure vanishes: the least-squares line of p**2 over some pairs from there on.
+  pure real(wp) function vanishes(pressure, inward, many, limit)
+    real(wp), intent(in) :: pressure(:)
+    real(wp), intent(in) :: inward(:)   !! distance of each pair from the end, which is the first [length]
+    integer, intent(in) :: many
+    real(wp), intent(in) :: limit       !! distance to the first open pair [length]
+    real(wp) :: slope
+    integer :: n
+
+    n = min(many, size(pressure))
+    vanishes = 0.0_wp
+    if (n < 2) return
+    vanishes = limit
+    associate (x => inward(:n) - sum(inward(:n))/n, y => pressure(:n)**2)
+      slope = sum(x*y)/sum(x*x)
+      if (slope > 0.0_wp) vanishes = min(limit, max(0.0_wp, sum(y)/n/slope - sum(inward(:n))/n))
+    end associate
+  end function vanishes
+
+  !> The pressure at the peak by the least-squares parabola of p**2 through the pairs nearest to it, mirrored ones too.
+  pure real(wp) function parabola(s, p, mirrored, peak, spacing) result(value)
+    real(wp), intent(in) :: s(:), p(:)
+    logical, intent(in) :: mirrored(2)
+    integer, intent(in) :: peak
+    real(wp), intent(in) :: spacing
+    real(wp) :: x(3*size(s)), y(3*size(s)), moment(0:4), right(0:2), determinant(0:1)
+    logical :: taken(3*size(s))
+    integer :: i, k, n
+
+    n = size(s)
+    x = [s, -s, 2.0_wp*s(n) - s] - s(peak)
+    x = x/max(spacing, tiny(1.0_wp))
+    y = [p, p, p]**2
+    taken = [spread(.false., 1, n), spread(.not. mirrored(1), 1, n), spread(.not. mirrored(2), 1, n)]
+    if (mirrored(1)) taken(n + 1) = .true.
+    if (mirrored(2)) taken(3*n) = .true.
+    value = p(peak)
+    if (count(.not. taken) <= 3) return
+    moment = 0.0_wp
+    right = 0.0_wp
+    do i = 1, around_peak
+      if (all(taken)) exit
+      k = minloc(abs(x), mask=.not. taken, dim=1)
+      taken(k) = .true.
+      moment = moment + [1.0_wp, x(k), x(k)**2, x(k)**3, x(k)**4]
+      right = right + y(k)*[1.0_wp, x(k), x(k)**2]
+    end do
+    determinant = [moment(0)*(moment(2)*moment(4) - moment(3)**2) - moment(1)*(moment(1)*moment(4) - moment(2)*moment(3)) &
+                   + moment(2)*(moment(1)*moment(3) - moment(2)**2), &
+                   right(0)*(moment(2)*moment(4) - moment(3)**2) - moment(1)*(right(1)*moment(4) - right(2)*moment(3)) &
+                   + moment(2)*(right(1)*moment(3) - right(2)*moment(2))]
+    if (determinant(0) > dependent*moment(0)*moment(2)*moment(4)) value = sqrt(max(0.0_wp, determinant(1)/determinant(0)))
+  end function parabola
+end module epcont_accuracy_zone_error
