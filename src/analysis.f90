@@ -13,7 +13,7 @@ module epcont_analysis
   use epcont_plasticity_iteration, only: follow_loads, plastic_run
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_methods, only: choose_method
-  use epcont_result_answer, only: answer_type, largest_rounding_error
+  use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line, find_contact_line, find_zones
   use epcont_result_line_pressure, only: compare_sides
   use epcont_result_locking, only: find_locking
@@ -73,9 +73,10 @@ contains
 
     now = plan
     answer%asked_precision = plan%precision
+    answer%largest_rounding_error = plan%rounding_error
     call choose_method(plan%method, method)
     call follow_loads(model, motions, numbering, now, method, run)
-    if (plan%precision /= precision_double .and. .not. (run%converged .and. run%rounding_error <= largest_rounding_error)) then
+    if (plan%precision /= precision_double .and. .not. (run%converged .and. run%rounding_error <= plan%rounding_error)) then
       now%precision = precision_double
       call choose_method(plan%method, method)
       call follow_loads(model, motions, numbering, now, method, run)

@@ -4,9 +4,8 @@ module epcont_plan_forecast
   use epcont_linalg_panel_layout, only: panel_entries
   use epcont_model_controls, only: precision_double
   use epcont_model_model, only: model_type
-  use epcont_plan_contact_plan, only: contact_plan
+  use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: numbering_type
-  use epcont_plan_precision_plan, only: plan_precision
   implicit none
   private
   public :: forecast_type, forecast
@@ -21,31 +20,30 @@ contains
   pure function forecast(model, numbering, plan) result(expected)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
-    type(contact_plan), intent(in) :: plan
+    type(iteration_plan), intent(in) :: plan
     type(forecast_type) :: expected
-    integer(i8) :: entries, factor, other, pairs
+    integer(i8) :: entries, factor, pairs
     integer :: b
 
     pairs = model%pairs
     entries = 0
-    other = 0
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
         factor = merge(sparse_entries(body%equations), panel_entries(body%reach), body%sparse)
-        entries = entries + factor
-        other = other + int(body%equations, i8)*body%border
+        expected%bytes = expected%bytes + factor*merge(8, 4, body%sparse .or. plan%precision == precision_double)
+        entries = entries + int(body%equations, i8)*body%border
         if (body%contact_last .or. body%sparse) then
-          other = other + int(body%contact_equations, i8)**2
+          entries = entries + int(body%contact_equations, i8)**2
         else
-          other = other + pairs*(pairs + body%half_bandwidth)
+          entries = entries + pairs*(pairs + body%half_bandwidth)
         end if
         expected%operations = expected%operations + merge(sparse_operations(body%equations), body%operations, body%sparse) &
                               + 4.0_wp*body%border*factor
       end associate
     end do
-    ! Other: F, its scaled copy, and the tableau or factors.
-    expected%bytes = merge(8_i8, 4_i8, plan_precision(model%controls) == precision_double)*entries + 8_i8*(other + 3_i8*pairs**2)
-    if (plan%by_blocks) then
+    ! F, its scaled copy, and the tableau or factors.
+    expected%bytes = expected%bytes + 8_i8*(entries + 3_i8*pairs**2)
+    if (plan%contact%by_blocks) then
       ! The full set factored twice; the sets on the way to it are smaller, or little of them is factored.
       expected%operations = expected%operations + 2.0_wp/3.0_wp*real(pairs, wp)**3
     else

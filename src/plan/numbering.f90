@@ -7,7 +7,6 @@ module epcont_plan_numbering
   use epcont_linalg_sparse, only: sparse_available
   use epcont_model_controls, only: precision_double, solver_auto, solver_sparse
   use epcont_model_model, only: model_type
-  use epcont_plan_precision_plan, only: plan_precision
   implicit none
   private
   public :: body_numbering, numbering_type, number_equations
@@ -107,7 +106,7 @@ contains
     plain%contact_last = .false.
     plain%operations = panel_operations(plain%reach)
     plain%sparse = model%controls%solver == solver_auto .and. plain%operations > many_operations .and. sparse_available() &
-                   .and. plan_precision(model%controls) == precision_double
+                   .and. model%controls%precision <= precision_double
     do e = 1, size(body%element)
       if (model%can_yield(body%element(e))) plain%sparse = .false.
     end do

@@ -4,7 +4,7 @@ module epcont_report_precision
   use epcont_model_controls, only: precision_double, precision_name, precision_single
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: figure, newline, right
-  use epcont_result_answer, only: answer_type, largest_rounding_error
+  use epcont_result_answer, only: answer_type
   implicit none
   private
   public :: precision_text, list_precision
@@ -33,7 +33,7 @@ contains
     if (answer%precision == answer%asked_precision) return
     if (answer%asked_precision == precision_single) then
       call file%line('    (factors in double: in single precision they left an error of more than '// &
-                     short_real(largest_rounding_error)//', or no answer)')
+                     short_real(answer%largest_rounding_error)//', or no answer)')
     else
       call file%line('    (factors in double: in single precision they left too little to refine)')
     end if

@@ -12,9 +12,6 @@ module epcont_result_answer
   private
   public :: answer_type
 
-  !> Of strains and contact forces, relative: an answer of single precision that may be wrong by more is not given.
-  real(wp), parameter, public :: largest_rounding_error = 0.01_wp
-
   type :: answer_type
     real(wp), allocatable :: displacement(:, :)      !! [length] [2, nodes]
     real(wp), allocatable :: deformation(:, :)       !! displacements before the rigid motions are added [length] [2, nodes]
@@ -35,6 +32,7 @@ module epcont_result_answer
     integer :: precision = precision_double          !! of the factors
     integer :: asked_precision = precision_double    !! that did not do, where it is another one
     real(wp) :: rounding_error = 0.0_wp              !! of displacements, strains and forces, relative: what single precision left
+    real(wp) :: largest_rounding_error = 0.0_wp      !! that it may leave
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest                      !! of the stiffness
     type(iteration_record), allocatable :: history(:)  !! every solve
