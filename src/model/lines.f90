@@ -6,7 +6,7 @@ module epcont_model_lines
   use epcont_base_text, only: text_of
   use epcont_deck_card_kinds, only: card_blseg
   use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_boundary_line, only: boundary_line, find_normals
   use epcont_model_elements, only: element_name
   use epcont_model_model, only: model_type
@@ -15,10 +15,12 @@ module epcont_model_lines
   private
   public :: build_lines
 
+  integer, parameter :: first_room = 16   !! nodes that a line holds before its arrays first grow
+
   !> What a line is read into.
   type :: walk_type
     integer, allocatable :: node(:)       !! as the card lists them; 0: there is none of that id
-    type(place_type), allocatable :: place(:)
+    integer, allocatable :: item(:)       !! of the card's list, where each node is named
     integer, allocatable :: side(:, :)    !! nodes of the sides found, as the elements turn [3, sides]
     integer, allocatable :: element(:)
     logical :: sound = .true.
@@ -59,21 +61,27 @@ contains
     type(id_index), intent(in) :: nodes
     type(walk_type), intent(out) :: walk
     type(diagnostics), intent(inout) :: faults
-    integer :: id, k
+    integer :: found, id, k
 
-    allocate (walk%node(0), walk%place(0), walk%side(3, 0), walk%element(0))
+    allocate (walk%node(first_room), walk%item(first_room))
+    found = 0
     associate (blseg => deck%card(card_blseg))
       do k = blseg%list_start(i), blseg%list_start(i + 1) - 1
         do id = blseg%list_from(k), blseg%list_to(k), blseg%list_step(k)
-          walk%node = [walk%node, nodes%find(id)]
-          walk%place = [walk%place, deck%list_place(card_blseg, k)]
-          if (walk%node(size(walk%node)) > 0) cycle
+          if (found == size(walk%node)) walk%node = [walk%node, walk%node]   ! room for twice as many
+          if (found == size(walk%item)) walk%item = [walk%item, walk%item]
+          found = found + 1
+          walk%node(found) = nodes%find(id)
+          walk%item(found) = k
+          if (walk%node(found) > 0) cycle
           call faults%add_error(deck%list_place(card_blseg, k), deck%identity(card_blseg, i)//': there is no GRID '// &
                                 text_of(id), 'the id of a GRID')
           walk%sound = .false.
           exit   ! of a range the first one
         end do
       end do
+      walk%node = walk%node(:found)
+      walk%item = walk%item(:found)
       walk%sound = walk%sound .and. blseg%sound(i)
       if (walk%sound .and. size(walk%node) < 2) then
         call faults%add_error(deck%place(card_blseg, i, 0), deck%identity(card_blseg, i)//': one node is no line', &
@@ -98,8 +106,9 @@ contains
     do k = 1, n
       associate (node => walk%node(k))
         if (met(node) .and. .not. (k == n .and. node == walk%node(1) .and. n > 3)) then
-          call faults%add_error(walk%place(k), deck%identity(card_blseg, i)//': GRID '//text_of(model%node_id(node))// &
-                                ' stands in it before', 'each node once; a closed line ends with its first node')
+          call faults%add_error(deck%list_place(card_blseg, walk%item(k)), deck%identity(card_blseg, i)//': GRID '// &
+                                text_of(model%node_id(node))//' stands in it before', &
+                                'each node once; a closed line ends with its first node')
           walk%sound = .false.
           return
         end if
@@ -116,8 +125,10 @@ contains
     type(incidence), intent(in) :: around
     type(walk_type), intent(inout) :: walk
     type(diagnostics), intent(inout) :: faults
-    integer :: element(2), k, side(3), sides
+    integer :: element(2), found, k, side(3), sides
 
+    allocate (walk%side(3, size(walk%node)), walk%element(size(walk%node)))
+    found = 0
     k = 1
     do while (k < size(walk%node))
       call side_between(model, around, walk%node(k), walk%node(k + 1), side, element, sides)
@@ -130,8 +141,9 @@ contains
         end if
       end if
       if (sides == 1) then
-        walk%side = reshape([walk%side, side], [3, size(walk%element) + 1])
-        walk%element = [walk%element, element(1)]
+        found = found + 1
+        walk%side(:, found) = side
+        walk%element(found) = element(1)
         k = k + 1
         cycle
       end if
@@ -139,19 +151,22 @@ contains
       call say_what_is_wrong()
       return
     end do
+    walk%side = walk%side(:, :found)
+    walk%element = walk%element(:found)
 
   contains
 
     subroutine say_what_is_wrong()
       character(len=:), allocatable :: between
 
-      associate (a => model%node_id(walk%node(k)), b => model%node_id(walk%node(k + 1)))
+      associate (a => model%node_id(walk%node(k)), b => model%node_id(walk%node(k + 1)), &
+                 place => deck%list_place(card_blseg, walk%item(k + 1)))
         between = text_of(a)//' and '//text_of(b)
         if (sides == 0) then
-          call faults%add_error(walk%place(k + 1), deck%identity(card_blseg, i)//': GRID '//between// &
+          call faults%add_error(place, deck%identity(card_blseg, i)//': GRID '//between// &
                                 ' are not the ends of a side of an element', 'nodes in the order of the boundary')
         else
-          call faults%add_error(walk%place(k + 1), deck%identity(card_blseg, i)//': the side between GRID '//between// &
+          call faults%add_error(place, deck%identity(card_blseg, i)//': the side between GRID '//between// &
                                 ' lies inside a body, between '//element_name(model, element(1))//' and '// &
                                 element_name(model, element(2)), 'sides that one element has')
         end if
