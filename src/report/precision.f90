@@ -35,7 +35,7 @@ contains
       call file%line('    (factors in double: in single precision they left an error of more than '// &
                      short_real(answer%largest_rounding_error)//', or no answer)')
     else
-      call file%line('    (factors in double: in single precision they left too little to refine)')
+      call file%line('    (factors in double: in single precision there was no answer that refinement could reach)')
     end if
   end subroutine list_precision
 end module epcont_report_precision
