@@ -193,7 +193,7 @@ contains
       step = step + 1
       call correct(self, model, numbering, law, part, state, change)
       if (step > 1 .and. change <= small_step) exit
-      ! Steps come in pairs: what one has refined moves the contact forces, and those the next. The first pair brings them in.
+      ! Steps come in pairs: what one has refined moves the contact forces, and those the next; the first brings them in.
       if (step > 4 .and. .not. change <= slowest_rate*before(1)) then
         if (change <= rounding_step) exit
         state%contact%state = contact_stalled
@@ -240,7 +240,8 @@ contains
     call solve_contact(self%problem, state%contact, touching, self%by_blocks)
   end subroutine solve_contact_about
 
-  !> What single precision has left: the change of displacements, strains and contact forces, of the largest of each, by one step of refinement.
+  !> What single precision has left: the change of displacements, strains and contact forces, of the largest of each, by
+  !! one step of refinement.
   pure subroutine rounding_error(self, model, numbering, law, part, state, error)
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model

@@ -44,8 +44,9 @@ contains
     call figure(file, 'linear residual', right(rounding_number(certificate%equilibrium), 13))
     if (accuracy%sensitivity%known) then
       associate (found => accuracy%sensitivity)
-        call figure(file, 'rounding in the contact forces, at most', right(rounding_number(found%rounding), 13)// &
-                    '   of the largest')
+        if (answer%precision /= precision_single) &
+          call figure(file, 'rounding in the contact forces, at most', right(rounding_number(found%rounding), 13)// &
+                      '   of the largest')
         call figure(file, 'they magnify errors of the stiffness', right(amplification(found%amplification), 13)// &
                     '   times at most')
       end associate

@@ -97,7 +97,7 @@ contains
     end do
     if (.not. accuracy%sensitivity%known) return
     call put('contact_amplification', accuracy%sensitivity%amplification, '')
-    call put('rounding_error_force', accuracy%sensitivity%rounding, '')
+    call put('rounding_error_force', max(accuracy%sensitivity%rounding, answer%rounding_error), '')
     call file%line('weak_pairs,'//text_of(count(accuracy%weak))//',')
 
   contains
