@@ -174,7 +174,7 @@ contains
     real(wp), intent(in) :: force(:), pressure(:)
     type(contact_zone), allocatable :: zones(:)
     type(partition) :: sets
-    integer, allocatable :: number(:)
+    integer, allocatable :: number(:), start(:)   !! set of each pair; first pair of each zone
     integer :: count, k, pair, z
 
     sets = new_partition(model%pairs)
@@ -185,10 +185,11 @@ contains
       end do
     end do
     call sets%numbers(number, count)
-    allocate (zones(0))
-    do z = 1, count
-      pair = findloc(number, z, dim=1)
-      if (touching(pair)) zones = [zones, walk(model, line, touching, force, pressure, pair)]
+    start = [(findloc(number, z, dim=1), z=1, count)]
+    start = pack(start, touching(start))
+    allocate (zones(size(start)))
+    do z = 1, size(zones)
+      zones(z) = walk(model, line, touching, force, pressure, start(z))
     end do
   end function find_zones
 
