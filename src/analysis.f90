@@ -5,6 +5,7 @@ module epcont_analysis
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
+  use epcont_model_controls, only: precision_double
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -35,13 +36,11 @@ contains
     type(certificate_type), intent(out) :: certificate
     type(accuracy_type), intent(out) :: accuracy
     integer, intent(out) :: singular
-    class(plastic_method), allocatable :: method
     type(plastic_run) :: run
     type(contact_line) :: line
     real(wp), allocatable :: load(:, :)
 
-    call choose_method(plan%method, method)
-    call follow_loads(model, motions, numbering, plan, method, run)
+    call solve(model, motions, numbering, plan, run, answer)
     singular = run%singular
     answer%lacks_memory = run%lacks_memory
     if (singular > 0) return
@@ -57,9 +56,33 @@ contains
     answer%zones = find_zones(model, line, answer%contact%touching, answer%contact%force, answer%pressure)
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
     call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
-                 answer%contact%force, certificate)
+                 answer%contact%force, certificate, answer%rounding_error)
     call assess(model, motions, numbering, run, line, answer, accuracy)
   end subroutine analyse
+
+  !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved by others in double.
+  subroutine solve(model, motions, numbering, plan, run, answer)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(iteration_plan), intent(in) :: plan
+    type(plastic_run), intent(out) :: run
+    type(answer_type), intent(inout) :: answer
+    class(plastic_method), allocatable :: method
+    type(iteration_plan) :: now
+
+    now = plan
+    answer%asked_precision = plan%precision
+    answer%largest_rounding_error = plan%rounding_error
+    call choose_method(plan%method, method)
+    call follow_loads(model, motions, numbering, now, method, run)
+    if (plan%precision /= precision_double .and. .not. (run%converged .and. run%rounding_error <= plan%rounding_error)) then
+      now%precision = precision_double
+      call choose_method(plan%method, method)
+      call follow_loads(model, motions, numbering, now, method, run)
+    end if
+    answer%precision = now%precision
+  end subroutine solve
 
   !> What the loop has found, and how.
   pure subroutine take_over(run, answer)
@@ -75,6 +98,7 @@ contains
     answer%load_factor = run%load_factor
     answer%condition = run%condition
     answer%weakest = run%weakest
+    answer%rounding_error = run%rounding_error
     answer%unloaded = run%unloaded
     answer%first_unloaded = run%first_unloaded
   end subroutine take_over

@@ -51,7 +51,7 @@ contains
       end if
       numbering = number_equations(run%model)
       iteration = plan_iteration(run%model)
-      expected = forecast(run%model, numbering, iteration%contact)
+      expected = forecast(run%model, numbering, iteration)
       run%plan = plan_text(run%model, run%motions, iteration, numbering, expected)
       if (arguments%plan) then
         call print_text(stem_of(path)//run%plan, status)

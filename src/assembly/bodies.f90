@@ -23,6 +23,7 @@ module epcont_assembly_bodies
   contains
     procedure :: factor_body
     procedure :: settle
+    procedure, nopass :: prescribe
     procedure :: displacements
     procedure :: condition
     procedure :: weakest
@@ -32,11 +33,13 @@ module epcont_assembly_bodies
 contains
 
   !> Bodies with room for their factors.
-  pure function new_bodies(model) result(bodies)
+  pure function new_bodies(model, single) result(bodies)
     type(model_type), intent(in) :: model
+    logical, intent(in) :: single    !! factored in single precision
     type(factored_bodies) :: bodies
 
     allocate (bodies%body(model%bodies))
+    bodies%body%single = single
     allocate (bodies%settlement(2, model%nodes), source=0.0_wp)
   end function new_bodies
 
@@ -65,17 +68,28 @@ contains
     type(strain_operator), intent(in) :: operator
     type(linear_law), intent(in) :: law
     real(wp), allocatable :: prescribed(:, :)
-    integer :: c, node
 
     if (all(model%prescribed == 0.0_wp)) return
-    allocate (prescribed(2, model%nodes))
-    do node = 1, model%nodes
-      do c = 1, 2
-        prescribed(c, node) = model%prescribed(c, model%leader(c, node))
-      end do
-    end do
+    allocate (prescribed(2, model%nodes), source=0.0_wp)
+    call prescribe(model, 1.0_wp, prescribed)
     self%settlement = -operator%nodal_forces(model, law%increment(operator%strains(model, prescribed)))
   end subroutine settle
+
+  !> A part of the prescribed displacements, put in its place; nothing else is touched.
+  pure subroutine prescribe(model, part, displacement)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: part
+    real(wp), intent(inout) :: displacement(:, :)   !! [length] [2, nodes]
+    integer :: c, node
+
+    do node = 1, model%nodes
+      do c = 1, 2
+        associate (leader => model%leader(c, node))
+          if (model%held(c, leader)) displacement(c, node) = part*model%prescribed(c, leader)
+        end associate
+      end do
+    end do
+  end subroutine prescribe
 
   !> Whether there was not enough memory for the factor of a body.
   pure logical function lacks_memory(self)

@@ -10,6 +10,7 @@ module epcont_assembly_stiffness
   use epcont_linalg_assembled, only: assembled_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   use epcont_linalg_panel, only: panel_matrix
+  use epcont_linalg_single_panel, only: single_panel_matrix => panel_matrix
   use epcont_linalg_sparse, only: sparse_matrix
   use epcont_model_model, only: model_type, most_nodes
   use epcont_plan_numbering, only: body_numbering
@@ -21,6 +22,7 @@ module epcont_assembly_stiffness
     class(assembled_matrix), allocatable :: matrix   !! K_bb, then its factor
     real(wp), allocatable :: coupling(:, :)   !! K_br, then W [equations, border]
     real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
+    logical :: single = .false.               !! K_bb is factored in single precision
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
     integer :: weakest = 0                    !! its equation
   contains
@@ -49,7 +51,7 @@ contains
       if (stiffness%is_sound() .and. body%border == 0) from = first_change(model, changed, equation, body)
       call stiffness%matrix%clear(from)
     else
-      call begin(model, equation, body, stiffness%matrix)
+      call begin(model, equation, body, stiffness%single, stiffness%matrix)
     end if
     if (allocated(stiffness%coupling)) deallocate (stiffness%coupling, stiffness%schur)
     if (stiffness%matrix%lacks_memory) return
@@ -90,18 +92,24 @@ contains
   end function first_change
 
   !> A matrix of zeros, of the kind that the plan has chosen.
-  subroutine begin(model, equation, body, matrix)
+  subroutine begin(model, equation, body, single, matrix)
     type(model_type), intent(in) :: model
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
+    logical, intent(in) :: single
     class(assembled_matrix), allocatable, intent(inout) :: matrix
     type(panel_matrix), allocatable :: panels
+    type(single_panel_matrix), allocatable :: single_panels
     type(sparse_matrix), allocatable :: sparse
 
     if (body%sparse) then
       allocate (sparse)
       call sparse%begin(body%equations, element_numbers(model, equation, body))
       call move_alloc(sparse, matrix)
+    else if (single) then
+      allocate (single_panels)
+      call single_panels%begin(body%reach, merge(body%contact_equations, 0, body%contact_last))
+      call move_alloc(single_panels, matrix)
     else
       allocate (panels)
       call panels%begin(body%reach, merge(body%contact_equations, 0, body%contact_last))
@@ -166,7 +174,7 @@ contains
   pure logical function is_sound(self)
     class(body_stiffness), intent(in) :: self
 
-    is_sound = self%smallest_ratio > epsilon(1.0_wp)
+    is_sound = self%smallest_ratio > self%matrix%rounding
   end function is_sound
 
   !> Solve for one right-hand side, in place.

@@ -2,7 +2,7 @@
 !> Nothing but speed depends on them.
 module epcont_base_large_pages
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_loc, c_size_t
-  use epcont_base_kinds, only: wp
+  use epcont_base_kinds, only: sp, wp
   implicit none
   private
   public :: use_large_pages, prepare_heap
@@ -15,6 +15,10 @@ module epcont_base_large_pages
   integer(c_int), parameter :: trim_threshold = -1, top_pad = -2, mmap_threshold = -3
   integer(c_int), parameter :: heap_step = 67108864        !! by which the heap grows; memory is taken when touched [bytes]
   integer(c_int), parameter :: largest_in_heap = 33554432  !! arrays up to here are in the heap: glibc's own limit [bytes]
+
+  interface use_large_pages
+    module procedure use_under_double, use_under_single
+  end interface use_large_pages
 
   interface
     integer(c_int) function madvise(address, length, advice) bind(c)
@@ -38,13 +42,21 @@ module epcont_base_large_pages
 contains
 
   !> Ask for large pages under an array that has not been touched yet.
-  subroutine use_large_pages(array)
+  subroutine use_under_double(array)
     real(wp), contiguous, target, intent(in) :: array(:)
     integer(c_intptr_t) :: first
 
     first = transfer(c_loc(array), first)
     call advise(first, first + size(array, kind=c_intptr_t)*storage_size(array)/8)
-  end subroutine use_large_pages
+  end subroutine use_under_double
+
+  subroutine use_under_single(array)
+    real(sp), contiguous, target, intent(in) :: array(:)
+    integer(c_intptr_t) :: first
+
+    first = transfer(c_loc(array), first)
+    call advise(first, first + size(array, kind=c_intptr_t)*storage_size(array)/8)
+  end subroutine use_under_single
 
   !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them.
   subroutine prepare_heap()

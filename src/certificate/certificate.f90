@@ -13,7 +13,10 @@ module epcont_certificate_certificate
   public :: certificate_type, certify
 
   !> Largest value of each relative figure for an answer to be valid.
-  real(wp), parameter, public :: tolerance = 1.0e-9_wp
+  real(wp), parameter :: exact_tolerance = 1.0e-9_wp
+
+  !> The same where factors of single precision have left an error, as a part of that.
+  real(wp), parameter :: rounding_errors = 10.0_wp
 
   !> Roundings that a gap is the sum of.
   real(wp), parameter :: roundings = 8.0_wp
@@ -36,15 +39,17 @@ module epcont_certificate_certificate
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
     real(wp) :: gap_rounding = 0.0_wp     !! rounding of the gaps of pressed pairs, from their travel [length]
-    real(wp) :: curve_tolerance = tolerance  !! largest `off_curve` of a valid answer: what the iteration was asked for
+    real(wp) :: tolerance = exact_tolerance  !! largest value of each relative figure but the next of a valid answer
+    real(wp) :: curve_tolerance = exact_tolerance  !! largest `off_curve` of a valid answer: what the iteration was asked for
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
     logical :: valid = .false.            !! that one too
   end type certificate_type
 
 contains
 
-  !> `curve_tolerance` is how far off its curve the iteration may leave a stress; less than `tolerance` is not asked.
-  pure subroutine certify(model, load, curve_tolerance, deformation, displacement, reaction, stress, force, certificate)
+  !> `curve_tolerance` is how far off its curve the iteration may leave a stress; less than the tolerance is not asked.
+  pure subroutine certify(model, load, curve_tolerance, deformation, displacement, reaction, stress, force, certificate, &
+                          rounding_error)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: load(:, :)          !! [force] [2, nodes]
     real(wp), intent(in) :: curve_tolerance
@@ -54,9 +59,12 @@ contains
     real(wp), intent(in) :: stress(:, :)        !! xx, yy, zz, xy [4, points]
     real(wp), intent(in) :: force(:)            !! contact forces [pairs]
     type(certificate_type), intent(out) :: certificate
+    real(wp), intent(in), optional :: rounding_error  !! of strains and contact forces; not given: that of double precision
     real(wp), allocatable :: residual(:, :), element_force(:)
-    real(wp) :: exact, forces, largest_stress, stored, terms, work
+    real(wp) :: exact, forces, largest_stress, stored, terms, tolerance, work
 
+    if (present(rounding_error)) certificate%tolerance = max(exact_tolerance, rounding_errors*rounding_error)
+    tolerance = certificate%tolerance
     allocate (residual(2, model%nodes), element_force(model%nodes), source=0.0_wp)
     stored = 0.0_wp
     largest_stress = 0.0_wp

@@ -331,7 +331,7 @@ contains
 
   !> All PARAMs: the field VALUE for each NAME.
   function parameters() result(field)
-    type(field_entry) :: field(11)
+    type(field_entry) :: field(13)
 
     field(1) = word_field(3, 'PLANE', 'every PSHELL with blank MID2', choices='STRAIN STRESS')
     field(2) = word_field(3, 'RULE', 'contact entry rule; default AUTO', choices='AUTO CONRY BLOCK')
@@ -350,6 +350,12 @@ contains
                                     ' two lines', 'length'))
     field(11) = word_field(3, 'SOLVER', 'matrices of the bodies: panels of a band, or MUMPS; default AUTO', &
                            choices='AUTO BAND SPARSE')
+    field(12) = word_field(3, 'PRECIS', 'factors in double or single precision, these refined to double (MIXED) or not;'// &
+                           ' default DOUBLE', choices='DOUBLE MIXED SINGLE')
+    field(13) = positive(real_field(3, 'ACCURACY', 'wanted relative error of contact pressures: sets TOL, METHOD and PRECIS'// &
+                                    ' where they are left out', ''))
+    field(13)%highest = 1.0_wp
+    field(13)%below_highest = .true.
     field%required = .true.
   end function parameters
 

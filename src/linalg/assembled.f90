@@ -8,6 +8,7 @@ module epcont_linalg_assembled
   public :: assembled_matrix, add_seen_through
 
   type, abstract, extends(factored_matrix) :: assembled_matrix
+    real(wp) :: rounding = epsilon(1.0_wp)   !! relative, of its entries and of what is done with them
     logical :: lacks_memory = .false.   !! there was not enough to begin, to analyse or to factor it
   contains
     procedure(clear_entries), deferred :: clear

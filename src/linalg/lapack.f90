@@ -3,10 +3,11 @@
 !> Arguments are those of the LAPACK Users' Guide. `info` < 0 is a fault of the caller, `info` > 0 a
 !> property of the matrix.
 module epcont_linalg_lapack
-  use epcont_base_kinds, only: wp
+  use epcont_base_kinds, only: sp, wp
   implicit none
   private
   public :: dgemm, dgemv, dsymv, dsyrk, dtrsm, dtrsv, daxpy, ddot
+  public :: sgemm, sgemv, ssyrk, strsm, strsv, spotrf
   public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs
   public :: dgetrf, dgetrs, dgeqp3, dorgqr, dgesvd, dsyev
 
@@ -156,6 +157,61 @@ module epcont_linalg_lapack
       real(wp), intent(out) :: w(*), work(*)
       integer, intent(out) :: info
     end subroutine dsyev
+  end interface
+
+  ! Those of the above that panels in single precision take
+  interface
+    pure subroutine sgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: sp
+      character(len=1), intent(in) :: trans
+      integer, intent(in) :: m, n, lda, incx, incy
+      real(sp), intent(in) :: alpha, beta
+      real(sp), intent(in) :: a(lda, *), x(*)
+      real(sp), intent(inout) :: y(*)
+    end subroutine sgemv
+
+    pure subroutine strsv(uplo, trans, diag, n, a, lda, x, incx)
+      import :: sp
+      character(len=1), intent(in) :: uplo, trans, diag
+      integer, intent(in) :: n, lda, incx
+      real(sp), intent(in) :: a(lda, *)
+      real(sp), intent(inout) :: x(*)
+    end subroutine strsv
+
+    pure subroutine ssyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
+      import :: sp
+      character(len=1), intent(in) :: uplo, trans
+      integer, intent(in) :: n, k, lda, ldc
+      real(sp), intent(in) :: alpha, beta
+      real(sp), intent(in) :: a(lda, *)
+      real(sp), intent(inout) :: c(ldc, *)
+    end subroutine ssyrk
+
+    pure subroutine sgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+      import :: sp
+      character(len=1), intent(in) :: transa, transb
+      integer, intent(in) :: m, n, k, lda, ldb, ldc
+      real(sp), intent(in) :: alpha, beta
+      real(sp), intent(in) :: a(lda, *), b(ldb, *)
+      real(sp), intent(inout) :: c(ldc, *)
+    end subroutine sgemm
+
+    pure subroutine strsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
+      import :: sp
+      character(len=1), intent(in) :: side, uplo, transa, diag
+      integer, intent(in) :: m, n, lda, ldb
+      real(sp), intent(in) :: alpha
+      real(sp), intent(in) :: a(lda, *)
+      real(sp), intent(inout) :: b(ldb, *)
+    end subroutine strsm
+
+    pure subroutine spotrf(uplo, n, a, lda, info)
+      import :: sp
+      character(len=1), intent(in) :: uplo
+      integer, intent(in) :: n, lda
+      real(sp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: info
+    end subroutine spotrf
   end interface
 
   ! General matrices

@@ -20,10 +20,17 @@ module epcont_model_controls
   !> Their names in a deck, from solver_auto on.
   character(len=*), parameter, public :: solver_name(0:2) = ['AUTO  ', 'BAND  ', 'SPARSE']
 
+  !> PARAM PRECIS: of the factors and the flexibility.
+  integer, parameter, public :: precision_open = 0, precision_double = 1, precision_mixed = 2, precision_single = 3
+  !> Their names in a deck; it may leave the choice open.
+  character(len=*), parameter, public :: precision_name(1:3) = ['DOUBLE', 'MIXED ', 'SINGLE']
+
   type :: controls_type
     integer :: rule = rule_auto        !! one of its kind above
     integer :: method = method_auto    !! one of its kind above
     integer :: solver = solver_auto    !! one of its kind above
+    integer :: precision = precision_open  !! one of its kind above
+    real(wp) :: accuracy = 0.0_wp      !! PARAM ACCURACY, relative, of contact pressures; 0: none asked for
     real(wp) :: tolerance = 0.0_wp     !! PARAM TOL; 0: that of the method
     integer :: most_iterations = 100   !! of a load step
     integer :: load_steps = 1

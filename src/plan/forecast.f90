@@ -5,8 +5,9 @@ module epcont_plan_forecast
   use epcont_base_memory, only: has_memory, memory_of_libraries
   use epcont_base_text, only: short_real
   use epcont_linalg_panel_layout, only: panel_entries
+  use epcont_model_controls, only: precision_double
   use epcont_model_model, only: model_type
-  use epcont_plan_contact_plan, only: contact_plan
+  use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
@@ -50,7 +51,7 @@ contains
   pure function forecast(model, numbering, plan) result(expected)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
-    type(contact_plan), intent(in) :: plan
+    type(iteration_plan), intent(in) :: plan
     type(forecast_type) :: expected
     integer(i8) :: entries, factor, pairs
     integer :: b
@@ -60,7 +61,8 @@ contains
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
         factor = merge(sparse_entries(body%equations), panel_entries(body%reach), body%sparse)
-        entries = entries + factor + int(body%equations, i8)*body%border
+        expected%bytes = expected%bytes + factor*merge(8, 4, body%sparse .or. plan%precision == precision_double)
+        entries = entries + int(body%equations, i8)*body%border
         if (body%contact_last .or. body%sparse) then
           entries = entries + int(body%contact_equations, i8)**2
         else
@@ -71,8 +73,8 @@ contains
       end associate
     end do
     ! F, its scaled copy, and the tableau or factors.
-    expected%bytes = 8_i8*(entries + 3_i8*pairs**2)
-    if (plan%by_blocks) then
+    expected%bytes = expected%bytes + 8_i8*(entries + 3_i8*pairs**2)
+    if (plan%contact%by_blocks) then
       ! The full set factored twice; the sets on the way to it are smaller, or little of them is factored.
       expected%operations = expected%operations + 2.0_wp/3.0_wp*real(pairs, wp)**3
     else

@@ -1,15 +1,22 @@
 !> Which plastic iteration this scene gets, and why; each of its solves finds the contact by the contact plan's rule.
 module epcont_plan_iteration_plan
   use epcont_base_kinds, only: wp
-  use epcont_model_controls, only: method_auto, method_newton, method_secant
+  use epcont_model_controls, only: method_auto, method_newton, method_secant, precision_double, precision_single
   use epcont_model_model, only: model_type
   use epcont_plan_contact_plan, only: contact_plan, plan_contact
+  use epcont_plan_precision_plan, only: largest_rounding_error, plan_precision
   implicit none
   private
   public :: iteration_plan, plan_iteration
 
   !> TOL of NEWTON, which gets there in a step or two more, and of the methods that pay for every digit.
   real(wp), parameter :: newton_tolerance = 1.0e-8_wp, secant_tolerance = 0.01_wp
+  !> TOL of NEWTON with factors in single precision, which leave 1e-6 to 1e-4.
+  real(wp), parameter :: single_tolerance = 1.0e-3_wp
+
+  !> TOL as a part of PARAM ACCURACY. Stopping leaves an error of contact pressures of at most 0.3 TOL by NEWTON and 50 TOL by the
+  !! others (seven scenes of contact beyond yield, TOL from 0.1 to 1.E-4): less than a tenth of the accuracy, thus.
+  real(wp), parameter :: newton_part = 1.0_wp/10, secant_part = 1.0_wp/500
 
   !> The methods but NEWTON stop by the change of displacements, as the paper does. Where a travel or a slender body
   !! hides the strains in it, stresses may still be far off: they may be by no more than this times TOL.
@@ -22,6 +29,8 @@ module epcont_plan_iteration_plan
     integer :: method = method_secant
     logical :: chosen_here = .false.       !! the deck leaves the method to us
     real(wp) :: tolerance = 0.0_wp         !! largest change of a displacement that ends the iteration
+    integer :: precision = precision_double  !! of the factors
+    real(wp) :: rounding_error = 0.0_wp    !! largest that single precision may leave in displacements, strains and forces
     type(contact_plan) :: contact          !! the rule that finds the pairs in contact
     real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
   end type iteration_plan
@@ -39,14 +48,29 @@ contains
       if (model%can_yield(e)) plan%body(model%body(model%connectivity(1, e))) = .true.
     end do
     plan%yields = any(plan%body)
+    plan%precision = plan_precision(model%controls, plan%yields)
+    plan%rounding_error = largest_rounding_error(model%controls)
     if (plan%yields) plan%load_steps = model%controls%load_steps
     plan%chosen_here = model%controls%method == method_auto
     plan%method = model%controls%method
     ! NEWTON has no tangent for MUP PAPER, which is there to follow the paper: by its own method, then.
     if (plan%chosen_here) plan%method = merge(method_secant, method_newton, model%controls%paper_ratio)
     plan%tolerance = model%controls%tolerance
-    if (plan%tolerance == 0.0_wp) &
-      plan%tolerance = merge(newton_tolerance, secant_tolerance, plan%method == method_newton)
+    if (plan%tolerance == 0.0_wp) plan%tolerance = own_tolerance(plan, model%controls%accuracy)
     if (plan%yields) plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, plan%method == method_newton)
   end function plan_iteration
+
+  !> TOL, where the deck leaves it out.
+  pure real(wp) function own_tolerance(plan, accuracy) result(tolerance)
+    type(iteration_plan), intent(in) :: plan
+    real(wp), intent(in) :: accuracy   !! PARAM ACCURACY; 0: none
+
+    if (accuracy > 0.0_wp) then
+      tolerance = accuracy*merge(newton_part, secant_part, plan%method == method_newton)
+    else if (plan%method /= method_newton) then
+      tolerance = secant_tolerance
+    else
+      tolerance = merge(single_tolerance, newton_tolerance, plan%precision == precision_single)
+    end if
+  end function own_tolerance
 end module epcont_plan_iteration_plan

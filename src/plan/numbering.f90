@@ -5,7 +5,7 @@ module epcont_plan_numbering
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_panel_layout, only: gram_operations, panel_operations
   use epcont_linalg_sparse, only: sparse_available
-  use epcont_model_controls, only: solver_auto, solver_sparse
+  use epcont_model_controls, only: precision_double, solver_auto, solver_sparse
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -105,7 +105,8 @@ contains
     call number_body(model, at_contact, order(size(order):1:-1), equation, plain)
     plain%contact_last = .false.
     plain%operations = panel_operations(plain%reach)
-    plain%sparse = model%controls%solver == solver_auto .and. plain%operations > many_operations .and. sparse_available()
+    plain%sparse = model%controls%solver == solver_auto .and. plain%operations > many_operations .and. sparse_available() &
+                   .and. model%controls%precision <= precision_double
     do e = 1, size(body%element)
       if (model%can_yield(body%element(e))) plain%sparse = .false.
     end do

@@ -6,6 +6,7 @@ module epcont_plasticity_iteration
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_material_total_theory, only: respond, response_type
+  use epcont_model_controls, only: precision_single
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -48,6 +49,7 @@ module epcont_plasticity_iteration
     integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of its stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest            !! of its stiffness
+    real(wp) :: rounding_error = 0.0_wp    !! of displacements, strains and forces, relative: what single precision left
     type(iteration_record), allocatable :: history(:)
     integer :: unloaded = 0                !! elements whose strain fell from one load step to the next, after yielding
     integer :: first_unloaded = 0          !! one of them
@@ -101,6 +103,8 @@ contains
         run%load_factor = part
         run%condition = loop%scene%bodies%condition()
         run%weakest = loop%scene%bodies%weakest()
+        if (plan%precision == precision_single) &
+          call loop%scene%rounding_error(model, numbering, loop%law, part, state, run%rounding_error)
       end if
       if (.not. converged) exit
       call find_unloaded(model, loop, strained, run)
@@ -116,7 +120,7 @@ contains
     type(loop_type), intent(out) :: loop
 
     loop%plan = plan
-    loop%scene = new_linear_scene(model, motions, plan%body, plan%contact%by_blocks)
+    loop%scene = new_linear_scene(model, motions, plan%body, plan%contact%by_blocks, plan%precision)
     loop%material = section_materials(model)
     loop%law = elastic_law(model, loop%material)
     allocate (loop%about%displacement(2, model%nodes), loop%about%strain(4, model%points), source=0.0_wp)

@@ -4,11 +4,12 @@ module epcont_plasticity_linear_scene
   use epcont_assembly_bodies, only: factored_bodies, new_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_contact_problem, only: contact_problem, contact_solved
+  use epcont_contact_problem, only: contact_problem, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: add_body_flexibility, gap_opening, motion_columns, motion_resultants, &
                                             pair_forces
   use epcont_material_linear_law, only: linear_law
+  use epcont_model_controls, only: precision_double, precision_mixed
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
@@ -16,6 +17,10 @@ module epcont_plasticity_linear_scene
   implicit none
   private
   public :: linear_scene, new_linear_scene
+
+  !> Refinement is over when a step changes no strain by more than this part of the largest: the next would change it by
+  !! much less. Where two steps no longer halve it, rounding is reached, or single precision leaves too little to begin with.
+  real(wp), parameter :: small_step = 1.0e-11_wp, rounding_step = 1.0e-10_wp, slowest_rate = 0.5_wp
 
   type :: linear_scene
     type(strain_operator), allocatable :: operator
@@ -25,25 +30,30 @@ module epcont_plasticity_linear_scene
     logical, allocatable :: yields(:)                !! the body has elements that can yield [bodies]
     real(wp), allocatable :: lasting_flexibility(:, :)  !! of the bodies that cannot, factored once [pairs, pairs]
     logical :: by_blocks = .false.                   !! contact by RULE BLOCK, else CONRY
+    integer :: precision = precision_double          !! of the factors
+    type(scene_state), allocatable :: last           !! found by refinement, from which the next begins
     real(wp), allocatable :: resultant(:)            !! of all loads along the free motions [motions]
   contains
     procedure :: set_stiffness
     procedure :: solve
+    procedure :: rounding_error
     procedure, private :: changed_elements
   end type linear_scene
 
 contains
 
   !> What does not change with the law.
-  pure function new_linear_scene(model, motions, yields, by_blocks) result(scene)
+  pure function new_linear_scene(model, motions, yields, by_blocks, precision) result(scene)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     logical, intent(in) :: yields(:)   !! the body has elements that can yield [bodies]
     logical, intent(in) :: by_blocks   !! contact by RULE BLOCK, else CONRY
+    integer, intent(in) :: precision   !! of the factors
     type(linear_scene) :: scene
 
     scene%operator = new_strain_operator(model)
-    scene%bodies = new_bodies(model)
+    scene%bodies = new_bodies(model, precision /= precision_double)
+    scene%precision = precision
     scene%yields = yields
     scene%by_blocks = by_blocks
     scene%problem%initial_gap = model%initial_gap
@@ -120,6 +130,27 @@ contains
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
     type(scene_state), intent(inout) :: state
+
+    if (self%precision == precision_mixed) then
+      call refine(self, model, numbering, law, part, start, state)
+    else
+      call solve_once(self, model, numbering, law, part, start, state)
+    end if
+    if (state%contact%state /= contact_solved) return
+    state%stress = law%stress(state%strain)
+    state%displacement = state%deformation
+    call add_motions(model, motions, state)
+  end subroutine solve
+
+  !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
+  pure subroutine solve_once(self, model, numbering, law, part, start, state)
+    type(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    type(linear_law), intent(in) :: law
+    real(wp), intent(in) :: part
+    logical, allocatable, intent(in) :: start(:)
+    type(scene_state), intent(inout) :: state
     real(wp), allocatable :: force(:, :)
 
     force = part*model%load
@@ -128,15 +159,111 @@ contains
     self%problem%resultant = part*self%resultant
     call solve_contact(self%problem, state%contact, start, self%by_blocks)   ! without a guess `start` is not there
     if (state%contact%state /= contact_solved) return
-
     force = force + pair_forces(model, state%contact%force)
     ! Strains are of the deformation: added to a long travel it would lose their digits.
     state%deformation = self%bodies%displacements(model, numbering, force, part)
     state%strain = self%operator%strains(model, state%deformation)
-    state%stress = law%stress(state%strain)
-    state%displacement = state%deformation
-    call add_motions(model, motions, state)
-  end subroutine solve
+  end subroutine solve_once
+
+  !> The same to double precision with factors in single: step by step the forces out of balance, in double, are solved for,
+  !! and the contact with them. `contact_stalled` where that does not converge.
+  pure subroutine refine(self, model, numbering, law, part, start, state)
+    type(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    type(linear_law), intent(in) :: law
+    real(wp), intent(in) :: part
+    logical, allocatable, intent(in) :: start(:)
+    type(scene_state), intent(inout) :: state
+    logical, allocatable :: touching(:)
+    real(wp) :: change, before(2)   !! of this step, of the two before
+    integer :: step
+
+    if (allocated(self%last)) then
+      state = self%last
+    else
+      allocate (state%deformation(2, model%nodes), state%contact%force(model%pairs), source=0.0_wp)
+    end if
+    call self%bodies%prescribe(model, part, state%deformation)
+    state%strain = self%operator%strains(model, state%deformation)
+    if (allocated(start)) touching = start
+    before = 0.0_wp
+    step = 0
+    do
+      step = step + 1
+      call correct(self, model, numbering, law, part, state, change)
+      if (step > 1 .and. change <= small_step) exit
+      ! Steps come in pairs: what one has refined moves the contact forces, and those the next; the first brings them in.
+      if (step > 4 .and. .not. change <= slowest_rate*before(1)) then
+        if (change <= rounding_step) exit
+        state%contact%state = contact_stalled
+        return
+      end if
+      before = [before(2), change]
+      call solve_contact_about(self, model, part, touching, state)
+      if (state%contact%state /= contact_solved) return
+      touching = state%contact%touching
+    end do
+    self%last = state
+  end subroutine refine
+
+  !> One step of refinement: the deformation under the forces that are out of balance is added.
+  pure subroutine correct(self, model, numbering, law, part, state, change)
+    type(linear_scene), intent(in) :: self
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    type(linear_law), intent(in) :: law
+    real(wp), intent(in) :: part
+    type(scene_state), intent(inout) :: state   !! deformation, strain, contact forces
+    real(wp), intent(out) :: change             !! largest of a strain / largest strain
+    real(wp), allocatable :: force(:, :), step(:, :), strain(:, :)
+
+    force = part*model%load + pair_forces(model, state%contact%force) &
+            - self%operator%nodal_forces(model, law%stress(state%strain))
+    step = self%bodies%displacements(model, numbering, force, 0.0_wp)
+    strain = self%operator%strains(model, step)
+    state%deformation = state%deformation + step
+    state%strain = state%strain + strain
+    change = maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp))
+  end subroutine correct
+
+  !> Contact with the gaps of a deformation, of which the contact forces' part goes by the flexibility.
+  pure subroutine solve_contact_about(self, model, part, touching, state)
+    type(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: part
+    logical, allocatable, intent(in) :: touching(:)   !! guess of the pairs in contact, if allocated [pairs]
+    type(scene_state), intent(inout) :: state
+
+    self%problem%load_gap = gap_opening(model, state%deformation) - matmul(self%problem%flexibility, state%contact%force)
+    self%problem%resultant = part*self%resultant
+    call solve_contact(self%problem, state%contact, touching, self%by_blocks)
+  end subroutine solve_contact_about
+
+  !> What single precision has left: the change of displacements, strains and contact forces, of the largest of each, by
+  !! one step of refinement.
+  pure subroutine rounding_error(self, model, numbering, law, part, state, error)
+    class(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    type(linear_law), intent(in) :: law
+    real(wp), intent(in) :: part
+    type(scene_state), intent(in) :: state
+    real(wp), intent(out) :: error
+    type(scene_state) :: refined
+    logical, allocatable :: touching(:)
+
+    refined = state
+    call correct(self, model, numbering, law, part, refined, error)
+    error = max(error, maxval(abs(refined%deformation - state%deformation)) &
+                /max(maxval(abs(state%deformation)), tiny(1.0_wp)))
+    if (model%pairs == 0) return
+    touching = state%contact%touching
+    call solve_contact_about(self, model, part, touching, refined)
+    if (refined%contact%state /= contact_solved) error = 1.0_wp
+    if (maxval(state%contact%force) > 0.0_wp) &
+      error = max(error, maxval(abs(refined%contact%force - state%contact%force))/maxval(state%contact%force))
+  end subroutine rounding_error
 
   !> Add the rigid motions to the displacements.
   pure subroutine add_motions(model, motions, state)

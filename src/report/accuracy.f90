@@ -5,12 +5,15 @@ module epcont_report_accuracy
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_certificate_certificate, only: certificate_type
+  use epcont_model_controls, only: precision_single
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
   use epcont_report_iterations, only: list_iteration_error
   use epcont_report_layout, only: figure, heading, right
   use epcont_report_number, only: column_number, estimate_number, rounding_number
+  use epcont_report_precision, only: list_precision
+  use epcont_report_wanted, only: list_wanted
   use epcont_result_answer, only: answer_type
   use epcont_result_locking, only: high_poisson, locking_type
   implicit none
@@ -35,13 +38,15 @@ contains
     call heading(file, 'ACCURACY')
     if (size(answer%history) > 1) call list_iteration_error(file, model, answer)
     call figure(file, 'condition of the stiffness (1-norm)', right(short_real(answer%condition), 13))
-    call figure(file, 'digits that rounding leaves, at least', &
+    call list_precision(file, answer)
+    if (answer%precision /= precision_single) call figure(file, 'digits that rounding leaves, at least', &
                 right(text_of(max(0, floor(-log10(answer%condition*epsilon(1.0_wp))))), 13))
     call figure(file, 'linear residual', right(rounding_number(certificate%equilibrium), 13))
     if (accuracy%sensitivity%known) then
       associate (found => accuracy%sensitivity)
-        call figure(file, 'rounding in the contact forces, at most', right(rounding_number(found%rounding), 13)// &
-                    '   of the largest')
+        if (answer%precision /= precision_single) &
+          call figure(file, 'rounding in the contact forces, at most', right(rounding_number(found%rounding), 13)// &
+                      '   of the largest')
         call figure(file, 'they magnify errors of the stiffness', right(amplification(found%amplification), 13)// &
                     '   times at most')
       end associate
@@ -49,6 +54,7 @@ contains
     call list_discretisation(file, model, motions, answer, accuracy)
     if (any(accuracy%weak)) call list_weak(file, model, answer, accuracy%weak)
     if (answer%locking%elements > 0) call list_locking(file, answer%locking)
+    if (model%controls%accuracy > 0.0_wp) call list_wanted(file, model, answer, accuracy)
   end subroutine list_accuracy
 
   !> Beyond so much rounding has a say in the figure itself.

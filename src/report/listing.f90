@@ -4,7 +4,7 @@ module epcont_report_listing
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_base_version, only: program_name, program_version
-  use epcont_certificate_certificate, only: certificate_tolerance => tolerance, certificate_type
+  use epcont_certificate_certificate, only: certificate_type
   use epcont_contact_problem, only: contact_solution
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
@@ -272,7 +272,7 @@ contains
     call figure(file, 'largest displacement', column_number(maxval(norm2(answer%displacement, dim=1)), 0.0_wp))
     call figure(file, 'status', right(outcome%word, 13))
     call heading(file, 'CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
-                 short_real(certificate_tolerance)//')')
+                 short_real(certificate%tolerance)//')')
     call figure(file, 'equilibrium residual', right(rounding_number(certificate%equilibrium), 13))
     call figure(file, 'most negative force, of the largest', &
                 right(rounding_number(max(0.0_wp, -certificate%smallest_force)/certificate%force_scale), 13))
@@ -281,7 +281,7 @@ contains
     call figure(file, 'largest force times gap', &
                 right(rounding_number(certificate%force_gap/certificate%force_scale/certificate%length_scale), 13))
     call figure(file, 'stress off the curve', right(rounding_number(certificate%off_curve), 13))
-    if (certificate%curve_tolerance > certificate_tolerance) &
+    if (certificate%curve_tolerance > certificate%tolerance) &
       call figure(file, 'of which the iteration may leave', right(short_real(certificate%curve_tolerance), 13))
     call figure(file, 'energy balance', right(rounding_number(certificate%energy), 13))
   end subroutine list_summary

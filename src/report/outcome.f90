@@ -3,7 +3,7 @@ module epcont_report_outcome
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
-  use epcont_certificate_certificate, only: certificate_type, largest_rounding, most_roundings, tolerance
+  use epcont_certificate_certificate, only: certificate_type, largest_rounding, most_roundings
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
@@ -100,26 +100,28 @@ contains
     real(wp) :: exact, figure(8), largest(8)
     integer :: worst
 
-    exact = tolerance*certificate%length_scale + certificate%gap_rounding
+    exact = certificate%tolerance*certificate%length_scale + certificate%gap_rounding
     figure = [certificate%equilibrium, certificate%off_curve, certificate%energy, &
               -certificate%smallest_force/certificate%force_scale, -certificate%smallest_gap, &
               certificate%force_gap/certificate%force_scale, certificate%gap_rounding/certificate%length_scale, &
               certificate%motion_strain]
-    largest = [tolerance, certificate%curve_tolerance, tolerance, tolerance, exact, exact, largest_rounding, most_roundings]
+    associate (tolerance => certificate%tolerance)
+      largest = [tolerance, certificate%curve_tolerance, tolerance, tolerance, exact, exact, largest_rounding, most_roundings]
+    end associate
     worst = maxloc(figure/largest, dim=1)
     text = ''
     if (figure(worst) > largest(worst)) &
       text = trim(what(worst))//' '//short_real(figure(worst))//' (at most '//short_real(largest(worst))//')'
     if (.not. all(figure <= huge(figure)) .or. certificate%length_scale <= tiny(1.0_wp)) then
       text = 'the work of the loads is too far from 1.0 for a number: other units'
-    else if (loss_of(answer) > 0.1_wp*tolerance) then
+    else if (loss_of(answer) > 0.1_wp*certificate%tolerance) then
       if (len(text) > 0) text = text//'; '
       text = text//'rounding takes '//short_real(loss_of(answer))//' of a pivot in the stiffness of the body of GRID '// &
              first_node(model, answer%weakest%body)//': '//reason
-    else if (certificate%lost_stress > 0.1_wp*tolerance) then
+    else if (certificate%lost_stress > 0.1_wp*certificate%tolerance) then
       text = text//'; the rounding of displacements is '//short_real(certificate%lost_stress)// &
              ' of the largest stress: elements too small or too stiff for how far they travel'
-    else if (answer%condition*epsilon(1.0_wp) > 0.1_wp*tolerance) then
+    else if (answer%condition*epsilon(1.0_wp) > 0.1_wp*certificate%tolerance) then
       text = text//'; the condition of the stiffness is '//short_real(answer%condition)// &
              ': slender bodies or elements, or SUPORT nodes that are near each other'
     end if

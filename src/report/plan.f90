@@ -1,8 +1,9 @@
 !> The plan in words: what is modelled, what is not needed, and what it will take.
 module epcont_report_plan
-  use epcont_base_kinds, only: i8
+  use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: plural, short_real, text_of
-  use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, solver_auto
+  use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, precision_name, &
+                                   precision_open, solver_auto
   use epcont_model_model, only: line_contact, model_type
   use epcont_plan_contact_plan, only: contact_plan, many_pairs
   use epcont_plan_forecast, only: forecast_type
@@ -10,6 +11,7 @@ module epcont_report_plan
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: body_numbering, many_operations, numbering_type
   use epcont_report_layout, only: newline, right
+  use epcont_report_precision, only: precision_text
   implicit none
   private
   public :: plan_text
@@ -47,7 +49,8 @@ contains
              text_of(motions%component(k))//newline
     end do
     if (motions%count > most) text = text//'  and '//plural(motions%count - most, 'further free motion')//newline
-    text = text//solver_text(model, numbering)
+    text = text//solver_text(model, numbering)//precision_text(iteration%precision)
+    if (model%controls%accuracy > 0.0_wp) text = text//accuracy_text(model, iteration)
     text = text//newline//'   body  nodes  equations  half-bandwidth  contact equations  border  factorizations'// &
            '  flexibility by'//newline
     do b = 1, min(most, model%bodies)
@@ -61,6 +64,20 @@ contains
     text = text//newline//'  memory for matrices '//text_of((expected%bytes + 999999_i8)/1000000_i8)//' MB, operations '// &
            short_real(expected%operations)//trim(merge(' a solve', '        ', iteration%yields))//newline
   end function plan_text
+
+  !> What PARAM ACCURACY has chosen.
+  pure function accuracy_text(model, iteration) result(text)
+    type(model_type), intent(in) :: model
+    type(iteration_plan), intent(in) :: iteration
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (iteration%yields .and. model%controls%tolerance == 0.0_wp) text = text//', TOL '//short_real(iteration%tolerance)
+    if (iteration%yields .and. iteration%chosen_here) text = text//', METHOD '//trim(method_name(iteration%method))
+    if (model%controls%precision == precision_open) text = text//', PRECIS '//trim(precision_name(iteration%precision))
+    if (len(text) == 0) text = ', nothing: the deck sets all itself'
+    text = '  ACCURACY '//short_real(model%controls%accuracy)//' chooses '//text(3:)//newline
+  end function accuracy_text
 
   !> How the pairs in contact are found.
   pure function rule_text(plan) result(text)

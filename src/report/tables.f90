@@ -63,7 +63,7 @@ contains
       error_left = estimate_iteration_error(answer%history, answer%load_factor)
       call put('iteration_error_displacement', error_left%displacement, '')
       call put('iteration_error_force', error_left%force, '')
-      call write_accuracy(file, model, motions, accuracy)
+      call write_accuracy(file, model, motions, answer, accuracy)
     end if
     call file%finish(error)
 
@@ -78,10 +78,11 @@ contains
   end subroutine write_summary
 
   !> What the figures are worth; empty where an error is not known, since the figure grows with every finer mesh.
-  subroutine write_accuracy(file, model, motions, accuracy)
+  subroutine write_accuracy(file, model, motions, answer, accuracy)
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
+    type(answer_type), intent(in) :: answer
     type(accuracy_type), intent(in) :: accuracy
     integer :: k
 
@@ -97,7 +98,7 @@ contains
     end do
     if (.not. accuracy%sensitivity%known) return
     call put('contact_amplification', accuracy%sensitivity%amplification, '')
-    call put('rounding_error_force', accuracy%sensitivity%rounding, '')
+    call put('rounding_error_force', max(accuracy%sensitivity%rounding, answer%rounding_error), '')
     call file%line('weak_pairs,'//text_of(count(accuracy%weak))//',')
 
   contains

@@ -3,6 +3,7 @@ module epcont_result_answer
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solution
+  use epcont_model_controls, only: precision_double
   use epcont_plasticity_iteration, only: iteration_record
   use epcont_result_contact_line, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
@@ -28,6 +29,10 @@ module epcont_result_answer
     type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
     type(locking_type) :: locking                    !! of three-node elements
+    integer :: precision = precision_double          !! of the factors
+    integer :: asked_precision = precision_double    !! that did not do, where it is another one
+    real(wp) :: rounding_error = 0.0_wp              !! of displacements, strains and forces, relative: what single precision left
+    real(wp) :: largest_rounding_error = 0.0_wp      !! that it may leave
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest                      !! of the stiffness
     type(iteration_record), allocatable :: history(:)  !! every solve

@@ -107,6 +107,8 @@ def check(root):
         lines = path.read_text().splitlines()
         for checks in (check_size(lines), check_habits(lines), check_module(path, root / "src", lines)):
             yield from ((path, n, text) for n, text in checks)
+    for path in sorted((root / "src").rglob("*.inc")):
+        yield from ((path, n, text) for n, text in check_size(path.read_text().splitlines()))
     for path in sorted((root / "tests").rglob("*.f90")):
         lines = path.read_text().splitlines()
         yield from ((path, n, text) for checks in (check_size(lines), check_habits(lines)) for n, text in checks)
