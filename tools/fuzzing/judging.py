@@ -183,7 +183,7 @@ def fault_of_answer(run, name, place, tolerance):
 def fault_of_twin(run, name, other, twin, place, tolerance):
     """Two decks that say the same must give the same, but for what conditioning and travels take of the digits."""
     one, two = run.word(name), other.word(twin)
-    if one != two:
+    if WORDS.get(one) != WORDS.get(two):
         return f"twin: {one}, {two}"
     if one != "valid":
         return None
@@ -196,7 +196,7 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
         scale = max((abs(number(row[column])) for row in ours.values() for column in columns), default=0.0)
         worst = max((abs(number(ours[k][column]) - number(theirs[k][column])) for k in ours for column in columns), default=0.0)
         if worst > bound * scale:
-            bound += 10 * recompute(*read_back(run, name, place))[-1]
+            bound += 10 * recompute(*read_back(run, name, place))[-2]
         if not worst <= bound * scale:
             return f"twin: {table} differ by {worst / scale:.1E} (condition {condition})"
     return None
