@@ -208,8 +208,8 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
         worst = max((abs(number(ours[k][column]) - number(theirs[k][column])) for k in ours for column in columns), default=0.0)
         if worst > bound * scale:
             bound += 10 * recompute(*read_back(run, name, place))[-2]
-        if not worst <= bound * scale:
-            return f"twin: {table} differ by {worst / scale:.1E} (condition {condition})"
+        if math.isfinite(bound) and not worst <= bound * scale:
+            return f"twin: {table} differ by {worst:.1E} of {scale:.1E} (condition {condition})"
     return None
 
 
