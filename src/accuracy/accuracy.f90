@@ -111,12 +111,14 @@ contains
     real(wp), intent(in) :: energy(:)
     integer, allocatable :: worst(:)
     logical :: left(size(energy))
+    real(wp) :: largest
     integer :: k
 
     allocate (worst(0))
     left = .true.
     do k = 1, min(worst_count, size(energy))
-      worst = [worst, findloc(left .and. energy >= (1.0_wp - equal)*maxval(energy, mask=left), .true., dim=1)]
+      largest = maxval(energy, mask=left)   ! by rounding it may be below zero
+      worst = [worst, findloc(left .and. energy >= largest - equal*abs(largest), .true., dim=1)]
       left(worst(k)) = .false.
     end do
   end function worst_of

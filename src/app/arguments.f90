@@ -66,11 +66,11 @@ contains
         status = 0
         if (word == '-o') arguments%directory = argument(i)
         value = argument(i)
-        if (word == '--memory') read (value, *, iostat=status) arguments%memory
+        if (word == '--memory') call read_positive(value, arguments%memory, status)
         if (word == '--tables') arguments%all_tables = argument(i) == 'all'
         if (status /= 0 .or. (word == '--tables' .and. .not. arguments%all_tables)) then
           call raise(error, status_usage, word//' '//argument(i)//': '// &
-                     trim(merge('a number of GB ', '--tables all   ', word == '--memory'))//' would be right')
+                     trim(merge('a positive number of GB', '--tables all           ', word == '--memory'))//' would be right')
           return
         end if
       case default
@@ -87,6 +87,18 @@ contains
     call check(arguments, error)
   end subroutine read_arguments
 
+  !> A positive, finite number; `status` is not 0 where `text` is none. READ alone takes `2 x`, `,` and `nan`.
+  subroutine read_positive(text, number, status)
+    character(len=*), intent(in) :: text
+    real(wp), intent(inout) :: number
+    integer, intent(out) :: status
+
+    status = 1
+    if (verify(text, '0123456789.eE+-') > 0) return
+    read (text, *, iostat=status) number
+    if (status == 0 .and. .not. (number > 0.0_wp .and. number <= huge(number))) status = 1
+  end subroutine read_positive
+
   !> There are decks, and no two of one stem: their results would have one name.
   subroutine check(arguments, error)
     type(arguments_type), intent(in) :: arguments
@@ -98,6 +110,11 @@ contains
       call raise(error, status_usage, 'no deck given: epcont [options] DECK...; epcont --help says more')
       return
     end if
+    do i = 1, size(arguments%deck)
+      if (.not. is_result(arguments%deck(i)%text)) cycle
+      call raise(error, status_usage, arguments%deck(i)%text//': results are written under such names: a deck is named DECK.dat')
+      return
+    end do
     do i = 2, size(arguments%deck)
       do j = 1, i - 1
         if (stem_of(arguments%deck(i)%text) /= stem_of(arguments%deck(j)%text)) cycle
@@ -107,6 +124,14 @@ contains
       end do
     end do
   end subroutine check
+
+  !> Might the results of a deck of this name be written over it?
+  pure logical function is_result(path)
+    character(len=*), intent(in) :: path
+
+    is_result = .false.
+    if (len(path) >= 4) is_result = any(path(len(path) - 3:) == ['.lst', '.csv'])
+  end function is_result
 
   !> One argument, whatever its length.
   function argument(i) result(text)

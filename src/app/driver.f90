@@ -1,17 +1,17 @@
 !> One deck from file to results.
 module epcont_app_driver
-  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use epcont_analysis, only: analyse
   use epcont_app_arguments, only: arguments_type, stem_of
-  use epcont_base_error, only: error_type, raise, status_deck, status_usage, status_valid
-  use epcont_base_kinds, only: i8, wp
-  use epcont_base_text, only: plural, text_of
+  use epcont_app_console, only: print_text
+  use epcont_base_error, only: error_type, status_deck, status_valid
+  use epcont_base_kinds, only: wp
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: render
   use epcont_model_build, only: build_model
   use epcont_model_model, only: model_type
-  use epcont_plan_forecast, only: forecast, forecast_type
+  use epcont_plan_forecast, only: check_memory, forecast, forecast_type
   use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
   use epcont_plan_numbering, only: number_equations, numbering_type
@@ -46,7 +46,7 @@ contains
       write (error_unit, '(a)', advance='no') render(run%faults, run%deck%source)
       if (run%faults%error_count() > 0) status = status_deck
       if (status == status_deck .or. arguments%check) then
-        call say(arguments, stem_of(path)//'  '//trim(merge('rejected', 'checked ', status == status_deck)))
+        call say(arguments, stem_of(path)//'  '//trim(merge('rejected', 'checked ', status == status_deck)), status)
         return
       end if
       numbering = number_equations(run%model)
@@ -54,13 +54,12 @@ contains
       expected = forecast(run%model, numbering, iteration)
       run%plan = plan_text(run%model, run%motions, iteration, numbering, expected)
       if (arguments%plan) then
-        write (output_unit, '(a)', advance='no') stem_of(path)//run%plan
+        call print_text(stem_of(path)//run%plan, status)
         return
       end if
-      if (real(expected%bytes, wp) > 1.0e9_wp*arguments%memory) then
-        call raise(error, status_usage, path//': its matrices need '//text_of(expected%bytes/1000000_i8)// &
-                   ' MB: --memory GB allows it')
-      else
+      call check_memory(run%model, expected, arguments%memory, error)
+      if (allocated(error)) error%message = path//': '//error%message
+      if (.not. allocated(error)) then
         call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular)
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
         status = run%outcome%status
@@ -72,7 +71,7 @@ contains
       write (error_unit, '(a)') error%message
     else
       if (len(run%outcome%sentence) > 0) write (error_unit, '(a)') path//': '//run%outcome%sentence
-      call say(arguments, one_line(stem_of(path), run%answer, run%outcome))
+      call say(arguments, one_line(stem_of(path), run%answer, run%outcome), status)
     end if
   end subroutine run_deck
 
@@ -120,10 +119,11 @@ contains
       text = text//'  approach'//column_number(answer%contact%approach(1), 0.0_wp)
   end function one_line
 
-  subroutine say(arguments, text)
+  subroutine say(arguments, text, status)
     type(arguments_type), intent(in) :: arguments
     character(len=*), intent(in) :: text
+    integer, intent(inout) :: status
 
-    if (.not. arguments%quiet) write (output_unit, '(a)') text
+    if (.not. arguments%quiet) call print_text(text, status)
   end subroutine say
 end module epcont_app_driver

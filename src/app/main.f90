@@ -1,30 +1,27 @@
 !> epcont: contact of plane bodies and rings, from card decks. The only place that sets the exit status.
 program epcont
-  use, intrinsic :: iso_c_binding, only: c_int
-  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use, intrinsic :: iso_c_binding, only: c_bool
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use epcont_app_arguments, only: arguments_type, help_text, read_arguments
+  use epcont_app_console, only: print_text, stop_with, watch_exit
   use epcont_app_driver, only: run_deck
   use epcont_base_large_pages, only: prepare_heap
+  use epcont_base_error, only: error_type, raise, status_usage, status_valid
+  use epcont_base_memory, only: has_memory, memory_of_libraries
   use epcont_base_one_thread, only: use_one_thread
-  use epcont_base_error, only: error_type, status_usage, status_valid
   use epcont_base_version, only: program_name, program_version
   use epcont_deck_manual, only: manual
   use epcont_report_file, only: make_directory
   implicit none
-  interface
-    subroutine c_exit(status) bind(c, name='exit')
-      import :: c_int
-      integer(c_int), value :: status
-    end subroutine c_exit
-  end interface
+  logical(c_bool), target :: ended = .false.
   integer :: status
 
+  call watch_exit(ended)
   call prepare_heap()
   call use_one_thread()
   call run(status)
-  flush (output_unit)
-  flush (error_unit)
-  call c_exit(int(status, c_int))
+  ended = .true.
+  call stop_with(status)
 
 contains
 
@@ -39,17 +36,23 @@ contains
 
     worst = status_valid
     call read_arguments(arguments, error)
+    if (.not. allocated(error) .and. .not. has_memory(memory_of_libraries)) &
+      call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs')
     if (allocated(error)) then
       write (error_unit, '(a)') program_name//': '//error%message
       worst = error%status
     else if (arguments%help) then
-      write (output_unit, '(a)', advance='no') help_text()
+      call print_text(help_text(), worst)
     else if (arguments%version) then
-      write (output_unit, '(a)') program_name//' '//program_version
+      call print_text(program_name//' '//program_version, worst)
     else if (arguments%cards) then
       text = manual(arguments%card, found)
-      if (.not. found) worst = status_usage
-      write (merge(output_unit, error_unit, found), '(a)', advance='no') text
+      if (found) then
+        call print_text(text, worst)
+      else
+        worst = status_usage
+        write (error_unit, '(a)') program_name//': '//arguments%card//': no such card; epcont --cards lists them'
+      end if
     else
       if (len(arguments%directory) > 0) call make_directory(arguments%directory)
       do i = 1, size(arguments%deck)

@@ -62,14 +62,19 @@ contains
   subroutine prepare_heap()
     integer(c_int) :: ignored
     integer(c_intptr_t) :: first
+    integer :: status
     real(wp), allocatable :: array(:)
 
     ignored = mallopt(mmap_threshold, largest_in_heap)
     ignored = mallopt(trim_threshold, huge(ignored))
     ignored = mallopt(top_pad, heap_step)
     first = sbrk(0_c_intptr_t)
-    allocate (array(heap_step/32))   ! too large for what the heap has: it grows
-    call advise(first, sbrk(0_c_intptr_t))
+    allocate (array(heap_step/32), stat=status)   ! too large for what the heap has: it grows
+    if (status == 0) then
+      call advise(first, sbrk(0_c_intptr_t))
+    else
+      ignored = mallopt(top_pad, 0_c_int)   ! memory is short: ask for no more than is needed
+    end if
   end subroutine prepare_heap
 
   subroutine advise(first, last)

@@ -75,7 +75,10 @@ contains
     residual = residual - load - reaction
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     forces = sum(abs(load)) + sum(abs(reaction)) + sum(abs(force))
-    certificate%length_scale = max(ratio(stored, forces), tiny(1.0_wp))
+    certificate%length_scale = ratio(stored, forces)
+    ! Where nothing presses on anything, gaps are as exact as the travels that close them.
+    if (forces == 0.0_wp) certificate%length_scale = roundings*epsilon(1.0_wp)/tolerance*maxval(abs(displacement))
+    certificate%length_scale = max(certificate%length_scale, tiny(1.0_wp))
     call check_pairs(model, maxval(abs(load)), displacement, force, residual, certificate)
     call gather_ties(model, residual)
     certificate%equilibrium = ratio(maxval(abs(residual)), max(maxval(element_force), maxval(abs(load)), &

@@ -75,6 +75,7 @@ contains
     integer(i8) :: bytes
     integer :: unit, status
     logical :: exists
+    character(len=1) :: byte
 
     inquire (file=path, exist=exists)
     if (.not. exists) then
@@ -94,11 +95,14 @@ contains
     inquire (unit=unit, size=bytes)
     if (bytes < 0) then
       trouble = 'not a file that can be read'
+    else if (bytes == 0) then
+      read (unit, iostat=status) byte
+      if (status == 0) trouble = 'a pipe or a device, not a file of known size'
     else if (self%used + bytes >= huge(1)) then
       trouble = 'the deck is larger than 2 GiB'
     else
       call grow_text(self, self%used + int(bytes))
-      if (bytes > 0) read (unit, iostat=status) self%text(self%used + 1:self%used + int(bytes))
+      read (unit, iostat=status) self%text(self%used + 1:self%used + int(bytes))
       if (status /= 0) trouble = 'cannot be read'
     end if
     close (unit, iostat=status)

@@ -313,10 +313,11 @@ contains
     if (curved) slope = [4.0_wp*s - 3.0_wp, 4.0_wp*s - 1.0_wp, 4.0_wp - 8.0_wp*s]
   end function slopes
 
+  !> Zero of zero: a side without length, which its element is refused for.
   pure function unit(vector)
     real(wp), intent(in) :: vector(2)
     real(wp) :: unit(2)
 
-    unit = vector/norm2(vector)
+    unit = vector/max(norm2(vector), tiny(1.0_wp))
   end function unit
 end module epcont_model_boundary_line

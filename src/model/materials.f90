@@ -45,7 +45,7 @@ contains
     do i = 1, deck%card(card_mats1)%count
       call resolve(deck, card_mats1, i, 1, materials, 'MAT1', faults, m)
       if (m == 0 .or. .not. deck%card(card_mats1)%sound(i)) cycle
-      if (.not. deck%card(card_mat1)%sound(m)) cycle
+      if (.not. deck%card(card_mat1)%sound(m) .or. material(m)%young <= 0.0_wp) cycle   ! a fault of its MAT1
       call read_yielding(deck, i, tables, material(m), faults)
     end do
   end subroutine read_materials

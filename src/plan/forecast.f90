@@ -1,6 +1,9 @@
 !> Memory and work that a scene will take, from the numbering alone.
 module epcont_plan_forecast
+  use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_kinds, only: i8, wp
+  use epcont_base_memory, only: has_memory, memory_of_libraries
+  use epcont_base_text, only: short_real
   use epcont_linalg_panel_layout, only: panel_entries
   use epcont_model_controls, only: precision_double
   use epcont_model_model, only: model_type
@@ -8,14 +11,42 @@ module epcont_plan_forecast
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: forecast_type, forecast
+  public :: forecast_type, forecast, check_memory
 
   type :: forecast_type
     integer(i8) :: bytes = 0            !! of the matrices
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
   end type forecast_type
 
+  real(wp), parameter :: giga = 1.0e9_wp
+
 contains
+
+  !> Refuse a scene whose matrices are above the limit, or for which the system has not enough memory.
+  subroutine check_memory(model, expected, limit, error)
+    type(model_type), intent(in) :: model
+    type(forecast_type), intent(in) :: expected
+    real(wp), intent(in) :: limit   !! [GB]
+    type(error_type), allocatable, intent(out) :: error
+    integer(i8), parameter :: part = 10000_i8   !! of a node or an element, with all that is kept of it: up to here [bytes]
+    integer(i8) :: bytes
+
+    bytes = expected%bytes + part*(model%nodes + model%elements) + memory_of_libraries
+    if (real(expected%bytes, wp) > giga*limit) then
+      call raise(error, status_usage, 'the matrices need '//gigabytes(real(expected%bytes, wp))//', and --memory allows '// &
+                 gigabytes(giga*limit))
+    else if (.not. has_memory(bytes)) then
+      call raise(error, status_usage, 'the scene needs up to '//gigabytes(real(bytes, wp))// &
+                 ' of memory, and the system does not give it (ulimit -v)')
+    end if
+  end subroutine check_memory
+
+  pure function gigabytes(bytes) result(text)
+    real(wp), intent(in) :: bytes
+    character(len=:), allocatable :: text
+
+    text = short_real(bytes/giga)//' GB'
+  end function gigabytes
 
   pure function forecast(model, numbering, plan) result(expected)
     type(model_type), intent(in) :: model

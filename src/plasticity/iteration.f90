@@ -159,6 +159,10 @@ contains
       call measure(model, loop, found, now)
       run%history = [run%history, now]
       converged = is_over(loop, run%history)
+      if (iteration == 1) farthest = far_away*maxval(abs(found%displacement))
+      ! A state far away is none to show: its numbers may be at the end of their range.
+      run%runs_away = .not. converged .and. model%has_flat_curve() .and. maxval(abs(found%displacement)) > farthest
+      if (run%runs_away) return
       if (now%residual <= least_residual .or. converged) state = found
       least_residual = min(least_residual, now%residual)
       loop%touching = found%contact%touching
@@ -166,9 +170,6 @@ contains
       loop%yielded = now%yielded
       call method%advance(model, loop%material, part, found, loop%about)
       if (converged) return
-      if (iteration == 1) farthest = far_away*maxval(abs(found%displacement))
-      run%runs_away = model%has_flat_curve() .and. maxval(abs(found%displacement)) > farthest
-      if (run%runs_away) return
     end do
   end subroutine iterate
 

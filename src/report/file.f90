@@ -1,30 +1,66 @@
 !> Files that appear whole or not at all: written beside their place, then renamed.
+!>
+!> They are written by the streams of C, which say whether all has reached the disk; Fortran's `close` does not.
 module epcont_report_file
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
   use epcont_base_error, only: error_type, raise, status_usage
   implicit none
   private
-  public :: text_file, new_text_file, make_directory
+  public :: text_file, new_text_file, make_directory, remove_file
 
+  !> Between `new_text_file` and `finish` the program is not to be stopped, lest half a file stay behind.
   type :: text_file
     character(len=:), allocatable :: mark          !! stands behind each heading; empty where the answer is valid
-    integer, private :: unit = -1
+    type(c_ptr), private :: stream = c_null_ptr
     character(len=:), allocatable, private :: path
   contains
     procedure :: line
     procedure :: finish
   end type text_file
 
+  !> SIGHUP, SIGINT and SIGTERM: who sends these wants the program to end in good order.
+  integer(c_int), parameter :: stop_signals(3) = [1_c_int, 2_c_int, 15_c_int]
+
   interface
+    type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
+      import :: c_char, c_ptr
+      character(kind=c_char), intent(in) :: path(*), mode(*)
+    end function c_fopen
+    integer(c_size_t) function c_fwrite(text, size, count, stream) bind(c, name='fwrite')
+      import :: c_char, c_ptr, c_size_t
+      character(kind=c_char), intent(in) :: text(*)
+      integer(c_size_t), value :: size, count
+      type(c_ptr), value :: stream
+    end function c_fwrite
+    integer(c_int) function c_ferror(stream) bind(c, name='ferror')
+      import :: c_int, c_ptr
+      type(c_ptr), value :: stream
+    end function c_ferror
+    integer(c_int) function c_fclose(stream) bind(c, name='fclose')
+      import :: c_int, c_ptr
+      type(c_ptr), value :: stream
+    end function c_fclose
     integer(c_int) function c_rename(old, new) bind(c, name='rename')
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: old(*), new(*)
     end function c_rename
+    integer(c_int) function c_unlink(path) bind(c, name='unlink')
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_unlink
     integer(c_int) function c_mkdir(path, mode) bind(c, name='mkdir')
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: mode
     end function c_mkdir
+    integer(c_int) function c_sighold(signal) bind(c, name='sighold')
+      import :: c_int
+      integer(c_int), value :: signal
+    end function c_sighold
+    integer(c_int) function c_sigrelse(signal) bind(c, name='sigrelse')
+      import :: c_int
+      integer(c_int), value :: signal
+    end function c_sigrelse
   end interface
 
 contains
@@ -38,35 +74,73 @@ contains
     ignored = c_mkdir(path//c_null_char, all_may)
   end subroutine make_directory
 
+  !> Remove a file, where there is one.
+  subroutine remove_file(path)
+    character(len=*), intent(in) :: path
+    integer(c_int) :: ignored
+
+    ignored = c_unlink(path//c_null_char)
+  end subroutine remove_file
+
   !> Begin a file.
   subroutine new_text_file(path, file, error)
     character(len=*), intent(in) :: path
     type(text_file), intent(out) :: file
     type(error_type), allocatable, intent(out) :: error
-    integer :: status
 
     file%path = path
     file%mark = ''
-    open (newunit=file%unit, file=path//'.part', status='replace', action='write', iostat=status)
-    if (status /= 0) call raise(error, status_usage, path//': cannot be written: a directory that is there, writable')
+    call hold_signals()
+    file%stream = c_fopen(path//'.part'//c_null_char, 'w'//c_null_char)
+    if (c_associated(file%stream)) return
+    call release_signals()
+    call raise(error, status_usage, path//': cannot be written: a directory that is there, writable, would be right')
   end subroutine new_text_file
 
-  !> Add a line, without blanks at its end.
+  !> Add a line, without blanks at its end. What goes wrong shows in `finish`.
   subroutine line(self, text)
     class(text_file), intent(in) :: self
     character(len=*), intent(in) :: text
+    integer(c_size_t) :: ignored
 
-    write (self%unit, '(a)') trim(text)
+    ignored = c_fwrite(text, 1_c_size_t, len_trim(text, kind=c_size_t), self%stream)
+    ignored = c_fwrite(new_line('a'), 1_c_size_t, 1_c_size_t, self%stream)
   end subroutine line
 
   !> Close the file and give it its name.
   subroutine finish(self, error)
     class(text_file), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
-    integer :: status
+    logical :: whole
 
-    close (self%unit, iostat=status)
-    if (status == 0) status = c_rename(self%path//'.part'//c_null_char, self%path//c_null_char)
-    if (status /= 0) call raise(error, status_usage, self%path//': cannot be written: is the disk full?')
+    whole = c_ferror(self%stream) == 0
+    whole = c_fclose(self%stream) == 0 .and. whole
+    if (.not. whole) then
+      call raise(error, status_usage, self%path//': cannot be written: is the disk full?')
+    else if (c_rename(self%path//'.part'//c_null_char, self%path//c_null_char) /= 0) then
+      call raise(error, status_usage, self%path//': cannot be written: is there a directory of that name?')
+    end if
+    if (allocated(error)) call remove_file(self%path//'.part')
+    call release_signals()
   end subroutine finish
+
+  !> Signals to stop wait.
+  subroutine hold_signals()
+    integer(c_int) :: ignored
+    integer :: i
+
+    do i = 1, size(stop_signals)
+      ignored = c_sighold(stop_signals(i))
+    end do
+  end subroutine hold_signals
+
+  !> What has come meanwhile stops the program.
+  subroutine release_signals()
+    integer(c_int) :: ignored
+    integer :: i
+
+    do i = 1, size(stop_signals)
+      ignored = c_sigrelse(stop_signals(i))
+    end do
+  end subroutine release_signals
 end module epcont_report_file

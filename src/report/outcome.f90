@@ -75,7 +75,7 @@ contains
         return
       end if
       outcome%status = status_numerical
-      outcome%word = merge('ill-conditioned', 'not certified  ', certificate%valid)
+      outcome%word = trim(merge('ill-conditioned', 'not certified  ', certificate%valid))
       outcome%sentence = 'the figures are not to be trusted: '//doubts(model, answer, certificate)
     end if
   end function judge

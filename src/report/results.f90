@@ -8,7 +8,7 @@ module epcont_report_results
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_accuracy, only: list_accuracy
-  use epcont_report_file, only: new_text_file, text_file
+  use epcont_report_file, only: new_text_file, remove_file, text_file
   use epcont_report_iterations, only: list_iterations
   use epcont_report_listing, only: list_contact, list_deck, list_elements, list_lines, list_nodes, list_outcome, &
                                    list_summary, list_zones
@@ -42,6 +42,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     logical :: nodes, elements
 
+    call remove_results(stem)
     nodes = all_tables .or. run%deck%displacement .or. run%deck%spcforces
     elements = all_tables .or. run%deck%stress
     call write_listing(run, stem, nodes, elements, error)
@@ -56,6 +57,18 @@ contains
       if (.not. allocated(error) .and. elements) call write_elements(stem, model, answer, error)
     end associate
   end subroutine write_results
+
+  !> Remove what an earlier run has left: what is there is of one run, also where this one is stopped or has no answer.
+  subroutine remove_results(stem)
+    character(len=*), intent(in) :: stem
+    character(len=*), parameter :: suffix(7) = ['.lst         ', '.summary.csv ', '.contact.csv ', '.zones.csv   ', &
+                                                '.history.csv ', '.nodes.csv   ', '.elements.csv']
+    integer :: i
+
+    do i = 1, size(suffix)
+      call remove_file(stem//trim(suffix(i)))
+    end do
+  end subroutine remove_results
 
   subroutine write_listing(run, stem, nodes, elements, error)
     type(run_results), intent(in) :: run

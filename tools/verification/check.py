@@ -20,6 +20,10 @@ KEYS = {
 }
 
 
+# Of a strain, from displacements of 17 digits.
+ROUNDINGS = 16 * 2.0 ** -52
+
+
 class Tables:
     def __init__(self, directory, stem):
         self.directory, self.stem = pathlib.Path(directory), stem
@@ -36,10 +40,10 @@ class Tables:
 
 def add_elements(scene, tables, u, rest):
     """Nodal forces of the stresses are taken off `rest`. Largest element forces summed at a node, work stored, largest distance
-    of a mean stress in the tables from that on the curve, largest stress.
+    of a mean stress in the tables from that on the curve, largest stress, and that which rounding of the displacements makes.
 
     The tables hold means over the points of an element; what a point has is taken to be off the curve as much as the mean."""
-    magnitude, stored, off, largest = {}, [], 0.0, 0.0
+    magnitude, stored, off, largest, lost = {}, [], 0.0, 0.0, 0.0
     for element, (name, nodes, section) in scene.element.items():
         points = unit_strains(name, [scene.x[node] for node in nodes], section.thickness, section.plane_stress)
         moved = [u[node] for node in nodes]
@@ -50,6 +54,9 @@ def add_elements(scene, tables, u, rest):
         told = [float(tables.elements[element][key]) for key in ("sx", "sy", "sz", "txy")]
         change = [t - math.fsum(volume * s[i] for (volume, _), s in zip(points, stresses)) / whole for i, t in enumerate(told)]
         off = max(off, *map(abs, change))
+        stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
+        steepest = max(abs(v) for _, unit in points for of in unit for each in of for v in each)
+        lost = max(lost, ROUNDINGS * stiffness * steepest * max(abs(v) for pair in moved for v in pair))
         force = [[[], []] for _ in nodes]
         for (volume, unit), strain, stress in zip(points, strains, stresses):
             stress = [s + c for s, c in zip(stress, change)]
@@ -63,14 +70,15 @@ def add_elements(scene, tables, u, rest):
             for c in (0, 1):
                 rest.setdefault((node, c), []).append(-sums[c])
             magnitude.setdefault(node, []).append(max(map(abs, sums)))
-    return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, off, largest
+    return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, off, largest, lost
 
 
 def recompute(scene, tables):
-    """The figures, and the scales of force and length; the largest error in the column of gaps."""
+    """The figures, and the scales of force and length; the largest error in the column of gaps; the part of the stresses that
+    is lost, where a travel leaves few digits of the strains."""
     u = {node: (float(row["ux"]), float(row["uy"])) for node, row in tables.nodes.items()}
     rest, works, given = {}, [], []
-    element_force, stored, off, largest = add_elements(scene, tables, u, rest)
+    element_force, stored, off, largest, lost = add_elements(scene, tables, u, rest)
     for (node, i), values in scene.load.items():
         rest.setdefault((node, i), []).extend(values)
         works.append(math.fsum(values) * u[node][i])
@@ -107,7 +115,8 @@ def recompute(scene, tables):
         "off_curve": off / (largest or 1.0),
         "energy": abs(math.fsum(works) - math.fsum(stored)) / (terms or 1.0),
     }
-    return figures, force_scale, length_scale, spread
+    part_lost = lost / largest if lost < largest else math.inf if lost > 0.0 else 0.0
+    return figures, force_scale, length_scale, spread, part_lost
 
 
 def pressure_error(scene, tables):
@@ -124,14 +133,15 @@ def pressure_error(scene, tables):
 
 def check(scene, tables, tolerance):
     """Lines of the report and the number of faults."""
-    figures, force, length, spread = recompute(scene, tables)
+    figures, force, length, spread, lost = recompute(scene, tables)
     # The points of an element with several are known only as well as its mean lies on the curve.
     sure = all(len(KINDS[name].points) == 1 for name, _, _ in scene.element.values())
     loose = tolerance if sure else max(tolerance, 10 * float(tables.summary.get(KEYS["off_curve"], 0.0)))
     scale = {"smallest_force": force, "smallest_gap": length, "product": force * length}
     bounds = {name: tolerance * scale.get(name, 1.0) for name in KEYS}
-    bounds["equilibrium"] = bounds["energy"] = loose
-    allowed = {**bounds, "off_curve": max(tolerance, scene.off_curve)}
+    bounds["equilibrium"] = bounds["energy"] = max(loose, lost)
+    bounds["off_curve"] = max(tolerance, lost)
+    allowed = {**bounds, "off_curve": max(tolerance, scene.off_curve, lost)}
     lines, faults = [], 0
 
     def line(name, ours, theirs, good):

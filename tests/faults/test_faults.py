@@ -1,0 +1,243 @@
+#!/usr/bin/env python3
+"""test_faults.py PROGRAM: what can go wrong around a run. Files appear whole or not at all, and the exit status says so."""
+import os
+import pathlib
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = None
+SMALL = ROOT / "input" / "hertz" / "hertz44.dat"
+LARGE = ROOT / "input" / "pin_in_lug" / "pin_in_lug60.dat"
+STOPS = 24   # moments at which a run is stopped
+
+
+def sanitized():
+    return b"AddressSanitizer" in pathlib.Path(PROGRAM).read_bytes()
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.directory = pathlib.Path(directory.name)
+
+    def run_it(self, *arguments, **options):
+        options = {"stdout": subprocess.PIPE, **options}
+        return subprocess.run([PROGRAM, *map(str, arguments)], stderr=subprocess.PIPE, timeout=120, check=False, **options)
+
+    def check(self, run, status, *words):
+        message = run.stderr.decode("latin-1")
+        self.assertEqual(status, run.returncode, message)
+        for word in words:
+            self.assertIn(word, message)
+        self.assertNotIn("Sanitizer", message)
+
+    def files(self, directory):
+        return {path.name: path.read_bytes() for path in sorted(directory.glob("*")) if path.is_file()}
+
+
+class Places(Case):
+    def test_a_file_instead_of_the_folder(self):
+        place = self.directory / "out"
+        place.write_text("mine")
+        self.check(self.run_it(SMALL, "-o", place), 3, "out/hertz44.lst: cannot be written")
+        self.assertEqual("mine", place.read_text())
+
+    def test_folder_not_writable(self):
+        # Nobody may make files here, not even root.
+        self.check(self.run_it(SMALL, "-o", "/proc/self"), 3, "/proc/self/hertz44.lst: cannot be written")
+
+    def test_folder_without_rights(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may write anywhere")
+        self.directory.chmod(0o555)
+        self.check(self.run_it(SMALL, "-o", self.directory), 3, "cannot be written")
+
+    def test_folder_within_one_that_is_not_there(self):
+        self.check(self.run_it(SMALL, "-o", self.directory / "a" / "b"), 3, "cannot be written")
+
+    def test_a_folder_of_the_name_of_a_table(self):
+        for name in ("hertz44.lst", "hertz44.zones.csv", "hertz44.zones.csv.part"):
+            with self.subTest(name), tempfile.TemporaryDirectory() as place:
+                (pathlib.Path(place) / name).mkdir()
+                self.check(self.run_it(SMALL, "-o", place), 3, "cannot be written")
+                self.assertFalse([file for file in self.files(pathlib.Path(place)) if file.endswith(".part")])
+
+    def test_deck_unreadable(self):
+        missing, link, closed = (self.directory / name for name in ("missing.dat", "link.dat", "closed.dat"))
+        link.symlink_to(missing)
+        for deck in (missing, link, self.directory):
+            with self.subTest(deck):
+                self.check(self.run_it(deck, "-o", self.directory), 3, str(deck))
+        if os.geteuid() != 0:
+            closed.touch(0o000)
+            self.check(self.run_it(closed), 3, "cannot be opened for reading")
+
+    def test_a_pipe_is_no_deck(self):
+        self.check(self.run_it("/dev/stdin", "-o", self.directory, input=SMALL.read_bytes()), 3, "a pipe or a device")
+        self.check(self.run_it("/dev/zero", "-o", self.directory), 3, "a pipe or a device")
+
+    def test_a_deck_named_like_a_result_is_not_overwritten(self):
+        deck = self.directory / "deck.lst"
+        deck.write_bytes(SMALL.read_bytes())
+        self.check(self.run_it(deck, "-o", self.directory), 3, "a deck is named DECK.dat")
+        self.assertEqual(SMALL.read_bytes(), deck.read_bytes())
+
+    def test_results_of_an_earlier_run_go(self):
+        """A run without an answer leaves no tables of an earlier one."""
+        deck = self.directory / "deck.dat"
+        deck.write_bytes((ROOT / "input" / "faults" / "pulled_apart.dat").read_bytes())
+        (self.directory / "deck.contact.csv").write_text("old")
+        self.check(self.run_it(deck, "-o", self.directory), 1)
+        self.assertEqual({"deck.dat", "deck.lst", "deck.summary.csv"}, set(self.files(self.directory)))
+
+
+class Disk(Case):
+    def test_full_device(self):
+        """Each table in turn is written to a device that is full."""
+        self.check(self.run_it(SMALL, "-o", self.directory, "--tables", "all"), 0)
+        whole = self.files(self.directory)
+        for name in whole:
+            (self.directory / f"{name}.part").symlink_to("/dev/full")
+            self.check(self.run_it(SMALL, "-o", self.directory, "--tables", "all"), 3, f"{name}: cannot be written: is the disk full?")
+            left = self.files(self.directory)
+            self.assertNotIn(name, left)
+            self.assertEqual({}, {other: text for other, text in left.items() if text != whole[other]})
+
+    def test_file_size_limit(self):
+        """Every limit on the size of a file gives whole files or none."""
+        self.check(self.run_it(SMALL, "-o", self.directory, "--tables", "all"), 0)
+        whole = self.files(self.directory)
+        for most in range(0, max(map(len, whole.values())) + 512, 512):
+            with tempfile.TemporaryDirectory() as place:
+                run = self.run_it(SMALL, "-o", place, "--tables", "all",
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+                left = self.files(pathlib.Path(place))
+            self.assertEqual(0 if len(left) == len(whole) else 3, run.returncode)
+            self.assertEqual({}, {name: text for name, text in left.items() if text != whole.get(name)})
+
+    def test_small_file_system(self):
+        place = self.directory / "small"
+        place.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", place], capture_output=True, check=False).returncode:
+            self.skipTest("no right to mount")
+        try:
+            self.check(self.run_it(SMALL, "-o", place, "--tables", "all"), 3, "is the disk full?")
+            left = self.files(place)
+        finally:
+            subprocess.run(["umount", place], check=True)
+        self.assertTrue(left)
+        for name, text in left.items():
+            self.assertFalse(name.endswith(".part"))
+            self.assertTrue(text.endswith(b"\n"), name)
+
+
+class Stopped(Case):
+    def stop(self, number):
+        """Stop runs at moments spread over the whole of one; what they leave is whole, and of the same bytes."""
+        self.check(self.run_it(LARGE, "-o", self.directory, "--tables", "all", stdout=subprocess.DEVNULL), 0)
+        begun = time.monotonic()
+        self.check(self.run_it(LARGE, "-o", self.directory, "--tables", "all", stdout=subprocess.DEVNULL), 0)
+        length, whole, ended = time.monotonic() - begun, self.files(self.directory), []
+        for k in range(STOPS):
+            with tempfile.TemporaryDirectory() as place:
+                run = subprocess.Popen([PROGRAM, LARGE, "-o", place, "--tables", "all"], stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+                time.sleep(length * 1.1 * (k + 0.5) / STOPS)
+                run.send_signal(number)
+                ended.append(run.wait(60))
+                left = self.files(pathlib.Path(place))
+                yield ended[-1], left, whole, place
+        self.assertIn(-number, ended, "no run was stopped before its end")
+
+    def test_sigterm(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            for status, left, whole, _ in self.stop(number):
+                self.assertIn(status, (0, -number))
+                self.assertEqual({}, {name: text for name, text in left.items() if text != whole.get(name)})
+
+    def test_sigkill(self):
+        for status, left, whole, place in self.stop(signal.SIGKILL):
+            self.assertIn(status, (0, -signal.SIGKILL))
+            named = {name: text for name, text in left.items() if not name.endswith(".part")}
+            self.assertEqual({}, {name: text for name, text in named.items() if text != whole[name]})
+            if len(named) < len(left):
+                self.check(self.run_it(LARGE, "-o", place, "--tables", "all"), 0)
+                self.assertEqual(whole, self.files(pathlib.Path(place)))
+
+    def test_a_temporary_file_that_was_left_is_overwritten(self):
+        (self.directory / "hertz44.lst.part").write_text("long ago\n" * 10000)
+        self.check(self.run_it(SMALL, "-o", self.directory), 0)
+        left = self.files(self.directory)
+        self.assertNotIn("hertz44.lst.part", left)
+        self.assertNotIn(b"long ago", left["hertz44.lst"])
+
+
+class Output(Case):
+    def test_standard_output_is_full(self):
+        with open("/dev/full", "wb") as full:
+            for arguments in ([SMALL, "-o", self.directory], [SMALL, "--plan"], ["--cards"], ["--help"], ["--version"]):
+                self.check(self.run_it(*arguments, stdout=full), 3, "standard output cannot be written")
+        self.assertIn("hertz44.lst", self.files(self.directory))
+
+    def test_standard_output_is_a_closed_pipe(self):
+        """Decks are run all the same."""
+        read, write = os.pipe()
+        os.close(read)
+        self.check(self.run_it(SMALL, LARGE, "-o", self.directory, stdout=write), 3, "standard output cannot be written")
+        os.close(write)
+        self.assertLessEqual({"hertz44.lst", "pin_in_lug60.lst"}, set(self.files(self.directory)))
+
+    def test_streams_are_closed(self):
+        for descriptor, status in ((1, 3), (2, 0)):
+            run = self.run_it(SMALL, "-o", self.directory, preexec_fn=lambda: os.close(descriptor))
+            self.assertEqual(status, run.returncode)
+
+    def test_quiet_needs_no_output(self):
+        with open("/dev/full", "wb") as full:
+            self.check(self.run_it(SMALL, "-o", self.directory, "--quiet", stdout=full), 0)
+
+
+class Memory(Case):
+    def test_the_forecast_is_above_the_limit(self):
+        self.check(self.run_it(LARGE, "-o", self.directory, "--memory", "1e-3"), 3, "the matrices need", "--memory allows 0.001000 GB")
+        self.assertEqual({}, self.files(self.directory))
+
+    def test_no_limit(self):
+        for word in ("-1", "0", "nan", "inf", "1e400", "", "2 3", ",", "1e", "GB"):
+            with self.subTest(word):
+                self.check(self.run_it(SMALL, "-o", self.directory, "--memory", word), 3, "a positive number of GB would be right")
+
+    def limits(self, deck, kind):
+        """Every limit gives an answer or a refusal, never a crash or a wait without end; an answer comes at last."""
+        if sanitized():
+            self.skipTest("the address sanitizer maps more than any limit")
+        seen = set()
+        for megabytes in [*range(40, 400, 15), 500, 700, 1000, 2000]:
+            def limit(most=megabytes * 1000000):
+                resource.setrlimit(kind, (most, most))
+            if self.run_it("--version", preexec_fn=limit).returncode == 127:
+                continue   # not even its libraries were loaded
+            run = self.run_it(deck, "-o", self.directory, preexec_fn=limit)
+            self.assertIn(run.returncode, (0, 3), (megabytes, run.stderr))
+            if run.returncode == 3:
+                self.assertIn(b"memory", run.stderr)
+            seen.add(run.returncode)
+        self.assertEqual({0, 3}, seen)
+
+    def test_address_space(self):
+        self.limits(LARGE, resource.RLIMIT_AS)
+
+    def test_data(self):
+        self.limits(SMALL, resource.RLIMIT_DATA)
+
+
+if __name__ == "__main__":
+    PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()

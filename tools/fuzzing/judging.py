@@ -1,0 +1,205 @@
+"""Runs of decks, and what is wrong with them."""
+import contextlib
+import csv
+import io
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+sys.path.insert(1, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "independent"))
+import deck as deck_reader  # noqa: E402
+from verification.check import Tables, check  # noqa: E402
+from verification.scene import Scene  # noqa: E402
+
+WORDS = {"valid": 0, "no equilibrium": 1, "overlap": 1, "not converged": 1, "rejected": 2, "out of memory": 3, "singular stiffness": 4,
+         "contact not found": 4, "not certified": 4, "ill-conditioned": 4}
+ANSWERS = {"valid", "not converged", "not certified", "ill-conditioned"}
+BAD_OUTPUT = re.compile(r"Sanitizer|runtime error|Backtrace|Error termination|Fortran runtime|SIG[A-Z]{3,4}\b|glibc|corrupt|IEEE_|internal error")
+BAD_NUMBER = re.compile(rb"\bnan\b|\binf(?:inity)?\b|\*\*\*", re.IGNORECASE)
+PLACE = re.compile(r":\d+:\d+(?:-\d+)?: ")
+RELATIVE = ("equilibrium_residual", "energy_balance")
+LEAK = re.compile(r"LeakSanitizer")
+
+
+def number(text):
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return math.nan
+
+
+class Run:
+    """One run of some decks, in a directory of its own."""
+
+    def __init__(self, program, names, place, out, seconds, options=()):
+        self.names, self.out = names, out
+        environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", UBSAN_OPTIONS="print_stacktrace=1",
+                           ASAN_OPTIONS="detect_leaks=1:quarantine_size_mb=16")
+        command = [program, *(f"{name}.dat" for name in names), "-o", str(out), "--tables", "all", *options]
+        try:
+            done = subprocess.run(command, capture_output=True, timeout=seconds, cwd=place, env=environment, check=False,
+                                  stdin=subprocess.DEVNULL)
+            self.status, self.out_text, self.err_text = done.returncode, done.stdout, done.stderr
+        except subprocess.TimeoutExpired:
+            self.status, self.out_text, self.err_text = None, b"", b""
+        self.said = self.out_text.decode("latin-1").split("\n")
+        self.messages = self.err_text.decode("latin-1")
+
+    def fault(self):
+        """What is wrong with the run as a whole."""
+        if self.status is None:
+            return "no end within the time limit"
+        if LEAK.search(self.messages):
+            return "leak"
+        if BAD_OUTPUT.search(self.messages):
+            return "message of a sanitizer or of the runtime: " + BAD_OUTPUT.search(self.messages)[0]
+        if self.status < 0:
+            return f"ended by signal {-self.status}"
+        if self.status not in range(5):
+            return f"exit status {self.status}"
+        words = [self.word(name) for name in self.names]
+        known = [WORDS[word] for word in words if word in WORDS]
+        if len(known) < len(words) and self.status < 3:
+            return f"exit status {self.status} without a word about a deck"
+        if known and len(known) == len(words) and max(known) != self.status:
+            return f"exit status {self.status}, words say {max(known)}"
+        if list(self.out.glob("*.part")):
+            return "a temporary file is left"
+        return None
+
+    def word(self, name):
+        """What standard output says of a deck."""
+        lines = [line[len(name) + 2:] for line in self.said if line.startswith(name + "  ")]
+        if len(lines) != 1:
+            return None
+        return lines[0].split("  ")[0]
+
+    def told(self, name):
+        """What standard error says of a deck: from the first line that names it to the next deck."""
+        lines, ours = [], len(self.names) == 1
+        for line in self.messages.split("\n"):
+            found = re.match(r"(?:\./)*(\w+)\.(?:dat|inc)\b", line)
+            if found:
+                ours = found[1] == name
+            if ours:
+                lines.append(line)
+        return lines
+
+
+def fault_of_deck(run, name, tolerance):
+    """What is wrong with what a run says and writes of one deck; None where all is well."""
+    word, told = run.word(name), run.told(name)
+    files = {path.name[len(name):]: path.read_bytes() for path in run.out.glob(f"{name}.*")}
+    for suffix, text in files.items():
+        if BAD_NUMBER.search(re.sub(rb"(?m)^(?:TITLE|SUBTITLE|LABEL|  ).*$", b"", text) if suffix == ".lst" else text):
+            return f"{suffix} has {BAD_NUMBER.search(text)[0].decode()}"
+        if not text.endswith(b"\n"):
+            return f"{suffix} does not end with a line"
+    if word is None:
+        return None if run.status == 3 and told else "no word"
+    if word not in WORDS:
+        return f"says `{word}`"
+    if word == "rejected":
+        return "rejected, but there are results" if files else fault_of_messages(told)
+    for suffix in (".lst", ".summary.csv") + (".contact.csv", ".nodes.csv", ".history.csv") * (word in ANSWERS):
+        if suffix not in files:
+            return f"{word} without {suffix}"
+    if word not in ANSWERS and len(files) > 2:
+        return f"{word}, but there are tables"
+    if f"status,{word},".encode() not in files[".summary.csv"]:
+        return "the summary says another word"
+    if (b"*NOT VALID" in files[".lst"]) != (word != "valid"):
+        return f"{word}, but the listing's mark says otherwise"
+    if any(line for line in told if re.search(r"\d errors?\b", line)):
+        return f"{word}, but there are errors"
+    if (word == "valid") and any(not PLACE.search(line) and "warning" not in line and line[:1] not in " " for line in told if line):
+        return "valid, but standard error says more: " + told[0]
+    if word != "valid" and not told:
+        return f"{word} without a message"
+    return fault_of_certificate(run, name, tolerance) if word == "valid" else None
+
+
+def fault_of_messages(told):
+    """Every error names a place or the deck, and says what would be right; the last line counts them."""
+    told = [line for line in told if line]
+    if not told or not re.search(r": \d+ errors?\b", told[-1]):
+        return "rejected without a count of errors"
+    headings = [k for k, line in enumerate(told[:-1]) if line[:1] != " "]
+    if not headings:
+        return "rejected without a message"
+    for first, last in zip(headings, headings[1:] + [len(told) - 1]):
+        rest = told[first + 1:last]
+        if not PLACE.search(told[first]) and not (rest and rest[-1].strip()):
+            return "no remedy: " + told[first]
+        if PLACE.search(told[first]) and not (rest and re.match(r" +\^+ \S", rest[-1])):
+            return "no remedy: " + told[first]
+    return None
+
+
+def rows_of(run, name, table):
+    with open(run.out / f"{name}.{table}.csv", newline="", encoding="latin-1") as file:
+        return list(csv.DictReader(file))
+
+
+def fault_of_certificate(run, name, tolerance):
+    """The certificate's figures, held against its tolerance."""
+    summary = {row["key"]: row["value"] for row in rows_of(run, name, "summary")}
+    for key in RELATIVE:
+        if not number(summary.get(key)) <= tolerance:
+            return f"valid with {key} = {summary.get(key)}"
+    if not number(summary.get("stress_off_curve")) <= max(tolerance, number(summary.get("curve_tolerance"))):
+        return f"valid with stress_off_curve = {summary.get('stress_off_curve')}"
+    rows = rows_of(run, name, "contact")
+    if rows:
+        force = max(abs(number(row["force"])) for row in rows) or 1.0
+        length = max([abs(number(row["initial_gap"])) for row in rows] + [abs(number(summary.get("max_displacement")))]) or 1.0
+        if not number(summary.get("smallest_force")) >= -tolerance * force:
+            return f"valid with smallest_force = {summary.get('smallest_force')}"
+        if not number(summary.get("smallest_gap")) >= -tolerance * length:
+            return f"valid with smallest_gap = {summary.get('smallest_gap')}"
+    return None
+
+
+def fault_of_answer(run, name, place, tolerance):
+    """The certificate recomputed from deck and tables by tools/verify; None, too, where that does not understand the deck."""
+    try:
+        tables = Tables(run.out, name)
+        normals = {pair: (float(row["nx"]), float(row["ny"])) for pair, row in tables.contact.items()}
+        with contextlib.redirect_stdout(io.StringIO()):
+            scene = Scene(deck_reader.read(place / f"{name}.dat"), normals)
+            lines, faults = check(scene, tables, tolerance)
+    except (deck_reader.DeckError, OverflowError, ZeroDivisionError):
+        return None
+    except (OSError, KeyError, ValueError, IndexError, TypeError) as error:
+        return f"verify: {type(error).__name__} {error}"
+    return "verify: " + next(line for line in lines if line.endswith("WRONG")) if faults else None
+
+
+def fault_of_twin(run, name, other, twin, tolerance):
+    """Two decks that say the same must give the same."""
+    one, two = run.word(name), other.word(twin)
+    if one != two:
+        return f"twin: {one}, {two}"
+    if one != "valid":
+        return None
+    condition = {row["key"]: row["value"] for row in rows_of(run, name, "summary")}["condition"]
+    bound = max(tolerance, 1e-14 * number(condition))
+    for table, key, columns in (("nodes", "node", ("ux", "uy")), ("elements", "element", ("sx", "sy", "sz", "txy"))):
+        ours, theirs = ({row[key]: row for row in rows_of(a, b, table)} for a, b in ((run, name), (other, twin)))
+        if ours.keys() != theirs.keys():
+            return f"twin: other {table}"
+        scale = max((abs(number(row[column])) for row in ours.values() for column in columns), default=0.0)
+        worst = max((abs(number(ours[k][column]) - number(theirs[k][column])) for k in ours for column in columns), default=0.0)
+        if not worst <= bound * scale:
+            return f"twin: {table} differ by {worst / scale:.1E} (condition {condition})"
+    return None
+
+
+def fresh(directory):
+    shutil.rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    return directory

@@ -1,0 +1,165 @@
+"""Random small scenes, as a grammar of cards: most are right, some have a fault or a choice too many."""
+import math
+
+from fuzzing.cards import Card, Deck
+
+
+def number(value):
+    """A real as the deck wants it: with a point, and all its digits."""
+    text = f"{value:.12G}"
+    if "." not in text and "E" not in text:
+        return text + ".0"
+    if "." not in text:
+        return text.replace("E", ".0E")
+    return text
+
+
+class Scene:
+    def __init__(self, pick):
+        self.pick, self.deck = pick, Deck()
+        self.rings = pick.random() < 0.25
+        self.six = pick.random() < 0.3
+        self.four = not self.rings and not self.six and pick.random() < 0.4
+        self.plane = pick.choice(["STRAIN", "STRESS"])
+        self.nodes = self.elements = 0
+        self.step = pick.choice([1, 1, 1, 7, 1000])
+        self.first = pick.choice([0, 0, 0, 100, 90000000])
+
+    def add(self, name, *data):
+        self.deck.cards.append(Card(name, [number(d) if isinstance(d, float) else str(d) for d in data]))
+
+    def node(self, x, y):
+        self.nodes += 1
+        name = self.first + self.step * self.nodes
+        self.add("GRID", name, "", x, y, *self.pick.choice([[], [], [0.0]]))
+        return name
+
+    def block(self, xs, ys, section):
+        """Nodes by (column, row) of a block; halves are middles."""
+        at = {}
+        for j in range(len(ys)):
+            for i in range(len(xs)):
+                at[i, j] = self.node(xs[i], ys[j])
+
+        def middle(p, q):
+            key = ((p[0] + q[0]) / 2, (p[1] + q[1]) / 2)
+            if key not in at:
+                at[key] = self.node(*((v[p[c]] + v[q[c]]) / 2 for c, v in ((0, xs), (1, ys))))
+            return at[key]
+
+        for j in range(len(ys) - 1):
+            for i in range(len(xs) - 1):
+                a, b, c, d = (i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)
+                for turn in [(a, b, c, d)] if self.four else [(a, b, c), (a, c, d)]:
+                    turn = turn[::-1] if self.pick.random() < 0.3 else turn
+                    self.elements += 1
+                    ends = [at[p] for p in turn]
+                    between = [middle(p, q) for p, q in zip(turn, turn[1:] + turn[:1])] if self.six else []
+                    if self.rings and between:
+                        ends, between = [n for two in zip(ends, between) for n in two], []
+                    name = f"C{'TRAX' if self.rings else 'QUAD' if self.four else 'TRIA'}{len(ends + between)}"
+                    self.add(name, self.elements, section, *ends, *between)
+        return at
+
+    def section(self, name):
+        pick = self.pick
+        young, nu = 10.0 ** pick.uniform(0, 6), pick.choice([0.0, 0.25, 0.3, 0.45, 0.4999])
+        if self.rings:
+            self.add("PSOLID", name, name)
+        else:
+            self.add("PSHELL", name, name, pick.choice([1.0, 0.1, 20.0]), *pick.choice([[], [], [-1] if self.plane == "STRAIN" or pick.random() < 0.1 else []]))
+        self.add("MAT1", name, young, *pick.choice([("", nu), (young / 2 / (1 + nu), ""), ("", nu, 7.8e-9, 1.2e-5)]))
+        if pick.random() < 0.4:
+            stress = young * 10.0 ** pick.uniform(-4, -2)
+            if pick.random() < 0.6:
+                self.add("MATS1", name, "", pick.choice(["PLASTIC", "NLELAST"]), young * pick.choice([0.0, 0.001, 0.1, 1.0]),
+                         1, 1, stress)
+            else:
+                points = [0.0, 0.0, stress / young, stress]
+                for _ in range(pick.randint(1, 4)):
+                    points += [points[-2] + stress / young * pick.uniform(0.5, 5.0),
+                               points[-1] + stress * pick.choice([0.0, 0.1, 0.4])]
+                self.add("MATS1", name, name, "PLASTIC", "", 1, 1, stress)
+                self.add("TABLES1", name, *[""] * 7, *points, "ENDT")
+        return young
+
+
+def places(pick, low, high, parts):
+    steps = [pick.uniform(0.7, 1.3) for _ in range(parts)]
+    found = [low]
+    for step in steps:
+        found.append(found[-1] + (high - low) * step / sum(steps))
+    return found[:-1] + [high]
+
+
+def small_scene(pick):
+    """One to three blocks upon each other, by pairs, by lines, or not touching; pressed, pulled, pushed or moved."""
+    scene = Scene(pick)
+    if pick.random() < 0.3:
+        scene.deck.head = ["SOL 101", "CEND", "TITLE = SMALL", "SPC = 1", "DISPLACEMENT = ALL", "STRESS = ALL", "BEGIN BULK"]
+    if not scene.rings and pick.random() < 0.97:
+        scene.add("PARAM", "PLANE", scene.plane)
+    if pick.random() < 0.5:
+        scene.add("PARAM", "GAPGEOM", "YES")
+    for name, values in (("METHOD", ["AUTO", "SECANT", "MODSEC", "INISTR", "NEWTON"]), ("RULE", ["AUTO", "CONRY", "BLOCK"]),
+                         ("TOL", ["1.-3", "1.-6", "0.5"]), ("MAXIT", ["1", "5", "60"]), ("NLOAD", ["1", "2", "5"]),
+                         ("MUP", ["EXACT", "PAPER"]), ("SOLVER", ["AUTO", "BAND", "SPARSE"]), ("UNITS", ["N-MM"])):
+        if pick.random() < 0.12:
+            scene.add("PARAM", name, pick.choice(values))
+    columns = pick.randint(1, 4)
+    left = pick.choice([0.0, 1.0, 1.0, 1.0, 30.0]) if scene.rings else pick.choice([0.0, -1.0])
+    size = 10.0 ** pick.choice([0, 0, 0, -3, 3])
+    by_lines = pick.random() < 0.4
+    young, y, below = 1.0, 0.0, None
+    for body in range(1, pick.choice([1, 2, 2, 2, 3]) + 1):
+        own = columns if not by_lines else pick.randint(1, 4)
+        rows = pick.randint(1, 3)
+        xs = places(pick, left * size, (left + 2.0) * size, own)
+        young = scene.section(body)
+        at = scene.block(xs, places(pick, y, y + size, rows), body)
+        held = pick.choice(["12", "12", "12", "12", "123456", "2", "1"]) if body == 1 else "1"
+        line = [at[i, 0] for i in range(own + 1)]
+        if body == 1 or pick.random() < 0.93:
+            scene.add("SPC1", 1, held, *(line if body == 1 else [at[0, j] for j in range(rows + 1)]))
+        if below:
+            join(scene, below, line, body, by_lines)
+            if pick.random() < 0.95:
+                scene.add("SUPORT", at[0, rows], pick.choice(["2"] * 12 + ["12", "1"]))
+        below = [at[i, rows] for i in range(own + 1)]
+        y += size * (1.0 + pick.choice([0.0, 0.0, 1e-4, -1e-4, 0.1]))
+    load(scene, below, young * size * 10.0 ** pick.uniform(-5, -1))
+    return scene.deck
+
+
+def join(scene, below, line, body, by_lines):
+    pick = scene.pick
+    if by_lines:
+        scene.add("BLSEG", 2 * body, *(below if pick.random() < 0.5 else below[::-1]))
+        scene.add("BLSEG", 2 * body + 1, *(line if pick.random() < 0.5 else line[::-1]))
+        scene.add("BCONP", body, *pick.choice([(2 * body, 2 * body + 1), (2 * body + 1, 2 * body)]))
+        return
+    scene.add("CORD2R", body, "", *[0.0] * 5, 1.0, 0.0, 1.0, 0.0)
+    scene.add("PGAP", 900 + body, pick.choice([0.0, 0.0, 1e-4, -1e-4]))
+    for k, (a, b) in enumerate(zip(below, line)):
+        if pick.random() < 0.95:
+            scene.add("CGAP", 800000 + 100 * body + k, 900 + body, a, b, "", "", "", body)
+
+
+def load(scene, top, total):
+    pick = scene.pick
+    kind = pick.choice(["force", "force", "pressure", "moved", "platen", "none"])
+    if kind == "moved":
+        scene.add("SPC", 1, top[0], "2", -total * 1e-5, *([top[-1], "2", -total * 1e-5] if len(top) > 1 else []))
+    if kind == "platen" and len(top) > 1:
+        scene.add("RBE2", 99999000, top[0], "2", *top[1:])
+    if kind == "pressure":
+        elements = [card for card in scene.deck.cards if card.name.startswith(("CT", "CQ"))]
+        for a, b in zip(top, top[1:]):
+            own = [card for card in elements if str(a) in card.data[2:] and str(b) in card.data[2:]]
+            if own:
+                scene.add("PLOADX1", 1, own[0].data[0], total, pick.choice(["", total / 2]), a, b,
+                          pick.choice(["", 10.0, 90.0]))
+    elif kind != "none":
+        for node in top:
+            angle = pick.choice([-90.0, -90.0, -80.0, 90.0, 0.0])
+            scene.add("FORCE", 1, node, 0, total / len(top), math.cos(math.radians(angle)), math.sin(math.radians(angle)))
