@@ -84,7 +84,7 @@ contains
     certificate%equilibrium = ratio(maxval(abs(residual)), max(maxval(element_force), maxval(abs(load)), &
                                                                certificate%force_scale*merge(1, 0, any(force > 0.0_wp))))
     work = sum(load*displacement) + sum(reaction*displacement)
-    terms = sum(abs(load*displacement)) + sum(abs(reaction*displacement)) + stored
+    terms = sum(abs(load*displacement)) + sum(abs(reaction*displacement)) + abs(stored)
     call add_pair_work(model, displacement, force, work, terms)
     certificate%energy = ratio(abs(work - stored), terms)
     exact = tolerance*certificate%length_scale + certificate%gap_rounding
@@ -98,12 +98,12 @@ contains
     certificate%valid = certificate%balanced .and. certificate%off_curve <= certificate%curve_tolerance
   end subroutine certify
 
-  !> a/b, 0 where both are 0.
+  !> a/b, 0 where both are 0; finite.
   pure real(wp) function ratio(a, b)
     real(wp), intent(in) :: a, b
 
     ratio = 0.0_wp
-    if (a > 0.0_wp) ratio = a/max(b, tiny(b))
+    if (a > 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
   end function ratio
 
   !> Internal forces at the nodes, work of the stresses on the strains, largest stress; its largest distance from the curve

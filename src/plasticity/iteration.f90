@@ -226,12 +226,12 @@ contains
     now%residual = ratio(off, maxval(abs(found%stress)))
   end subroutine measure
 
-  !> a/b, 0 where both are 0.
+  !> a/b, 0 where both are 0; finite.
   pure real(wp) function ratio(a, b)
     real(wp), intent(in) :: a, b
 
     ratio = 0.0_wp
-    if (a > 0.0_wp) ratio = a/max(b, tiny(b))
+    if (a > 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
   end function ratio
 
   !> Is the iteration over? Where nothing has yielded, the first solve was exact; and where stresses are on their curves

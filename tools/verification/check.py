@@ -20,8 +20,8 @@ KEYS = {
 }
 
 
-# Of a strain, from displacements of 17 digits.
-ROUNDINGS = 16 * 2.0 ** -52
+# Of a force: sums over some elements of products with the displacements of up to six nodes, which are rounded themselves.
+ROUNDINGS = 128 * 2.0 ** -52
 
 
 class Tables:
@@ -40,10 +40,10 @@ class Tables:
 
 def add_elements(scene, tables, u, rest):
     """Nodal forces of the stresses are taken off `rest`. Largest element forces summed at a node, work stored, largest distance
-    of a mean stress in the tables from that on the curve, largest stress, and that which rounding of the displacements makes.
+    of a mean stress in the tables from that on the curve, largest stress, and the stress and force that rounding of the displacements makes.
 
     The tables hold means over the points of an element; what a point has is taken to be off the curve as much as the mean."""
-    magnitude, stored, off, largest, lost = {}, [], 0.0, 0.0, 0.0
+    magnitude, stored, off, largest, lost, lost_force = {}, [], 0.0, 0.0, 0.0, 0.0
     for element, (name, nodes, section) in scene.element.items():
         points = unit_strains(name, [scene.x[node] for node in nodes], section.thickness, section.plane_stress)
         moved = [u[node] for node in nodes]
@@ -56,7 +56,8 @@ def add_elements(scene, tables, u, rest):
         off = max(off, *map(abs, change))
         stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
         steepest = max(abs(v) for _, unit in points for of in unit for each in of for v in each)
-        lost = max(lost, ROUNDINGS * stiffness * steepest * max(abs(v) for pair in moved for v in pair))
+        own = ROUNDINGS * stiffness * steepest * max(abs(v) for pair in moved for v in pair)
+        lost, lost_force = max(lost, own), max(lost_force, own * whole * steepest)
         force = [[[], []] for _ in nodes]
         for (volume, unit), strain, stress in zip(points, strains, stresses):
             stress = [s + c for s, c in zip(stress, change)]
@@ -70,15 +71,15 @@ def add_elements(scene, tables, u, rest):
             for c in (0, 1):
                 rest.setdefault((node, c), []).append(-sums[c])
             magnitude.setdefault(node, []).append(max(map(abs, sums)))
-    return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, off, largest, lost
+    return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, off, largest, lost, lost_force
 
 
 def recompute(scene, tables):
-    """The figures, and the scales of force and length; the largest error in the column of gaps; the part of the stresses that
-    is lost, where a travel leaves few digits of the strains."""
+    """The figures, and the scales of force and length; the largest error in the column of gaps; the part of the stresses and
+    forces that is lost, where a travel leaves few digits of the strains."""
     u = {node: (float(row["ux"]), float(row["uy"])) for node, row in tables.nodes.items()}
     rest, works, given = {}, [], []
-    element_force, stored, off, largest, lost = add_elements(scene, tables, u, rest)
+    element_force, stored, off, largest, lost, lost_force = add_elements(scene, tables, u, rest)
     for (node, i), values in scene.load.items():
         rest.setdefault((node, i), []).extend(values)
         works.append(math.fsum(values) * u[node][i])
@@ -115,8 +116,11 @@ def recompute(scene, tables):
         "off_curve": off / (largest or 1.0),
         "energy": abs(math.fsum(works) - math.fsum(stored)) / (terms or 1.0),
     }
-    part_lost = lost / largest if lost < largest else math.inf if lost > 0.0 else 0.0
-    return figures, force_scale, length_scale, spread, part_lost
+    return figures, force_scale, length_scale, spread, max(part(lost, largest), part(lost_force, scale))
+
+
+def part(lost, of):
+    return lost / of if lost < of else math.inf if lost > 0.0 else 0.0
 
 
 def pressure_error(scene, tables):
