@@ -105,17 +105,20 @@ def worst(run):
 
 
 def runs_of(scene, quick):
-    """All runs of a scene, and how often each choice gave no answer."""
+    """All runs of a scene, and (element, size, choice, exit status) of those that gave no answer."""
     runs, failed = [], []
-    coarse = [of for _, group in itertools.groupby(scene.meshes, lambda mesh: mesh[0]) for of in list(group)[:2]]
+    sizes = [mesh for _, of in itertools.groupby(scene.meshes, lambda mesh: mesh[0]) for mesh in list(of)[:2 if quick else None]]
     with tempfile.TemporaryDirectory() as place:
-        for element, size in scene.meshes if not quick else coarse:
+        for element, size in sizes:
             deck = scene.make(element, size).text()
             for choice in choices(scene):
                 if quick and len(apart(choice)) > 1:
                     continue
                 run = solve(scene, element, size, deck, choice, pathlib.Path(place))
-                (runs if isinstance(run, Run) else failed).append(run if isinstance(run, Run) else (element, size, choice, run))
+                if isinstance(run, Run):
+                    runs.append(run)
+                else:
+                    failed.append((element, size, choice, run))
     return runs, failed
 
 
@@ -127,7 +130,8 @@ def front(runs, cost):
         if not chosen or worst(run) < 0.9 * worst(chosen[-1]):
             alike = [other for other in runs if (other.element, other.size) == (run.element, run.size)
                      and getattr(other, cost) < 1.1 * getattr(run, cost) and worst(other) < 1.1 * worst(run)]
-            chosen.append(min(alike, key=lambda other: len(apart(other.choice))))
+            best = min(alike, key=lambda other: len(apart(other.choice)))
+            chosen += [best] if best not in chosen else []
     return chosen
 
 
@@ -163,12 +167,12 @@ def elements(runs, scene):
 
 
 def one_at_a_time(runs, failed, scene):
-    """What one choice changes, from the base, on the meshes of a scene; of methods at every tolerance."""
+    """What one choice changes, from the base, on the meshes of a scene; of methods and precisions at every tolerance."""
     key = lambda run: (run.element, run.size)  # noqa: E731
     base = {key(run): run for run in runs if not apart(run.choice)}
     rows = []
     for choice in choices(scene):
-        if not apart(choice) or (len(apart(choice)) > 1 and set(apart(choice)) != {"METHOD", "TOL"}):
+        if not apart(choice) or (len(apart(choice)) > 1 and set(apart(choice)) not in ({"METHOD", "TOL"}, {"TOL", "PRECIS"})):
             continue
         of = [run for run in runs if run.choice == choice and key(run) in base]
         lost = sum(c == choice for _, _, c, _ in failed)
