@@ -5,7 +5,7 @@
     tools/tradeoff -o build/mine    build/mine.md, build/mine.png
 
 Time: processor, user and system, of a whole process on one thread, reading and writing included; the least of three runs (one, where
-it takes 0.3 s). Memory: its peak. True error: against the closed form, or what meshes many times as fine converge
+it takes a second). Memory: its peak. True error: against the closed form, or what meshes many times as fine converge
 to (tests/accuracy/cases.py); the worse of the largest pressures and of the approaches. Errors are the same on every run; times
 are not, and runs whose times are within a few per cent of each other may change places.
 """
@@ -85,7 +85,7 @@ def solve(scene, element, size, deck, choice, place):
         return status
     if status:
         sys.exit(f"{scene.name}, {words(choice)}: exit status {status}\n{out}")
-    if cpu < 0.3:
+    if cpu < 1.0:
         cpu = min(timed(command, place)[1] for _ in range(3))
     found = figures_of(path) if scene.touches else {"u": (inner_displacement(path), None)}
     error, estimate = {}, {}
