@@ -39,7 +39,8 @@ module epcont_app_console
 
 contains
 
-  !> Print text on standard output, at once, and a newline where it does not end with one. Where that cannot be done, `status` becomes at least that of files.
+  !> Print text on standard output, at once, and a newline where it does not end with one. Where that cannot be done,
+  !! `status` becomes at least that of files.
   subroutine print_text(text, status)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: status
