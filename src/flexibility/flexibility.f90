@@ -135,19 +135,26 @@ contains
     end do
   end function motion_columns
 
-  !> P = Phi' f, the loads along the free motions [motions].
+  !> P = Phi' f, the loads along the free motions [motions]. Where they cancel, or act across the motion, but for rounding, there
+  !! are none: else rounding would tell whether the body moves off.
   pure function motion_resultants(model, motions) result(resultant)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     real(wp), allocatable :: resultant(:)
+    real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
+    real(wp) :: all_loads, moved(2)
     integer :: i, m
 
     allocate (resultant(motions%count), source=0.0_wp)
     do m = 1, motions%count
+      all_loads = 0.0_wp
       do i = 1, model%nodes
         if (model%body(i) /= motions%body(m) .or. all(model%load(:, i) == 0.0_wp)) cycle
-        resultant(m) = resultant(m) + dot_product(motions%displacement(model, i, m), model%load(:, i))
+        moved = motions%displacement(model, i, m)
+        resultant(m) = resultant(m) + dot_product(moved, model%load(:, i))
+        all_loads = all_loads + norm2(moved)*norm2(model%load(:, i))
       end do
+      if (abs(resultant(m)) <= rounding*all_loads) resultant(m) = 0.0_wp
     end do
   end function motion_resultants
 end module epcont_flexibility_flexibility

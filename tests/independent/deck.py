@@ -10,6 +10,9 @@ KNOWN = {"GRID", "CTRIA3", "CTRIA6", "CQUAD4", "CTRAX3", "CTRAX6", "PSHELL", "PS
          "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP"}
 
 
+LONGEST = 1000000   # range of ids
+
+
 class DeckError(Exception):
     pass
 
@@ -102,6 +105,8 @@ def ids(items):
             if i + 1 < len(items) and items[i] == "BY":
                 step = abs(int(items[i + 1]))
                 i += 2
+            if abs(last - first) > LONGEST:
+                raise DeckError(f"{first} THRU {last} is too long")
             found += range(first, last + 1, step) if last >= first else range(first, last - 1, -step)
         else:
             found.append(int(items[i]))

@@ -40,10 +40,11 @@ class Tables:
 
 def add_elements(scene, tables, u, rest):
     """Nodal forces of the stresses are taken off `rest`. Largest element forces summed at a node, work stored, largest distance
-    of a mean stress in the tables from that on the curve, largest stress, and the stress and force that rounding of the displacements makes.
+    of a mean stress in the tables from that on the curve, largest stress, the stress and force that rounding of the displacements makes, the
+    largest force of a unit stress.
 
     The tables hold means over the points of an element; what a point has is taken to be off the curve as much as the mean."""
-    magnitude, stored, off, largest, lost, lost_force = {}, [], 0.0, 0.0, 0.0, 0.0
+    magnitude, stored, off, largest, lost, lost_force, reach = {}, [], 0.0, 0.0, 0.0, 0.0, 0.0
     for element, (name, nodes, section) in scene.element.items():
         points = unit_strains(name, [scene.x[node] for node in nodes], section.thickness, section.plane_stress)
         moved = [u[node] for node in nodes]
@@ -58,6 +59,7 @@ def add_elements(scene, tables, u, rest):
         steepest = max(abs(v) for _, unit in points for of in unit for each in of for v in each)
         own = ROUNDINGS * stiffness * steepest * max(abs(v) for pair in moved for v in pair)
         lost, lost_force = max(lost, own), max(lost_force, own * whole * steepest)
+        reach = max(reach, whole * steepest)
         force = [[[], []] for _ in nodes]
         for (volume, unit), strain, stress in zip(points, strains, stresses):
             stress = [s + c for s, c in zip(stress, change)]
@@ -71,15 +73,16 @@ def add_elements(scene, tables, u, rest):
             for c in (0, 1):
                 rest.setdefault((node, c), []).append(-sums[c])
             magnitude.setdefault(node, []).append(max(map(abs, sums)))
-    return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, off, largest, lost, lost_force
+    return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, off, largest, lost, lost_force, reach
 
 
 def recompute(scene, tables):
     """The figures, and the scales of force and length; the largest error in the column of gaps; the part of the stresses and
-    forces that is lost, where a travel leaves few digits of the strains."""
+    forces that is lost, where a travel leaves few digits of the strains; the largest force that the largest stress could make, over
+    the scale."""
     u = {node: (float(row["ux"]), float(row["uy"])) for node, row in tables.nodes.items()}
     rest, works, given = {}, [], []
-    element_force, stored, off, largest, lost, lost_force = add_elements(scene, tables, u, rest)
+    element_force, stored, off, largest, lost, lost_force, reach = add_elements(scene, tables, u, rest)
     for (node, i), values in scene.load.items():
         rest.setdefault((node, i), []).extend(values)
         works.append(math.fsum(values) * u[node][i])
@@ -116,7 +119,8 @@ def recompute(scene, tables):
         "off_curve": off / (largest or 1.0),
         "energy": abs(math.fsum(works) - math.fsum(stored)) / (terms or 1.0),
     }
-    return figures, force_scale, length_scale, spread, max(part(lost, largest), part(lost_force, scale))
+    return figures, force_scale, length_scale, spread, max(part(lost, largest), part(lost_force, scale)), \
+        largest * reach / (scale or 1.0)
 
 
 def part(lost, of):
@@ -137,10 +141,10 @@ def pressure_error(scene, tables):
 
 def check(scene, tables, tolerance):
     """Lines of the report and the number of faults."""
-    figures, force, length, spread, lost = recompute(scene, tables)
+    figures, force, length, spread, lost, most = recompute(scene, tables)
     # The points of an element with several are known only as well as its mean lies on the curve.
     sure = all(len(KINDS[name].points) == 1 for name, _, _ in scene.element.values())
-    loose = tolerance if sure else max(tolerance, 10 * float(tables.summary.get(KEYS["off_curve"], 0.0)))
+    loose = tolerance if sure else max(tolerance, 10 * max(1.0, most) * float(tables.summary.get(KEYS["off_curve"], 0.0)))
     scale = {"smallest_force": force, "smallest_gap": length, "product": force * length}
     bounds = {name: tolerance * scale.get(name, 1.0) for name in KEYS}
     bounds["equilibrium"] = bounds["energy"] = max(loose, lost)
