@@ -39,7 +39,7 @@ PARTS = {"ctria3": (5, 10, 20, 40, 80), "cquad4": (5, 10, 20, 40, 80), "ctria6":
 
 
 def solve(deck, place):
-    """Summary and nodes of a run, its unknowns, and its time."""
+    """Summary of a run, its unknowns, and its time; the tables stay beside the deck."""
     path = pathlib.Path(place) / "scene.dat"
     path.write_text(deck.text(), encoding="ascii")
     spent = []
@@ -54,24 +54,29 @@ def solve(deck, place):
     unknowns = sum(int(row.split()[2]) for row in re.findall(r"^ +\d+ +\d+ +\d+ .*$", bodies, re.MULTILINE))
     with open(path.with_suffix(".summary.csv"), newline="", encoding="ascii") as file:
         summary = {row["key"]: row["value"] for row in csv.DictReader(file)}
-    with open(path.with_suffix(".nodes.csv"), newline="", encoding="ascii") as file:
-        nodes = [[float(row[key]) for key in ("x", "y", "ux", "uy")] for row in csv.DictReader(file)]
-    return summary, nodes, unknowns, min(spent)
+    return summary, unknowns, min(spent)
 
 
 def two_cylinders(element, across, place):
     """Unknowns, errors of approach and largest pressure, seconds."""
     mesh = cylinders.disc_squared(R, B, round(1.6 * across)) if element == "cquad4" else cylinders.disc_spaced(B / across, b=B, element=element)
-    summary, _, unknowns, seconds = solve(cylinders.hertz(mesh, b=B), place)
+    summary, unknowns, seconds = solve(cylinders.hertz(mesh, b=B), place)
     approach = next(float(value) for key, value in summary.items() if key.startswith("approach"))
     return unknowns, -approach / APPROACH - 1, float(summary["max_pressure"]) / P_MAX - 1, seconds
 
 
+def inner_displacement(path):
+    """Mean radial displacement of the inner nodes of a tube, from the tables of a run of this deck."""
+    with open(path.with_suffix(".nodes.csv"), newline="", encoding="ascii") as file:
+        nodes = [[float(row[key]) for key in ("x", "y", "ux", "uy")] for row in csv.DictReader(file)]
+    inner = [math.hypot(ux, uy) for x, y, ux, uy in nodes if abs(math.hypot(x, y) - 100.0) < 1e-6]
+    return sum(inner) / len(inner)
+
+
 def tube(element, parts, place):
     """Unknowns, error of u(a), seconds."""
-    _, nodes, unknowns, seconds = solve(plastic.tube_flat(0.16, "", parts, element), place)
-    inner = [math.hypot(ux, uy) for x, y, ux, uy in nodes if abs(math.hypot(x, y) - 100.0) < 1e-6]
-    return unknowns, sum(inner) / len(inner) / U_A - 1, seconds
+    _, unknowns, seconds = solve(plastic.tube_flat(0.16, "", parts, element), place)
+    return unknowns, inner_displacement(pathlib.Path(place) / "scene.dat") / U_A - 1, seconds
 
 
 def needed(rows, error=1e-3):

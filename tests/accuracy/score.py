@@ -32,10 +32,15 @@ def solve(program, deck):
         run = subprocess.run([program, path, "-o", place], capture_output=True, text=True, check=False)
         if run.returncode:
             sys.exit(f"{deck.title}: exit status {run.returncode}\n{run.stdout}{run.stderr}")
-        with open(path.with_suffix(".summary.csv"), newline="", encoding="ascii") as file:
-            summary = {row["key"]: row["value"] for row in csv.DictReader(file)}
-        with open(path.with_suffix(".zones.csv"), newline="", encoding="ascii") as file:
-            zones = list(csv.DictReader(file))
+        return figures_of(path)
+
+
+def figures_of(path):
+    """The same, from the tables of a run of this deck."""
+    with open(path.with_suffix(".summary.csv"), newline="", encoding="ascii") as file:
+        summary = {row["key"]: row["value"] for row in csv.DictReader(file)}
+    with open(path.with_suffix(".zones.csv"), newline="", encoding="ascii") as file:
+        zones = list(csv.DictReader(file))
     figures = {}
     for zone in zones:
         k = zone["zone"]

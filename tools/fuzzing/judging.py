@@ -194,6 +194,7 @@ def fault_of_answer(run, name, place, tolerance):
 def fault_of_twin(run, name, other, twin, place, tolerance):
     """Two decks that say the same must give the same, but for what conditioning and travels take of the digits."""
     one, two = run.word(name), other.word(twin)
+    # Beyond a limit load rounding decides which of two refusals it is.
     if WORDS.get(one) != WORDS.get(two):
         return f"twin: {one}, {two}"
     if one != "valid":
