@@ -87,16 +87,18 @@ contains
     call check(arguments, error)
   end subroutine read_arguments
 
-  !> A positive, finite number; `status` is not 0 where `text` is none. READ alone takes `2 x`, `,` and `nan`.
+  !> A positive number without exponent, which no length makes overflow; `status` is not 0 where `text` is none. READ alone
+  !! takes `2 x`, `,` and `nan`.
   subroutine read_positive(text, number, status)
     character(len=*), intent(in) :: text
     real(wp), intent(inout) :: number
     integer, intent(out) :: status
+    integer, parameter :: longest = 20
 
     status = 1
-    if (verify(text, '0123456789.eE+-') > 0) return
+    if (verify(text, '0123456789.') > 0 .or. len(text) > longest) return
     read (text, *, iostat=status) number
-    if (status == 0 .and. .not. (number > 0.0_wp .and. number <= huge(number))) status = 1
+    if (status == 0 .and. number <= 0.0_wp) status = 1
   end subroutine read_positive
 
   !> There are decks, and no two of one stem: their results would have one name.

@@ -206,11 +206,11 @@ class Output(Case):
 
 class Memory(Case):
     def test_the_forecast_is_above_the_limit(self):
-        self.check(self.run_it(LARGE, "-o", self.directory, "--memory", "1e-3"), 3, "the matrices need", "--memory allows 0.001000 GB")
+        self.check(self.run_it(LARGE, "-o", self.directory, "--memory", "0.001"), 3, "the matrices need", "--memory allows 0.001000 GB")
         self.assertEqual({}, self.files(self.directory))
 
     def test_no_limit(self):
-        for word in ("-1", "0", "nan", "inf", "1e400", "", "2 3", ",", "1e", "GB"):
+        for word in ("-1", "0", "0.0", ".", "1" * 400, "nan", "inf", "1e400", "", "2 3", ",", "1e", "GB"):
             with self.subTest(word):
                 self.check(self.run_it(SMALL, "-o", self.directory, "--memory", word), 3, "a positive number of GB would be right")
 
