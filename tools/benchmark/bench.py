@@ -1,7 +1,7 @@
 """epcont's time, memory and errors beside those of other programs, on this machine.
 
     tools/bench --quick     up to 11 000 nodes, 3 turns: about ten minutes
-    tools/bench             up to 42 000 nodes, 5 turns: hours, most of them CalculiX's
+    tools/bench             up to 42 000 nodes, 5 turns: about an hour, most of it CalculiX's
     tools/bench --part 2    one part only: its table on standard output, nothing saved; --quick --part 4: half a minute
 
 Part 1: two cylinders (`tools/decks hertz N`, CTRIA3), whole programs, against CalculiX and scikit-fem. Part 2: the dense

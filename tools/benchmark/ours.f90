@@ -99,7 +99,7 @@ contains
     begun = now()
     numbering = number_equations(model)
     spent(ordering) = lap()
-    bodies = new_bodies(model)
+    bodies = new_bodies(model, single=.false.)
     call solve_once(spent)
     spent(all_stages) = sum(spent(ordering:displacing))
     begun = now()

@@ -1,5 +1,8 @@
 """Runs of whole programs: processor time, wall time, peak memory.
 
+A short run is timed right after one of the same program that is not: what another program left in caches, and pages that
+the host of a virtual machine took back after it (they cost more than clearing them does), are not its own.
+
 Memory is that of a run under GNU time (wait4's ru_maxrss: of a child of this process it would be this process's own, if
 that is larger). Processor time, user and system, is wait4's of a run of its own.
 """
@@ -21,6 +24,12 @@ def timed(command, place):
         child.returncode = os.waitstatus_to_exitcode(status)
         out.seek(0)
         return child.returncode, usage.ru_utime + usage.ru_stime, wall, out.read()
+
+
+def settled(command, place):
+    """As `timed`, of a run that follows another of the same."""
+    timed(command, place)
+    return timed(command, place)
 
 
 def peak(command, place):

@@ -57,7 +57,7 @@ def cylinders(rows):
         "Seconds of processor (user and system) and of wall, peak memory of the process. Ratios: the program's over epcont's. CalculiX: GAPUNI with "
         "a *PLASTIC card that elastic runs never reach, or NODE TO SURFACE contact, closed gaps 1e5 E stiff; SPOOLES is its default and direct, "
         "ITERATIVE CHOLESKY its conjugate gradients. Each setting runs once (wall empty: only once); those near the fastest sound "
-        "one, and the fastest with SPOOLES, take turns with epcont. Sound: whole load, approach within 1 % of epcont's, p_max within 1 % "
+        "one, and the fastest with SPOOLES, take turns with epcont, each right after a run that is not timed where it is short (under 5 s). Sound: whole load, approach within 1 % of epcont's, p_max within 1 % "
         "(elastoplastic: 6 %). epcont elastoplastic: NEWTON to 1e-8.",
         ratios(rows),
         "Errors in per cent: elastic p_max against Hertz, approach against Johnson; elastoplastic against epcont's converged total theory (198.4, "

@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 from cylinders import mesh_of
-from process import ONE_THREAD, peak, timed
+from process import ONE_THREAD, peak, settled, timed
 from scenes import cylinders
 
 #: What bench_ours and bench_bare print: seconds.
@@ -85,7 +85,7 @@ def growth(release, place, nodes, repeats, say):
     command = [str(release / "epcont"), deck.name]
     _, memory, _, _ = peak(command, place)
     for _ in range(repeats):
-        status, used, taken, out = timed(command, place)
+        status, used, taken, out = settled(command, place)
         if status:
             sys.exit(f"epcont: exit status {status}\n{out}")
         cpu.append(used)
