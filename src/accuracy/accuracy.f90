@@ -30,9 +30,10 @@ module epcont_accuracy_accuracy
   !> The nodes of a zone, and not the line between them, are in contact: by how much bodies of four-node elements come too near for
   !! that, over largest pressure (h/b)**2 b/E*.
   real(wp), parameter :: between_pairs = 0.2_wp
-  !> Contact ends at a node: what that leaves uncertain, over the same. With d from there to the true end it is (d/h)**2 at most of
-  !! elastic bodies; beyond yield the pressure ends more abruptly, and the width grows with the load, not with its root.
-  real(wp), parameter :: of_end = 0.12_wp, of_end_yielded = 0.4_wp
+  !> Contact ends at a node, within a side of where it truly does: what that leaves uncertain, over the same with the side's length for h.
+  !! A distance d from the true end counts as d**2; more beyond yield, where the pressure ends more abruptly and the width grows with
+  !! the load, not with its root.
+  real(wp), parameter :: of_end = 0.04_wp, of_end_yielded = 0.2_wp
   !> Errors that differ by less than this part are equal.
   real(wp), parameter :: equal = 1.0e-6_wp
   !> An error in the energy norm up to this is rounding.
@@ -180,7 +181,7 @@ contains
     real(wp), intent(in) :: unit_force(:, :)   !! contact forces under unit loads [pairs, motions]
     type(accuracy_type), intent(inout) :: accuracy
     real(wp), allocatable :: strain(:, :)
-    real(wp) :: between, near, short
+    real(wp) :: between, end_error, short
     integer :: j, z
 
     do j = 1, motions%count
@@ -194,17 +195,17 @@ contains
                                 strain, recover_strains(model, table, volume, strain))
         end associate
       end if
-      near = 0.0_wp
+      end_error = 0.0_wp
       do z = 1, size(accuracy%zone)
         associate (zone => accuracy%zone(z))
           if (zone%peak == 0) cycle
           between = sum(unit_force(answer%zones(z)%pairs, j))*answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length* &
                     surface_compliance(model, table, zone%peak)
           if (zone%order == 4) short = short - between_pairs*between
-          near = near + abs(between)
+          end_error = end_error + abs(between)*merge(4.0_wp, 1.0_wp, zone%order == 6)   ! two spacings a side
         end associate
       end do
-      accuracy%approach(j) = of_product*abs(short) + merge(of_end_yielded, of_end, any(answer%plastic))*near
+      accuracy%approach(j) = of_product*abs(short) + merge(of_end_yielded, of_end, any(answer%plastic))*end_error
     end do
   end subroutine assess_approach
 
