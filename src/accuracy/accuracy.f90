@@ -30,9 +30,9 @@ module epcont_accuracy_accuracy
   !> The nodes of a zone, and not the line between them, are in contact: by how much bodies of four-node elements come too near for
   !! that, over largest pressure (h/b)**2 b/E*.
   real(wp), parameter :: between_pairs = 0.2_wp
-  !> Contact ends at a node, within a side of where it truly does: what that leaves uncertain, over the same with the side's length for h.
-  !! A distance d from the true end counts as d**2; more beyond yield, where the pressure ends more abruptly and the width grows with
-  !! the load, not with its root.
+  !> Contact ends at a node, within a side of where it truly does: what that leaves uncertain, over the same with the side's length
+  !! for h. A distance d from the true end counts as d**2; more beyond yield, where the pressure ends more abruptly and the width
+  !! grows with the load, not with its root.
   real(wp), parameter :: of_end = 0.04_wp, of_end_yielded = 0.2_wp
   !> Errors that differ by less than this part are equal.
   real(wp), parameter :: equal = 1.0e-6_wp

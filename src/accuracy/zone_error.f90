@@ -13,9 +13,9 @@ module epcont_accuracy_zone_error
 
   !> Pairs that the parabola goes through.
   integer, parameter :: around_peak = 7
-  !> Weights in the error of the largest pressure for elements of 3, 4 and 6 nodes: of the distance from the parabola, of that from
-  !! the smooth stress, of the smaller of the two, and of h/b. Smooth stresses of linear elements may be off by more than the pressure:
-  !! of three nodes they count where the parabola says as much, of four they do not.
+  !> Weights in the error of the largest pressure for elements of 3, 4 and 6 nodes: of the distance from the parabola, of that
+  !! from the smooth stress, of the smaller of the two, and of h/b. Smooth stresses of linear elements may be off by more than
+  !! the pressure: of three nodes they count where the parabola says as much, of four they do not.
   real(wp), parameter :: of_parabola(3) = [0.0_wp, 4.0_wp, 0.2_wp], of_stress(3) = [0.0_wp, 0.0_wp, 1.0_wp]
   real(wp), parameter :: of_smaller(3) = [2.2_wp, 0.0_wp, 0.0_wp], of_spacing(3) = [0.11_wp, 0.018_wp, 0.016_wp]
   !> Part of a spacing that the end of a zone is uncertain by, for the same; and at most.
