@@ -70,7 +70,8 @@ def main():
         if options.near:
             simple.AssignViewToLayout(panel(place, stem, 1.0, options.near), layout, 2)
         options.output.parent.mkdir(parents=True, exist_ok=True)
-        simple.SaveScreenshot(str(options.output), layout, ImageResolution=[1100 if options.near else 600, 500])
+        simple.SaveScreenshot(str(options.output), layout, ImageResolution=[1000 if options.near else 550, 440],
+                              CompressionLevel="9")
     simple.Disconnect()   # else it may crash as it ends
     return 0
 
