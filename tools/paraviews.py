@@ -47,7 +47,7 @@ def panel(place, stem, scale, near):
         x, y, half = near
         view.CameraFocalPoint, view.CameraPosition, view.CameraParallelScale = [x, y, 0.0], [x, y, 10.0 * half], half
     else:
-        view.CameraParallelScale *= 1.1   # room for the bars
+        view.CameraParallelScale *= 1.3   # room for the bars
     return view
 
 

@@ -26,6 +26,35 @@ VERTEX, LINE = 1, 3
 #: VTK's kind, and the places of corners and of the nodes between them on the card.
 KINDS = {"CTRIA3": (5, [0, 1, 2], []), "CTRAX3": (5, [0, 1, 2], []), "CQUAD4": (9, [0, 1, 2, 3], []),
          "CTRIA6": (22, [0, 1, 2], [3, 4, 5]), "CTRAX6": (22, [0, 2, 4], [1, 3, 5])}
+#: A square in a corner, pressed into it from both free sides.
+CORNER = """BEGIN BULK
+PARAM,PLANE,STRAIN
+PSHELL,1,1,1.
+MAT1,1,1000.,,.3
+GRID,1,,0.,0.
+GRID,2,,1.,0.
+GRID,3,,1.,1.
+GRID,4,,0.,1.
+GRID,31,,-1.,-1.,,,12
+GRID,32,,0.,-1.,,,12
+GRID,33,,1.5,-1.,,,12
+GRID,34,,1.5,0.,,,12
+GRID,35,,0.,0.,,,12
+GRID,36,,0.,1.5,,,12
+GRID,37,,-1.,1.5,,,12
+GRID,38,,-1.,0.,,,12
+CQUAD4,1,1,1,2,3,4
+CQUAD4,2,1,31,32,35,38
+CQUAD4,3,1,32,33,34,35
+CQUAD4,4,1,38,35,36,37
+SUPORT,1,1,1,2,2,2
+PLOADX1,1,1,10.,,3,4
+PLOADX1,1,1,10.,,2,3
+BLSEG,1,4,1,2
+BLSEG,2,36,35,34
+BCONP,1,1,2
+ENDDATA
+"""
 
 
 def sides(corners, middles):
@@ -211,6 +240,27 @@ class Values(Case):
         bodies, _ = self.check(deck)
         self.assertNotIn(999, bodies["point_data"]["node_id"])
         self.assertIn("999", (self.directory / "more.nodes.csv").read_text())
+
+    def test_a_pair_of_held_nodes(self):
+        """No boundary belongs to it: no pressure, no line."""
+        deck = self.directory / "held.dat"
+        deck.write_text((INPUT / "hertz/hertz44.dat").read_text().replace(
+            "BEGIN BULK\n", "BEGIN BULK\nGRID,998,,3.,0.,0.,,123\nGRID,999,,3.,1.,0.,,123\nCGAP,997,996,998,999\nPGAP,996,1.\n"))
+        _, contact = self.check(deck)
+        self.assertEqual(1, contact["point_data"]["has_pressure"].count(0))
+        self.assertEqual(1, sum(kind == VERTEX for kind, _ in contact["cells"]))
+
+    def test_a_line_round_a_corner(self):
+        """The node at the corner has a pair on either face: each line has the pairs of its own."""
+        deck = self.directory / "corner.dat"
+        deck.write_text(CORNER)
+        _, contact = self.check(deck)
+        data = contact["point_data"]
+        self.assertEqual([4, 1, 1, 2], data["pair_id"])
+        self.assertEqual([LINE, LINE], [kind for kind, _ in contact["cells"]])
+        for _, (one, other) in contact["cells"]:
+            for a, b in zip(data["contact_force"][one], data["contact_force"][other]):
+                self.assertAlmostEqual(a, b, delta=1e-8)
 
 
 class Files(Case):
