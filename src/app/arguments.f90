@@ -14,7 +14,7 @@ module epcont_app_arguments
   type :: arguments_type
     type(word_type), allocatable :: deck(:)         !! paths
     character(len=:), allocatable :: directory      !! for the results
-    logical :: check = .false., plan = .false., all_tables = .false., quiet = .false.
+    logical :: check = .false., plan = .false., all_tables = .false., vtk = .false., quiet = .false.
     logical :: help = .false., version = .false., cards = .false.
     character(len=:), allocatable :: card           !! name behind --cards, or empty
     real(wp) :: memory = 16.0_wp                    !! limit for matrices [GB]
@@ -49,6 +49,8 @@ contains
         arguments%check = .true.
       case ('--plan')
         arguments%plan = .true.
+      case ('--vtk')
+        arguments%vtk = .true.
       case ('--quiet')
         arguments%quiet = .true.
       case ('--cards')
@@ -132,7 +134,7 @@ contains
     character(len=*), intent(in) :: path
 
     is_result = .false.
-    if (len(path) >= 4) is_result = any(path(len(path) - 3:) == ['.lst', '.csv'])
+    if (len(path) >= 4) is_result = any(path(len(path) - 3:) == ['.lst', '.csv', '.vtu'])
   end function is_result
 
   !> One argument, whatever its length.
@@ -169,6 +171,7 @@ contains
            '  --check        read and check the decks, then stop'//newline// &
            '  --plan         print what would be solved and what it takes, then stop'//newline// &
            '  --tables all   write node and element tables, whatever the deck asks for'//newline// &
+           '  --vtk          write DECK.vtu and DECK.contact.vtu, for ParaView'//newline// &
            '  --memory GB    refuse decks whose matrices need more (default 16)'//newline// &
            '  --cards [NAME] print the manual of the cards, or of one'//newline// &
            '  --quiet        print nothing on standard output'//newline// &

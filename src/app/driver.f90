@@ -63,7 +63,7 @@ contains
         call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular)
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
         status = run%outcome%status
-        call write_results(run, output_stem(path, arguments), arguments%all_tables, error)
+        call write_results(run, output_stem(path, arguments), arguments%all_tables, arguments%vtk, error)
       end if
     end if
     if (allocated(error)) then

@@ -14,6 +14,8 @@ module epcont_report_results
                                    list_summary, list_zones
   use epcont_report_outcome, only: outcome_type
   use epcont_report_tables, only: write_contact, write_elements, write_history, write_nodes, write_summary, write_zones
+  use epcont_report_vtk_bodies, only: write_vtk_bodies
+  use epcont_report_vtk_contact, only: write_vtk_contact
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -34,11 +36,12 @@ module epcont_report_results
 
 contains
 
-  !> The listing and the tables; those of nodes and elements where the deck, or `all_tables`, asks for them.
-  subroutine write_results(run, stem, all_tables, error)
+  !> The listing and the tables; those of nodes and elements where the deck, or `all_tables`, asks for them. With `vtk` also
+  !! files for ParaView.
+  subroutine write_results(run, stem, all_tables, vtk, error)
     type(run_results), intent(in) :: run
     character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
-    logical, intent(in) :: all_tables
+    logical, intent(in) :: all_tables, vtk
     type(error_type), allocatable, intent(out) :: error
     logical :: nodes, elements
 
@@ -55,14 +58,18 @@ contains
       if (.not. allocated(error)) call write_history(stem, answer, error)
       if (.not. allocated(error) .and. nodes) call write_nodes(stem, model, answer, error)
       if (.not. allocated(error) .and. elements) call write_elements(stem, model, answer, error)
+      if (.not. allocated(error) .and. vtk) call write_vtk_bodies(stem, model, answer, run%outcome%status, error)
+      if (.not. allocated(error) .and. vtk .and. model%pairs > 0) &
+        call write_vtk_contact(stem, model, answer, run%outcome%status, error)
     end associate
   end subroutine write_results
 
   !> Remove what an earlier run has left: what is there is of one run, also where this one is stopped or has no answer.
   subroutine remove_results(stem)
     character(len=*), intent(in) :: stem
-    character(len=*), parameter :: suffix(7) = ['.lst         ', '.summary.csv ', '.contact.csv ', '.zones.csv   ', &
-                                                '.history.csv ', '.nodes.csv   ', '.elements.csv']
+    character(len=*), parameter :: suffix(9) = ['.lst         ', '.summary.csv ', '.contact.csv ', '.zones.csv   ', &
+                                                '.history.csv ', '.nodes.csv   ', '.elements.csv', '.vtu         ', &
+                                                '.contact.vtu ']
     integer :: i
 
     do i = 1, size(suffix)
