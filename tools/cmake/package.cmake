@@ -1,5 +1,7 @@
 # What `cmake --install` puts where, and the Debian package that `cpack -G DEB` makes of it.
 include(GNUInstallDirs)
+# What is installed is the program and its page: tests need not be built for it.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
 # The program prints its own manual page, from the table of options that it reads by.
 set(man_page "${PROJECT_BINARY_DIR}/epcont.1")
