@@ -9,7 +9,8 @@ module epcont_result_expectation
   private
   public :: expectation_type, new_expectation, solves_to_come
 
-  !> Operations in a second, assembly included, before any were measured: of one core with AVX2, 40 000 to 120 000 nodes.
+  !> Operations in a second, before any were measured: of one core with AVX2, assembly and what the system takes to give memory
+  !! included (40 000 and 120 000 nodes: 1.0e10 to 2.4e10).
   real(wp), parameter :: likely_rate = 1.0e10_wp
   !> What comes after the last solve, over what comes before the first: both grow with the mesh alone.
   real(wp), parameter :: end_part = 1.0_wp
