@@ -18,6 +18,8 @@ module epcont_result_expectation
   !! second solve on: 92 % of the numbers of solves expected are right within a factor 1.5; of the other methods, whose steps are
   !! even, 77 %. The order that the last two steps show serves worse (70 %): NEWTON is slow before it is fast.
   real(wp), parameter :: newton_order = 1.5_wp
+  !> A tolerance up to this is none, as of a scene that cannot yield.
+  real(wp), parameter :: least = 1.0e-30_wp
   !> Logarithm of a distance that is 1 but for rounding.
   real(wp), parameter :: no_distance = 1.0e-6_wp
 
@@ -63,7 +65,7 @@ contains
     integer :: left
 
     if (now%iteration == 1) self%distance = [real(wp) ::]
-    self%distance = [self%distance, max(now%change/self%plan%tolerance, now%residual/max(self%plan%off_curve, tiny(1.0_wp)))]
+    self%distance = [self%distance, max(now%change/max(self%plan%tolerance, least), now%residual/max(self%plan%off_curve, least))]
     if (over) then
       self%solves = self%solves + now%iteration
       self%load_steps = self%load_steps + 1
