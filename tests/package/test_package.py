@@ -183,4 +183,5 @@ if __name__ == "__main__":
     if missing:
         print("skipped: no " + ", ".join(missing))
         sys.exit(77)
+    print(__doc__)
     unittest.main()
