@@ -50,9 +50,9 @@ class Page(unittest.TestCase):
             self.assertTrue(line and line == line.rstrip(), line)
 
     def test_files(self):
-        """The files of a run with all tables are those of FILES."""
+        """The files of a run with all that can be asked for are those of FILES."""
         with tempfile.TemporaryDirectory() as place:
-            subprocess.run([PROGRAM, DECK, "-o", place, "--tables", "all", "--quiet"], check=True)
+            subprocess.run([PROGRAM, DECK, "-o", place, "--tables", "all", "--vtk", "--quiet"], check=True)
             written = {path.name.replace("hertz44", "", 1) for path in pathlib.Path(place).iterdir()}
         self.assertEqual(written, {line.split()[2] for line in section("FILES") if line.startswith(".IB DECK")})
 
