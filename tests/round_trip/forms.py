@@ -47,23 +47,23 @@ def restore_lines(model, lines):
     return changed
 
 
-def rewritten(path, form):
-    """The cards of a deck by a writer of our own: with commas, or cut to small fields."""
+def rewritten(path, form=None):
+    """The cards of a deck by a writer of our own, with commas; reals as they are, or cut to what a form leaves of them."""
     deck = read_cards(path)
     lines = [f"{key} = {value}" for key, value in deck.case.items()] + ["BEGIN BULK"]
     for card in deck.cards:
-        fields = card[1:] if form == "free" else [cut(field) for field in card[1:]]
+        fields = [cut(field, form) for field in card[1:]]
         while fields and not fields[-1]:
             fields.pop()
-        for i in range(0, len(fields), 8):
-            cells = [card[0] if i == 0 else ""] + fields[i:i + 8]
-            lines.append(",".join(cells) if form == "free" else "".join(cell.ljust(8) for cell in cells).rstrip())
+        lines += [",".join([card[0] if i == 0 else ""] + fields[i:i + 8]) for i in range(0, len(fields), 8)]
     return "\n".join(lines + ["ENDDATA", ""])
 
 
-def cut(field):
-    """A field in eight columns."""
-    return field if len(field) <= 8 else written(real(field), 8)
+def cut(field, form):
+    """What a form of pyNastran leaves of a field: eight columns; ten digits, where there is a D exponent."""
+    if form is None or len(field) <= 8:
+        return field
+    return written(real(field), 8) if form == "small" else written(float(f"{real(field):.9e}"), 16)
 
 
 def run(paths, out):
