@@ -27,6 +27,7 @@ class Maker:
         self.first = {}   # number of the first element of each body
         for name, elements in mesh.bodies.items():
             self.first[name] = 1 + sum(len(mesh.bodies[other]) for other in self.first)
+        self.elements = sum(map(len, mesh.bodies.values()))
 
     def find_contacts(self):
         """(slave, master) of each contact, their nodes in order."""
@@ -190,10 +191,9 @@ class Maker:
             for digit, value in moved:
                 for node in sorted(nodes):
                     lines += card("SPC", 1, node, digit, value)
-        element = sum(map(len, self.mesh.bodies.values()))
         for k, (name, (digits, nodes)) in enumerate(self.platens.items(), 1):
             lead, *others = (self.number[node] for node in nodes)
-            lines += [f"$ [platen] {name}"] + card("RBE2", element + k, lead, digits, *others)
+            lines += [f"$ [platen] {name}"] + card("RBE2", self.elements + k, lead, digits, *others)
         for node, digit in self.free:
             lines += ["$ [free]"] + card("SUPORT", self.number[node], digit)
         return lines

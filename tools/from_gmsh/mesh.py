@@ -54,7 +54,7 @@ def open_file(path, faults):
     failed = ""
     try:
         gmsh.open(str(path))
-        if not gmsh.model.mesh.getElements(SURFACE)[0] and path.suffix.lower() == ".geo":
+        if path.suffix.lower() == ".geo" and len(gmsh.model.mesh.getElements(SURFACE)[0]) == 0:
             gmsh.model.mesh.generate(2)
     except Exception as error:   # Gmsh raises nothing more special
         failed = str(error)
