@@ -14,7 +14,8 @@ sys.path[:0] = [str(TOP / "tools"), str(TOP / "tests" / "independent")]
 import gmsh  # noqa: E402
 from deck import read, real  # noqa: E402
 from from_gmsh.cards import card, written  # noqa: E402
-from from_gmsh.scene import PARAMETERS  # noqa: E402
+from from_gmsh.faults import Faults  # noqa: E402
+from from_gmsh.scene import PARAMETERS, read_scene  # noqa: E402
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 SCENES = TOP / "input" / "from_gmsh"
@@ -75,10 +76,10 @@ class Scenes(unittest.TestCase):
             self.near(table["zones"][0]["half_width"], width, 0.03)
             self.near(table["summary"]["total_contact_force"], 250.0, 1e-3)
 
-    def test_pin_in_lug(self):
+    def test_pin(self):
         """Persson; the same scene on a mesh of quadrilateral patches, by tools/decks, is in input/pin_in_lug."""
         by_hand = float(self.solved(TOP / "input/pin_in_lug/pin_in_lug.dat")["summary"]["max_pressure"])
-        for table in self.both("pin_in_lug"):
+        for table in self.both("pin"):
             self.near(table["summary"]["max_pressure"], 88.2111, 0.002)
             self.near(table["summary"]["max_pressure"], by_hand, 0.002)
             touching = [row for row in table["contact"] if float(row["force"]) > 0.0]
@@ -155,6 +156,16 @@ class Scenes(unittest.TestCase):
         self.assertGreater(min(areas), 0.0)
         for row in self.solved(self.place / "press_fit.dat")["contact"]:
             self.near(row["pressure"], lame(), 0.003)
+
+    def test_manual(self):
+        """The scene in input/README.md has every key there is, as it says, and no fault."""
+        text = (TOP / "input/README.md").read_text().partition('this has every key there is:\n')[2].partition("Names with blanks")[0]
+        (self.place / "wheel.toml").write_text("".join(line[4:] or "\n" for line in text.splitlines(True)))
+        faults = Faults("wheel.toml")
+        scene = read_scene(self.place / "wheel.toml", faults)
+        self.assertEqual(faults.errors + faults.notes, [])
+        for name in ("title", "mesh", "kind", "units", "materials", "bodies", "supports", "loads", "platens", "free", "contacts", "parameters"):
+            self.assertTrue(getattr(scene, name), name)
 
     def test_parameters(self):
         """Those of the scene are those of the program, but for what the scene says otherwise or has no use for."""

@@ -11,11 +11,11 @@ from from_gmsh.mesh import read_mesh
 from from_gmsh.scene import read_scene
 
 FORMATS = ["free", "small", "large"]
-SCENES = {"two_cylinders": {}, "pin_in_lug": {}, "blocks": {"blocks.toml": ("top.pressure = 250.0 ", "top.force = [0.0, -3750.0] ")}}
+SCENES = {"two_cylinders": {}, "pin": {}, "blocks": {"blocks.toml": ("top.pressure = 250.0 ", "top.force = [0.0, -3750.0] ")}}
 #: Of the largest of its kind, what Gmsh leaves of coordinates moves the answers: nine digits; or eight characters, decimal
 #: point, sign and exponent among them, of gaps of a ten-thousandth of the radius. Where all is flat, next to nothing.
-APART = {"large": {"two_cylinders": 1e-7, "pin_in_lug": 5e-5, "blocks": 1e-7},
-         "small": {"two_cylinders": 0.02, "pin_in_lug": 0.2, "blocks": 1e-6}}
+APART = {"large": {"two_cylinders": 1e-6, "pin": 5e-5, "blocks": 1e-7},
+         "small": {"two_cylinders": 0.02, "pin": 0.2, "blocks": 1e-6}}
 APART["free"] = APART["small"]
 
 

@@ -33,7 +33,9 @@ class Input(unittest.TestCase):
         """The deck by pyNastran in its forms, each by our own writer too; and the deck's own cards, cut to what a form leaves."""
         model = read_bdf(path)
         self.assertFalse(model.reject_lines + model.reject_cards)
-        restore_lines(model, lines_of(path))
+        changed = restore_lines(model, lines_of(path))
+        if path.parent.name == "from_gmsh":
+            self.assertFalse(changed)   # tools/deck numbers nodes along its lines
         made = []
         for form in FORMS:
             made.append(place / f"{path.stem}_{form}.dat")

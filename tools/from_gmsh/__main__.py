@@ -10,6 +10,7 @@ Exit status: 0 written; 2 the scene is rejected, or epcont rejects the deck; 3 u
 """
 import argparse
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -25,7 +26,7 @@ class Unusable(Exception):
 
 
 def make(scene_path, path, faults):
-    """Writes deck and mesh; says what has been made."""
+    """Writes deck and mesh; gives what made them."""
     scene = read_scene(scene_path, faults)
     try:
         from .mesh import read_mesh
@@ -43,7 +44,7 @@ def make(scene_path, path, faults):
     made = f"made by tools/deck from {scene_path.name} and {source.name}"
     write(mesh_path, maker.mesh_lines())
     write(path, maker.deck_lines(made, mesh_path.name))
-    return maker.told()
+    return maker
 
 
 def write(path, lines):
@@ -53,16 +54,20 @@ def write(path, lines):
         raise Unusable(f"{path} cannot be written: {error.strerror}") from error
 
 
-def check(path):
-    """epcont's own opinion, if there is an epcont."""
-    for preset in ("release", "debug", "sanitize"):
-        program = TOP / "build" / preset / "epcont"
-        if program.is_file():
-            run = subprocess.run([program, "--check", path], capture_output=True, text=True, check=False)
-            print(run.stdout + run.stderr, end="")
-            return REJECTED if run.returncode else 0
-    print("epcont is not built: tools/run DECK builds and runs it")
-    return 0
+def check(path, maker):
+    """epcont's own opinion, if there is an epcont; the nodes that it names, in the terms of the scene."""
+    program = next((p for p in (TOP / "build" / preset / "epcont" for preset in ("release", "debug", "sanitize")) if p.is_file()), None)
+    if program is None:
+        print("epcont is not built: tools/run DECK builds and runs it")
+        return 0
+    run = subprocess.run([program, "--check", path], capture_output=True, text=True, check=False)
+    print(run.stdout + run.stderr, end="")
+    for number in sorted({int(n) for n in re.findall(r"\bGRID (\d+)", run.stderr)}):
+        print(maker.described(number))
+    if not run.returncode:
+        return 0
+    print("mend the scene, not the deck; in the scene SPC1 and SPC are [support], SUPORT [free], RBE2 [platen], BLSEG and BCONP [[contact]]")
+    return REJECTED
 
 
 def main(arguments=None):
@@ -78,7 +83,7 @@ def main(arguments=None):
     try:
         if not path.suffix or not path.name.isascii() or set("'\"") & set(path.name):
             raise Unusable(f"{path}: the name of a deck ends in .dat, say, and has no quotes; the deck includes a file of like name")
-        told = make(options.scene, path, faults)
+        maker = make(options.scene, path, faults)
     except Rejected:
         print("\n".join(faults.notes + faults.errors), file=sys.stderr)
         print(f"{faults.file}: {len(faults.errors)} error{'s' * (len(faults.errors) != 1)}, no deck written", file=sys.stderr)
@@ -89,8 +94,8 @@ def main(arguments=None):
     except Exception as error:   # a user is not shown the inside of this program
         print(f"tools/deck: a fault of its own, {type(error).__name__}: {error}; please report it with the scene", file=sys.stderr)
         return UNUSABLE
-    print("\n".join(faults.notes + [f"{path}: {told}"]), flush=True)
-    return check(path)
+    print("\n".join(faults.notes + [f"{path}: {maker.told()}"]), flush=True)
+    return check(path, maker)
 
 
 if __name__ == "__main__":

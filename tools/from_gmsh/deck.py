@@ -228,3 +228,9 @@ class Maker:
                 kinds[kind] = kinds.get(kind, 0) + 1
         return f"{len(self.number)} nodes, " + ", ".join(f"{count} {kind}" for kind, count in kinds.items()) + \
             f"; bodies: {listed(self.mesh.bodies)}"
+
+    def described(self, number):
+        """Where the node of a GRID is."""
+        node = next(node for node, other in self.number.items() if other == number)
+        bodies = [name for name, elements in self.mesh.bodies.items() if any(node in nodes for _, nodes in elements)]
+        return f"GRID {number} is at {spot(self.mesh.place[node])}, on {listed(bodies)}"
