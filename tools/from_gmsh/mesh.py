@@ -86,18 +86,18 @@ def collect(path, faults):
 
 
 def groups(dimension):
-    """(name, entities) of each named group."""
+    """(name, entities) of each named group; each entity once, in whatever sense."""
     found = {}
     for _, tag in gmsh.model.getPhysicalGroups(dimension):
         name = gmsh.model.getPhysicalName(dimension, tag)
         if name:
-            found.setdefault(name, []).extend(int(entity) for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, tag))
+            found.setdefault(name, {}).update((abs(int(e)), None) for e in gmsh.model.getEntitiesForPhysicalGroup(dimension, tag))
     return found.items()
 
 
 def check_groups(mesh, faults):
     """Surfaces without a group, groups without a name."""
-    grouped = {int(e) for _, tag in gmsh.model.getPhysicalGroups(SURFACE) for e in gmsh.model.getEntitiesForPhysicalGroup(SURFACE, tag)}
+    grouped = {abs(int(e)) for _, tag in gmsh.model.getPhysicalGroups(SURFACE) for e in gmsh.model.getEntitiesForPhysicalGroup(SURFACE, tag)}
     for dimension, tag in gmsh.model.getPhysicalGroups():
         if dimension in KIND and not gmsh.model.getPhysicalName(dimension, tag):
             said = KIND[dimension]

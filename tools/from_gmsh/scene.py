@@ -137,7 +137,7 @@ def read_scene(path, faults: Faults):
     scene = Scene()
     top = Table(whole, "", faults)
     tables = {name: top.take(name) for name in TABLES}
-    scene.mesh = top.word("mesh", path.stem + ".geo", "a file of Gmsh, .geo or .msh", required=True)
+    scene.mesh = top.word("mesh", path.stem + ".geo", "a file of Gmsh, .geo or .msh", str.isprintable, required=True)
     scene.kind = top.word("kind", "plane strain", f"one of: {listed(KINDS)}", KINDS.__contains__, required=True)
     scene.title = top.word("title", "Two cylinders", "a line of text", str.isprintable) or path.stem
     scene.units = top.word("units", "N-MM", "a word of at most 8 characters, first a letter; nothing is converted",
