@@ -1,12 +1,18 @@
 """Every mistake in a scene is told: what is wrong, in which file and key, and what would be right."""
+import collections
 import os
 import pathlib
+import random
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
 
 TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
+sys.path.insert(0, str(TOOLS))
+from from_gmsh.faults import Faults, Rejected  # noqa: E402
+from from_gmsh.scene import read_scene  # noqa: E402
 
 GEO = """
 For k In {0:1}
@@ -140,10 +146,12 @@ MESH = [
     ('("face") = {3}', '("face") = {3, 1}', ["[[contact]] master: 'face' is in 2 pieces: (0, 0) to (2, 0); (2, 2) to (0, 2)",
                                              "one piece a line: a Physical Curve and a [[contact]] for each"]),
 ]
+JUNK = ["0", "-1", "1e40", "nan", "true", '"x"', '""', "[]", "{}", "[1]", "[[1, 2]]", "1979-05-27", "-0.0", '"y"', "{ x = 1 }", "[{}]", "[[]]", "123456789012345678901",
+        '"\\u0000"', '"\u00e9"', "steel", "PARAM", "contact", "load", "\n", "\n[free]\n", "\n[support.x]\n", "\n[[contact]]\n", "\nmaterial = 1\n", "\nbody.x.y.z = 1\n"]
 RING = [("{0, 2*k, 0, 1}", "{-1, 2*k, 0, 1}"), ("{0, 2*k + 2, 0, 1}", "{-1, 2*k + 2, 0, 1}")]
 
 
-class Faults(unittest.TestCase):
+class Mistakes(unittest.TestCase):
     maxDiff = None
 
     def setUp(self):
@@ -234,6 +242,24 @@ class Faults(unittest.TestCase):
             status, text = self.said(toml=self.replaced(TOML, "two.geo", mesh), geo="\u20ac")
             self.assertEqual(status, 2, text)
             self.assertIn(f"scene.toml: mesh: {mesh}", text)
+
+    def test_junk(self):
+        """Whatever stands for a value or a word of a scene, it is read or rejected."""
+        rng, outcomes = random.Random(1), collections.Counter()
+        for _ in range(1000):
+            text = TOML
+            for _ in range(rng.randint(1, 2)):
+                place = rng.choice(list(re.finditer(r"(?<== )[^#\n]+|[A-Za-z]+|\n.*\n", text)))
+                text = text[:place.start()] + rng.choice(JUNK) + text[place.end():]
+            (self.place / "scene.toml").write_text(text, encoding="utf-8")
+            faults = Faults("scene.toml")
+            try:
+                read_scene(self.place / "scene.toml", faults)
+                outcomes["read"] += 1
+            except Rejected:
+                outcomes["rejected"] += bool(faults.errors)
+        self.assertEqual(sum(outcomes.values()), 1000)
+        self.assertGreater(min(outcomes["read"], outcomes["rejected"]), 50)
 
 
 if __name__ == "__main__":
