@@ -26,6 +26,7 @@ class Gmsh(unittest.TestCase):
                 place = pathlib.Path(directory)
                 decks = self.write(name, place)
                 found = run(decks, place / "out")
+                self.assertEqual(found[name].status, "valid")
                 for form in FORMATS:
                     with self.subTest(form):
                         apart, where = found[name].apart(found[f"{name}_{form}"], discrete=False, tables=("contact", "nodes"))

@@ -8,6 +8,7 @@ from forms import FORMS, TOP, lines_of, read_bdf, restore_lines, rewritten, run,
 DECKS = sorted(TOP.glob("input/**/*.dat"))
 INCLUDED = sorted(TOP.glob("input/**/*.inc")) + sorted(TOP.glob("input/**/*.bdf"))
 SAME = 1e-10   # of the largest of its kind
+LARGE_FIELD = 1e-8   # sixteen columns leave eleven digits or more; what is left is how a scene magnifies them
 LOST = 3.0     # times what our own rounding to as many digits does: the same digits need not be lost
 
 
@@ -27,6 +28,7 @@ class Input(unittest.TestCase):
             found = run(runs, place / "out")
             for path in DECKS:
                 with self.subTest(path.name):
+                    self.assertTrue(found[path.stem].status == "valid" or path.parent.name == "faults", found[path.stem].status)
                     self.judge(path.stem, found)
 
     def through(self, path, place):
@@ -42,8 +44,9 @@ class Input(unittest.TestCase):
             write_bdf(model, made[-1], form)
             made.append(place / f"{path.stem}_{form}_twin.dat")
             made[-1].write_text(rewritten(made[-2]))
-            made.append(place / f"{path.stem}_{form}_cut.dat")
-            made[-1].write_text(rewritten(path, form))
+            if form != "large":
+                made.append(place / f"{path.stem}_{form}_cut.dat")
+                made[-1].write_text(rewritten(path, form))
         return made
 
     def judge(self, stem, found):
@@ -53,9 +56,9 @@ class Input(unittest.TestCase):
             there = found[f"{stem}_{form}"]
             apart, where = there.apart(found[f"{stem}_{form}_twin"])
             self.assertLessEqual(apart, SAME, f"{form} and its twin: {where}")
-            lost, _ = original.apart(found[f"{stem}_{form}_cut"], discrete=False)
             apart, where = original.apart(there, discrete=form == "large")
-            self.assertLessEqual(apart, LOST * lost + SAME, f"{form}: {where}")
+            allowed = LARGE_FIELD if form == "large" else LOST * original.apart(found[f"{stem}_{form}_cut"], discrete=False)[0] + SAME
+            self.assertLessEqual(apart, allowed, f"{form}: {where}")
 
 
 if __name__ == "__main__":
