@@ -121,6 +121,19 @@ class Scenes(unittest.TestCase):
             with self.subTest(changes):
                 self.near(self.approach(self.variant(*changes)), -0.01735714285714, 1e-9)
 
+    def test_ring_force(self):
+        """Spread over the area of the ring: the same axial stress everywhere."""
+        (self.place / "ring.geo").write_text((SCENES / "press_fit.geo").read_text() + 'Physical Curve("top") = {13};')
+        text = (SCENES / "press_fit.toml").read_text().replace("press_fit.geo", "ring.geo").replace("[load]", "[load]\ntop.force = [0.0, -1e5]")
+        (self.place / "ring.toml").write_text(text)
+        self.assertEqual(make(self.place / "ring.toml", self.place / "ring.dat").returncode, 0)
+        self.solved(self.place / "ring.dat")
+        rows = list(csv.DictReader((self.place / "ring.elements.csv").read_text().splitlines()))
+        hub = [float(row["sy"]) for row in rows if float(row["x"]) > 30.02]
+        self.assertGreater(len(hub), 20)
+        for stress in hub:
+            self.near(stress, -1e5 / (math.pi * (45.0**2 - 30.0**2)), 0.005)
+
     def test_travel(self):
         """A line that is moved by so much takes the place of the force, and a force on what is held has no effect."""
         table = self.variant(('[platen]\ntop = "y"\n', ""), ('[free]\ntop = "y"', "[support.top]\ny = -0.01735714285714286"),
