@@ -243,6 +243,13 @@ class Mistakes(unittest.TestCase):
             self.assertEqual(status, 2, text)
             self.assertIn(f"scene.toml: mesh: {mesh}", text)
 
+    def test_beyond_measure(self):
+        for value, said in (("9" * 400, "[material.steel] E: is " + "9" * 400), ("9" * 5000, "end of the file: is no TOML: "),
+                            ("[" * 3000 + "]" * 3000, "scene.toml: ")):
+            status, text = self.said(toml=self.replaced(TOML, "E = 210000.0", f"E = {value}"))
+            self.assertEqual(status, 2, text)
+            self.assertIn(said, text)
+
     def test_junk(self):
         """Whatever stands for a value or a word of a scene, it is read or rejected."""
         rng, outcomes = random.Random(1), collections.Counter()

@@ -1,5 +1,4 @@
 """The scene as its TOML file has it, checked as far as that goes without the mesh."""
-import math
 import re
 from dataclasses import dataclass, field
 
@@ -109,7 +108,7 @@ def real(value):
     """A number that is one; None where it is not."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return None
-    return float(value) if math.isfinite(value) and (value == 0.0 or 1e-30 <= abs(value) <= 1e30) else None
+    return float(value) if value == 0.0 or 1e-30 <= abs(value) <= 1e30 else None
 
 
 def positive(value):
@@ -124,7 +123,7 @@ def load(path, faults):
         faults.add("scene", "there is no such file", f"TOML files beside it: {listed(sorted(p.name for p in path.parent.glob('*.toml')))}")
     except (OSError, UnicodeDecodeError) as error:
         faults.add("scene", f"cannot be read: {error}", "a file of text in UTF-8")
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:   # TOMLDecodeError, or a number or a nesting beyond all measure
         match = re.fullmatch(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", str(error), re.DOTALL)
         place = f"line {match[2]}, column {match[3]}" if match and match[2] else "end of the file"
         faults.add(place, f"is no TOML: {match[1] if match else error}",
