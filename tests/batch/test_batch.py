@@ -122,7 +122,8 @@ class Lists(Case):
         self.decks("a.dat")
         for arguments in ([], ["a.dat"], ["-o", "out"], ["a.dat", "--list", "x", "-o", "out"], ["a.dat", "-o", "out", "-j", "0"],
                           ["a.dat", "-o", "out", "-j", "x"], ["a.dat", "-o", "out", "--seconds", "0"], ["a.dat", "-o", "out", "--chunk", "2"],
-                          ["a.dat", "-o", "out", "--seconds", "nan"], ["a.dat", "-o", "out", "--memory", "-1"], ["--collect", "out"]):
+                          ["a.dat", "-o", "out", "--seconds", "nan"], ["a.dat", "-o", "out", "--memory", "-1"], ["--collect", "out"],
+                          ["a.dat", "-o", "out", "--resum"], ["a.dat", "-o", "out", "--partition=x"], ["a.dat", "-o", "out", "--slurm", "-p"]):
             with self.subTest(arguments):
                 self.assertIn("tools/batch: ", self.run_it(3, *arguments).stderr)
         self.assertIn("no such program: tools/build makes it", self.run_it(3, "a.dat", "-o", "out", "--program", "nowhere").stderr)

@@ -52,7 +52,7 @@ def install():
         policy.write_text("#!/bin/sh\nexit 101\n")
         policy.chmod(0o755)
     try:
-        command = ["apt-get", "install", "-y", "--no-install-recommends", *PACKAGES]
+        command = ["apt-get", "install", "-y", "--no-install-recommends", "-o", "DPkg::Lock::Timeout=120", *PACKAGES]
         environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
         if subprocess.run(command, env=environment, capture_output=True, check=False).returncode:
             subprocess.run(["apt-get", "update"], env=environment, capture_output=True, check=True)
