@@ -102,8 +102,8 @@ class Watch:
                 return
             if queue is not None:
                 self.look_after(left, queue)
+            pause = SHORTEST if self.missing else min(1.3 * pause, LONGEST)
             time.sleep(pause)
-            pause = min(1.3 * pause, LONGEST)
 
     def look_after(self, left, queue):
         """Submit again what was killed; what was killed too often is lost. A task must be found missing twice: files may be late."""
