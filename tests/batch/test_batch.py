@@ -102,7 +102,7 @@ class Lists(Case):
 
     def test_a_table_hands_its_columns_on(self):
         self.decks("sub/a.dat", "sub/b.dat")
-        (self.place / "sub" / "list.csv").write_text("deck,young,note\na.dat,1.5,\"x, y\"\nb.dat,2.5,\n")
+        (self.place / "sub" / "list.csv").write_text("\ufeffdeck,young,note\na.dat,1.5,\"x, y\"\nb.dat,2.5,\n")
         self.run_it(0, "--list", "sub/list.csv", "-o", "out")
         self.assertEqual([("1.5", "x, y", "valid"), ("2.5", "", "valid")],
                          [(row["young"], row["note"], row["status"]) for row in self.table()])
@@ -132,6 +132,20 @@ class Lists(Case):
 
 
 class Misbehaving(Case):
+    def test_a_full_disk(self):
+        """It is said, with its status; the table is whole."""
+        self.decks(*(f"d{k}.dat" for k in range(12)))
+        small = self.place / "small"
+        small.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48k", "tmpfs", small], capture_output=True, check=False).returncode:
+            self.skipTest("no right to mount")
+        try:
+            run = self.run_it(3, *(f"d{k}.dat" for k in range(12)), "-o", "small/out")
+            self.assertIn("cannot be written", run.stderr)
+            self.assertEqual(12, len(self.table("small/out")))
+        finally:
+            subprocess.run(["umount", small], check=True)
+
     def test_one_that_fails_stops_no_other(self):
         names = ["segfault.dat", "killed.dat", "hangs.dat", "deaf.dat", "half.dat", "silent.dat", "strange.dat", "chatter.dat", "lies.dat",
                  "a.dat", "b.dat"]

@@ -73,6 +73,11 @@ class Fields(Sweep):
             self.assertEqual(self.table("alone")[0]["p_max"], row["p_max"])
         self.assertEqual([("set/a.dat", "5"), ("set/b.dat", "5.000")], [(row["deck"], row["P"]) for row in self.table()])
 
+    def test_line_ends_of_other_systems(self):
+        self.sweep(0, SMALL_FIELD.replace("\n", "\r\n"), "E,nu\r\n20400,0.29\r\n")
+        self.assertEqual(["MAT1    1       20400.          0.29"], self.cards("s_1.dat", "MAT1"))
+        self.checked()
+
     def test_titles_comments_and_includes(self):
         for path in (ROOT / "input" / "include").iterdir():
             self.deck(f"sub/{path.name}", path)

@@ -112,13 +112,20 @@ class Journal:
     """Open for adding; locked, and what the lock is inherited by are the runs: as long as one lives, nobody else begins."""
 
     def __init__(self, path, wait=False):
+        self.path = path
         self.descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
         lock(self.descriptor, path, wait)
         os.set_inheritable(self.descriptor, True)
         self.add({})   # what was cut off ends here
 
     def add(self, entry):
-        os.write(self.descriptor, (json.dumps(entry) + "\n").encode() if entry else b"\n")
+        line = (json.dumps(entry) + "\n").encode() if entry else b"\n"
+        try:
+            whole = os.write(self.descriptor, line) == len(line)
+        except OSError:
+            whole = False
+        if not whole:
+            raise Refused(f"{self.path}: cannot be written: is the disk full?")
 
 
 @contextlib.contextmanager

@@ -1,6 +1,7 @@
 """The decks of a batch: where they stand, where their results go, what they are made of."""
 import csv
 import hashlib
+import io
 import os
 import re
 from dataclasses import dataclass, field
@@ -25,7 +26,7 @@ def read_list(path):
     """The decks of a list, one path a line, or of a table (.csv) with a column `deck`; relative to the folder of the list."""
     folder = os.path.dirname(path) if os.path.isfile(path) else ""
     try:
-        with open(path, encoding="utf-8", errors="surrogateescape", newline="") as file:
+        with open(path, encoding="utf-8-sig", errors="surrogateescape", newline="") as file:
             text = file.read()
     except (OSError, ValueError) as error:
         raise Refused(f"{path}: the list cannot be read: {getattr(error, 'strerror', None) or error}") from None
@@ -40,12 +41,12 @@ def read_list(path):
 
 
 def read_lines(text):
-    lines = (line.strip() for line in text.splitlines())
+    lines = (line.strip() for line in text.split("\n"))
     return [Deck(line) for line in lines if line and not line.startswith(("#", "$"))]
 
 
 def read_table(path, text):
-    decks, rows = [], csv.DictReader(text.splitlines(), strict=True)
+    decks, rows = [], csv.DictReader(io.StringIO(text, newline=""), strict=True)
     try:
         if "deck" not in (rows.fieldnames or ()):
             raise Refused(f"{path}:1: a list that is a table needs a column `deck`")

@@ -58,8 +58,8 @@ def real(text, width):
     match = NUMBER.fullmatch(short)
     off = abs(Decimal(f"{match[1]}E{match[2] or 0}") - value)
     if off > abs(value) * Decimal(MOST_ROUNDED):
-        raise Unfit(f"{width} columns hold {short}, off by {float(off / abs(value)):.1g} of it; a large field (a * behind the card's name) "
-                    "or a free one (commas) holds it")
+        raise Unfit(f"{width} columns hold {short}, off by {float(off / abs(value)):.1g} of it; "
+                    "a large field (a * behind the card's name) or a free one (commas) holds it")
     return short
 
 

@@ -15,6 +15,7 @@ from .outcome import forget, row_of
 
 GRACE = 5.0             # s between asking a run to end and ending it
 MOST_SAID = 1 << 16     # of messages read
+IGNORED = (signal.SIGPIPE, signal.SIGXFSZ)   # by Python; not for its children
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -79,12 +80,14 @@ class Runner:
             command += ["--memory", f"{settings['memory']:g}"]
         try:
             os.makedirs(folder, exist_ok=True)
-            child = os.posix_spawn(settings["program"], command, self.environment, setpgroup=0, setsigmask=[], file_actions=[
-                (os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0), (os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0),
-                (os.POSIX_SPAWN_DUP2, said, 2)])
+            child = os.posix_spawn(settings["program"], command, self.environment, setpgroup=0, setsigmask=[], setsigdef=IGNORED,
+                                   file_actions=[(os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0),
+                                                 (os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0),
+                                                 (os.POSIX_SPAWN_DUP2, said, 2)])
         except OSError as error:
             os.close(said)
-            self.enter(deck, inputs, Ended(3, f"{error.filename or settings['program']}: cannot be started: {error.strerror}", 0, 0))
+            what = f"{error.filename or settings['program']}: cannot be started: {error.strerror}"
+            self.enter(deck, inputs, Ended(3, what, 0, 0))
             return
         self.running[child] = Run(deck, inputs, said, begun)
 

@@ -62,8 +62,9 @@ def queued():
 
 def reason(job, task):
     """Why a task has ended, as long as Slurm knows."""
+    command = ["scontrol", "--oneliner", "show", "job", f"{job}_{task}"]
     try:
-        done = subprocess.run(["scontrol", "--oneliner", "show", "job", f"{job}_{task}"], capture_output=True, text=True, check=False)
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
     except OSError:
         return "unknown to Slurm"
     state = re.search(r"\bJobState=(\S+)", done.stdout)
@@ -106,7 +107,7 @@ class Watch:
             time.sleep(pause)
 
     def look_after(self, left, queue):
-        """Submit again what was killed; what was killed too often is lost. A task must be found missing twice: files may be late."""
+        """Submit again what was killed; what was killed too often is lost. Missing twice, that is: files may be late."""
         gone = {task for task in left if not any((job, str(task)) in queue for job in self.jobs_of(task))}
         killed, self.missing = sorted(gone & self.missing), gone - self.missing
         again = []

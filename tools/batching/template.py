@@ -25,7 +25,7 @@ class Template:
     """`faults` has what is wrong with the deck itself, with file, line and columns."""
 
     def __init__(self, path, text, catalogue):
-        self.path, self.lines, self.catalogue = path, text.splitlines(), catalogue
+        self.path, self.lines, self.catalogue = path, re.sub(r"\r?\n?\Z", "", text).replace("\r\n", "\n").split("\n"), catalogue
         self.places, self.faults = [], []
         bulk = next((k + 1 for k, line in enumerate(self.lines) if line.upper().split("$")[0].split() == ["BEGIN", "BULK"]), 0)
         card, slot, ended = "", 0, False
@@ -92,7 +92,8 @@ class Template:
             line = lines[place.line].ljust(place.last)
             lines[place.line] = (line[:place.first] + text + line[place.last:]).rstrip()
             if "," in lines[place.line] and place.what and len(lines[place.line].split("$")[0].rstrip()) > LONGEST:
-                faults.append(f"column {place.name}, {value!r}: {self.path}:{place.line + 1}: the line has more than {LONGEST} characters")
+                faults.append(f"column {place.name}, {value!r}: {self.path}:{place.line + 1}: "
+                              f"the line has more than {LONGEST} characters")
         return "\n".join(self.moved(k, line, folder, faults) for k, line in enumerate(lines)) + "\n"
 
     def text_of(self, place, value):
