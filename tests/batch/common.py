@@ -13,21 +13,25 @@ PROGRAM = str(pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve())
 SMALL = ROOT / "input" / "hertz" / "hertz44_elastic.dat"
 REJECTED = ROOT / "input" / "faults" / "no_suport.dat"
 
-# Misbehaves as the name of the deck says; else it is the program itself.
+# Misbehaves as the names of the decks say; else it is the program itself.
 FAKE = """#!/bin/sh
 [ "$1" = --version ] && exec {program} --version
-echo "$1" >> {folder}/calls
-case "$1" in
-  *segfault*) kill -SEGV $$ ;;
-  *killed*) kill -KILL $$ ;;
-  *hangs*) echo $$ >> {folder}/pids; sleep 60 & wait ;;
-  *deaf*) trap '' TERM; echo $$ >> {folder}/pids; while :; do sleep 1; done ;;
-  *half*) stem=$(basename "$1" .dat); printf 'epcont 0.3.0\\n\\nDECK\\n  GRI' > "$3/$stem.lst"; exit 0 ;;
-  *silent*) exit 0 ;;
-  *strange*) exit 77 ;;
-  *chatter*) i=0; while [ $i -lt 20000 ]; do echo "a line of chatter $i"; i=$((i+1)); done >&2; exit 2 ;;
-  *lies*) {program} "$@"; exit 1 ;;
-esac
+out=; before=; for word; do [ "$before" = -o ] && out=$word; before=$word; done
+for deck; do
+  [ "$deck" = -o ] && break
+  echo "$deck" >> {folder}/calls
+  case "$deck" in
+    *segfault*) kill -SEGV $$ ;;
+    *killed*) kill -KILL $$ ;;
+    *hangs*) echo $$ >> {folder}/pids; sleep 60 & wait ;;
+    *deaf*) trap '' TERM; echo $$ >> {folder}/pids; while :; do sleep 1; done ;;
+    *half*) printf 'epcont 0.3.0\\n\\nDECK\\n  GRI' > "$out/$(basename "$deck" .dat).lst"; exit 0 ;;
+    *silent*) exit 0 ;;
+    *strange*) exit 77 ;;
+    *chatter*) i=0; while [ $i -lt 20000 ]; do echo "a line of chatter $i"; i=$((i+1)); done >&2; exit 2 ;;
+    *lies*) {program} "$@"; exit 1 ;;
+  esac
+done
 exec {program} "$@"
 """
 

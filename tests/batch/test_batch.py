@@ -160,6 +160,34 @@ class Misbehaving(Case):
         self.assertIn("chatter.dat: rejected: a line of chatter 0\n", run.stdout)
         self.nothing_runs()
 
+    def test_small_decks_share_a_process_and_bad_ones_run_alone(self):
+        names = [f"d{k:02d}.dat" for k in range(60)]
+        names[5:5] = ["segfault.dat", "half.dat", "a_rejected.dat", "strange.dat", "killed.dat"]
+        names[40:40] = ["b_rejected.dat", "hangs.dat", "other/segfault.dat", "missing.dat"]
+        self.decks(*(name for name in names if name != "missing.dat"))
+        (self.place / "list").write_text("\n".join(names))
+        self.run_it(1, "--list", "list", "-o", "out", "--seconds", "5", "--program", self.fake)
+        words = {"segfault": "crashed", "half": "incomplete", "a_rejected": "rejected", "strange": "internal error", "killed": "killed",
+                 "b_rejected": "rejected", "hangs": "timed out", "missing": "refused"}
+        rows = self.table()
+        self.assertEqual(names, [row["deck"] for row in rows])
+        self.assertEqual([words.get(os.path.basename(name)[:-4], "valid") for name in names], [row["status"] for row in rows])
+        self.assertEqual(["2"] * 2, [row["exit_status"] for row in rows if row["status"] == "rejected"])
+        self.assertIn("a_rejected.dat:77:1-4: ", rows[7]["message"])
+        called = self.calls()
+        self.assertLess(called.count("d00.dat"), 3)
+        self.assertEqual([], [name for name in names if os.path.basename(name) not in called])
+
+    def test_shared_processes_give_the_same_bytes(self):
+        names = [f"d{k:02d}.dat" for k in range(30)]
+        self.decks(*names)
+        self.run_it(0, *names, "-o", "out", "--program", self.fake)
+        self.assertEqual(names, self.calls())
+        self.run_it(0, "d07.dat", "-o", "alone")
+        for suffix in (".lst", ".summary.csv", ".contact.csv", ".history.csv"):
+            wanted = (self.place / "alone" / f"d07{suffix}").read_bytes()
+            self.assertEqual([], [name for name in names if (self.place / "out" / (name[:-4] + suffix)).read_bytes() != wanted])
+
     def test_results_of_an_earlier_run_are_not_taken(self):
         self.decks("a_silent.dat")
         self.run_it(0, "a_silent.dat", "-o", "out")

@@ -41,7 +41,7 @@ class Book:
         return plan
 
     def save(self, plan):
-        decks = [[deck.path, deck.place, deck.values] for deck in plan["decks"]]
+        decks = [[deck.path, deck.place, deck.values, deck.size] for deck in plan["decks"]]
         write_whole(self.plan_path, json.dumps({**plan, "decks": decks}, indent=0))
 
     def journal(self, name):

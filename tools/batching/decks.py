@@ -20,6 +20,7 @@ class Deck:
     path: str                                    # as it is named to the program and to people
     place: str = ""                              # its results below the folder of the batch, without their suffix
     values: dict = field(default_factory=dict)   # further columns of a list that is a table
+    size: int = 0                                # bytes, with what it includes
 
 
 def read_list(path):
