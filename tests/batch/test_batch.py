@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
 """tools/batch on this machine: the table, places, resuming, and programs that crash, hang or write half."""
 import os
+import pathlib
 import signal
 import subprocess
+import sys
 import time
 import unittest
 
-from common import PROGRAM, ROOT, SMALL, Case
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from batching.outcome import first_fault  # noqa: E402
+from common import PROGRAM, ROOT, SMALL, Case  # noqa: E402
 
 
 class Whole(Case):
@@ -147,13 +151,13 @@ class Misbehaving(Case):
             subprocess.run(["umount", small], check=True)
 
     def test_one_that_fails_stops_no_other(self):
-        names = ["segfault.dat", "killed.dat", "hangs.dat", "deaf.dat", "half.dat", "silent.dat", "strange.dat", "chatter.dat", "lies.dat",
+        names = ["segfault.dat", "killed.dat", "hangs.dat", "deaf.dat", "half.dat", "silent.dat", "strange.dat", "chatter.dat", "lies.dat", "cut.dat",
                  "a.dat", "b.dat"]
         self.decks(*names)
         run = self.run_it(1, *names, "-o", "out", "-j", "2", "--seconds", "1", "--program", self.fake)
         self.assertEqual({"segfault.dat": "crashed", "killed.dat": "killed", "hangs.dat": "timed out", "deaf.dat": "timed out",
                           "half.dat": "incomplete", "silent.dat": "incomplete", "strange.dat": "internal error", "chatter.dat": "rejected",
-                          "lies.dat": "incomplete", "a.dat": "valid", "b.dat": "valid"}, self.words())
+                          "lies.dat": "incomplete", "cut.dat": "incomplete", "a.dat": "valid", "b.dat": "valid"}, self.words())
         self.assertIn("segfault.dat: crashed: by SIGSEGV", run.stdout)
         self.assertIn("hangs.dat: timed out: no end within 1 s", run.stdout)
         self.assertIn("strange.dat: internal error: exit status 77", run.stdout)
@@ -163,12 +167,13 @@ class Misbehaving(Case):
     def test_small_decks_share_a_process_and_bad_ones_run_alone(self):
         names = [f"d{k:02d}.dat" for k in range(60)]
         names[5:5] = ["segfault.dat", "half.dat", "a_rejected.dat", "strange.dat", "killed.dat"]
+        names[20:20] = ["full.dat"]
         names[40:40] = ["b_rejected.dat", "hangs.dat", "other/segfault.dat", "missing.dat"]
         self.decks(*(name for name in names if name != "missing.dat"))
         (self.place / "list").write_text("\n".join(names))
         self.run_it(1, "--list", "list", "-o", "out", "--seconds", "5", "--program", self.fake)
         words = {"segfault": "crashed", "half": "incomplete", "a_rejected": "rejected", "strange": "internal error", "killed": "killed",
-                 "b_rejected": "rejected", "hangs": "timed out", "missing": "refused"}
+                 "b_rejected": "rejected", "hangs": "timed out", "full": "refused", "missing": "refused"}
         rows = self.table()
         self.assertEqual(names, [row["deck"] for row in rows])
         self.assertEqual([words.get(os.path.basename(name)[:-4], "valid") for name in names], [row["status"] for row in rows])
@@ -187,6 +192,11 @@ class Misbehaving(Case):
         for suffix in (".lst", ".summary.csv", ".contact.csv", ".history.csv"):
             wanted = (self.place / "alone" / f"d07{suffix}").read_bytes()
             self.assertEqual([], [name for name in names if (self.place / "out" / (name[:-4] + suffix)).read_bytes() != wanted])
+
+    def test_warnings_are_no_faults(self):
+        said = "a.dat:3:9-16: warning: a remark\n  GRID 1\n  ^^^^\na.dat:5:1-4: unknown card\n  GRIT 1\na.dat:9: later\n"
+        self.assertEqual("a.dat:5:1-4: unknown card", first_fault(said))
+        self.assertEqual("", first_fault("a.dat:3:9: warning: a remark\n  GRID 1\n"))
 
     def test_results_of_an_earlier_run_are_not_taken(self):
         self.decks("a_silent.dat")

@@ -98,6 +98,13 @@ class Refusals(Sweep):
                 self.refused(SMALL_FIELD, f"E,nu\n20400,.3\n{value},.3\n", f"t.csv:3: column E, {value!r}: s.in:{line}:17-24: MAT1 field 3 (E): ",
                              words, "1 faults, nothing is written")
 
+    def test_continued_large_fields(self):
+        """A small-field line behind half a row of large fields begins a new row."""
+        deck = TEXT.replace("MAT1    1       20400.          .29", "MAT1*   1               20400.                          .29\n+       %a%")
+        self.refused(deck, "a\nx\n", ":9-16: MAT1 field 12 (ST): a real such as")
+        deck = deck.replace("+       %a%", "*       %a%")
+        self.refused(deck, "a\nx\n", ":9-24: MAT1 field 6 (RHO): a real such as")
+
     def test_kinds(self):
         deck = SMALL_FIELD.replace("FORCE   1       41      0 ", "FORCE   1       %node%  0 ").replace("PARAM   GAPGEOM YES", "PARAM   GAPGEOM %geom%")
         self.refused(deck, "E,nu,node,geom\n1.,.3,41.5,NO\n1.,.3,41,long_words\n1.,.3,123456789,NO\n",

@@ -61,9 +61,9 @@ def whole(listing, word):
 
 
 def first_fault(said):
-    """The first message that is no warning and no note, with its place."""
+    """The first message that is no warning, with its place."""
     for line in said.splitlines():
-        if line.strip() and not line.startswith(" ") and not re.search(r":\d[\d:-]*: (warning|note): ", line):
+        if line.strip() and not line.startswith(" ") and not re.search(r":\d[\d:-]*: warning: ", line):
             return line.strip()
     return ""
 
