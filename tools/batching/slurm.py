@@ -93,9 +93,12 @@ class Watch:
 
     def wait(self, show):
         """`show(ends)` is given the state now and then."""
-        pause = SHORTEST
+        pause, answered = SHORTEST, True
         while True:
             queue = queued()            # before the journals: what has left the queue has written them
+            if queue is None and answered:
+                print("squeue does not answer: waiting for it, and for what ends meanwhile", file=sys.stderr)
+            answered = queue is not None
             ends = self.book.entries()[0]
             show(ends)
             left = self.unfinished(ends)
