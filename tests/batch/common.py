@@ -60,8 +60,9 @@ class Case(unittest.TestCase):
         program = () if "--collect" in arguments or "--program" in arguments else ("--program", PROGRAM)
         return [sys.executable, "-B", str(ROOT / "tools" / tool), *map(str, arguments), *program]
 
-    def run_it(self, status, *arguments, tool="batch"):
-        run = subprocess.run(self.command(tool, *arguments), cwd=self.place, capture_output=True, text=True, timeout=120, check=False)
+    def run_it(self, status, *arguments, tool="batch", **options):
+        run = subprocess.run(self.command(tool, *arguments), cwd=self.place, capture_output=True, text=True, timeout=120, check=False,
+                             **options)
         self.assertEqual(status, run.returncode, run.stdout + run.stderr)
         return run
 

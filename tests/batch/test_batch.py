@@ -154,12 +154,12 @@ class Misbehaving(Case):
         names = ["segfault.dat", "killed.dat", "hangs.dat", "deaf.dat", "half.dat", "silent.dat", "strange.dat", "chatter.dat", "lies.dat", "cut.dat",
                  "a.dat", "b.dat"]
         self.decks(*names)
-        run = self.run_it(1, *names, "-o", "out", "-j", "2", "--seconds", "1", "--program", self.fake)
+        run = self.run_it(1, *names, "-o", "out", "-j", "2", "--seconds", "3", "--program", self.fake)
         self.assertEqual({"segfault.dat": "crashed", "killed.dat": "killed", "hangs.dat": "timed out", "deaf.dat": "timed out",
                           "half.dat": "incomplete", "silent.dat": "incomplete", "strange.dat": "internal error", "chatter.dat": "rejected",
                           "lies.dat": "incomplete", "cut.dat": "incomplete", "a.dat": "valid", "b.dat": "valid"}, self.words())
         self.assertIn("segfault.dat: crashed: by SIGSEGV", run.stdout)
-        self.assertIn("hangs.dat: timed out: no end within 1 s", run.stdout)
+        self.assertIn("hangs.dat: timed out: no end within 3 s", run.stdout)
         self.assertIn("strange.dat: internal error: exit status 77", run.stdout)
         self.assertIn("chatter.dat: rejected: a line of chatter 0\n", run.stdout)
         self.nothing_runs()
@@ -324,6 +324,82 @@ class StoppedBatch(Case):
         self.assertIn("another tools/batch is at work there", self.run_it(3, "a.dat", "-o", "out").stderr)
         process.terminate()
         process.communicate()
+
+
+# Runs the tasks at once, one after the other. (tests/slurm/run has the real thing.)
+SBATCH = """#!/bin/sh
+cat > {folder}/script
+for word; do case $word in --array=*) tasks=${{word#--array=}} ;; esac; done
+echo "$@" >> {folder}/submitted
+for task in $(echo "$tasks" | tr , ' '); do SLURM_ARRAY_TASK_ID=$task sh {folder}/script > /dev/null 2>&1; done
+wc -l < {folder}/submitted
+"""
+SQUEUE = """#!/bin/sh
+[ -e {folder}/answers ] && exit 0
+touch {folder}/answers
+exit 1
+"""
+SCONTROL = """#!/bin/sh
+echo "JobId=1 JobState=NODE_FAIL Reason=None"
+"""
+
+
+class StandIn(Case):
+    """A Slurm of three scripts."""
+
+    def setUp(self):
+        super().setUp()
+        for name, text in (("sbatch", SBATCH), ("squeue", SQUEUE), ("scontrol", SCONTROL)):
+            path = self.place / "bin" / name
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text.format(folder=self.place))
+            path.chmod(0o755)
+        self.environment = {**os.environ, "PATH": f"{self.place / 'bin'}:{os.environ['PATH']}"}
+
+    def submit(self, status, names, *arguments):
+        (self.place / "list").write_text("\n".join(names))
+        run = self.run_it(status, "--list", "list", "-o", "out", "--slurm", "--program", self.fake, *arguments, env=self.environment)
+        return run, (self.place / "submitted").read_text().splitlines()
+
+    def test_what_is_killed_is_submitted_again_and_named_at_last(self):
+        names = [f"d{k}.dat" for k in range(5)] + ["killed.dat", "rejected.dat"] + [f"e{k}.dat" for k in range(5)]
+        self.decks(*names)
+        run, submitted = self.submit(1, names, "--chunk", "4", "--partition=short", "--mem=2G", "-j", "2")
+        words = {"killed.dat": "lost", "rejected.dat": "rejected"}
+        self.assertEqual({name: words.get(name, "valid") for name in names}, self.words())
+        self.assertEqual(3, len(submitted))
+        self.assertIn("--array=0,1,2 ", submitted[0])
+        self.assertRegex(submitted[1], "--array=[012] ")
+        for line in submitted:
+            self.assertTrue(line.endswith("--cpus-per-task=2 --partition=short --mem=2G"), line)
+        self.assertIn("killed.dat: lost: killed 3 times, last: NODE_FAIL; see out/.batch/task", run.stdout)
+        self.assertIn("squeue does not answer", run.stderr)
+        self.assertEqual(3, self.calls().count("killed.dat"))
+
+    def test_resume_submits_the_rest_only(self):
+        names = [f"d{k}.dat" for k in range(6)]
+        self.decks(*names)
+        self.assertIn("6 decks in 3 tasks", self.submit(0, names, "--chunk", "2")[0].stderr)
+        (self.place / "d3.dat").write_bytes((self.place / "d3.dat").read_bytes().replace(b"20400.", b"20500."))
+        run, submitted = self.submit(0, names, "--resume")
+        self.assertIn("1 decks in 1 tasks", run.stderr)
+        self.assertEqual(2, len(submitted))
+        self.assertEqual(2, self.calls().count("d3.dat"))
+        self.submit(0, names, "--resume")
+        self.assertEqual(2, len((self.place / "submitted").read_text().splitlines()))
+
+    def test_no_slurm(self):
+        self.decks("a.dat")
+        run = self.run_it(3, "a.dat", "-o", "out", "--slurm", "--program", self.fake, env={**os.environ, "PATH": self.path_without()})
+        self.assertIn("sbatch cannot be started", run.stderr)
+
+    def path_without(self):
+        """Nothing but the shell's own tools."""
+        folder = self.place / "few"
+        folder.mkdir()
+        for name in ("sh", "cat", "env"):
+            os.symlink(f"/bin/{name}", folder / name)
+        return str(folder)
 
 
 if __name__ == "__main__":
