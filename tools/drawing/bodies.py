@@ -85,7 +85,7 @@ def draw(figure, run, heading, scale=1, window=None, yielded=False):
         figure.colorbar(drawn, cax=axes.inset_axes(bar), extend="max", orientation="vertical" if beside else "horizontal",
                         label=f"equivalent stress, {run.stress_unit()}")
     # Sides of elements too small to be told apart would hide the colours.
-    large = [shape for shape in shapes if np.ptp(shape, axis=0).min() > 0.02 * max(wide, high)]
+    large = [shape for shape in shapes if np.ptp(shape, axis=0).min() > 0.03 * max(wide, high)]
     axes.add_collection(PolyCollection(large, facecolors="none" if run.solved else "#dde4ec", edgecolors="white" if run.solved else GREY,
                                        linewidths=0.25))
     outline = run.sides()
