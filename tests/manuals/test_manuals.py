@@ -8,6 +8,7 @@ import os
 import pathlib
 import re
 import subprocess
+import tempfile
 import unittest
 import urllib.parse
 
@@ -103,6 +104,31 @@ class Manual(unittest.TestCase):
         named = {(page.parent / link).resolve() for page in documents() for link in links(page)}
         for picture in sorted(INPUT.glob("*/pictures/*.png")):
             self.assertIn(picture.resolve(), named)
+
+
+class Examples(unittest.TestCase):
+    """The lines of the manual are cards: what they refer to may be missing, but every field is as it must be."""
+
+    @staticmethod
+    def faults(text):
+        with tempfile.TemporaryDirectory() as place:
+            deck = pathlib.Path(place) / "example.dat"
+            deck.write_text(text, encoding="ascii")
+            run = subprocess.run([os.environ["EPCONT_PROGRAM"], "--check", deck], capture_output=True, text=True, check=False, cwd=place)
+        return run.returncode, [line for line in run.stderr.splitlines() if line.startswith(str(deck) + ":")]
+
+    def test_cards(self):
+        part = MANUAL[MANUAL.index("### Case control"):MANUAL.index("## Choices")]
+        lines = [line[4:] for line in re.findall(r"^    (?!sed|tools).*", part, re.MULTILINE)]
+        _, faults = self.faults("\n".join(lines + ["ENDDATA", ""]))
+        self.assertGreater(len(faults), 10)   # GRIDs that are missing: the cards were read
+        self.assertEqual([fault for fault in faults[:-1] if not re.search("there is no|a ring in a deck of plane elements", fault)], [])
+
+    def test_parameters(self):
+        deck = (INPUT / "hertz" / "hertz900.dat").read_text(encoding="ascii")
+        for example in re.findall(r"^\| \w+ \| `(PARAM +(\w+) .*?)` \|", MANUAL, re.MULTILINE):
+            other = re.sub(rf"(?m)^PARAM +{example[1]} .*\n", "", deck)
+            self.assertEqual(self.faults(other.replace("BEGIN BULK\n", f"BEGIN BULK\n{example[0]}\n"))[0], 0, example[0])
 
 
 class Links(unittest.TestCase):
