@@ -2,13 +2,14 @@
 
     tools/bench --quick     up to 11 000 nodes, 3 turns: about ten minutes
     tools/bench             up to 42 000 nodes, 5 turns: about an hour, most of it CalculiX's
-    tools/bench --part 2    one part only: its table on standard output, nothing saved; --quick --part 4: half a minute
+    tools/bench --part 2    one part only; --quick --part 4: half a minute
 
 Part 1: two cylinders (`tools/decks hertz N`, CTRIA3), whole programs, against CalculiX and scikit-fem. Part 2: the dense
 contact problem alone, against packages for quadratic programs. Part 3: the factorization's part of dgemm's rate, how
 time and memory grow to 170 000 unknowns, and what the deck of 44 nodes costs beside an empty program. Part 4: the solve part,
 numbering to displacements, stage by stage beside the best libraries bare. Everything on one thread; the programs take turns, times are medians, ratios the medians of those of each turn.
-Tables go to standard output and with a picture to tools/benchmark/results.md and results.png.
+What a part measured is kept in build/benchmark/part*.json. Once all four are there, their tables go to
+tools/benchmark/results.md and with a picture to results.png, each with its own command and load; to standard output in any case.
 """
 import argparse
 import json
@@ -84,6 +85,11 @@ def part4(place, sizes, turns):
     return [solve_part.one(RELEASE, place, n, turns, say) for n in sizes]
 
 
+def kept(part):
+    """Where what a part measured is kept."""
+    return TOP / f"build/benchmark/part{part}.json"
+
+
 def machine():
     try:
         model = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.MULTILINE)[1]
@@ -92,7 +98,7 @@ def machine():
     version = re.search(r"Version (\S+)", subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout)[1]
     names = [line.split("==") for line in (HERE / "requirements.txt").read_text().split() if "==" in line]
     packages = ", ".join(f"{name} {number}" for name, number in names if name not in ("matplotlib",))
-    return (f"{model}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f} at the start. "
+    return (f"{model}, {os.cpu_count()} processors. "
             f"CalculiX {version}, Python {platform.python_version()}, {packages}.")
 
 
@@ -105,18 +111,21 @@ def main():
     options = parser.parse_args()
     turns = options.turns or (3 if options.quick else 5)
     sizes = options.nodes or (NODES[:-1] if options.quick else NODES)
-    about = machine()
+    command = shlex.join(["tools/bench", *sys.argv[1:]])
     with tempfile.TemporaryDirectory() as directory:
         place = pathlib.Path(directory)
         solved, growing = (options.nodes or (all_sizes[:-1] if options.quick else all_sizes) for all_sizes in (SOLVED, GROWING))
         does = {1: lambda: part1(place, sizes, turns), 3: lambda: part3(place, sizes, growing, turns), 4: lambda: part4(place, solved, turns),
-                2: lambda: part2(place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 60)}
-        rows = {part: does[part]() for part in ((options.part,) if options.part else (4, 3, 2, 1))}
-    text = report.page(rows, shlex.join(["tools/bench", *sys.argv[1:]]), about)
+                2: lambda: part2(place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 20)}
+        for part in (options.part,) if options.part else (4, 3, 1, 2):
+            load = f"load {os.getloadavg()[0]:.1f} at the start"
+            kept(part).write_text(json.dumps({"command": command, "load": load, "rows": does[part]()}), encoding="ascii")
+    parts = {part: json.loads(kept(part).read_text()) for part in (1, 2, 3, 4) if kept(part).exists()}
+    text = report.page(parts if len(parts) == 4 else {options.part: parts[options.part]}, machine())
     print(text)
-    if not options.part:
+    if len(parts) == 4:
         (HERE / "results.md").write_text(text + "\n", encoding="utf-8")
-        report.draw(rows, HERE / "results.png")
+        report.draw({part: found["rows"] for part, found in parts.items()}, HERE / "results.png")
 
 
 main()

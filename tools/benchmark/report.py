@@ -129,9 +129,11 @@ def solve_part(rows):
         table(["equations", "", *STAGES.values(), "assembly", "condition"], stages)])
 
 
-def page(rows, command, about):
-    text = ["# Benchmarks", f"`{command}` on {about}", "Measured once by that command, one thread each; another machine, or a busy one, gives other "
-            "times. Ratios are steadier."]
+def page(parts, about):
+    """`parts`: of each number the rows, and the command and the load that they were measured by and under."""
+    rows = {part: found["rows"] for part, found in parts.items()}
+    by = "; ".join(f"part {part} by `{found['command']}`, {found['load']}" for part, found in sorted(parts.items()))
+    text = ["# Benchmarks", f"{about} One thread each. Measured once: {by}. Another machine, or a busy one, gives other times. Ratios are steadier."]
     text += [cylinders(rows[1])] if 1 in rows else []
     text += [contact(rows[2])] if 2 in rows else []
     text += [factor(rows[3], rows.get(1, []))] if 3 in rows else []
