@@ -71,7 +71,7 @@ def draw(figure, run, heading, scale=1, window=None, yielded=False):
     """Equivalent stress on the bodies, displaced; the yielded elements enclosed; undeformed outlines if enlarged."""
     axes = figure.subplots()
     place = run.x + scale * run.u
-    limits = frame(run, place, window)
+    limits = frame(run, place if window else np.concatenate([place, run.x]), window)
     shapes = [place[nodes] for nodes in run.around]
     seen = np.array([bool((shape.max(axis=0) > limits[:, 0]).all() and (shape.min(axis=0) < limits[:, 1]).all()) for shape in shapes])
     stress = run.stress["equivalent_stress"]
