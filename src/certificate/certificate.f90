@@ -62,6 +62,7 @@ contains
     real(wp), intent(in), optional :: rounding_error  !! of strains and contact forces; not given: that of double precision
     real(wp), allocatable :: residual(:, :), element_force(:)
     real(wp) :: exact, forces, largest_stress, stored, terms, tolerance, work
+    logical :: vanishes
 
     if (present(rounding_error)) certificate%tolerance = max(exact_tolerance, rounding_errors*rounding_error)
     tolerance = certificate%tolerance
@@ -79,6 +80,8 @@ contains
     ! Where nothing presses on anything, gaps are as exact as the travels that close them.
     if (forces == 0.0_wp) certificate%length_scale = roundings*epsilon(1.0_wp)/tolerance*maxval(abs(displacement))
     certificate%length_scale = max(certificate%length_scale, tiny(1.0_wp))
+    ! Work below the range of numbers is no work that anything could be held against.
+    vanishes = forces > 0.0_wp .and. maxval(abs(displacement)) > 0.0_wp .and. forces*maxval(abs(displacement)) < tiny(1.0_wp)
     call check_pairs(model, maxval(abs(load)), displacement, force, residual, certificate)
     call gather_ties(model, residual)
     certificate%equilibrium = ratio(maxval(abs(residual)), max(maxval(element_force), maxval(abs(load)), &
@@ -88,8 +91,8 @@ contains
     call add_pair_work(model, displacement, force, work, terms)
     certificate%energy = ratio(abs(work - stored), terms)
     exact = tolerance*certificate%length_scale + certificate%gap_rounding
-    certificate%balanced = certificate%motion_strain <= most_roundings .and. certificate%equilibrium <= tolerance &
-                           .and. certificate%energy <= tolerance &
+    certificate%balanced = .not. vanishes .and. certificate%motion_strain <= most_roundings &
+                           .and. certificate%equilibrium <= tolerance .and. certificate%energy <= tolerance &
                            .and. certificate%smallest_force >= -tolerance*certificate%force_scale &
                            .and. certificate%smallest_gap >= -exact &
                            .and. certificate%force_gap <= exact*certificate%force_scale &

@@ -165,7 +165,8 @@ contains
     end select
   end subroutine turn
 
-  !> A side's middle node may leave the middle as long as the element does not fold over at a corner.
+  !> A side's middle node may leave the middle as long as the element does not fold over at a corner; a side that bulges more
+  !! than half a circle does is hardly meant.
   subroutine check_middles(deck, card, i, x, faults)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: card, i
@@ -182,6 +183,14 @@ contains
       call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)// &
                             ': a middle node is so far from the middle of its side that the element folds over', &
                             'nodes near the middles of the sides')
+      return
+    end do
+    do k = 1, 3
+      after = mod(k, 3) + 1
+      if (norm2(2.0_wp*x(:, 3 + k) - x(:, k) - x(:, after)) <= norm2(x(:, after) - x(:, k))) cycle
+      call faults%add_warning(deck%place(card, i, 3), deck%identity(card, i)// &
+                              ': a middle node is farther from the middle of its side than half of that side is long', &
+                              'nodes near the middles of the sides')
       return
     end do
   end subroutine check_middles

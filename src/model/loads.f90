@@ -1,6 +1,7 @@
 !> Nodal loads from FORCE and PLOADX1.
 module epcont_model_loads
   use epcont_base_edge, only: edge_point, edge_point_count, edge_points
+  use epcont_base_geometry, only: turned
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index, new_id_index
   use epcont_deck_card_kinds, only: card_force, card_ploadx1
@@ -78,19 +79,15 @@ contains
     integer, intent(in) :: element, side
     integer, intent(in) :: from            !! the node of the first pressure
     type(model_type), intent(inout) :: model
-    real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
     type(edge_point) :: point(edge_point_count)
-    real(wp) :: depth, inward(2), direction(2), at_ends(2), value
+    real(wp) :: depth, direction(2), at_ends(2), value
     integer :: ends(3), k, p
 
     ends = model%edge(element, side)
     at_ends = merge(pressure, pressure([2, 1]), ends(1) == from)
     point = edge_points(model%edge_coordinates(ends))
     do p = 1, edge_point_count
-      inward = [-point(p)%tangent(2), point(p)%tangent(1)]   ! the element lies to the left
-      direction = inward
-      if (theta /= 0.0_wp) direction = [cos(theta*degree)*inward(1) - sin(theta*degree)*inward(2), &
-                                        sin(theta*degree)*inward(1) + cos(theta*degree)*inward(2)]
+      direction = turned([-point(p)%tangent(2), point(p)%tangent(1)], theta)   ! from inward: the element lies to the left
       depth = model%depth(element, point(p)%x(1))
       value = at_ends(1) + (at_ends(2) - at_ends(1))*point(p)%along
       do k = 1, size(ends)

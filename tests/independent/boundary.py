@@ -3,7 +3,7 @@
 Nodes have any names: rows of arrays, or ids.
 """
 from dataclasses import dataclass
-from math import cos, pi, radians, sin
+from math import cos, fmod, pi, radians, sin
 
 from kinds import GAUSS, solved
 
@@ -53,7 +53,7 @@ def edge_forces(side, x, first, pressures, angle):
     nodes = [a, b, *side.nodes[2:]]
     along = x[b][0] - x[a][0], x[b][1] - x[a][1]
     left = along[0] * (side.inner[1] - x[a][1]) > along[1] * (side.inner[0] - x[a][0])
-    turn = radians(angle) + (pi / 2 if left else -pi / 2)
+    turn = radians(fmod(angle, 360.0)) + (pi / 2 if left else -pi / 2)
     for values, place, tangent, t in side_points([x[node] for node in nodes]):
         traction = (pressures[0] + (pressures[1] - pressures[0]) * t) * side.depth(place[0])
         push = (tangent[0] * cos(turn) - tangent[1] * sin(turn), tangent[0] * sin(turn) + tangent[1] * cos(turn))

@@ -20,6 +20,7 @@ BAD_OUTPUT = re.compile(r"Sanitizer|runtime error|Backtrace|Error termination|Fo
 BAD_NUMBER = re.compile(rb"\bnan\b|\binf(?:inity)?\b|\*\*\*", re.IGNORECASE)
 PLACE = re.compile(r":\d+:\d+(?:-\d+)?: ")
 RELATIVE = ("equilibrium_residual", "energy_balance")
+BAD_CONDITION = 1e8
 LEAK = re.compile(r"LeakSanitizer")
 
 
@@ -143,6 +144,10 @@ def rows_of(run, name, table):
         return list(csv.DictReader(file))
 
 
+def summary_of(run, name):
+    return {row["key"]: row["value"] for row in rows_of(run, name, "summary")}
+
+
 def told_tolerance(run, name, tolerance):
     """That of the certificate: single precision has a larger one."""
     found = re.search(r"(?m)^CERTIFICATE .*; tolerance +(\S+)\)", (run.out / f"{name}.lst").read_text(encoding="latin-1"))
@@ -152,7 +157,7 @@ def told_tolerance(run, name, tolerance):
 def fault_of_certificate(run, name, tolerance):
     """The certificate's figures, held against its tolerance."""
     tolerance = told_tolerance(run, name, tolerance)
-    summary = {row["key"]: row["value"] for row in rows_of(run, name, "summary")}
+    summary = summary_of(run, name)
     for key in RELATIVE:
         if not number(summary.get(key)) <= tolerance:
             return f"valid with {key} = {summary.get(key)}"
@@ -187,6 +192,8 @@ def fault_of_answer(run, name, place, tolerance):
     except (deck_reader.DeckError, OverflowError, ZeroDivisionError):
         return None
     except (OSError, KeyError, ValueError, IndexError, TypeError) as error:
+        if any("a middle node is farther" in line for line in run.told(name)):
+            return None  # What faces such a side is found elsewhere there.
         return f"verify: {type(error).__name__} {error}"
     return "verify: " + next(line for line in lines if line.endswith("WRONG")) if faults else None
 
@@ -194,12 +201,15 @@ def fault_of_answer(run, name, place, tolerance):
 def fault_of_twin(run, name, other, twin, place, tolerance):
     """Two decks that say the same must give the same, but for what conditioning and travels take of the digits."""
     one, two = run.word(name), other.word(twin)
+    # Roundings and the smallest pivot are others in another order: where the condition is bad, one may be just below a limit.
+    if {one, two} in ({"valid", "ill-conditioned"}, {"valid", "not certified"}) and number(summary_of(run, name)["condition"]) > BAD_CONDITION:
+        return None
     # Beyond a limit load rounding decides which of two refusals it is.
     if WORDS.get(one) != WORDS.get(two):
         return f"twin: {one}, {two}"
     if one != "valid":
         return None
-    condition = {row["key"]: row["value"] for row in rows_of(run, name, "summary")}["condition"]
+    condition = summary_of(run, name)["condition"]
     bound = max(told_tolerance(run, name, 0.0) / 10, tolerance, 1e-13 * number(condition))
     for table, key, columns in (("nodes", "node", ("ux", "uy")), ("elements", "element", ("sx", "sy", "sz", "txy"))):
         ours, theirs = ({row[key]: row for row in rows_of(a, b, table)} for a, b in ((run, name), (other, twin)))

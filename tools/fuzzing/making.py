@@ -55,7 +55,7 @@ class Maker:
         if pick.random() < 0.05:
             return self.in_two_files(name, text, pick, how + " include")
         twin = None
-        if whole and pick.random() < 0.1:
+        if whole and pick.random() < 0.1 and not any(means_other_things(card) for card in deck.cards):
             cards = list(deck.cards)
             pick.shuffle(cards)
             twin = text_of(Deck(deck.head, cards), ["free", "large"], pick).encode()
@@ -77,6 +77,11 @@ class Maker:
             if lines:
                 spoil_bytes(lines, pick)
         return b"\n".join(lines)
+
+
+def means_other_things(card):
+    """In another form, or in another place: the deck's end; a coordinate without point, which large fields alone may have."""
+    return card.name == "ENDDATA" or card.name == "GRID" and any(text.lstrip("+-").isdigit() for text in card.data[2:5])
 
 
 def noise(pick):
