@@ -19,7 +19,24 @@ module epcont_report_results
   use epcont_result_answer, only: answer_type
   implicit none
   private
-  public :: run_results, write_results
+  public :: run_results, write_results, result_file
+
+  !> A file of results: what stands behind the name of the deck, and what it holds.
+  type :: result_file
+    character(len=14) :: suffix
+    character(len=76) :: text
+  end type result_file
+
+  type(result_file), parameter, public :: result_files(*) = [ &
+    result_file('.lst', 'the listing, for people and for diffing: the same bytes on every run'), &
+    result_file('.summary.csv', 'outcome, approaches, certificate and accuracy, in 17 digits like all tables'), &
+    result_file('.contact.csv', 'pairs: place, normal, initial gap, force, pressure, gap, status'), &
+    result_file('.zones.csv', 'runs of touching pairs: force, largest pressure, half-width'), &
+    result_file('.history.csv', 'iterations: change, residual, pairs in contact, plastic elements'), &
+    result_file('.nodes.csv', 'displacements and reactions; where the deck or --tables all asks for it'), &
+    result_file('.elements.csv', 'stresses and states; where the deck or --tables all asks for it'), &
+    result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
+    result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps')]
 
   !> One deck's way, from its cards to its answer.
   type :: run_results
@@ -67,13 +84,10 @@ contains
   !> Remove what an earlier run has left: what is there is of one run, also where this one is stopped or has no answer.
   subroutine remove_results(stem)
     character(len=*), intent(in) :: stem
-    character(len=*), parameter :: suffix(9) = ['.lst         ', '.summary.csv ', '.contact.csv ', '.zones.csv   ', &
-                                                '.history.csv ', '.nodes.csv   ', '.elements.csv', '.vtu         ', &
-                                                '.contact.vtu ']
     integer :: i
 
-    do i = 1, size(suffix)
-      call remove_file(stem//trim(suffix(i)))
+    do i = 1, size(result_files)
+      call remove_file(stem//trim(result_files(i)%suffix))
     end do
   end subroutine remove_results
 
