@@ -1,7 +1,7 @@
 !> Files of VTK's XML format for unstructured grids (`.vtu`): ParaView, meshio and pyvista read them.
 !>
-!> Numbers are in full, as base64 within the XML: the number of bytes (8 of its own), then the values. Points and vectors have
-!> three components, the third 0.
+!> Numbers are in full, as base64 within the XML: the number of bytes (8 of its own), then the values. Points and vectors
+!> have three components, the third 0.
 module epcont_report_vtk_grid
   use, intrinsic :: iso_fortran_env, only: int8
   use epcont_base_base64, only: base64
