@@ -93,12 +93,12 @@ class Manual(unittest.TestCase):
 
     def test_every_deck_is_named(self):
         for deck in sorted(INPUT.glob("*/*.dat")):
-            self.assertIn(f"]({deck.relative_to(INPUT).as_posix()})", MANUAL)
+            self.assertTrue(f"]({deck.relative_to(INPUT).as_posix()})" in MANUAL, deck)
 
     def test_every_deck_has_its_picture_in_the_manual(self):
         for deck in sorted(INPUT.glob("*/*.dat")):
             if deck.name != "no_suport.dat":  # rejected: there is nothing to draw
-                self.assertIn(f"]({deck.parent.name}/pictures/{deck.stem}.png)", MANUAL)
+                self.assertTrue(f"]({deck.parent.name}/pictures/{deck.stem}.png)" in MANUAL, deck)
 
     def test_every_picture_is_shown_somewhere(self):
         named = {(page.parent / link).resolve() for page in documents() for link in links(page)}

@@ -30,6 +30,8 @@ KNOWN = {
     "patch": ["10"], "include": ["10"],
     "gears": ["1554.41*sqrt(1-(s/0.24573)**2)"],
     "roller": ["3030.18*sqrt(1-(s/0.21009)**2)", "2474.13*sqrt(1-(s/0.25731)**2)"],
+    "from_gmsh/two_cylinders.dat": ["1659.9*sqrt(1-(s/0.19177)**2)"], "from_gmsh/pin.dat": [persson(100, 45)],
+    "from_gmsh/press_fit.dat": ["40.575"], "from_gmsh/blocks.dat": ["250"],
     "ring_joint": ["332.10*sqrt(1-((s-53)/0.11513)**2)"],
 }
 
