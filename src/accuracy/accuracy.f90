@@ -6,7 +6,7 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_patches, only: new_patch_table, patch_table
   use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
-  use epcont_accuracy_unit_motion, only: loaded_at_support, unit_forces, unit_strains
+  use epcont_accuracy_unit_motion, only: unit_forces, unit_strains
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, new_basis
@@ -24,11 +24,16 @@ module epcont_accuracy_accuracy
 
   !> Elements that are named as the worst.
   integer, parameter, public :: worst_count = 5
-  !> The nodes of a zone, and not the line between them, are in contact: what that does to the approach, over
-  !! largest pressure (h/b)**2 b/E*. Measured (tests/accuracy).
+  !> Safety of an approach's error that is a product of two fields, whose parts may cancel. Measured (tests/accuracy), as are the
+  !! next three.
+  real(wp), parameter :: of_product = 1.35_wp
+  !> The nodes of a zone, and not the line between them, are in contact: by how much bodies of four-node elements come too near for
+  !! that, over largest pressure (h/b)**2 b/E*.
   real(wp), parameter :: between_pairs = 0.2_wp
-  !> Safety of an approach's error that is a product of two fields, whose parts may cancel. Measured likewise.
-  real(wp), parameter :: of_product = 1.4_wp
+  !> Contact ends at a node, within a side of where it truly does: what that leaves uncertain, over the same with the side's length
+  !! for h. A distance d from the true end counts as d**2; more beyond yield, where the pressure ends more abruptly and the width
+  !! grows with the load, not with its root.
+  real(wp), parameter :: of_end = 0.04_wp, of_end_yielded = 0.2_wp
   !> Errors that differ by less than this part are equal.
   real(wp), parameter :: equal = 1.0e-6_wp
   !> An error in the energy norm up to this is rounding.
@@ -87,7 +92,7 @@ contains
     allocate (accuracy%zone(0))
     if (.not. any(answer%contact%force > 0.0_wp)) return
 
-    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, line, smooth), accuracy)
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, smooth), accuracy)
     if (.not. answer%converged) return   ! the scene is that of a load that was not carried
 
     problem = scale_problem(run%scene%problem)
@@ -162,8 +167,8 @@ contains
     end function order_at
   end subroutine assess_zones
 
-  !> Approaches. Under loads at the one SUPORT freedom the error is the energy of the error over the load; else it is the product of
-  !! the errors of the scene and of its answer to a unit load there. Contact at nodes alone adds its part.
+  !> Approaches: the product of the errors of the scene and of its answer to a unit load along the motion, signed, with what contact
+  !! at nodes alone lets the bodies come too near.
   pure subroutine assess_approach(model, motions, numbering, run, answer, table, material, smooth, unit_force, accuracy)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
@@ -176,28 +181,31 @@ contains
     real(wp), intent(in) :: unit_force(:, :)   !! contact forces under unit loads [pairs, motions]
     type(accuracy_type), intent(inout) :: accuracy
     real(wp), allocatable :: strain(:, :)
+    real(wp) :: between, end_error, short
     integer :: j, z
 
     do j = 1, motions%count
       if (answer%contact%motion_free(j) .or. all(unit_force(:, j) == 0.0_wp)) cycle
       accuracy%approach_grows(j) = is_point_load(model, motions, table, j)
-      associate (operator => run%scene%operator, resultant => run%scene%problem%resultant(j))
-        accuracy%approach(j) = 0.0_wp
-        if (loaded_at_support(model, motions)) then
-          accuracy%approach(j) = sum(accuracy%element)/abs(resultant)
-        else if (accuracy%energy_norm > 0.0_wp) then
-          strain = unit_strains(model, numbering, run%scene, unit_force(:, j))
-          accuracy%approach(j) = of_product*abs(error_product(model, table, material, operator%volume, run%state%strain, smooth, &
-                                                              strain, recover_strains(model, table, operator%volume, strain)))
-        end if
-      end associate
+      short = 0.0_wp
+      if (accuracy%energy_norm > 0.0_wp) then
+        strain = unit_strains(model, numbering, run%scene, unit_force(:, j))
+        associate (volume => run%scene%operator%volume)
+          short = error_product(model, table, material, volume, run%state%strain, smooth, &
+                                strain, recover_strains(model, table, volume, strain))
+        end associate
+      end if
+      end_error = 0.0_wp
       do z = 1, size(accuracy%zone)
         associate (zone => accuracy%zone(z))
           if (zone%peak == 0) cycle
-          accuracy%approach(j) = accuracy%approach(j) + abs(sum(unit_force(answer%zones(z)%pairs, j)))*between_pairs* &
-            answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length*surface_compliance(model, table, zone%peak)
+          between = sum(unit_force(answer%zones(z)%pairs, j))*answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length* &
+                    surface_compliance(model, table, zone%peak)
+          if (zone%order == 4) short = short - between_pairs*between
+          end_error = end_error + abs(between)*merge(4.0_wp, 1.0_wp, zone%order == 6)   ! two spacings a side
         end associate
       end do
+      accuracy%approach(j) = of_product*abs(short) + merge(of_end_yielded, of_end, any(answer%plastic))*end_error
     end do
   end subroutine assess_approach
 

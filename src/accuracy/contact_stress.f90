@@ -5,36 +5,60 @@ module epcont_accuracy_contact_stress
   use epcont_material_curve, only: material_type
   use epcont_material_total_theory, only: respond, response_type
   use epcont_model_model, only: model_type, plane_stress
-  use epcont_result_contact_line, only: contact_line
   implicit none
   private
   public :: smooth_pressures, surface_compliance
 
+  !> Of a side's nodes that share in a gap, those with stresses must have this part.
+  real(wp), parameter :: least_weight = 0.5_wp
+
 contains
 
-  !> The normal stress at each pair, as a pressure, on the side on which its area lies [stress] [pairs].
-  pure function smooth_pressures(model, table, material, line, smooth) result(pressure)
+  !> The normal stress at each pair, as a pressure: the mean of both sides', of which each has errors of its own; 0 where neither
+  !! is of elements [stress] [pairs].
+  pure function smooth_pressures(model, table, material, smooth) result(pressure)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
     type(material_type), intent(in) :: material(:)   !! of each section
-    type(contact_line), intent(in) :: line
     real(wp), intent(in) :: smooth(:, :)             !! strains [4, places]
     real(wp), allocatable :: pressure(:)
-    type(response_type) :: response
-    integer :: k
+    real(wp) :: side(2), weight(2)
+    logical :: seen(2)
+    integer :: i, k, n
 
     allocate (pressure(model%pairs), source=0.0_wp)
     do k = 1, model%pairs
-      associate (node => line%node(k), n => model%normal(:, k))
-        if (table%around%start(node) == table%around%start(node + 1)) cycle
-        ! The first place of a node has its own number, and that of an element around it.
-        response = respond(material(model%section(table%around%group(table%around%start(node)))), smooth(:, node))
-        associate (s => response%stress)
-          pressure(k) = -(s(1)*n(1)**2 + s(2)*n(2)**2 + 2.0_wp*s(4)*n(1)*n(2))
+      side = 0.0_wp
+      weight = 0.0_wp
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        associate (node => model%row_node(i))
+          if (table%around%start(node) == table%around%start(node + 1)) cycle
+          if (model%held(1, model%leader(1, node)) .and. model%held(2, model%leader(2, node))) cycle
+          n = merge(1, 2, i == model%row_start(k))   ! the row's first node is one side, the others share the other
+          side(n) = side(n) + model%row_weight(i)*normal_pressure(model, table, material, smooth(:, node), node, model%normal(:, k))
+          weight(n) = weight(n) + model%row_weight(i)
         end associate
-      end associate
+      end do
+      seen = abs(weight) > least_weight
+      if (any(seen)) pressure(k) = sum(side/merge(weight, 1.0_wp, seen), mask=seen)/count(seen)
     end do
   end function smooth_pressures
+
+  !> Normal stress of a smooth strain at a node, as a pressure.
+  pure real(wp) function normal_pressure(model, table, material, strain, node, n)
+    type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
+    type(material_type), intent(in) :: material(:)
+    real(wp), intent(in) :: strain(4), n(2)
+    integer, intent(in) :: node
+    type(response_type) :: response
+
+    ! The first place of a node has its own number, and that of an element around it.
+    response = respond(material(model%section(table%around%group(table%around%start(node)))), strain)
+    associate (s => response%stress)
+      normal_pressure = -(s(1)*n(1)**2 + s(2)*n(2)**2 + 2.0_wp*s(4)*n(1)*n(2))
+    end associate
+  end function normal_pressure
 
   !> 1/E*, of both sides of a pair: (1 - nu**2)/E, 1/E of sheets, 0 of nodes without elements [1/stress].
   pure real(wp) function surface_compliance(model, table, pair) result(compliance)

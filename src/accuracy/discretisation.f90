@@ -48,7 +48,8 @@ contains
     energy = integrals(model, table, material, volume, strain, smooth, strain, smooth, .true.)
   end function error_energy
 
-  !> Of two fields the integral of error times error, with the secant moduli of the first [energy].
+  !> Of two fields the integral of error times error: what the stress of the first, on the material's curve, is off by, times the
+  !! strain that the second is [energy].
   pure real(wp) function error_product(model, table, material, volume, strain, smooth, strain2, smooth2) result(product)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
@@ -80,10 +81,10 @@ contains
         do k = 1, kind(n)%places
           if (same) then
             energy(e) = energy(e) + sum(kind(n)%v(:last - first + 1, k)*volume(first:last))* &
-              density(material(model%section(e)), own(:, k), error(:, k), error(:, k), same)
+              density(material(model%section(e)), own(:, k), error(:, k), error(:, k))
           else
             energy(e) = energy(e) + sum(kind(n)%v(:last - first + 1, k)*volume(first:last))* &
-              density(material(model%section(e)), own(:, k), error(:, k), error2(:, k), same)
+              density(material(model%section(e)), own(:, k), error(:, k), error2(:, k))
           end if
         end do
       end associate
@@ -155,30 +156,27 @@ contains
   end function kind_of
 
   !> Stress error times strain error.
-  pure real(wp) function density(material, own, error, error2, same)
+  pure real(wp) function density(material, own, error, error2)
     type(material_type), intent(in) :: material
     real(wp), intent(in) :: own(4)                 !! strain of the element
     real(wp), intent(in) :: error(4), error2(4)    !! smooth less own
-    logical, intent(in) :: same
     type(response_type) :: response, after
-    real(wp) :: cross, shear
+    real(wp) :: cross
 
-    shear = material%shear
     if (material%yields) then
       response = respond(material, own)
-      if (same) then
-        after = respond(material, own + error)
-        if (response%curve%yielded .or. after%curve%yielded) then
-          density = dot_product(after%stress - response%stress, error)
-          return
-        end if
+      after = respond(material, own + error)
+      if (response%curve%yielded .or. after%curve%yielded) then
+        density = dot_product(after%stress - response%stress, error2)
+        return
       end if
-      shear = response%curve%modulus/3.0_wp
     end if
-    cross = material%bulk - 2.0_wp*shear/3.0_wp
-    if (material%sheet) cross = 2.0_wp*shear*cross/(cross + 2.0_wp*shear)   ! and the strain zz counts as none
-    density = cross*(error(1) + error(2) + error(3))*(error2(1) + error2(2) + error2(3)) &
-              + shear*(2.0_wp*(error(1)*error2(1) + error(2)*error2(2) + error(3)*error2(3)) + error(4)*error2(4))
+    associate (shear => material%shear)
+      cross = material%bulk - 2.0_wp*shear/3.0_wp
+      if (material%sheet) cross = 2.0_wp*shear*cross/(cross + 2.0_wp*shear)   ! and the strain zz counts as none
+      density = cross*(error(1) + error(2) + error(3))*(error2(1) + error2(2) + error2(3)) &
+                + shear*(2.0_wp*(error(1)*error2(1) + error(2)*error2(2) + error(3)*error2(3)) + error(4)*error2(4))
+    end associate
   end function density
 
   !> Work of the stresses on the strains, as `error_energy` measures it [energy].

@@ -11,7 +11,7 @@ module epcont_accuracy_unit_motion
   use epcont_plasticity_linear_scene, only: linear_scene
   implicit none
   private
-  public :: unit_forces, unit_strains, loaded_at_support
+  public :: unit_forces, unit_strains
 
 contains
 
@@ -44,24 +44,4 @@ contains
 
     strain = scene%operator%strains(model, scene%bodies%displacements(model, numbering, pair_forces(model, force), 0.0_wp))
   end function unit_strains
-
-  !> Do all loads act at the one SUPORT freedom, and nothing else drives the scene?
-  pure logical function loaded_at_support(model, motions)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    real(wp) :: elsewhere
-    integer :: c, node
-
-    loaded_at_support = .false.
-    if (motions%count /= 1) return
-    elsewhere = 0.0_wp
-    do node = 1, model%nodes
-      do c = 1, 2
-        if (model%leader(c, node) == motions%node(1) .and. c == motions%component(1)) cycle
-        if (.not. model%held(c, model%leader(c, node))) elsewhere = max(elsewhere, abs(model%load(c, node)))
-        elsewhere = max(elsewhere, abs(model%prescribed(c, node)))
-      end do
-    end do
-    loaded_at_support = elsewhere == 0.0_wp .and. all(model%initial_gap >= 0.0_wp)
-  end function loaded_at_support
 end module epcont_accuracy_unit_motion

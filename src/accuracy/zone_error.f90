@@ -1,7 +1,7 @@
 !> Errors of a zone's largest pressure and of its half-width.
 !>
-!> Four things tell of them: how the pressures scatter about a parabola through the nearest pairs, the normal stress that the
-!> smooth strains give there, how many pairs the zone has, and how far the half-width changes if the last three pairs say
+!> Four things tell of them: how far the peak is off a parabola through the nearest pairs, off the normal stress that the smooth
+!> strains of both sides give there, how many pairs the zone has, and how far the half-width changes if the last three pairs say
 !> where the pressure vanishes instead of two. Their weights are measured (tests/accuracy).
 module epcont_accuracy_zone_error
   use epcont_base_kinds, only: wp
@@ -13,11 +13,11 @@ module epcont_accuracy_zone_error
 
   !> Pairs that the parabola goes through.
   integer, parameter :: around_peak = 7
-  !> Weights in the error of the largest pressure for elements of 3, 4 and 6 nodes: of the scatter, of the smooth stress, of h/b and
-  !! of (h/b)**2.
-  real(wp), parameter :: of_scatter = 0.6_wp
-  real(wp), parameter :: of_stress(3) = [0.35_wp, 0.1_wp, 0.25_wp]
-  real(wp), parameter :: of_spacing(3) = [0.16_wp, 0.07_wp, 0.0_wp], of_square(3) = [0.0_wp, 0.0_wp, 0.25_wp]
+  !> Weights in the error of the largest pressure for elements of 3, 4 and 6 nodes: of the distance from the parabola, of that
+  !! from the smooth stress, of the smaller of the two, and of h/b. Smooth stresses of linear elements may be off by more than
+  !! the pressure: of three nodes they count where the parabola says as much, of four they do not.
+  real(wp), parameter :: of_parabola(3) = [0.0_wp, 4.0_wp, 0.2_wp], of_stress(3) = [0.0_wp, 0.0_wp, 1.0_wp]
+  real(wp), parameter :: of_smaller(3) = [2.2_wp, 0.0_wp, 0.0_wp], of_spacing(3) = [0.11_wp, 0.018_wp, 0.016_wp]
   !> Part of a spacing that the end of a zone is uncertain by, for the same; and at most.
   real(wp), parameter :: of_end(3) = [0.25_wp, 0.25_wp, 0.18_wp], end_most = 0.5_wp
   !> Pressures that differ by less than this part are the same all over the zone.
@@ -36,6 +36,7 @@ module epcont_accuracy_zone_error
     real(wp) :: half_width = -1.0_wp     !! negative: unknown [length]
     real(wp) :: resolution = 1.0_wp      !! spacing of the pairs over half of the zone's length
     real(wp) :: half_length = 0.0_wp     !! of the zone, to where the pressure vanishes [length]
+    integer :: order = 3                 !! nodes of the elements there
   end type zone_error
 
 contains
@@ -51,7 +52,7 @@ contains
     type(zone_error) :: error
     real(wp), allocatable :: s(:)    !! place of each of its pairs, from the first on [length]
     integer, allocatable :: inward(:)   !! its pairs from one end on
-    real(wp) :: open, step(2), uncertain(2), beyond(2), spacing, largest
+    real(wp) :: off(2), open, step(2), uncertain(2), beyond(2), spacing, largest
     logical :: even, mirrored(2), sharp(2)
     integer :: e, kind, n, peak
 
@@ -62,6 +63,7 @@ contains
     if (largest <= 0.0_wp) return
     s = places(model, line, zone%pairs)
     mirrored = line%mirrored(zone%pairs([1, n]))
+    error%order = order
     kind = findloc([3, 4, 6], order, dim=1)
     beyond = 0.0_wp
     uncertain = 0.0_wp
@@ -92,9 +94,10 @@ contains
     end if
     if (zone%half_width >= 0.0_wp) error%half_width = sum(uncertain)*merge(1.0_wp, 0.5_wp, any(mirrored))
     if (error%grows) return
-    error%pressure = of_scatter*abs(largest - parabola(s, pressure(zone%pairs), mirrored, peak, spacing)) &
-                     + of_stress(kind)*abs(largest - stress_pressure(error%peak)) &
-                     + largest*(of_spacing(kind)*error%resolution + of_square(kind)*error%resolution**2)
+    off = [off_parabola(s, pressure(zone%pairs), mirrored, peak, spacing, error%resolution), &
+           abs(largest - stress_pressure(error%peak))]
+    error%pressure = of_parabola(kind)*off(1) + of_stress(kind)*off(2) + of_smaller(kind)*minval(off) &
+                     + of_spacing(kind)*largest*error%resolution
     if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
 
@@ -157,12 +160,13 @@ contains
     end associate
   end function vanishes
 
-  !> The pressure at the peak by the least-squares parabola of p**2 through the pairs nearest to it, mirrored ones too.
-  pure real(wp) function parabola(s, p, mirrored, peak, spacing) result(value)
+  !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, mirrored ones too. Of too few pairs
+  !! for one: what Hertz's pressure falls by over half a spacing.
+  pure real(wp) function off_parabola(s, p, mirrored, peak, spacing, resolution) result(off)
     real(wp), intent(in) :: s(:), p(:)
     logical, intent(in) :: mirrored(2)
     integer, intent(in) :: peak
-    real(wp), intent(in) :: spacing
+    real(wp), intent(in) :: spacing, resolution
     real(wp) :: x(3*size(s)), y(3*size(s)), moment(0:4), right(0:2), determinant(0:1)
     logical :: taken(3*size(s))
     integer :: i, k, n
@@ -174,7 +178,7 @@ contains
     taken = [spread(.false., 1, n), spread(.not. mirrored(1), 1, n), spread(.not. mirrored(2), 1, n)]
     if (mirrored(1)) taken(n + 1) = .true.
     if (mirrored(2)) taken(3*n) = .true.
-    value = p(peak)
+    off = p(peak)*resolution**2/8.0_wp
     if (count(.not. taken) <= 3) return
     moment = 0.0_wp
     right = 0.0_wp
@@ -189,6 +193,7 @@ contains
                    + moment(2)*(moment(1)*moment(3) - moment(2)**2), &
                    right(0)*(moment(2)*moment(4) - moment(3)**2) - moment(1)*(right(1)*moment(4) - right(2)*moment(3)) &
                    + moment(2)*(right(1)*moment(3) - right(2)*moment(2))]
-    if (determinant(0) > dependent*moment(0)*moment(2)*moment(4)) value = sqrt(max(0.0_wp, determinant(1)/determinant(0)))
-  end function parabola
+    if (determinant(0) > dependent*moment(0)*moment(2)*moment(4)) &
+      off = abs(p(peak) - sqrt(max(0.0_wp, determinant(1)/determinant(0))))
+  end function off_parabola
 end module epcont_accuracy_zone_error

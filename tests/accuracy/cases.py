@@ -1,8 +1,8 @@
 """Scenes with known answers, for the score of the accuracy statement.
 
-Three sets. `tuned`: on these the weights in src/accuracy were chosen. `second`: other radii, moduli, loads, meshes; two weights
-were raised after it was seen. `fresh`: never used to choose anything. Truth is a closed form, or what meshes many times as fine
-converge to (named below).
+Sets of like scenes, of other radii, moduli, loads, meshes: on `tuned`, `second`, `fresh` and `third` the weights in src/accuracy were
+chosen (the later ones judged earlier choices first), `unseen` was never used to choose anything. `third` and `unseen` have plane stress
+too. Truth is a closed form, or what meshes many times as fine converge to (named below).
 """
 import math
 import pathlib
@@ -24,7 +24,10 @@ RING = {"p1": 332.1, "q1": -0.038057}
 BALL = {(0.01, False): -0.000995109, (0.01, True): -0.000997378, (0.015, False): -0.00223318, (0.015, True): -0.00224052,
         (0.02, False): -0.00395964, (0.02, True): -0.00397651, (0.028, False): -0.00772771, (0.028, True): -0.00777236,
         (0.035, False): -0.0120288, (0.035, True): -0.0121139}
-PERSSON = {half: 100.0 * quads.persson(half)[1] for half in (30.0, 34.0, 37.0, 41.0, 45.0, 52.0, 57.0, 60.0, 68.0, 72.0, 75.0)}
+PERSSON = {half: 100.0 * quads.persson(half)[1] for half in (30.0, 34.0, 37.0, 41.0, 45.0, 52.0, 57.0, 60.0, 68.0, 72.0, 75.0, 33.0, 49.0, 64.0,
+                                                          36.0, 47.0, 61.0, 70.0)}
+#: Two cylinders in plane stress beyond yield, load 4 (spacing 0.0022 to 0.0012); the largest pressure, next to the end, does not converge there.
+SHEET_YIELDING = {"q1": -0.00069}
 LAYER = {"p1": 95.965, "b1": 0.85699}
 NAFEMS_HERTZ = {"p1": 3585.36, "b1": 6.21463}
 
@@ -47,8 +50,8 @@ def hertz(load=10.0, young=20400.0, nu=0.29):
     return {"p1": 2 * load / (math.pi * b), "b1": b, "q1": -load / (math.pi * stiff) * (2 * math.log(4 / b) - 1)}
 
 
-def tooth(module, z1, z2, load):
-    b, p = gears.hertz(load, sum(2 / (module * z * math.sin(math.radians(20))) for z in (z1, z2)))
+def tooth(module, z1, z2, load, nu=0.3):
+    b, p = gears.hertz(load, sum(2 / (module * z * math.sin(math.radians(20))) for z in (z1, z2)), nu=nu)
     return {"p1": p, "b1": b}
 
 
@@ -174,3 +177,86 @@ def fresh():
         rolled=((4., 25., 700., 2.7), (6., 18., 1500., 3.3), (10., 60., 4000., 4.)),
         balls=[(e, n, p) for p in (.015, .028) for e, n in (("ctrax6", 3.5), ("ctrax6", 7), ("ctrax3", 7), ("ctrax3", 13))],
         pins=(40, 80), flanges=((.45, .4), (.33, .3)), joints=((.28, .4), (.17, .3)))
+
+
+def in_plane_stress(deck):
+    deck.lines = [line.replace("STRAIN", "STRESS") if line.startswith("PARAM   PLANE") else line for line in deck.lines]
+    return deck
+
+
+def lug_in_plane_stress(half):
+    """Persson's answer to the clearance that belongs to another half angle in plane strain (nu = 0.3)."""
+    slack = 0.91 * quads.persson(half)[0]
+    low, high = half, 120.0
+    while high - low > 1e-9:
+        middle = (low + high) / 2
+        low, high = (middle, high) if quads.persson(middle)[0] > slack else (low, middle)
+    return {"p1": 100.0 * quads.persson(low)[1], "b1": math.radians(low) * 10}
+
+
+def sheets(pressed, yielding, on_block, lugs, layers, layered, around, teeth):
+    """Plane stress: closed forms with E for E/(1 - nu**2)."""
+    for element in ("ctria3", "ctria6", "cquad4"):
+        for load, young, nu, spacing, far in pressed:
+            spacing = spacing * (2 if element == "ctria6" else 1)
+            yield (f"sheets {element} P = {load}, E = {young}", hertz(load, young, 0.0),
+                   lambda a=(spacing, far, element, load, young, nu): in_plane_stress(cylinders_pressed(*a)))
+    for element, spacing in yielding:
+        yield (f"sheets, yielding {element} {spacing}", SHEET_YIELDING,
+               lambda a=(spacing, 1.2, element, 4.0, 20400.0, .29, True): in_plane_stress(cylinders_pressed(*a)))
+    b = math.sqrt(4 * 35000 * 50 / (math.pi * 52500))
+    for element, across in on_block:
+        yield (f"sheets, nafems {element} {across}", {"p1": 70000 / (math.pi * b), "b1": b},
+               lambda a=(across, 1.45, element): in_plane_stress(quads.nafems(*a)))
+    for half, element, n in lugs:
+        yield (f"sheets, lug {half} {element} {n}", lug_in_plane_stress(half),
+               lambda h=half, e=element, n=n: in_plane_stress(quads.pin_in_lug(h, n, element=e)))
+    for n in layers:
+        yield f"sheets, layer {n}", LAYER, lambda n=n: in_plane_stress(elastic.layer(n))
+    for element, n in layered:
+        yield f"sheets, layer lines {element} {n}", LAYER, lambda n=n, e=element: in_plane_stress(quads.layer_lines(n, e))
+    yield f"sheets, shrink fit {around}", {"p1": 24.9288 * 0.91}, lambda: in_plane_stress(elastic.shrink(around))
+    for *of, across in teeth:
+        yield f"sheets, gears {of} {across}", tooth(*of, nu=0.0), lambda a=(*of, across): in_plane_stress(gears.gears(*a))
+
+
+def third():
+    yield from others(
+        pressed=((5.1, 23000, .27, .0045, .75), (10.4, 15000, .36, .0071, 1.25), (7.1, 28000, .22, .0034, 1.7), (3.3, 10000, .31, .0054, 1.05),
+                 (8.4, 20400, .29, .0023, .85)),
+        yielding=(("ctria3", .0047), ("ctria3", .0038), ("ctria6", .0087), ("ctria6", .0067), ("cquad4", .0045), ("cquad4", .0028)),
+        blocks=(3.2, 5.6, 6.7, 9.6),
+        on_block=[(e, n, f) for e, of in (("ctria6", (2.7, 3.6, 5.4)), ("cquad4", (5.5, 7.5, 11)), ("ctria3", (5.5, 6.5, 10))) for n in of for f in (1.3, 1.7)],
+        lugs=(33.0, 49.0, 64.0), arounds=(("ctria6", 24), ("ctria6", 36), ("cquad4", 44), ("cquad4", 60), ("ctria3", 52)),
+        layers=(11, 22, 36), layered=(("ctria6", 9), ("ctria6", 13), ("cquad4", 13), ("cquad4", 22), ("ctria3", 13), ("ctria3", 18)),
+        shrunk=(28, 36), teeth=((3., 18, 54, 300., 2.2), (5., 24, 40, 1100., 3.3), (2.5, 16, 70, 280., 4.), (7., 20, 33, 1700., 5.2)),
+        rolled=((4.5, 16., 900., 2.2), (7., 35., 2000., 3.1), (5.5, 22., 1200., 4.6)),
+        balls=[(e, n, p) for p in (.02, .035) for e, n in (("ctrax6", 3.3), ("ctrax6", 5.7), ("ctrax3", 6.5), ("ctrax3", 10))],
+        pins=(50, 66), flanges=((.42, .38), (.36, .32)), joints=((.25, .38), (.22, .32)))
+    yield from sheets(
+        pressed=((5.3, 20400, .29, .0052, 1.2), (8.7, 30000, .4, .0039, .8), (3.9, 11000, .33, .0031, 1.5)),
+        yielding=(("ctria3", .0045), ("ctria3", .003), ("ctria6", .0081), ("ctria6", .0055), ("cquad4", .0041), ("cquad4", .003)),
+        on_block=(("ctria6", 3.8), ("cquad4", 6.5), ("ctria3", 8.5)),
+        lugs=((35.0, "ctria6", 20), (55.0, "ctria6", 28), (35.0, "cquad4", 44), (55.0, "cquad4", 60), (45.0, "ctria3", 56)),
+        layers=(12, 25), layered=(("ctria6", 11), ("cquad4", 19)), around=28, teeth=((3.5, 21, 45, 400., 2.8), (4.5, 27, 30, 800., 4.4)))
+
+
+def unseen():
+    yield from others(
+        pressed=((4.8, 18500, .26, .0051, .9), (9.7, 20400, .34, .0063, 1.35), (6.2, 33000, .18, .0031, 1.15), (3.6, 9500, .3, .0047, .65),
+                 (7.6, 16000, .39, .0027, 1.5)),
+        yielding=(("ctria3", .0053), ("ctria3", .0027), ("ctria6", .0079), ("ctria6", .0061), ("cquad4", .0052), ("cquad4", .0033)),
+        blocks=(3.55, 4.5, 7.9, 11.2),
+        on_block=[(e, n, f) for e, of in (("ctria6", (3.1, 4.4, 6.6)), ("cquad4", (4.8, 6.2, 9.5)), ("ctria3", (4.2, 7.5, 9.6))) for n in of for f in (1.2, 1.5)],
+        lugs=(36.0, 47.0, 61.0, 70.0), arounds=(("ctria6", 20), ("ctria6", 32), ("cquad4", 36), ("cquad4", 52), ("ctria3", 44)),
+        layers=(12, 17, 30), layered=(("ctria6", 11), ("ctria6", 15), ("cquad4", 12), ("cquad4", 24), ("ctria3", 11), ("ctria3", 22)),
+        shrunk=(22, 44), teeth=((2.2, 20, 48, 260., 2.7), (6.5, 28, 31, 1400., 3.6), (3.2, 14, 80, 320., 3.1), (4., 23, 46, 700., 4.9)),
+        rolled=((3.5, 14., 500., 2.9), (9., 45., 3000., 3.4), (6., 28., 1000., 4.2)),
+        balls=[(e, n, p) for p in (.01, .028) for e, n in (("ctrax6", 3.8), ("ctrax6", 6.4), ("ctrax3", 5.5), ("ctrax3", 9))],
+        pins=(54, 76), flanges=((.47, .42), (.28, .35)), joints=((.27, .37), (.19, .33)))
+    yield from sheets(
+        pressed=((4.6, 24000, .25, .0048, 1.0), (9.1, 18000, .37, .0058, 1.4), (6.8, 20400, .3, .0029, .7)),
+        yielding=(("ctria3", .0052), ("ctria3", .0034), ("ctria6", .0075), ("ctria6", .0061), ("cquad4", .0046), ("cquad4", .0027)),
+        on_block=(("ctria6", 4.7), ("cquad4", 8.5), ("ctria3", 6.6)),
+        lugs=((40.0, "ctria6", 24), (62.0, "ctria6", 20), (40.0, "cquad4", 52), (62.0, "cquad4", 40), (50.0, "ctria3", 48)),
+        layers=(15, 21), layered=(("ctria6", 14), ("cquad4", 15)), around=24, teeth=((3., 25, 38, 450., 3.2), (5.5, 19, 60, 900., 2.4)))

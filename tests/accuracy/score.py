@@ -5,8 +5,9 @@
 
 Runs the program on scenes with known answers (cases.py) and compares the errors of largest pressure (p), half-width (b) of each zone
 and approach (q) with the estimates in summary.csv. -v prints each figure: value, true error and estimate as parts of it, ratio.
-The score of each set, and exit status 1 where estimates cover less than nine tenths of the figures. Where the program says that a
-figure grows with every finer mesh there is no estimate and nothing is counted.
+The score of each set, and exit status 1 where estimates cover too few of the figures, or, of the set `unseen`, are too seldom within a
+factor of 3 of the true error. Where the program says that a figure grows with every finer mesh there is no estimate and nothing is
+counted.
 """
 import argparse
 import csv
@@ -18,7 +19,10 @@ import tempfile
 import cases
 
 #: Least part of the figures that estimates must cover: of all, and of each kind.
-COVERED, COVERED_OF_KIND = 0.90, 0.85
+COVERED, COVERED_OF_KIND = 0.92, 0.90
+#: Least part of each kind within a factor of 3, in the set that chose nothing. Scenes whose meshes have a node where contact truly ends
+#: have errors of the half-width next to nothing, which no estimate is near.
+NEAR = {"p": 0.51, "b": 0.38, "q": 0.70, "all": 0.52}
 #: Errors below this part of a figure are as good as none: an estimate need not be within a factor of 3 of them.
 SMALL = 5.0e-3
 KINDS = {"p": "largest pressure", "b": "half-width", "q": "approach"}
@@ -72,7 +76,8 @@ def judge(program, which, every, aloud):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
-    parser.add_argument("sets", nargs="*", metavar="SET", default=["tuned", "second", "fresh"], help="tuned, second, fresh; all if none is named")
+    parser.add_argument("sets", nargs="*", metavar="SET", default=["tuned", "second", "fresh", "third", "unseen"],
+                        help="tuned, second, fresh, third, unseen; all if none is named")
     parser.add_argument("--every", type=int, default=1, help="of each set only every N-th scene")
     parser.add_argument("-v", action="store_true", dest="aloud")
     options = parser.parse_args()
@@ -89,6 +94,7 @@ def main():
                   f"or both below {SMALL:.1%} {harmless:6.1%}  median ratio {sorted(found)[len(found) // 2][0]:.1f}")
             if options.every == 1:
                 good = good and covered >= (COVERED if kind == "all" else COVERED_OF_KIND)
+                good = good and (which != "unseen" or near >= NEAR[kind])
     return 0 if good else 1
 
 
