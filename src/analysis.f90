@@ -2,6 +2,7 @@
 module epcont_analysis
   use epcont_accuracy_accuracy, only: accuracy_type, assess
   use epcont_base_kinds, only: wp
+  use epcont_base_stopwatch, only: stage_accuracy, stage_certificate, stage_stresses
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
@@ -13,6 +14,7 @@ module epcont_analysis
   use epcont_plasticity_iteration, only: follow_loads, plastic_run
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_methods, only: choose_method
+  use epcont_plasticity_onlooker, only: onlooker
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line, find_contact_line, find_zones
   use epcont_result_line_pressure, only: compare_sides
@@ -27,7 +29,7 @@ contains
 
   !> Solve the scene. `singular` is a body whose stiffness could not be factored (0: none); without contact
   !! equilibrium (`answer%contact%state`) there are no displacements.
-  subroutine analyse(model, motions, numbering, plan, answer, certificate, accuracy, singular)
+  subroutine analyse(model, motions, numbering, plan, answer, certificate, accuracy, singular, watch)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     type(numbering_type), intent(in) :: numbering
@@ -36,11 +38,12 @@ contains
     type(certificate_type), intent(out) :: certificate
     type(accuracy_type), intent(out) :: accuracy
     integer, intent(out) :: singular
+    class(onlooker), intent(inout) :: watch
     type(plastic_run) :: run
     type(contact_line) :: line
     real(wp), allocatable :: load(:, :)
 
-    call solve(model, motions, numbering, plan, run, answer)
+    call solve(model, motions, numbering, plan, run, answer, watch)
     singular = run%singular
     answer%lacks_memory = run%lacks_memory
     if (singular > 0) return
@@ -55,19 +58,23 @@ contains
     answer%pressure = pair_pressures(model, line, answer%contact%touching, answer%contact%force)
     answer%zones = find_zones(model, line, answer%contact%touching, answer%contact%force, answer%pressure)
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
+    call watch%lap(stage_stresses)
     call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
                  answer%contact%force, certificate, answer%rounding_error)
+    call watch%lap(stage_certificate)
     call assess(model, motions, numbering, run, line, answer, accuracy)
+    call watch%lap(stage_accuracy)
   end subroutine analyse
 
   !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved by others in double.
-  subroutine solve(model, motions, numbering, plan, run, answer)
+  subroutine solve(model, motions, numbering, plan, run, answer, watch)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     type(numbering_type), intent(in) :: numbering
     type(iteration_plan), intent(in) :: plan
     type(plastic_run), intent(out) :: run
     type(answer_type), intent(inout) :: answer
+    class(onlooker), intent(inout) :: watch
     class(plastic_method), allocatable :: method
     type(iteration_plan) :: now
 
@@ -75,11 +82,11 @@ contains
     answer%asked_precision = plan%precision
     answer%largest_rounding_error = plan%rounding_error
     call choose_method(plan%method, method)
-    call follow_loads(model, motions, numbering, now, method, run)
+    call follow_loads(model, motions, numbering, now, method, run, watch)
     if (plan%precision /= precision_double .and. .not. (run%converged .and. run%rounding_error <= plan%rounding_error)) then
       now%precision = precision_double
       call choose_method(plan%method, method)
-      call follow_loads(model, motions, numbering, now, method, run)
+      call follow_loads(model, motions, numbering, now, method, run, watch)
     end if
     answer%precision = now%precision
   end subroutine solve

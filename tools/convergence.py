@@ -90,27 +90,20 @@ def needed(rows, error=1e-3):
 
 
 def draw(contact, wall, name):
-    import matplotlib  # here, so that the tables need nothing but Python
+    from drawing import style  # here, so that the tables need nothing but Python
+    from drawing.style import plt
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8,
-                         "legend.frameon": False, "svg.hashsalt": "epcont", "svg.fonttype": "path", "figure.dpi": 110})
     figure, panels = plt.subplots(1, 3, figsize=(12.5, 4.2), layout="constrained", sharey=True)
-    styles = {"ctria3": ("#4477aa", "o"), "cquad4": ("#228833", "s"), "ctria6": ("#cc3311", "^")}
     for axes, rows, column, title in ((panels[0], contact, 1, "two cylinders: approach"), (panels[1], contact, 2, "two cylinders: largest pressure"),
                                       (panels[2], wall, 1, "tube beyond yield: u(a)")):
-        for element, (colour, mark) in styles.items():
+        for element, (colour, mark) in style.ELEMENTS.items():
             axes.loglog([row[0] for row in rows[element]], [100 * abs(row[column]) for row in rows[element]], mark + "-", ms=4, lw=1.1,
                         color=colour, label=element.upper())
         axes.axhline(0.1, color="#999999", lw=0.7, dashes=(4, 3))
         axes.set(title=title, xlabel="unknowns", ylim=(1e-3, None))
     panels[0].set_ylabel("error, %")
     panels[0].legend()
-    name.parent.mkdir(parents=True, exist_ok=True)
-    for kind, metadata in (("png", {"Software": None}), ("svg", {"Date": None, "Creator": None})):
-        figure.savefig(name.with_name(f"{name.name}.{kind}"), metadata=metadata, dpi=120)
+    style.save(figure, name)
 
 
 def main():

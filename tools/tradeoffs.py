@@ -193,16 +193,12 @@ def one_at_a_time(runs, failed, scene):
 
 
 def draw(found, path):
-    import matplotlib  # here: what drives the runs stays small
+    from drawing import style  # here: what drives the runs stays small
+    from drawing.style import plt
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8, "legend.frameon": False})
     figure, panels = plt.subplots(2, 3, figsize=(12.5, 7.4), layout="constrained")
-    styles = {"ctria3": ("#4477aa", "o"), "cquad4": ("#228833", "s"), "ctria6": ("#cc3311", "^")}
     for axes, (scene, runs, _) in zip(panels.flat, found):
-        for element, (colour, mark) in styles.items():
+        for element, (colour, mark) in style.ELEMENTS.items():
             of = [run for run in runs if run.element == element]
             axes.loglog([1e3 * run.cpu for run in of], [100 * worst(run) for run in of], mark, ms=3.5, mew=0, alpha=0.35, color=colour)
         best = front(runs, "cpu")
@@ -213,7 +209,7 @@ def draw(found, path):
         axes.grid(alpha=0.25, lw=0.6)
     legend = panels.flat[-1]
     legend.axis("off")
-    for element, (colour, mark) in styles.items():
+    for element, (colour, mark) in style.ELEMENTS.items():
         legend.plot([], [], mark, color=colour, label=element.upper())
     legend.plot([], [], "k+", ms=7, label=words(BASE))
     legend.plot([], [], "k-", lw=1.1, label="Pareto front")

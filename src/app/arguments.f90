@@ -1,10 +1,11 @@
 !> The command line.
 module epcont_app_arguments
-  use epcont_base_error, only: error_type, raise, status_usage
+  use epcont_app_options, only: find_option, option_type
+  use epcont_base_error, only: error_type, raise, status_internal, status_usage
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: arguments_type, read_arguments, stem_of, help_text
+  public :: arguments_type, command_line, read_arguments, stem_of
 
   !> A path or a word of the command line.
   type, public :: word_type
@@ -14,91 +15,121 @@ module epcont_app_arguments
   type :: arguments_type
     type(word_type), allocatable :: deck(:)         !! paths
     character(len=:), allocatable :: directory      !! for the results
-    logical :: check = .false., plan = .false., all_tables = .false., quiet = .false.
-    logical :: help = .false., version = .false., cards = .false.
+    logical :: check = .false., plan = .false., all_tables = .false., vtk = .false.
+    logical :: progress = .false., timing = .false., quiet = .false.
+    logical :: help = .false., man = .false., version = .false., cards = .false.
     character(len=:), allocatable :: card           !! name behind --cards, or empty
     real(wp) :: memory = 16.0_wp                    !! limit for matrices [GB]
   end type arguments_type
 
-  character(len=1), parameter :: newline = new_line('a')
-
 contains
 
-  !> Read the command line.
-  subroutine read_arguments(arguments, error)
+  !> The words of the command line.
+  function command_line() result(words)
+    type(word_type), allocatable :: words(:)
+    integer :: i, length
+
+    allocate (words(command_argument_count()))
+    do i = 1, size(words)
+      call get_command_argument(i, length=length)
+      allocate (character(len=length) :: words(i)%text)
+      call get_command_argument(i, words(i)%text)
+    end do
+  end function command_line
+
+  !> Read the words of a command line: options by their table, and decks.
+  subroutine read_arguments(words, arguments, error)
+    type(word_type), intent(in) :: words(:)
     type(arguments_type), intent(out) :: arguments
     type(error_type), allocatable, intent(out) :: error
-    character(len=:), allocatable :: value, word
-    type(word_type), allocatable :: found(:)
-    integer :: decks, i, status
+    type(option_type) :: option
+    logical :: is_deck(size(words))
+    integer :: i
 
-    allocate (found(command_argument_count()))
-    decks = 0
     arguments%directory = ''
     arguments%card = ''
+    is_deck = .false.
     i = 0
-    do while (i < command_argument_count())
+    do while (i < size(words))
       i = i + 1
-      word = argument(i)
-      select case (word)
-      case ('--help', '-h')
-        arguments%help = .true.
-      case ('--version')
-        arguments%version = .true.
-      case ('--check')
-        arguments%check = .true.
-      case ('--plan')
-        arguments%plan = .true.
-      case ('--quiet')
-        arguments%quiet = .true.
-      case ('--cards')
-        arguments%cards = .true.
-        if (i < command_argument_count()) then
-          i = i + 1
-          arguments%card = argument(i)
-        end if
-      case ('-o', '--tables', '--memory')
+      is_deck(i) = index(words(i)%text, '-') /= 1
+      if (is_deck(i)) cycle
+      option = find_option(words(i)%text)
+      if (option%name == '') then
+        call raise(error, status_usage, words(i)%text//': no such option; epcont --help lists them')
+      else if (option%takes_value() .and. i < size(words)) then
         i = i + 1
-        if (i > command_argument_count()) then
-          call raise(error, status_usage, word//' needs a value')
-          return
-        end if
-        status = 0
-        if (word == '-o') arguments%directory = argument(i)
-        value = argument(i)
-        if (word == '--memory') call read_positive(value, arguments%memory, status)
-        if (word == '--tables') arguments%all_tables = argument(i) == 'all'
-        if (status /= 0 .or. (word == '--tables' .and. .not. arguments%all_tables)) then
-          call raise(error, status_usage, word//' '//argument(i)//': '// &
-                     trim(merge('a positive number of GB', '--tables all           ', word == '--memory'))//' would be right')
-          return
-        end if
-      case default
-        if (index(word, '-') == 1) then
-          call raise(error, status_usage, word//': no such option; epcont --help lists them')
-          return
-        end if
-        decks = decks + 1
-        found(decks)%text = word
-      end select
+        call take(option, words(i)%text, arguments, error)
+      else if (option%needs_value()) then
+        call raise(error, status_usage, words(i)%text//' needs a value')
+      else
+        call take(option, '', arguments, error)
+      end if
+      if (allocated(error)) return
     end do
-    allocate (arguments%deck(decks))
-    arguments%deck = found(:decks)
+    arguments%deck = pack(words, is_deck)
     call check(arguments, error)
   end subroutine read_arguments
 
-  !> A positive number without exponent, which no length makes overflow; `status` is not 0 where `text` is none. READ alone
-  !! takes `2 x`, `,` and `nan`.
-  subroutine read_positive(text, number, status)
+  !> What an option of the table does.
+  subroutine take(option, value, arguments, error)
+    type(option_type), intent(in) :: option
+    character(len=*), intent(in) :: value
+    type(arguments_type), intent(inout) :: arguments
+    type(error_type), allocatable, intent(out) :: error
+    character(len=:), allocatable :: right   ! value, where this is not
+    logical :: taken
+
+    right = ''
+    select case (option%name)
+    case ('-o')
+      arguments%directory = value
+    case ('--check')
+      arguments%check = .true.
+    case ('--plan')
+      arguments%plan = .true.
+    case ('--tables')
+      arguments%all_tables = value == 'all'
+      if (.not. arguments%all_tables) right = '--tables all'
+    case ('--vtk')
+      arguments%vtk = .true.
+    case ('--memory')
+      call read_positive(value, arguments%memory, taken)
+      if (.not. taken) right = 'a positive number of GB'
+    case ('--progress')
+      arguments%progress = .true.
+    case ('--timing')
+      arguments%timing = .true.
+    case ('--quiet')
+      arguments%quiet = .true.
+    case ('--cards')
+      arguments%cards = .true.
+      arguments%card = value
+    case ('--man')
+      arguments%man = .true.
+    case ('--version')
+      arguments%version = .true.
+    case ('--help')
+      arguments%help = .true.
+    case default
+      call raise(error, status_internal, trim(option%name)//': an option that nothing takes')
+    end select
+    if (len(right) > 0) &
+      call raise(error, status_usage, trim(option%name)//' '//value//': '//right//' would be right')
+  end subroutine take
+
+  !> Take a positive number without exponent, which no length makes overflow. READ alone takes `2 x`, `,` and `nan`.
+  subroutine read_positive(text, number, taken)
     character(len=*), intent(in) :: text
     real(wp), intent(inout) :: number
-    integer, intent(out) :: status
+    logical, intent(out) :: taken
     integer, parameter :: longest = 20
+    integer :: status
 
-    status = 1
+    taken = .false.
     if (verify(text, '0123456789.') > 0 .or. len(text) > longest) return
     read (text, *, iostat=status) number
-    if (status == 0 .and. number <= 0.0_wp) status = 1
+    taken = status == 0 .and. number > 0.0_wp
   end subroutine read_positive
 
   !> There are decks, and no two of one stem: their results would have one name.
@@ -107,7 +138,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     integer :: i, j
 
-    if (arguments%help .or. arguments%version .or. arguments%cards) return
+    if (arguments%help .or. arguments%man .or. arguments%version .or. arguments%cards) return
     if (size(arguments%deck) == 0) then
       call raise(error, status_usage, 'no deck given: epcont [options] DECK...; epcont --help says more')
       return
@@ -132,19 +163,8 @@ contains
     character(len=*), intent(in) :: path
 
     is_result = .false.
-    if (len(path) >= 4) is_result = any(path(len(path) - 3:) == ['.lst', '.csv'])
+    if (len(path) >= 4) is_result = any(path(len(path) - 3:) == ['.lst', '.csv', '.vtu'])
   end function is_result
-
-  !> One argument, whatever its length.
-  function argument(i) result(text)
-    integer, intent(in) :: i
-    character(len=:), allocatable :: text
-    integer :: length
-
-    call get_command_argument(i, length=length)
-    allocate (character(len=length) :: text)
-    call get_command_argument(i, text)
-  end function argument
 
   !> Name of a file without folder and without what follows its last point.
   pure function stem_of(path) result(stem)
@@ -156,27 +176,4 @@ contains
     point = index(stem, '.', back=.true.)
     if (point > 1) stem = stem(:point - 1)
   end function stem_of
-
-  !> What --help prints.
-  pure function help_text() result(text)
-    character(len=:), allocatable :: text
-
-    text = 'usage: epcont [options] DECK...'//newline// &
-           newline// &
-           'Solves the contact of plane bodies and rings from card decks. Results go to DECK.lst and DECK.*.csv.'//newline// &
-           newline// &
-           '  -o DIR         write results to DIR (default: the current directory)'//newline// &
-           '  --check        read and check the decks, then stop'//newline// &
-           '  --plan         print what would be solved and what it takes, then stop'//newline// &
-           '  --tables all   write node and element tables, whatever the deck asks for'//newline// &
-           '  --memory GB    refuse decks whose matrices need more (default 16)'//newline// &
-           '  --cards [NAME] print the manual of the cards, or of one'//newline// &
-           '  --quiet        print nothing on standard output'//newline// &
-           '  --version      print the version'//newline// &
-           '  --help         print this'//newline// &
-           newline// &
-           'exit status: 0 answer valid; 1 no equilibrium or not converged; 2 deck rejected; 3 usage, files or'//newline// &
-           'memory; 4 numerical breakdown or certificate beyond tolerance; 5 internal error; of several decks the largest'// &
-           newline
-  end function help_text
 end module epcont_app_arguments

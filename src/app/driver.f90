@@ -4,15 +4,17 @@ module epcont_app_driver
   use epcont_analysis, only: analyse
   use epcont_app_arguments, only: arguments_type, stem_of
   use epcont_app_console, only: print_text
+  use epcont_app_progress, only: progress_type
+  use epcont_app_terminal, only: print_error
   use epcont_base_error, only: error_type, status_deck, status_valid
   use epcont_base_kinds, only: wp
-  use epcont_deck_deck, only: deck_type, read_deck
-  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_base_memory, only: peak_memory
+  use epcont_base_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
+  use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render
   use epcont_model_build, only: build_model
-  use epcont_model_model, only: model_type
   use epcont_plan_forecast, only: check_memory, forecast, forecast_type
-  use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_plan_free_motion, only: find_free_motions, motion_fault
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_report_motions, only: report_motion_faults
@@ -21,6 +23,7 @@ module epcont_app_driver
   use epcont_report_plan, only: plan_text
   use epcont_report_results, only: run_results, write_results
   use epcont_report_solver, only: report_solver_fault
+  use epcont_report_timing, only: timing_text
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -33,6 +36,19 @@ contains
     character(len=*), intent(in) :: path
     type(arguments_type), intent(in) :: arguments
     integer, intent(out) :: status
+    type(progress_type) :: watch
+
+    call watch%begin(stem_of(path), arguments%progress, arguments%quiet)
+    call follow_deck(path, arguments, watch, status)
+    if (arguments%timing) call print_error(timing_text(stem_of(path), watch, peak_memory()))
+  end subroutine run_deck
+
+  !> From file to results, and what there is to say of it.
+  subroutine follow_deck(path, arguments, watch, status)
+    character(len=*), intent(in) :: path
+    type(arguments_type), intent(in) :: arguments
+    type(progress_type), intent(inout) :: watch
+    integer, intent(out) :: status
     type(error_type), allocatable :: error
     type(run_results) :: run
     type(numbering_type) :: numbering
@@ -41,7 +57,7 @@ contains
     integer :: singular
 
     status = status_valid
-    call prepare(path, run%deck, run%model, run%motions, run%faults, error)
+    call prepare(path, run, watch, error)
     if (.not. allocated(error)) then
       write (error_unit, '(a)', advance='no') render(run%faults, run%deck%source)
       if (run%faults%error_count() > 0) status = status_deck
@@ -49,10 +65,7 @@ contains
         call say(arguments, stem_of(path)//'  '//trim(merge('rejected', 'checked ', status == status_deck)), status)
         return
       end if
-      numbering = number_equations(run%model)
-      iteration = plan_iteration(run%model)
-      expected = forecast(run%model, numbering, iteration)
-      run%plan = plan_text(run%model, run%motions, iteration, numbering, expected)
+      call make_plan(run, numbering, iteration, expected, watch)
       if (arguments%plan) then
         call print_text(stem_of(path)//run%plan, status)
         return
@@ -60,10 +73,13 @@ contains
       call check_memory(run%model, expected, arguments%memory, error)
       if (allocated(error)) error%message = path//': '//error%message
       if (.not. allocated(error)) then
-        call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular)
+        call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)
+        call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular, watch)
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
         status = run%outcome%status
-        call write_results(run, output_stem(path, arguments), arguments%all_tables, error)
+        call write_results(run, output_stem(path, arguments), arguments%all_tables, arguments%vtk, error)
+        call watch%lap(stage_writing)
+        call watch%erase()
       end if
     end if
     if (allocated(error)) then
@@ -73,7 +89,7 @@ contains
       if (len(run%outcome%sentence) > 0) write (error_unit, '(a)') path//': '//run%outcome%sentence
       call say(arguments, one_line(stem_of(path), run%answer, run%outcome), status)
     end if
-  end subroutine run_deck
+  end subroutine follow_deck
 
   !> Path of the result files, without their suffixes.
   pure function output_stem(path, arguments) result(stem)
@@ -86,23 +102,40 @@ contains
   end function output_stem
 
   !> Read and check.
-  subroutine prepare(path, deck, model, motions, faults, error)
+  subroutine prepare(path, run, watch, error)
     character(len=*), intent(in) :: path
-    type(deck_type), intent(out) :: deck
-    type(model_type), intent(out) :: model
-    type(free_motions), intent(out) :: motions
-    type(diagnostics), intent(inout) :: faults
+    type(run_results), intent(inout) :: run
+    class(stopwatch), intent(inout) :: watch
     type(error_type), allocatable, intent(out) :: error
     type(motion_fault), allocatable :: loose(:)
 
-    call read_deck(path, deck, faults, error)
+    call read_deck(path, run%deck, run%faults, error)
+    call watch%lap(stage_reading)
     if (allocated(error)) return
-    call build_model(deck, model, faults)
-    if (faults%error_count() > 0) return
-    call find_free_motions(model, motions, loose)
-    call report_motion_faults(deck, model, loose, faults)
-    call report_solver_fault(deck, model, faults)
+    call build_model(run%deck, run%model, run%faults)
+    call watch%lap(stage_model)
+    if (run%faults%error_count() > 0) return
+    call find_free_motions(run%model, run%motions, loose)
+    call report_motion_faults(run%deck, run%model, loose, run%faults)
+    call report_solver_fault(run%deck, run%model, run%faults)
+    call watch%lap(stage_plan)
   end subroutine prepare
+
+  !> What will be solved, and how; in words, too.
+  subroutine make_plan(run, numbering, iteration, expected, watch)
+    type(run_results), intent(inout) :: run
+    type(numbering_type), intent(out) :: numbering
+    type(iteration_plan), intent(out) :: iteration
+    type(forecast_type), intent(out) :: expected
+    class(stopwatch), intent(inout) :: watch
+
+    numbering = number_equations(run%model)
+    call watch%lap(stage_numbering)
+    iteration = plan_iteration(run%model)
+    expected = forecast(run%model, numbering, iteration)
+    run%plan = plan_text(run%model, run%motions, iteration, numbering, expected)
+    call watch%lap(stage_plan)
+  end subroutine make_plan
 
   !> Stem, status, largest pressure, first approach.
   pure function one_line(stem, answer, outcome) result(text)

@@ -2,9 +2,11 @@
 program epcont
   use, intrinsic :: iso_c_binding, only: c_bool
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use epcont_app_arguments, only: arguments_type, help_text, read_arguments
+  use epcont_app_arguments, only: arguments_type, command_line, read_arguments
   use epcont_app_console, only: print_text, stop_with, watch_exit
   use epcont_app_driver, only: run_deck
+  use epcont_app_help, only: help_text
+  use epcont_app_man_page, only: man_page
   use epcont_base_large_pages, only: prepare_heap
   use epcont_base_error, only: error_type, raise, status_usage, status_valid
   use epcont_base_memory, only: has_memory, memory_of_libraries
@@ -35,7 +37,7 @@ contains
     integer :: i, one
 
     worst = status_valid
-    call read_arguments(arguments, error)
+    call read_arguments(command_line(), arguments, error)
     if (.not. allocated(error) .and. .not. has_memory(memory_of_libraries)) &
       call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs')
     if (allocated(error)) then
@@ -43,6 +45,8 @@ contains
       worst = error%status
     else if (arguments%help) then
       call print_text(help_text(), worst)
+    else if (arguments%man) then
+      call print_text(man_page(), worst)
     else if (arguments%version) then
       call print_text(program_name//' '//program_version, worst)
     else if (arguments%cards) then

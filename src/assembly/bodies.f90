@@ -21,6 +21,7 @@ module epcont_assembly_bodies
     integer :: factorizations = 0              !! done so far, of bodies that have equations
     real(wp), allocatable :: settlement(:, :)  !! forces of prescribed displacements on free freedoms [2, nodes]
   contains
+    procedure :: assemble
     procedure :: factor_body
     procedure :: settle
     procedure, nopass :: prescribe
@@ -43,9 +44,8 @@ contains
     allocate (bodies%settlement(2, model%nodes), source=0.0_wp)
   end function new_bodies
 
-  !> Assemble and factor one body; if it was before, as far as elements have changed. `sound` is false where the factor
-  !! failed.
-  subroutine factor_body(self, model, operator, matrix, changed, numbering, b, sound)
+  !> Assemble one body; if it was before, as far as elements have changed.
+  subroutine assemble(self, model, operator, matrix, changed, numbering, b)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
@@ -53,9 +53,17 @@ contains
     logical, intent(in) :: changed(:)         !! since the body was factored last [elements]
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
-    logical, intent(out) :: sound
 
     call assemble_body(model, operator, matrix, changed, numbering%equation, numbering%body(b), self%body(b))
+  end subroutine assemble
+
+  !> Factor what was assembled. `sound` is false where the factor failed.
+  subroutine factor_body(self, numbering, b, sound)
+    class(factored_bodies), intent(inout) :: self
+    type(numbering_type), intent(in) :: numbering
+    integer, intent(in) :: b
+    logical, intent(out) :: sound
+
     call self%body(b)%factor()
     if (numbering%body(b)%equations > 0) self%factorizations = self%factorizations + 1
     sound = self%body(b)%is_sound()

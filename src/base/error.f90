@@ -16,6 +16,15 @@ module epcont_base_error
   integer, parameter, public :: status_numerical = 4    !! breakdown, or certificate beyond tolerance
   integer, parameter, public :: status_internal = 5     !! a fault of the program
 
+  !> What they mean, for whoever runs the program.
+  character(len=*), parameter, public :: status_meaning(0:5) = [ &
+    'answer valid, or what was asked for was printed      ', &
+    'not converged, limit load passed, or no equilibrium  ', &
+    'deck rejected: every fault with file, line, columns  ', &
+    'usage, files or memory                               ', &
+    'numerical breakdown, or certificate beyond tolerance ', &
+    'internal error: please report it with the deck       ']
+
   !> An error: the exit status it leads to, and the message.
   type :: error_type
     integer :: status = status_internal

@@ -57,6 +57,8 @@ contains
       allocate (model%poisson(sections), source=0.0_wp)
       allocate (model%kinematics(sections), source=axisymmetric)
       allocate (model%curve(sections))
+      model%property_id = nint([shell%value(1, :), solid%value(1, :)])
+      model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])
       model%thickness(:shell%count) = shell%value(shell%column('T'), :)
       do i = 1, shell%count
         call resolve(deck, card_pshell, i, shell%column('MID1'), materials, 'MAT1', faults, material)

@@ -37,6 +37,8 @@ module epcont_model_model
     integer, allocatable :: first_point(:)      !! of each element; those of element e end before that of e + 1 [elements + 1]
     integer, allocatable :: point_element(:)    !! [points]
     integer, allocatable :: section(:)          !! section of each element [elements]
+    integer, allocatable :: property_id(:)      !! PSHELL or PSOLID [sections]
+    integer, allocatable :: material_id(:)      !! MAT1 [sections]
     real(wp), allocatable :: thickness(:)       !! [length] [sections]
     integer, allocatable :: kinematics(:)       !! plane_strain, plane_stress or axisymmetric [sections]
     real(wp), allocatable :: young(:)           !! [stress] [sections]

@@ -2,6 +2,7 @@
 module epcont_plasticity_iteration
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
+  use epcont_base_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
   use epcont_contact_problem, only: contact_solved
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
@@ -13,10 +14,11 @@ module epcont_plasticity_iteration
   use epcont_plan_numbering, only: numbering_type
   use epcont_plasticity_linear_scene, only: linear_scene, new_linear_scene
   use epcont_plasticity_method, only: plastic_method
+  use epcont_plasticity_onlooker, only: iteration_record, onlooker
   use epcont_plasticity_state, only: scene_state
   implicit none
   private
-  public :: plastic_run, iteration_record, follow_loads
+  public :: plastic_run, follow_loads
 
   !> Displacements so many times those of the first solve, with a flat curve: nothing carries the load.
   real(wp), parameter :: far_away = 1.0e4_wp
@@ -24,18 +26,6 @@ module epcont_plasticity_iteration
   real(wp), parameter, public :: rounding = 1.0e-10_wp
   !> A strain that falls by less than this part of it stays.
   real(wp), parameter :: least_fall = 1.0e-6_wp
-
-  !> One solve.
-  type :: iteration_record
-    real(wp) :: load_factor = 1.0_wp   !! part of the loads it is for
-    integer :: iteration = 0           !! its number in its load step
-    real(wp) :: change = 0.0_wp        !! largest change of a displacement / largest displacement
-    real(wp) :: force_change = 0.0_wp  !! largest change of a contact force / largest contact force
-    real(wp) :: residual = 0.0_wp      !! largest distance of a stress from its curve / largest stress
-    integer :: touching = 0            !! pairs
-    integer :: yielded = 0             !! elements
-    integer :: pivots = 0
-  end type iteration_record
 
   !> What came of the loads, and how.
   type :: plastic_run
@@ -72,13 +62,14 @@ module epcont_plasticity_iteration
 contains
 
   !> Load by load to the answer.
-  subroutine follow_loads(model, motions, numbering, plan, method, run)
+  subroutine follow_loads(model, motions, numbering, plan, method, run, watch)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     type(numbering_type), intent(in) :: numbering
     type(iteration_plan), intent(in) :: plan
     class(plastic_method), intent(inout) :: method
     type(plastic_run), intent(out) :: run
+    class(onlooker), intent(inout) :: watch
     type(loop_type) :: loop
     type(scene_state) :: state
     real(wp), allocatable :: strained(:)
@@ -90,9 +81,10 @@ contains
     method%volume = loop%scene%operator%volume
     allocate (run%history(0), strained(model%points))
     strained = 0.0_wp
+    call watch%lap(stage_stiffness)
     do step = 1, plan%load_steps
       part = real(step, wp)/plan%load_steps
-      call iterate(model, motions, numbering, method, part, loop, run, state, converged)
+      call iterate(model, motions, numbering, method, part, loop, run, state, converged, watch)
       run%factorizations = loop%scene%bodies%factorizations
       run%lacks_memory = loop%scene%bodies%lacks_memory()
       if (run%singular > 0) return
@@ -105,9 +97,11 @@ contains
         run%weakest = loop%scene%bodies%weakest()
         if (plan%precision == precision_single) &
           call loop%scene%rounding_error(model, numbering, loop%law, part, state, run%rounding_error)
+        call watch%lap(stage_accuracy)
       end if
       if (.not. converged) exit
       call find_unloaded(model, loop, strained, run)
+      call watch%lap(stage_yielding)
     end do
     run%converged = converged
     call move_alloc(loop%scene, run%scene)
@@ -128,7 +122,7 @@ contains
   end subroutine begin
 
   !> Iterate at one load. `state` is the last, or if that is not converged the one nearest to equilibrium.
-  subroutine iterate(model, motions, numbering, method, part, loop, run, state, converged)
+  subroutine iterate(model, motions, numbering, method, part, loop, run, state, converged, watch)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     type(numbering_type), intent(in) :: numbering
@@ -138,6 +132,7 @@ contains
     type(plastic_run), intent(inout) :: run
     type(scene_state), intent(out) :: state
     logical, intent(out) :: converged
+    class(onlooker), intent(inout) :: watch
     type(scene_state) :: found
     type(iteration_record) :: now
     real(wp) :: farthest, least_residual
@@ -147,9 +142,9 @@ contains
     least_residual = huge(1.0_wp)
     call method%restart()
     do iteration = 1, model%controls%most_iterations
-      call set_law(model, numbering, method, loop, run%singular)
+      call set_law(model, numbering, method, loop, run%singular, watch)
       if (run%singular > 0) return
-      call loop%scene%solve(model, motions, numbering, loop%law, part, loop%touching, found)
+      call loop%scene%solve(model, motions, numbering, loop%law, part, loop%touching, found, watch)
       if (found%contact%state /= contact_solved) then
         state = found
         return
@@ -169,25 +164,29 @@ contains
       loop%force = found%contact%force
       loop%yielded = now%yielded
       call method%advance(model, loop%material, part, found, loop%about)
+      call watch%lap(stage_yielding)
+      call watch%solved(now, converged)
       if (converged) return
     end do
   end subroutine iterate
 
   !> The law about the last state, and the stiffness for it. `singular` is a body without any that can be factored.
-  subroutine set_law(model, numbering, method, loop, singular)
+  subroutine set_law(model, numbering, method, loop, singular, watch)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     class(plastic_method), intent(inout) :: method
     type(loop_type), intent(inout) :: loop
     integer, intent(out) :: singular
+    class(onlooker), intent(inout) :: watch
     logical :: possible
 
     singular = 0
     call method%linearise(model, loop%material, loop%about%strain, loop%law)
+    call watch%lap(stage_yielding)
     if (loop%stiff .and. (method%keeps_stiffness .or. loop%elastic .and. loop%yielded == 0)) return
     loop%elastic = loop%yielded == 0
     do
-      call loop%scene%set_stiffness(model, numbering, loop%law, singular)
+      call loop%scene%set_stiffness(model, numbering, loop%law, singular, watch)
       loop%stiff = .true.
       if (singular == 0 .or. loop%scene%bodies%lacks_memory()) return
       call method%stiffen(model, loop%material, loop%about%strain, loop%law, possible)

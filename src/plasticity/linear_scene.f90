@@ -4,6 +4,8 @@ module epcont_plasticity_linear_scene
   use epcont_assembly_bodies, only: factored_bodies, new_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
+  use epcont_base_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, stage_stiffness, &
+                                   stopwatch
   use epcont_contact_problem, only: contact_problem, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: add_body_flexibility, gap_opening, motion_columns, motion_resultants, &
@@ -63,12 +65,13 @@ contains
 
   !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far as the
   !! law of their elements has changed. `singular` is a body whose stiffness could not be factored, 0 where all could.
-  subroutine set_stiffness(self, model, numbering, law, singular)
+  subroutine set_stiffness(self, model, numbering, law, singular, watch)
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     type(linear_law), intent(in) :: law
     integer, intent(out) :: singular
+    class(stopwatch), intent(inout) :: watch
     logical, allocatable :: changed(:)
     logical :: first, sound
     integer :: b
@@ -79,17 +82,22 @@ contains
     singular = 0
     do b = 1, model%bodies
       if (.not. (first .or. self%yields(b))) cycle
-      call self%bodies%factor_body(model, self%operator, law%matrix, changed, numbering, b, sound)
+      call self%bodies%assemble(model, self%operator, law%matrix, changed, numbering, b)
+      call watch%lap(stage_stiffness)
+      call self%bodies%factor_body(numbering, b, sound)
+      call watch%lap(stage_factor)
       if (.not. sound .and. singular == 0) singular = b
     end do
     if (singular > 0) return
     call self%bodies%settle(model, self%operator, law)
+    call watch%lap(stage_displacements)
     if (first) then
       allocate (self%lasting_flexibility(model%pairs, model%pairs), source=0.0_wp)
       call add_flexibility(.not. self%yields, self%lasting_flexibility)
     end if
     self%problem%flexibility = self%lasting_flexibility
     call add_flexibility(self%yields, self%problem%flexibility)
+    call watch%lap(stage_flexibility)
 
   contains
 
@@ -121,7 +129,7 @@ contains
 
   !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without contact
   !! equilibrium (`state%contact%state`) there are no displacements.
-  pure subroutine solve(self, model, motions, numbering, law, part, start, state)
+  subroutine solve(self, model, motions, numbering, law, part, start, state, watch)
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
@@ -130,20 +138,22 @@ contains
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
     type(scene_state), intent(inout) :: state
+    class(stopwatch), intent(inout) :: watch
 
     if (self%precision == precision_mixed) then
-      call refine(self, model, numbering, law, part, start, state)
+      call refine(self, model, numbering, law, part, start, state, watch)
     else
-      call solve_once(self, model, numbering, law, part, start, state)
+      call solve_once(self, model, numbering, law, part, start, state, watch)
     end if
     if (state%contact%state /= contact_solved) return
     state%stress = law%stress(state%strain)
     state%displacement = state%deformation
     call add_motions(model, motions, state)
+    call watch%lap(stage_displacements)
   end subroutine solve
 
   !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
-  pure subroutine solve_once(self, model, numbering, law, part, start, state)
+  subroutine solve_once(self, model, numbering, law, part, start, state, watch)
     type(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
@@ -151,13 +161,16 @@ contains
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)
     type(scene_state), intent(inout) :: state
+    class(stopwatch), intent(inout) :: watch
     real(wp), allocatable :: force(:, :)
 
     force = part*model%load
     if (any(law%initial_stress /= 0.0_wp)) force = force - self%operator%nodal_forces(model, law%initial_stress)
     self%problem%load_gap = gap_opening(model, self%bodies%displacements(model, numbering, force, part))
     self%problem%resultant = part*self%resultant
+    call watch%lap(stage_displacements)
     call solve_contact(self%problem, state%contact, start, self%by_blocks)   ! without a guess `start` is not there
+    call watch%lap(stage_contact)
     if (state%contact%state /= contact_solved) return
     force = force + pair_forces(model, state%contact%force)
     ! Strains are of the deformation: added to a long travel it would lose their digits.
@@ -167,7 +180,7 @@ contains
 
   !> The same to double precision with factors in single: step by step the forces out of balance, in double, are solved for,
   !! and the contact with them. `contact_stalled` where that does not converge.
-  pure subroutine refine(self, model, numbering, law, part, start, state)
+  subroutine refine(self, model, numbering, law, part, start, state, watch)
     type(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
@@ -175,6 +188,7 @@ contains
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)
     type(scene_state), intent(inout) :: state
+    class(stopwatch), intent(inout) :: watch
     logical, allocatable :: touching(:)
     real(wp) :: change, before(2)   !! of this step, of the two before
     integer :: step
@@ -192,6 +206,7 @@ contains
     do
       step = step + 1
       call correct(self, model, numbering, law, part, state, change)
+      call watch%lap(stage_displacements)
       if (step > 1 .and. change <= small_step) exit
       ! Steps come in pairs: what one has refined moves the contact forces, and those the next; the first brings them in.
       if (step > 4 .and. .not. change <= slowest_rate*before(1)) then
@@ -201,6 +216,7 @@ contains
       end if
       before = [before(2), change]
       call solve_contact_about(self, model, part, touching, state)
+      call watch%lap(stage_contact)
       if (state%contact%state /= contact_solved) return
       touching = state%contact%touching
     end do

@@ -14,10 +14,29 @@ module epcont_report_results
                                    list_summary, list_zones
   use epcont_report_outcome, only: outcome_type
   use epcont_report_tables, only: write_contact, write_elements, write_history, write_nodes, write_summary, write_zones
+  use epcont_report_vtk_bodies, only: write_vtk_bodies
+  use epcont_report_vtk_contact, only: write_vtk_contact
   use epcont_result_answer, only: answer_type
   implicit none
   private
-  public :: run_results, write_results
+  public :: run_results, write_results, result_file
+
+  !> A file of results: what stands behind the name of the deck, and what it holds.
+  type :: result_file
+    character(len=14) :: suffix
+    character(len=76) :: text
+  end type result_file
+
+  type(result_file), parameter, public :: result_files(*) = [ &
+    result_file('.lst', 'the listing, for people and for diffing: the same bytes on every run'), &
+    result_file('.summary.csv', 'outcome, approaches, certificate and accuracy, in 17 digits like all tables'), &
+    result_file('.contact.csv', 'pairs: place, normal, initial gap, force, pressure, gap, status'), &
+    result_file('.zones.csv', 'runs of touching pairs: force, largest pressure, half-width'), &
+    result_file('.history.csv', 'iterations: change, residual, pairs in contact, plastic elements'), &
+    result_file('.nodes.csv', 'displacements and reactions; where the deck or --tables all asks for it'), &
+    result_file('.elements.csv', 'stresses and states; where the deck or --tables all asks for it'), &
+    result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
+    result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps')]
 
   !> One deck's way, from its cards to its answer.
   type :: run_results
@@ -34,11 +53,12 @@ module epcont_report_results
 
 contains
 
-  !> The listing and the tables; those of nodes and elements where the deck, or `all_tables`, asks for them.
-  subroutine write_results(run, stem, all_tables, error)
+  !> The listing and the tables; those of nodes and elements where the deck, or `all_tables`, asks for them. With `vtk` also
+  !! files for ParaView.
+  subroutine write_results(run, stem, all_tables, vtk, error)
     type(run_results), intent(in) :: run
     character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
-    logical, intent(in) :: all_tables
+    logical, intent(in) :: all_tables, vtk
     type(error_type), allocatable, intent(out) :: error
     logical :: nodes, elements
 
@@ -55,18 +75,19 @@ contains
       if (.not. allocated(error)) call write_history(stem, answer, error)
       if (.not. allocated(error) .and. nodes) call write_nodes(stem, model, answer, error)
       if (.not. allocated(error) .and. elements) call write_elements(stem, model, answer, error)
+      if (.not. allocated(error) .and. vtk) call write_vtk_bodies(stem, model, answer, run%outcome%status, error)
+      if (.not. allocated(error) .and. vtk .and. model%pairs > 0) &
+        call write_vtk_contact(stem, model, answer, run%outcome%status, error)
     end associate
   end subroutine write_results
 
   !> Remove what an earlier run has left: what is there is of one run, also where this one is stopped or has no answer.
   subroutine remove_results(stem)
     character(len=*), intent(in) :: stem
-    character(len=*), parameter :: suffix(7) = ['.lst         ', '.summary.csv ', '.contact.csv ', '.zones.csv   ', &
-                                                '.history.csv ', '.nodes.csv   ', '.elements.csv']
     integer :: i
 
-    do i = 1, size(suffix)
-      call remove_file(stem//trim(suffix(i)))
+    do i = 1, size(result_files)
+      call remove_file(stem//trim(result_files(i)%suffix))
     end do
   end subroutine remove_results
 

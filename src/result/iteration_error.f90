@@ -1,7 +1,8 @@
 !> How far a stopped iteration still is from where it goes.
 module epcont_result_iteration_error
   use epcont_base_kinds, only: wp
-  use epcont_plasticity_iteration, only: iteration_record, rounding
+  use epcont_plasticity_iteration, only: rounding
+  use epcont_plasticity_onlooker, only: iteration_record
   implicit none
   private
   public :: iteration_error, estimate_iteration_error

@@ -11,6 +11,7 @@ module solved_scene
   use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
   use epcont_plan_iteration_plan, only: plan_iteration
   use epcont_plan_numbering, only: number_equations
+  use epcont_plasticity_onlooker, only: onlooker
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -54,6 +55,7 @@ contains
     type(error_type), allocatable :: error
     type(free_motions) :: motions
     type(motion_fault), allocatable :: loose(:)
+    type(onlooker) :: watch
 
     call read_deck(path, deck, faults, error)
     call build_model(deck, solved%model, faults)
@@ -61,6 +63,6 @@ contains
     call find_free_motions(solved%model, motions, loose)
     if (size(loose) > 0) error stop 'solved_scene: a body is loose'
     call analyse(solved%model, motions, number_equations(solved%model), plan_iteration(solved%model), &
-                 solved%answer, solved%certificate, solved%accuracy, solved%singular)
+                 solved%answer, solved%certificate, solved%accuracy, solved%singular, watch)
   end subroutine solve_file
 end module solved_scene

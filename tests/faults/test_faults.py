@@ -14,6 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = None
 SMALL = ROOT / "input" / "hertz" / "hertz44.dat"
 LARGE = ROOT / "input" / "pin_in_lug" / "pin_in_lug60.dat"
+ALL = ("--tables", "all", "--vtk")   # every file there is
 STOPS = 24   # moments at which a run is stopped
 
 
@@ -101,22 +102,22 @@ class Places(Case):
 class Disk(Case):
     def test_full_device(self):
         """Each table in turn is written to a device that is full."""
-        self.check(self.run_it(SMALL, "-o", self.directory, "--tables", "all"), 0)
+        self.check(self.run_it(SMALL, "-o", self.directory, *ALL), 0)
         whole = self.files(self.directory)
         for name in whole:
             (self.directory / f"{name}.part").symlink_to("/dev/full")
-            self.check(self.run_it(SMALL, "-o", self.directory, "--tables", "all"), 3, f"{name}: cannot be written: is the disk full?")
+            self.check(self.run_it(SMALL, "-o", self.directory, *ALL), 3, f"{name}: cannot be written: is the disk full?")
             left = self.files(self.directory)
             self.assertNotIn(name, left)
             self.assertEqual({}, {other: text for other, text in left.items() if text != whole[other]})
 
     def test_file_size_limit(self):
         """Every limit on the size of a file gives whole files or none."""
-        self.check(self.run_it(SMALL, "-o", self.directory, "--tables", "all"), 0)
+        self.check(self.run_it(SMALL, "-o", self.directory, *ALL), 0)
         whole = self.files(self.directory)
         for most in range(0, max(map(len, whole.values())) + 512, 512):
             with tempfile.TemporaryDirectory() as place:
-                run = self.run_it(SMALL, "-o", place, "--tables", "all",
+                run = self.run_it(SMALL, "-o", place, *ALL,
                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
                 left = self.files(pathlib.Path(place))
             self.assertEqual(0 if len(left) == len(whole) else 3, run.returncode)
@@ -128,7 +129,7 @@ class Disk(Case):
         if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", place], capture_output=True, check=False).returncode:
             self.skipTest("no right to mount")
         try:
-            self.check(self.run_it(SMALL, "-o", place, "--tables", "all"), 3, "is the disk full?")
+            self.check(self.run_it(SMALL, "-o", place, *ALL), 3, "is the disk full?")
             left = self.files(place)
         finally:
             subprocess.run(["umount", place], check=True)
@@ -141,13 +142,13 @@ class Disk(Case):
 class Stopped(Case):
     def stop(self, number):
         """Stop runs at moments spread over the whole of one; what they leave is whole, and of the same bytes."""
-        self.check(self.run_it(LARGE, "-o", self.directory, "--tables", "all", stdout=subprocess.DEVNULL), 0)
+        self.check(self.run_it(LARGE, "-o", self.directory, *ALL, stdout=subprocess.DEVNULL), 0)
         begun = time.monotonic()
-        self.check(self.run_it(LARGE, "-o", self.directory, "--tables", "all", stdout=subprocess.DEVNULL), 0)
+        self.check(self.run_it(LARGE, "-o", self.directory, *ALL, stdout=subprocess.DEVNULL), 0)
         length, whole, ended = time.monotonic() - begun, self.files(self.directory), []
         for k in range(STOPS):
             with tempfile.TemporaryDirectory() as place:
-                run = subprocess.Popen([PROGRAM, LARGE, "-o", place, "--tables", "all"], stdout=subprocess.DEVNULL,
+                run = subprocess.Popen([PROGRAM, LARGE, "-o", place, *ALL], stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL)
                 time.sleep(length * 1.1 * (k + 0.5) / STOPS)
                 run.send_signal(number)
@@ -168,7 +169,7 @@ class Stopped(Case):
             named = {name: text for name, text in left.items() if not name.endswith(".part")}
             self.assertEqual({}, {name: text for name, text in named.items() if text != whole[name]})
             if len(named) < len(left):
-                self.check(self.run_it(LARGE, "-o", place, "--tables", "all"), 0)
+                self.check(self.run_it(LARGE, "-o", place, *ALL), 0)
                 self.assertEqual(whole, self.files(pathlib.Path(place)))
 
     def test_a_temporary_file_that_was_left_is_overwritten(self):

@@ -13,6 +13,8 @@ Exit status: 0 all agree, 1 some do not, 2 usage.
 import argparse
 import csv
 import pathlib
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -76,13 +78,15 @@ def compare(found, directory, stem):
 
 
 def tightened(path, place):
-    """The deck, or where it can yield a copy that iterates to rounding."""
+    """The deck, or where it can yield a copy that iterates to rounding, with copies of the files that it includes."""
     text = path.read_text(encoding="latin-1")
     if "MATS1" not in text:
         return path
     lines = [line for line in text.splitlines() if line.replace(",", " ").split()[:2] not in (["PARAM", "TOL"], ["PARAM", "MAXIT"])]
     begin = next((k for k, line in enumerate(lines) if line.startswith("BEGIN BULK")), -1)
     lines[begin + 1:begin + 1] = ["PARAM,TOL,1.E-12", "PARAM,MAXIT,2000"]
+    for name in re.findall(r"(?im)^INCLUDE\s+['\"]([^'\"/]+)['\"]", text):
+        shutil.copy(path.parent / name, place)
     copy = pathlib.Path(place) / path.name
     copy.write_text("\n".join(lines) + "\n", encoding="latin-1")
     return copy

@@ -19,7 +19,7 @@ class Scene:
         self.rings, self.side = rings, {}
         self.rng, self.lines, self.nodes, self.elements, self.pairs, self.materials = rng, [], 0, 0, 0, 0
         self.lines += [] if rings else [f"PARAM,PLANE,{'STRAIN' if strain else 'STRESS'}"]
-        self.lines += ["PARAM,GAPGEOM,YES", "CORD2R,1,,0.0,0.0,0.0,0.0,0.0,1.0,+", "+,0.0,1.0,0.0", "PGAP,1,0.0"]
+        self.lines += ["PARAM,GAPGEOM,YES", "CORD2R,1,,0.0,0.0,0.0,0.0,0.0,1.0,+", "+,0.0,1.0,0.0", "PGAP,900,0.0"]
 
     def add(self, *fields):
         self.lines.append(",".join(f"{f:.12G}" + ("" if "." in f"{f:.12G}" else ".0" if "E" not in f"{f:.12G}" else "")
@@ -110,7 +110,7 @@ class Scene:
 
     def pair(self, a, b):
         self.pairs += 1
-        self.add("CGAP", 100000 + self.pairs, 1, a, b, "", "", "", 1)
+        self.add("CGAP", 100000 + self.pairs, 900, a, b, "", "", "", 1)
 
     def text(self):
         return "\n".join(["BEGIN BULK"] + self.lines + ["ENDDATA", ""])

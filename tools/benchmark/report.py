@@ -142,12 +142,8 @@ def page(parts, about):
 
 
 def draw(rows, path):
-    import matplotlib  # here: what drives the runs stays small
+    from drawing.style import plt  # here: what drives the runs stays small
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8, "legend.frameon": False})
     figure, panels = plt.subplots(2, 2, figsize=(10.0, 7.6), layout="constrained")
     for axes, kind, what, title in ((panels[0][0], "elastic", "cpu", "two cylinders, elastic"), (panels[0][1], "elastoplastic", "cpu", "two cylinders, elastoplastic"),
                                     (panels[1][0], "elastic", "memory", "two cylinders, elastic")):

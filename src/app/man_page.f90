@@ -1,0 +1,150 @@
+!> The manual page epcont(1) as roff, from the tables of options, of exit statuses and of files.
+module epcont_app_man_page
+  use epcont_app_options, only: option_type, options
+  use epcont_base_error, only: status_meaning
+  use epcont_base_text, only: text_of, upper
+  use epcont_base_version, only: program_date, program_name, program_version
+  use epcont_report_results, only: result_files
+  implicit none
+  private
+  public :: man_page
+
+  character(len=1), parameter :: newline = new_line('a')
+
+  type :: example_type
+    character(len=60) :: command
+    character(len=76) :: text
+  end type example_type
+
+  !> With the deck that is installed beside the page (a test runs them).
+  type(example_type), parameter :: examples(*) = [ &
+    example_type('epcont hertz44.dat', 'Solve the deck; the answer is in hertz44.lst and tables beside it.'), &
+    example_type('epcont -o out --tables all hertz44.dat', 'The same to the folder out, with displacements and stresses.'), &
+    example_type('epcont --check *.dat', 'Name every fault of many decks, and solve none.'), &
+    example_type('epcont --plan hertz44.dat', 'How many unknowns, which method and why, how much memory.'), &
+    example_type('epcont --cards PARAM', 'The fields of a card, and what may stand in them.')]
+
+contains
+
+  pure function man_page() result(text)
+    character(len=:), allocatable :: text
+
+    text = '.TH EPCONT 1 '//program_date//' "'//program_name//' '//program_version//'" "User Commands"'//newline// &
+           '.SH NAME'//newline// &
+           program_name//' \- contact and yielding of plane bodies and rings, from card decks'//newline// &
+           '.SH SYNOPSIS'//newline// &
+           '.B '//program_name//newline// &
+           '.RI [ options ]'//newline// &
+           '.IR DECK ...'//newline// &
+           '.SH DESCRIPTION'//newline// &
+           paragraph('For each deck of NASTRAN bulk data: what touches, with what force, how far the bodies '// &
+                     'approach, and where they have yielded.')// &
+           paragraph('Contact is exact to rounding, yielding follows total theory, and every answer is certified '// &
+                     'by code of its own: the exit status and the listing say whether the certificate holds.')// &
+           paragraph('A deck is named DECK.dat; the same deck gives the same files, byte for byte.')// &
+           paragraph('Faults go to standard error, one line of outcome for each deck to standard output.')// &
+           '.SH OPTIONS'//newline//option_list()// &
+           '.SH EXIT STATUS'//newline//paragraph('Of several decks the largest counts.')//status_list()// &
+           '.SH FILES'//newline//paragraph('In the current directory, or in DIR.')//file_list()// &
+           '.SH EXAMPLES'//newline//example_list()// &
+           '.SH ENVIRONMENT'//newline// &
+           paragraph('The program asks for no variable, and uses one thread whatever they say.')// &
+           paragraph('OpenBLAS chooses its kernels by the processor, or by OPENBLAS_CORETYPE: '// &
+                     'others change the last of the 17 digits of the tables.')// &
+           '.SH COPYRIGHT'//newline//paragraph('The epcont authors; MIT License.')
+  end function man_page
+
+  pure function option_list() result(text)
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = ''
+    do k = 1, size(options)
+      text = text//'.TP'//newline//heading(options(k))//paragraph(trim(options(k)%text))
+      if (options(k)%more /= '') text = text//'.br'//newline//paragraph(trim(options(k)%more))
+    end do
+  end function option_list
+
+  !> Names bold, and the value too where it stands for itself.
+  pure function heading(option) result(text)
+    type(option_type), intent(in) :: option
+    character(len=:), allocatable :: text, names
+
+    names = roff(trim(option%name))
+    if (option%short /= '') names = roff(option%short)//', '//names
+    if (option%value == '') then
+      text = '.B '//names//newline
+    else if (upper(option%value) == option%value) then
+      text = '.BI "'//names//' " '//roff(trim(option%value))//newline
+    else
+      text = '.B '//names//' '//roff(trim(option%value))//newline
+    end if
+  end function heading
+
+  pure function status_list() result(text)
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = ''
+    do k = lbound(status_meaning, dim=1), ubound(status_meaning, dim=1)
+      text = text//'.TP'//newline//'.B '//text_of(k)//newline//paragraph(trim(status_meaning(k)))
+    end do
+  end function status_list
+
+  pure function file_list() result(text)
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = ''
+    do k = 1, size(result_files)
+      text = text//'.TP'//newline//'.IB DECK '//roff(trim(result_files(k)%suffix))//newline//paragraph(trim(result_files(k)%text))
+    end do
+  end function file_list
+
+  pure function example_list() result(text)
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = ''
+    do k = 1, size(examples)
+      text = text//'.TP'//newline//'.B '//roff(trim(examples(k)%command))//newline//paragraph(trim(examples(k)%text))
+    end do
+  end function example_list
+
+  !> Text, in lines of a source that can be read.
+  pure function paragraph(text)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: paragraph
+    integer, parameter :: width = 70
+    integer :: from, to
+
+    paragraph = ''
+    from = 1
+    do while (from <= len(text))
+      to = len(text)
+      if (to - from >= width) to = from + index(text(from:from + width), ' ', back=.true.) - 2
+      paragraph = paragraph//roff(text(from:to))//newline
+      from = to + 2
+    end do
+  end function paragraph
+
+  !> Text as roff prints it: its hyphens are those that are typed, and nothing is a request.
+  pure function roff(text) result(escaped)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: escaped
+    integer :: k
+
+    escaped = ''
+    if (scan(text, '.''') == 1) escaped = '\&'
+    do k = 1, len(text)
+      select case (text(k:k))
+      case ('-')
+        escaped = escaped//'\-'
+      case ('\')
+        escaped = escaped//'\e'
+      case default
+        escaped = escaped//text(k:k)
+      end select
+    end do
+  end function roff
+end module epcont_app_man_page

@@ -1,0 +1,74 @@
+!> THE table of options. The parser, --help and the manual page come from it: there is no other place that knows one.
+module epcont_app_options
+  implicit none
+  private
+  public :: option_type, find_option
+
+  type :: option_type
+    character(len=10) :: name = ''    !! as it is given; blank: no option
+    character(len=2) :: short = ''    !! another name of it
+    character(len=6) :: value = ''    !! what follows it: capital letters stand for something, others for themselves;
+                                      !! in brackets where it may be left out
+    character(len=76) :: text = ''    !! what it does
+    character(len=320) :: more = ''   !! for the manual page alone
+  contains
+    procedure :: takes_value
+    procedure :: needs_value
+    procedure :: usage
+  end type option_type
+
+  type(option_type), parameter, public :: options(*) = [ &
+    option_type('-o', '', 'DIR', 'write results to DIR (default: the current directory)', &
+                'DIR is made where there is none; what it lies in must be there.'), &
+    option_type('--check', '', '', 'read and check the decks, then stop', ''), &
+    option_type('--plan', '', '', 'print what would be solved and what it takes, then stop', ''), &
+    option_type('--tables', '', 'all', 'write node and element tables, whatever the deck asks for', &
+                'Without it they are written where the deck has DISPLACEMENT, SPCFORCES or STRESS.'), &
+    option_type('--vtk', '', '', 'write DECK.vtu and DECK.contact.vtu, for ParaView', ''), &
+    option_type('--memory', '', 'GB', 'refuse decks whose matrices need more (default 16)', ''), &
+    option_type('--progress', '', '', 'tell of every solve on standard error, terminal or not', &
+                'Without it, one line on a terminal tells of runs of more than a second, and goes when they end: seconds gone '// &
+                'and expected, iteration, load factor, change of the displacements, yielded elements, touching pairs.'), &
+    option_type('--timing', '', '', 'print on standard error where the time of each run went', &
+                'Seconds of wall clock and of processor by stage, and the largest memory of the process so far.'), &
+    option_type('--quiet', '', '', 'print nothing on standard output, and no progress unless --progress asks', ''), &
+    option_type('--cards', '', '[NAME]', 'print the manual of the cards, or of one', ''), &
+    option_type('--man', '', '', 'print the manual page: epcont --man | man -l -', ''), &
+    option_type('--version', '', '', 'print the version', ''), &
+    option_type('--help', '-h', '', 'print this', '')]
+
+contains
+
+  !> The option of this name, to the letter; a blank name where there is none.
+  pure type(option_type) function find_option(word) result(option)
+    character(len=*), intent(in) :: word
+    integer :: k
+
+    if (len_trim(word) < len(word)) return   ! to Fortran, blanks at the end make no difference
+    do k = 1, size(options)
+      if (word == options(k)%name .or. word == options(k)%short) option = options(k)
+    end do
+  end function find_option
+
+  pure logical function takes_value(self)
+    class(option_type), intent(in) :: self
+
+    takes_value = self%value /= ''
+  end function takes_value
+
+  pure logical function needs_value(self)
+    class(option_type), intent(in) :: self
+
+    needs_value = self%value /= '' .and. self%value(1:1) /= '['
+  end function needs_value
+
+  !> Names and value: `-h, --help`, `--memory GB`.
+  pure function usage(self) result(text)
+    class(option_type), intent(in) :: self
+    character(len=:), allocatable :: text
+
+    text = trim(self%name)
+    if (self%short /= '') text = self%short//', '//text
+    if (self%value /= '') text = text//' '//trim(self%value)
+  end function usage
+end module epcont_app_options

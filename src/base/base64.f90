@@ -1,0 +1,51 @@
+!> Bytes as text: base64 (RFC 4648, section 4).
+module epcont_base_base64
+  use, intrinsic :: iso_fortran_env, only: int8
+  implicit none
+  private
+  public :: base64
+
+  character(len=64), parameter :: digits = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/'
+
+contains
+
+  !> Four characters for every three bytes; `=` where the last group lacks one.
+  pure function base64(bytes) result(text)
+    integer(int8), intent(in) :: bytes(:)
+    character(len=:), allocatable :: text
+    integer(int8) :: last(3)
+    integer :: group, whole, left
+
+    whole = size(bytes)/3
+    left = size(bytes) - 3*whole
+    allocate (character(len=4*((size(bytes) + 2)/3)) :: text)
+    do group = 1, whole
+      text(4*group - 3:4*group) = encoded(bytes(3*group - 2), bytes(3*group - 1), bytes(3*group))
+    end do
+    if (left == 0) return
+    last = 0_int8
+    last(:left) = bytes(3*whole + 1:)
+    text(4*whole + 1:) = encoded(last(1), last(2), last(3))
+    text(4*whole + left + 2:) = repeat('=', 3 - left)
+  end function base64
+
+  !> Three bytes as four digits of six bits.
+  pure function encoded(first, second, third) result(text)
+    integer(int8), intent(in) :: first, second, third
+    character(len=4) :: text
+    integer :: bits, k, place
+
+    bits = ior(ior(shiftl(octet(first), 16), shiftl(octet(second), 8)), octet(third))
+    do k = 1, 4
+      place = ibits(bits, 24 - 6*k, 6) + 1
+      text(k:k) = digits(place:place)
+    end do
+  end function encoded
+
+  !> A byte as a number from 0 to 255.
+  pure integer function octet(byte)
+    integer(int8), intent(in) :: byte
+
+    octet = iand(int(byte), 255)
+  end function octet
+end module epcont_base_base64

@@ -1,0 +1,35 @@
+!> Who may look on while loads are followed: the stopwatch, and whoever is told of each solve. What it does changes nothing.
+module epcont_plasticity_onlooker
+  use epcont_base_kinds, only: wp
+  use epcont_base_stopwatch, only: stopwatch
+  implicit none
+  private
+  public :: iteration_record, onlooker
+
+  !> One solve.
+  type :: iteration_record
+    real(wp) :: load_factor = 1.0_wp   !! part of the loads it is for
+    integer :: iteration = 0           !! its number in its load step
+    real(wp) :: change = 0.0_wp        !! largest change of a displacement / largest displacement
+    real(wp) :: force_change = 0.0_wp  !! largest change of a contact force / largest contact force
+    real(wp) :: residual = 0.0_wp      !! largest distance of a stress from its curve / largest stress
+    integer :: touching = 0            !! pairs
+    integer :: yielded = 0             !! elements
+    integer :: pivots = 0
+  end type iteration_record
+
+  !> One that says nothing.
+  type, extends(stopwatch) :: onlooker
+  contains
+    procedure :: solved
+  end type onlooker
+
+contains
+
+  !> A solve has been done; `over` if it was the last at its load.
+  subroutine solved(self, now, over)
+    class(onlooker), intent(inout) :: self
+    type(iteration_record), intent(in) :: now
+    logical, intent(in) :: over
+  end subroutine solved
+end module epcont_plasticity_onlooker

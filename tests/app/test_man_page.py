@@ -1,0 +1,85 @@
+"""The manual page: roff without a warning, its files are those of a run, its examples run."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM, ROOT = os.environ["EPCONT_PROGRAM"], pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
+DECK = ROOT / "input" / "hertz" / "hertz44.dat"
+PAGE = subprocess.run([PROGRAM, "--man"], capture_output=True, check=True).stdout.decode("ascii")
+
+
+def section(name):
+    """Lines of a section, as they are typed."""
+    text = re.search(rf"^\.SH {name}\n(.*?)(?=^\.SH |\Z)", PAGE, re.MULTILINE | re.DOTALL)[1]
+    return text.replace(r"\-", "-").replace(r"\&", "").splitlines()
+
+
+class Page(unittest.TestCase):
+    def quiet(self, *command):
+        if not shutil.which(command[0]):
+            self.skipTest(f"no {command[0]}")
+        run = subprocess.run(command, input=PAGE.encode(), capture_output=True, check=False)
+        return run.stdout.decode("utf-8"), run.stderr.decode("utf-8"), run.returncode
+
+    def test_groff(self):
+        shown, said, status = self.quiet("groff", "-man", "-ww", "-Tutf8")
+        self.assertEqual(("", 0), (said, status))
+        self.assertIn("\nEXIT STATUS\n", re.sub(".\b", "", shown))   # bold letters are struck twice
+
+    def test_mandoc(self):
+        self.assertEqual(("", "", 0), self.quiet("mandoc", "-T", "lint", "-W", "style"))
+
+    def test_a_fault_would_be_seen(self):
+        """What judges the page sees a font that is never closed and a request that there is none of."""
+        if not shutil.which("groff"):
+            self.skipTest("no groff")
+        run = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=PAGE.encode() + b".XYZ\n", capture_output=True, check=False)
+        self.assertIn(b"XYZ", run.stderr)
+
+    def test_sections(self):
+        self.assertEqual(["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXIT STATUS", "FILES", "EXAMPLES", "ENVIRONMENT", "COPYRIGHT"],
+                         re.findall(r"^\.SH (.*)", PAGE, re.MULTILINE))
+
+    def test_lines(self):
+        """No blank line, which roff would take for a paragraph, and no blank at an end."""
+        for line in PAGE.splitlines():
+            self.assertTrue(line and line == line.rstrip(), line)
+
+    def test_files(self):
+        """The files of a run with all tables are those of FILES."""
+        with tempfile.TemporaryDirectory() as place:
+            subprocess.run([PROGRAM, DECK, "-o", place, "--tables", "all", "--quiet"], check=True)
+            written = {path.name.replace("hertz44", "", 1) for path in pathlib.Path(place).iterdir()}
+        self.assertEqual(written, {line.split()[2] for line in section("FILES") if line.startswith(".IB DECK")})
+
+    def test_examples(self):
+        commands = [line.split()[1:] for line in section("EXAMPLES") if line.startswith(".B ")]
+        self.assertGreaterEqual(len(commands), 3)
+        for text in section("EXAMPLES")[2::3]:
+            self.assertTrue(text.endswith("."), text)   # nothing is cut off
+        with tempfile.TemporaryDirectory() as place:
+            shutil.copy(DECK, place)
+            for command in commands:
+                self.assertEqual("epcont", command[0])
+                run = subprocess.run(" ".join(['"$EPCONT_PROGRAM"'] + command[1:]), shell=True, cwd=place, capture_output=True, check=False)
+                self.assertEqual((0, b""), (run.returncode, run.stderr), command)
+            self.assertTrue((pathlib.Path(place) / "out" / "hertz44.nodes.csv").exists())
+
+
+class Options(unittest.TestCase):
+    def test_the_parser_knows_no_other_option(self):
+        """A case that the table of options has not can never be reached: it is to be deleted."""
+        source = (ROOT / "src" / "app" / "arguments.f90").read_text()
+        cases = re.findall(r"^\s*case \('(-[^']*)'\)", source, re.MULTILINE)
+        self.assertEqual(len(cases), len(set(cases)))
+        listed = subprocess.run([PROGRAM, "--help"], capture_output=True, check=True).stdout.decode().split("exit status")[0]
+        named = {re.findall(r"-[\w-]+", line[:17])[-1] for line in listed.splitlines() if line.startswith("  -")}
+        self.assertEqual(named, set(cases))
+
+
+if __name__ == "__main__":
+    unittest.main()

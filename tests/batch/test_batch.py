@@ -1,0 +1,406 @@
+#!/usr/bin/env python3
+"""tools/batch on this machine: the table, places, resuming, and programs that crash, hang or write half."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from batching.outcome import first_fault  # noqa: E402
+from common import PROGRAM, ROOT, SMALL, Case  # noqa: E402
+
+
+class Whole(Case):
+    def test_a_row_a_deck_in_the_order_of_the_list(self):
+        self.decks("b.dat", "a.dat", "c_rejected.dat")
+        run = self.run_it(1, "b.dat", "c_rejected.dat", "a.dat", "missing.dat", "-o", "out", "-j", "2")
+        rows = self.table()
+        self.assertEqual(["b.dat", "c_rejected.dat", "a.dat", "missing.dat"], [row["deck"] for row in rows])
+        self.assertEqual(["valid", "rejected", "valid", "refused"], [row["status"] for row in rows])
+        self.assertEqual(["0", "2", "0", "3"], [row["exit_status"] for row in rows])
+        self.assertEqual("c_rejected.dat:77:1-4: the body of GRID 101 is free to move: it shifts along (0.0, 1.000)", rows[1]["message"])
+        self.assertEqual("missing.dat: no such file", rows[3]["message"])
+        self.assertIn("4 decks", run.stdout)
+        self.assertIn("2 valid, 1 refused, 1 rejected", run.stdout)
+        self.assertIn("\n  c_rejected.dat: rejected: c_rejected.dat:77:1-4: the body", run.stdout)
+        self.assertIn("\n  missing.dat: refused: no such file", run.stdout)
+
+    def test_figures_are_those_of_the_summary(self):
+        self.decks("a.dat")
+        self.run_it(0, "a.dat", "-o", "out")
+        row = self.table()[0]
+        summary = dict(line.split(",")[:2] for line in (self.place / "out" / "a.summary.csv").read_text().splitlines())
+        self.assertEqual("49", row["nodes"])
+        self.assertEqual(summary["max_pressure"], row["p_max"])
+        self.assertEqual(summary["approach_41_2"], row["approach"])
+        error = float(summary["mesh_error_max_pressure"]) / float(summary["max_pressure"])
+        self.assertAlmostEqual(error, float(row["p_max_error"]), delta=5e-3 * error)
+        self.assertLess(float(row["certificate_part"]), 1)
+        self.assertGreater(float(row["seconds"]), 0)
+
+    def test_the_worst_figure_is_held_against_its_own_tolerance(self):
+        deck = self.deck("a.dat", ROOT / "input" / "hertz" / "hertz44.dat")
+        self.run_it(0, deck, "-o", "out")
+        summary = dict(line.split(",")[:2] for line in (self.place / "out" / "a.summary.csv").read_text().splitlines())
+        row = self.table()[0]
+        self.assertEqual("stress off the curve", row["certificate"])
+        self.assertAlmostEqual(float(summary["stress_off_curve"]) / 0.1, float(row["certificate_part"]), delta=1e-3)
+
+    def test_memory_of_a_large_deck(self):
+        deck = self.deck("a.dat", ROOT / "input" / "pin_in_hole" / "pin_in_hole.dat")
+        self.run_it(0, deck, "-o", "out")
+        memory = self.table()[0]["memory_MB"]
+        self.assertTrue(memory == "" or 15 < float(memory) < 5000, memory)   # unknown below what Python itself takes
+
+    def test_memory_limit_is_passed_on(self):
+        self.deck("a.dat", ROOT / "input" / "pin_in_hole" / "pin_in_hole.dat")
+        self.run_it(1, "a.dat", "-o", "out", "--memory", "0.0001")
+        self.assertIn("--memory allows", self.table()[0]["message"])
+
+    def test_same_bytes_as_alone(self):
+        self.decks(*(f"d{k}.dat" for k in range(6)))
+        self.run_it(0, *(f"d{k}.dat" for k in range(6)), "-o", "out", "-j", "3")
+        subprocess.run([PROGRAM, SMALL, "-o", self.place / "alone"], check=True, stdout=subprocess.DEVNULL)
+        wanted = (self.place / "alone" / "hertz44_elastic.lst").read_bytes()
+        for k in range(6):
+            self.assertEqual(wanted, (self.place / "out" / f"d{k}.lst").read_bytes())
+
+
+class Places(Case):
+    def test_equal_names_are_kept_apart(self):
+        self.decks("one/a.dat", "two/deep/a.dat", "two/b.dat")
+        self.run_it(0, "one/a.dat", "two/deep/a.dat", "two/b.dat", "-o", "out")
+        found = sorted(str(path.relative_to(self.place / "out")) for path in (self.place / "out").rglob("*.lst"))
+        self.assertEqual(["one/a.lst", "two/b.lst", "two/deep/a.lst"], found)
+
+    def test_a_deck_named_twice_runs_once(self):
+        self.decks("a.dat", "b.dat")
+        self.run_it(0, "a.dat", "./a.dat", self.place / "a.dat", "b.dat", "-o", "out", "--program", self.fake)
+        self.assertEqual(["a.dat", "b.dat"], self.calls())
+        self.assertEqual(["a.dat", "b.dat"], [row["deck"] for row in self.table()])
+
+    def test_two_decks_of_one_stem_in_one_folder(self):
+        self.decks("a.dat", "a.bdf")
+        run = self.run_it(3, "a.dat", "a.bdf", "-o", "out")
+        self.assertIn("a.dat and a.bdf would write the same files", run.stderr)
+        self.assertFalse((self.place / "out").exists())
+
+    def test_odd_names(self):
+        names = ["-x.dat", "with blank.dat", "comma,\"quote.dat", "ünïcode.dat", "a.b.dat", "no_suffix"]
+        self.decks(*names)
+        (self.place / "list").write_text("\n".join(names) + "\n")
+        self.run_it(0, "--list", "list", "-o", "out dir")
+        self.assertEqual(["valid"] * 6, [row["status"] for row in self.table("out dir")])
+        self.assertTrue((self.place / "out dir" / "a.b.lst").exists())
+
+
+class Lists(Case):
+    def test_comments_and_folders(self):
+        self.decks("sub/a.dat", "sub/b.dat")
+        (self.place / "sub" / "list").write_text("# a comment\n\n  a.dat  \n$ another\nb.dat")
+        self.run_it(0, "--list", "sub/list", "-o", "out")
+        self.assertEqual({"sub/a.dat": "valid", "sub/b.dat": "valid"}, self.words())
+
+    def test_a_table_hands_its_columns_on(self):
+        self.decks("sub/a.dat", "sub/b.dat")
+        (self.place / "sub" / "list.csv").write_text("\ufeffdeck,young,note\na.dat,1.5,\"x, y\"\nb.dat,2.5,\n")
+        self.run_it(0, "--list", "sub/list.csv", "-o", "out")
+        self.assertEqual([("1.5", "x, y", "valid"), ("2.5", "", "valid")],
+                         [(row["young"], row["note"], row["status"]) for row in self.table()])
+
+    def test_bad_lists(self):
+        for name, text, words in (("empty", "# nothing\n", "no deck in the list"), ("binary", "a.dat\nb\0.dat\n", "binary:2: not a text"),
+                                  ("a.csv", "name\nx\n", "a.csv:1: a list that is a table needs a column `deck`"),
+                                  ("b.csv", "deck,x\na.dat\n", "b.csv:2: 2 values"), ("c.csv", "deck,status\na.dat,1\n", "column status"),
+                                  ("d.csv", "deck,x\n,1\n", "d.csv:2: the deck has no name")):
+            with self.subTest(name):
+                (self.place / name).write_text(text)
+                self.assertIn(words, self.run_it(3, "--list", name, "-o", "out").stderr)
+                self.assertFalse((self.place / "out").exists())
+        self.assertIn("missing: the list cannot be read", self.run_it(3, "--list", "missing", "-o", "out").stderr)
+
+    def test_usage(self):
+        self.decks("a.dat")
+        for arguments in ([], ["a.dat"], ["-o", "out"], ["a.dat", "--list", "x", "-o", "out"], ["a.dat", "-o", "out", "-j", "0"],
+                          ["a.dat", "-o", "out", "-j", "x"], ["a.dat", "-o", "out", "--seconds", "0"], ["a.dat", "-o", "out", "--chunk", "2"],
+                          ["a.dat", "-o", "out", "--seconds", "nan"], ["a.dat", "-o", "out", "--memory", "-1"], ["--collect", "out"],
+                          ["a.dat", "-o", "out", "--resum"], ["a.dat", "-o", "out", "--partition=x"], ["a.dat", "-o", "out", "--slurm", "-p"]):
+            with self.subTest(arguments):
+                self.assertIn("tools/batch: ", self.run_it(3, *arguments).stderr)
+        self.assertIn("no such program: tools/build makes it", self.run_it(3, "a.dat", "-o", "out", "--program", "nowhere").stderr)
+        self.assertIn("a working epcont would be right", self.run_it(3, "a.dat", "-o", "out", "--program", "/bin/false").stderr)
+        self.assertIn("cannot be written", self.run_it(3, "a.dat", "-o", "a.dat").stderr)
+
+
+class Misbehaving(Case):
+    def test_a_full_disk(self):
+        """It is said, with its status; the table is whole."""
+        self.decks(*(f"d{k}.dat" for k in range(12)))
+        small = self.place / "small"
+        small.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48k", "tmpfs", small], capture_output=True, check=False).returncode:
+            self.skipTest("no right to mount")
+        try:
+            run = self.run_it(3, *(f"d{k}.dat" for k in range(12)), "-o", "small/out")
+            self.assertIn("cannot be written", run.stderr)
+            self.assertEqual(12, len(self.table("small/out")))
+        finally:
+            subprocess.run(["umount", small], check=True)
+
+    def test_one_that_fails_stops_no_other(self):
+        names = ["segfault.dat", "killed.dat", "hangs.dat", "deaf.dat", "half.dat", "silent.dat", "strange.dat", "chatter.dat", "lies.dat", "cut.dat",
+                 "a.dat", "b.dat"]
+        self.decks(*names)
+        run = self.run_it(1, *names, "-o", "out", "-j", "2", "--seconds", "3", "--program", self.fake)
+        self.assertEqual({"segfault.dat": "crashed", "killed.dat": "killed", "hangs.dat": "timed out", "deaf.dat": "timed out",
+                          "half.dat": "incomplete", "silent.dat": "incomplete", "strange.dat": "internal error", "chatter.dat": "rejected",
+                          "lies.dat": "incomplete", "cut.dat": "incomplete", "a.dat": "valid", "b.dat": "valid"}, self.words())
+        self.assertIn("segfault.dat: crashed: by SIGSEGV", run.stdout)
+        self.assertIn("hangs.dat: timed out: no end within 3 s", run.stdout)
+        self.assertIn("strange.dat: internal error: exit status 77", run.stdout)
+        self.assertIn("chatter.dat: rejected: a line of chatter 0\n", run.stdout)
+        self.nothing_runs()
+
+    def test_small_decks_share_a_process_and_bad_ones_run_alone(self):
+        names = [f"d{k:02d}.dat" for k in range(60)]
+        names[5:5] = ["segfault.dat", "half.dat", "a_rejected.dat", "strange.dat", "killed.dat"]
+        names[20:20] = ["full.dat"]
+        names[40:40] = ["b_rejected.dat", "hangs.dat", "other/segfault.dat", "missing.dat"]
+        self.decks(*(name for name in names if name != "missing.dat"))
+        (self.place / "list").write_text("\n".join(names))
+        self.run_it(1, "--list", "list", "-o", "out", "--seconds", "5", "--program", self.fake)
+        words = {"segfault": "crashed", "half": "incomplete", "a_rejected": "rejected", "strange": "internal error", "killed": "killed",
+                 "b_rejected": "rejected", "hangs": "timed out", "full": "refused", "missing": "refused"}
+        rows = self.table()
+        self.assertEqual(names, [row["deck"] for row in rows])
+        self.assertEqual([words.get(os.path.basename(name)[:-4], "valid") for name in names], [row["status"] for row in rows])
+        self.assertEqual(["2"] * 2, [row["exit_status"] for row in rows if row["status"] == "rejected"])
+        self.assertIn("a_rejected.dat:77:1-4: ", rows[7]["message"])
+        called = self.calls()
+        self.assertLess(called.count("d00.dat"), 3)
+        self.assertEqual([], [name for name in names if os.path.basename(name) not in called])
+
+    def test_shared_processes_give_the_same_bytes(self):
+        names = [f"d{k:02d}.dat" for k in range(30)]
+        self.decks(*names)
+        self.run_it(0, *names, "-o", "out", "--program", self.fake)
+        self.assertEqual(names, self.calls())
+        self.run_it(0, "d07.dat", "-o", "alone")
+        for suffix in (".lst", ".summary.csv", ".contact.csv", ".history.csv"):
+            wanted = (self.place / "alone" / f"d07{suffix}").read_bytes()
+            self.assertEqual([], [name for name in names if (self.place / "out" / (name[:-4] + suffix)).read_bytes() != wanted])
+
+    def test_warnings_are_no_faults(self):
+        said = "a.dat:3:9-16: warning: a remark\n  GRID 1\n  ^^^^\na.dat:5:1-4: unknown card\n  GRIT 1\na.dat:9: later\n"
+        self.assertEqual("a.dat:5:1-4: unknown card", first_fault(said))
+        self.assertEqual("", first_fault("a.dat:3:9: warning: a remark\n  GRID 1\n"))
+
+    def test_results_of_an_earlier_run_are_not_taken(self):
+        self.decks("a_silent.dat")
+        self.run_it(0, "a_silent.dat", "-o", "out")
+        self.run_it(1, "a_silent.dat", "-o", "out", "--program", self.fake)
+        self.assertEqual({"a_silent.dat": "incomplete"}, self.words())
+
+
+class Resumed(Case):
+    def again(self, status, *arguments):
+        self.run_it(status, "--list", "list", "-o", "out", "--resume", "--program", self.fake, *arguments)
+        return self.calls()
+
+    def setUp(self):
+        super().setUp()
+        self.decks("a.dat", "b.dat", "c_rejected.dat", "d_segfault.dat")
+        self.deck("e.dat", ROOT / "input" / "faults" / "pulled_apart.dat")
+        (self.place / "list").write_text("a.dat\nb.dat\nc_rejected.dat\nd_segfault.dat\ne.dat\n")
+        self.first = self.again(1)
+
+    def test_what_has_a_listing_is_kept(self):
+        self.assertEqual(["a.dat", "b.dat", "c_rejected.dat", "d_segfault.dat", "e.dat"], self.first)
+        before = self.table()
+        self.assertEqual(["c_rejected.dat", "d_segfault.dat"], self.again(1))
+        self.assertEqual([before[k] for k in (0, 1, 4)], [self.table()[k] for k in (0, 1, 4)])
+        self.assertEqual("no equilibrium", before[4]["status"])
+
+    def test_a_changed_deck_runs(self):
+        path = self.place / "a.dat"
+        times = path.stat()
+        path.write_bytes(path.read_bytes().replace(b"20400.", b"20500."))
+        os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))   # a copy may be older than the listing, and other
+        self.assertEqual(["a.dat", "c_rejected.dat", "d_segfault.dat"], self.again(1))
+
+    def test_a_touched_deck_does_not(self):
+        (self.place / "a.dat").touch()
+        self.assertEqual(["c_rejected.dat", "d_segfault.dat"], self.again(1))
+
+    def test_a_cut_or_missing_listing_runs(self):
+        listing = self.place / "out" / "a.lst"
+        listing.write_bytes(listing.read_bytes()[:-20])
+        (self.place / "out" / "b.lst").unlink()
+        self.assertEqual(["a.dat", "b.dat", "c_rejected.dat", "d_segfault.dat"], self.again(1))
+
+    def test_another_version_runs(self):
+        self.fake.write_text(self.fake.read_text().replace(f"exec {PROGRAM} --version", "{ echo epcont 9.9; exit 0; }", 1))
+        self.assertEqual(5, len(self.again(1)))
+
+    def test_without_resume_all_run(self):
+        self.run_it(1, "--list", "list", "-o", "out", "--program", self.fake)
+        self.assertEqual(5, len(self.calls()))
+
+    def test_a_changed_include_runs(self):
+        for path in (ROOT / "input" / "include").iterdir():
+            self.deck(path.name, path)
+        included = [path for path in (ROOT / "input" / "include").iterdir() if path.name != "patch_case.dat"]
+        self.assertTrue(included)
+        (self.place / "list").write_text("a.dat\npatch_case.dat\n")
+        self.assertEqual(["patch_case.dat"], self.again(0))
+        self.assertEqual([], self.again(0))
+        for path in included:
+            with open(self.place / path.name, "a") as file:
+                file.write("$ a remark\n")
+        self.assertEqual(["patch_case.dat"], self.again(0))
+
+    def test_a_journal_that_was_cut_off(self):
+        kept, here = (self.place / "out" / ".batch" / f"{name}.journal" for name in ("kept", "here"))
+        text = here.read_bytes()
+        here.write_bytes(text[:text.rindex(b'"row"') + 30])   # the end of the last deck, in its middle
+        self.assertEqual(3, len(self.again(1)))
+        self.assertEqual(2, len(kept.read_text().splitlines()))
+        self.assertEqual(["c_rejected.dat", "d_segfault.dat"], self.again(1))
+
+
+class StoppedBatch(Case):
+    def begin(self, *arguments):
+        names = ["a.dat", "b.dat", "hangs.dat", "z.dat"]
+        self.decks(*names)
+        process = subprocess.Popen(self.command("batch", *names, "-o", "out", "--program", self.fake, *arguments), cwd=self.place,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        until = time.monotonic() + 60
+        while not (self.place / "pids").exists() and time.monotonic() < until:
+            time.sleep(0.02)
+        return process
+
+    def test_sigint_and_sigterm(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(number):
+                process = self.begin()
+                process.send_signal(number)
+                said, errors = process.communicate(timeout=30)
+                self.assertEqual(128 + number, process.returncode, errors)
+                self.nothing_runs()
+                words = self.words()
+                self.assertEqual(["a.dat", "b.dat", "hangs.dat", "z.dat"], list(words))
+                self.assertEqual("not run", words["hangs.dat"])
+                self.assertIn("not run", said)
+                self.calls()
+                (self.place / "pids").unlink()
+                self.fake.write_text(self.fake.read_text().replace("*hangs*", "*never*"))
+                self.run_it(0, *words, "-o", "out", "--resume", "--program", self.fake)
+                ended = [name for name, word in words.items() if word == "valid"]
+                self.assertEqual(sorted(set(words) - set(ended)), self.calls())
+                self.fake.write_text(self.fake.read_text().replace("*never*", "*hangs*"))
+
+    def test_sigkill_leaves_a_whole_table_and_what_ended(self):
+        """All but the deck that hangs have ended; the batch is killed at once, its children are not."""
+        process = self.begin("-j", "4")
+        until = time.monotonic() + 60
+        while len(list((self.place / "out").glob("*.history.csv"))) < 3 and time.monotonic() < until:
+            time.sleep(0.02)
+        time.sleep(0.3)
+        process.kill()
+        process.communicate()
+        self.assertEqual(4, len(self.table()))
+        run = self.run_it(3, "a.dat", "-o", "out", "--resume", "--program", self.fake)
+        self.assertIn("what it began is still running", run.stderr)
+        for pid in (self.place / "pids").read_text().split():
+            os.killpg(int(pid), signal.SIGKILL)
+        self.run_it(1, "--collect", "out")
+        self.assertEqual({"a.dat": "valid", "b.dat": "valid", "hangs.dat": "not run", "z.dat": "valid"}, self.words())
+
+    def test_two_batches_in_one_folder(self):
+        process = self.begin()
+        self.assertIn("another tools/batch is at work there", self.run_it(3, "a.dat", "-o", "out").stderr)
+        process.terminate()
+        process.communicate()
+
+
+# Runs the tasks at once, one after the other. (tests/slurm/run has the real thing.)
+SBATCH = """#!/bin/sh
+cat > {folder}/script
+for word; do case $word in --array=*) tasks=${{word#--array=}} ;; esac; done
+echo "$@" >> {folder}/submitted
+for task in $(echo "$tasks" | tr , ' '); do SLURM_ARRAY_TASK_ID=$task sh {folder}/script > /dev/null 2>&1; done
+wc -l < {folder}/submitted
+"""
+SQUEUE = """#!/bin/sh
+[ -e {folder}/answers ] && exit 0
+touch {folder}/answers
+exit 1
+"""
+SCONTROL = """#!/bin/sh
+echo "JobId=1 JobState=NODE_FAIL Reason=None"
+"""
+
+
+class StandIn(Case):
+    """A Slurm of three scripts."""
+
+    def setUp(self):
+        super().setUp()
+        for name, text in (("sbatch", SBATCH), ("squeue", SQUEUE), ("scontrol", SCONTROL)):
+            path = self.place / "bin" / name
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text.format(folder=self.place))
+            path.chmod(0o755)
+        self.environment = {**os.environ, "PATH": f"{self.place / 'bin'}:{os.environ['PATH']}"}
+
+    def submit(self, status, names, *arguments):
+        (self.place / "list").write_text("\n".join(names))
+        run = self.run_it(status, "--list", "list", "-o", "out", "--slurm", "--program", self.fake, *arguments, env=self.environment)
+        return run, (self.place / "submitted").read_text().splitlines()
+
+    def test_what_is_killed_is_submitted_again_and_named_at_last(self):
+        names = [f"d{k}.dat" for k in range(5)] + ["killed.dat", "rejected.dat"] + [f"e{k}.dat" for k in range(5)]
+        self.decks(*names)
+        run, submitted = self.submit(1, names, "--chunk", "4", "--partition=short", "--mem=2G", "-j", "2")
+        words = {"killed.dat": "lost", "rejected.dat": "rejected"}
+        self.assertEqual({name: words.get(name, "valid") for name in names}, self.words())
+        self.assertEqual(3, len(submitted))
+        self.assertIn("--array=0,1,2 ", submitted[0])
+        self.assertRegex(submitted[1], "--array=[012] ")
+        for line in submitted:
+            self.assertTrue(line.endswith("--cpus-per-task=2 --partition=short --mem=2G"), line)
+        self.assertIn("killed.dat: lost: killed 3 times, last: NODE_FAIL; see out/.batch/task", run.stdout)
+        self.assertIn("squeue does not answer", run.stderr)
+        self.assertEqual(3, self.calls().count("killed.dat"))
+
+    def test_resume_submits_the_rest_only(self):
+        names = [f"d{k}.dat" for k in range(6)]
+        self.decks(*names)
+        self.assertIn("6 decks in 3 tasks", self.submit(0, names, "--chunk", "2")[0].stderr)
+        (self.place / "d3.dat").write_bytes((self.place / "d3.dat").read_bytes().replace(b"20400.", b"20500."))
+        run, submitted = self.submit(0, names, "--resume")
+        self.assertIn("1 decks in 1 tasks", run.stderr)
+        self.assertEqual(2, len(submitted))
+        self.assertEqual(2, self.calls().count("d3.dat"))
+        self.submit(0, names, "--resume")
+        self.assertEqual(2, len((self.place / "submitted").read_text().splitlines()))
+
+    def test_no_slurm(self):
+        self.decks("a.dat")
+        run = self.run_it(3, "a.dat", "-o", "out", "--slurm", "--program", self.fake, env={**os.environ, "PATH": self.path_without()})
+        self.assertIn("sbatch cannot be started", run.stderr)
+
+    def path_without(self):
+        """Nothing but the shell's own tools."""
+        folder = self.place / "few"
+        folder.mkdir()
+        for name in ("sh", "cat", "env"):
+            os.symlink(f"/bin/{name}", folder / name)
+        return str(folder)
+
+
+if __name__ == "__main__":
+    unittest.main()

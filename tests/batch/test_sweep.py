@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""tools/sweep: values in the fields of decks as the program reads them, or refused; all decks or none."""
+import csv
+import os
+import subprocess
+import unittest
+
+from common import PROGRAM, ROOT, SMALL, Case
+
+TEXT = SMALL.read_text()
+SMALL_FIELD = TEXT.replace("MAT1    1       20400.          .29", "MAT1    1       %E%             %nu%")
+LARGE_FIELD = TEXT.replace("MAT1    1       20400.          .29", "MAT1*   1               %E%                             %nu%")
+FREE_FIELD = TEXT.replace("MAT1    1       20400.          .29", "MAT1,1,%E%,,%nu%")
+
+
+class Sweep(Case):
+    def sweep(self, status, deck, table, name="s.in", directory="set"):
+        (self.place / name).parent.mkdir(exist_ok=True, parents=True)
+        (self.place / name).write_text(deck)
+        (self.place / "t.csv").write_text(table)
+        return self.run_it(status, name, "t.csv", "-o", directory, tool="sweep")
+
+    def cards(self, name, card):
+        lines = (self.place / "set" / name).read_text().splitlines()
+        return [line for line in lines if line.startswith(card)]
+
+    def refused(self, deck, table, *words):
+        run = self.sweep(3, deck, table)
+        for word in words:
+            self.assertIn(word, run.stderr)
+        self.assertFalse((self.place / "set").exists())
+
+    def checked(self):
+        """The program takes every deck."""
+        for path in (self.place / "set").glob("*.dat"):
+            run = subprocess.run([PROGRAM, "--check", path], capture_output=True, text=True, check=False)
+            self.assertEqual(0, run.returncode, run.stderr)
+
+
+class Fields(Sweep):
+    def test_small_field(self):
+        self.sweep(0, SMALL_FIELD, "E,nu\n20400,0.29\n2.04e4,.3\n66666.666666,1E-1\n2040000000,0.123456789\n1e-7,.25\n")
+        self.assertEqual(["MAT1    1       20400.          0.29"], self.cards("s_1.dat", "MAT1"))
+        self.assertEqual(["MAT1    1       2.04e4          .3"], self.cards("s_2.dat", "MAT1"))
+        self.assertEqual(["MAT1    1       66666.67        .1"], self.cards("s_3.dat", "MAT1"))
+        self.assertEqual(["MAT1    1       2.04+9          .1234568"], self.cards("s_4.dat", "MAT1"))
+        self.assertEqual(["MAT1    1       1.-7            .25"], self.cards("s_5.dat", "MAT1"))
+        self.checked()
+
+    def test_large_and_free_field(self):
+        for deck in (LARGE_FIELD, FREE_FIELD):
+            self.sweep(0, deck, "E,nu\n20400,0.29\n20400.123456789,1e-3\n0.3333333333333333333,0.30000000000000004\n")
+            self.checked()
+        self.assertEqual(["MAT1,1,20400.123456789,,.001"], self.cards("s_2.dat", "MAT1"))
+        self.assertEqual(["MAT1,1,0.3333333333333333333,,0.30000000000000004"], self.cards("s_3.dat", "MAT1"))
+        self.sweep(0, LARGE_FIELD, "E,nu\n0.3333333333333333333,0.30000000000000004\n")
+        self.assertEqual(["MAT1*   1               .333333333333333" + " " * 16 + ".3"], self.cards("s_1.dat", "MAT1"))
+
+    def test_continued_lines_and_other_kinds(self):
+        deck = TEXT.replace("GRID*   3                               0.01565936000   1.226200000E-04\n*       0.0",
+                            "GRID*   3                               0.01565936000   1.226200000E-04\n*       %z%")
+        deck = deck.replace("PARAM   GAPGEOM YES", "PARAM   GAPGEOM %geom%\nPARAM   MAXIT   %most%")
+        self.sweep(0, deck, "z,geom,most\n0,YES,7.0\n0.,no,12\n")
+        self.assertEqual(["*       0."], [line for line in self.cards("s_1.dat", "*") if line.endswith("0.")])
+        self.assertEqual(["PARAM   GAPGEOM YES", "PARAM   MAXIT   7"], [line for line in self.cards("s_1.dat", "PARAM") if "E  " not in line][-2:])
+        self.checked()
+
+    def test_values_arrive_in_the_answer(self):
+        self.sweep(0, TEXT.replace("FORCE   1       41      0       5. ", "FORCE   1       41      0       %P%"), "deck,P\na,5\nb,5.000\n")
+        self.run_it(0, "--list", "set/sweep.csv", "-o", "out")
+        self.run_it(0, SMALL, "-o", "alone")
+        for row in self.table():
+            self.assertEqual(self.table("alone")[0]["p_max"], row["p_max"])
+        self.assertEqual([("set/a.dat", "5"), ("set/b.dat", "5.000")], [(row["deck"], row["P"]) for row in self.table()])
+
+    def test_line_ends_of_other_systems(self):
+        self.sweep(0, SMALL_FIELD.replace("\n", "\r\n"), "E,nu\r\n20400,0.29\r\n")
+        self.assertEqual(["MAT1    1       20400.          0.29"], self.cards("s_1.dat", "MAT1"))
+        self.checked()
+
+    def test_titles_comments_and_includes(self):
+        for path in (ROOT / "input" / "include").iterdir():
+            self.deck(f"sub/{path.name}", path)
+        deck = (self.place / "sub" / "patch_case.dat").read_text().replace("mesh.inc", "%part%.inc")
+        self.sweep(0, "$ %part%, 99 % of 100 %\n" + deck, "part\nmesh\n", "sub/s.in")
+        text = (self.place / "set" / "s_1.dat").read_text()
+        self.assertTrue(text.startswith("$ mesh, 99 % of 100 %\n"))
+        self.assertIn("../sub/mesh.inc", text)
+        self.checked()
+
+
+class Refusals(Sweep):
+    def test_what_does_not_fit(self):
+        line = SMALL_FIELD.splitlines().index("MAT1    1       %E%             %nu%") + 1
+        for value, words in (("1.23456e-5", "8 columns hold 1.2346-5"), ("-1.23456789e-12", "8 columns hold -1.23-12"), ("x", "a real such as"),
+                             ("1e400", "beyond what a real holds"), ("nan", "a real such as"), ("1 2", "a real such as")):
+            with self.subTest(value):
+                self.refused(SMALL_FIELD, f"E,nu\n20400,.3\n{value},.3\n", f"t.csv:3: column E, {value!r}: s.in:{line}:17-24: MAT1 field 3 (E): ",
+                             words, "1 faults, nothing is written")
+
+    def test_continued_large_fields(self):
+        """A small-field line behind half a row of large fields begins a new row."""
+        deck = TEXT.replace("MAT1    1       20400.          .29", "MAT1*   1               20400.                          .29\n+       %a%")
+        self.refused(deck, "a\nx\n", ":9-16: MAT1 field 12 (ST): a real such as")
+        deck = deck.replace("+       %a%", "*       %a%")
+        self.refused(deck, "a\nx\n", ":9-24: MAT1 field 6 (RHO): a real such as")
+
+    def test_kinds(self):
+        deck = SMALL_FIELD.replace("FORCE   1       41      0 ", "FORCE   1       %node%  0 ").replace("PARAM   GAPGEOM YES", "PARAM   GAPGEOM %geom%")
+        self.refused(deck, "E,nu,node,geom\n1.,.3,41.5,NO\n1.,.3,41,long_words\n1.,.3,123456789,NO\n",
+                     "(G): a whole number would be right", "a word of at most 8 characters", "9 characters in a field of 8", "3 faults")
+
+    def test_places(self):
+        self.refused(SMALL_FIELD.replace("%E%     ", "%young% "), "E,nu\n1.,.3\n", "%young% has no column in t.csv, which has E, nu")
+        self.refused(SMALL_FIELD.replace("%E%     ", "1%E%    "), "E,nu\n1.,.3\n", "%E% does not fill a field of its own")
+        self.refused(SMALL_FIELD.replace("%E%             ", "%modulus%       "), "modulus,nu\n1.,.3\n", "does not fill a field of its own: a shorter name")
+        self.refused(TEXT, "E\n1.\n", "no place such as %E% in the deck")
+
+    def test_tables(self):
+        for table, words in (("", "a first line with the name of each column"), ("E,E\n1,2\n", "each once"), ("E,nu\n", "no row of values"),
+                             ("E,nu\n1.\n", "t.csv:2: 2 values"), ("E,nu\n1.,.3,4\n", "t.csv:2: 2 values"), ("deck,E,nu\n../x,1.,.3\n", "letters, digits"),
+                             ("deck,E,nu\na,1.,.3\nA.dat,1.,.3\n", "deck A.dat is there twice"), ("deck,E,nu,status\na,1.,.3,4\n", "column status is one of"),
+                             ("deck,E,nu\na.csv,1.,.3\n", "not .lst or .csv")):
+            with self.subTest(table):
+                self.refused(SMALL_FIELD, table, words)
+
+    def test_a_missing_include(self):
+        self.refused(SMALL_FIELD.replace("ENDDATA", "INCLUDE 'nowhere.inc'\nENDDATA"), "E,nu\n1.,.3\n", "INCLUDE: nowhere.inc: no such file")
+
+
+class Sets(Sweep):
+    def test_an_earlier_sweep_is_renewed_other_files_are_not(self):
+        self.sweep(0, SMALL_FIELD, "deck,E,nu\na,1.,.3\nb,2.,.3\n")
+        self.sweep(0, SMALL_FIELD, "deck,E,nu\na,3.,.3\n")
+        self.assertEqual(["MAT1    1       3.              .3"], self.cards("a.dat", "MAT1"))
+        (self.place / "set" / "mine.dat").write_text("mine")
+        self.assertIn("mine.dat is there, and of no earlier sweep", self.sweep(3, SMALL_FIELD, "deck,E,nu\nmine,3.,.3\n").stderr)
+        self.assertEqual("mine", (self.place / "set" / "mine.dat").read_text())
+
+    def test_faults_leave_an_earlier_sweep_as_it_was(self):
+        self.sweep(0, SMALL_FIELD, "deck,E,nu\na,1.,.3\nb,2.,.3\n")
+        before = {path.name: path.read_bytes() for path in (self.place / "set").iterdir()}
+        self.sweep(3, SMALL_FIELD, "deck,E,nu\na,5.,.3\nb,x,.3\n")
+        self.assertEqual(before, {path.name: path.read_bytes() for path in (self.place / "set").iterdir()})
+
+    def test_a_full_disk_leaves_nothing(self):
+        place = self.place / "small"
+        place.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", place], capture_output=True, check=False).returncode:
+            self.skipTest("no right to mount")
+        try:
+            rows = "".join(f"{k}.,.3\n" for k in range(1, 40))
+            self.assertIn("cannot be written", self.sweep(3, SMALL_FIELD, "E,nu\n" + rows, directory="small/set").stderr)
+            self.assertEqual([], os.listdir(place))
+        finally:
+            subprocess.run(["umount", place], check=True)
+
+    def test_numbers_have_equal_widths(self):
+        self.sweep(0, SMALL_FIELD, "E,nu\n" + "1.,.3\n" * 12)
+        with open(self.place / "set" / "sweep.csv", newline="") as file:
+            self.assertEqual([f"s_{k:02d}.dat" for k in range(1, 13)], [row["deck"] for row in csv.DictReader(file)])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,273 @@
+"""Every mistake in a scene is told: what is wrong, in which file and key, and what would be right."""
+import collections
+import os
+import pathlib
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
+sys.path.insert(0, str(TOOLS))
+from from_gmsh.faults import Faults, Rejected  # noqa: E402
+from from_gmsh.scene import read_scene  # noqa: E402
+
+GEO = """
+For k In {0:1}
+  Point(4*k + 1) = {0, 2*k, 0, 1};  Point(4*k + 2) = {2, 2*k, 0, 1};  Point(4*k + 3) = {2, 2*k + 2, 0, 1};  Point(4*k + 4) = {0, 2*k + 2, 0, 1};
+  Line(4*k + 1) = {4*k + 1, 4*k + 2};  Line(4*k + 2) = {4*k + 2, 4*k + 3};  Line(4*k + 3) = {4*k + 3, 4*k + 4};  Line(4*k + 4) = {4*k + 4, 4*k + 1};
+  Curve Loop(k + 1) = {4*k + 1, 4*k + 2, 4*k + 3, 4*k + 4};
+  Plane Surface(k + 1) = {k + 1};
+EndFor
+Physical Surface("below") = {1};
+Physical Surface("above") = {2};
+Physical Curve("floor") = {1};
+Physical Curve("face") = {3};
+Physical Curve("under") = {5};
+Physical Curve("top") = {7};
+Physical Curve("wall") = {4, 8};
+Physical Point("corner") = {7};
+"""
+TOML = """
+mesh = "two.geo"
+kind = "plane strain"
+units = "N-MM"
+contact = [{ slave = "under", master = "face" }]
+[material.steel]
+E = 210000.0
+NU = 0.3
+[body.below]
+material = "steel"
+[body.above]
+material = "steel"
+[support]
+floor.y = 0
+wall.x = 0
+[free]
+corner = "y"
+[load]
+top.pressure = 10.0
+"""
+LINES = "its lines: floor, face, under, top, wall"
+POINTS = LINES + "; its points: corner"
+TOP = "one of: material, body, support, load, platen, free, contact, PARAM, mesh, kind, title, units"
+CURVE = "points of total strain and stress, the yield point first: curve = [[0.00114286, 240.0], [0.01, 260.0]]"
+FORM = 'key = 1.5, key = "text" or [table]; a name with blanks or dots in quotes; a key once only'
+
+#: A text of the scene, what stands in its place, and what is said of it.
+SCENE = [
+    ('kind = "plane strain"', "", ["kind: is missing", 'one of: plane strain, plane stress, ring, such as kind = "plane strain"']),
+    ("plane strain", "planar", ['kind: is the text "planar"', 'one of: plane strain, plane stress, ring, such as kind = "plane strain"']),
+    ('strain"', "strain", ["line 3, column 21: is no TOML: Illegal character '\\n'", FORM]),
+    ("E = 210000.0", "E = 210,0", ["line 7, column 8: is no TOML: Expected newline or end of document after a statement", FORM]),
+    ("[load]", "[load", ["line 18, column 6: is no TOML: Expected ']' at the end of a table declaration", FORM]),
+    ("floor.y = 0", "floor.y = 0\nfloor.y = 0", ["line 15, column 12: is no TOML: Cannot overwrite a value", FORM]),
+    ("two.geo", "tow.geo", ["mesh: there is no file tow.geo beside the scene", "one of: two.geo"]),
+    ("two.geo", "two.stl", ["mesh: two.stl is neither .geo nor .msh", "a script or a mesh of Gmsh"]),
+    ("units =", "unit =", ["unit: is no key here", f"{TOP}; did you mean 'units'?"]),
+    ("[load]", "[loads]", ["loads: is no key here", f"{TOP}; did you mean 'load'?"]),
+    ("N-MM", "newton and mm", ['units: is the text "newton and mm"',
+                               'a word of at most 8 characters, first a letter; nothing is converted, such as units = "N-MM"']),
+    ("E = 210000.0", 'E = "210e3"', ['[material.steel] E: is the text "210e3"', "Young's modulus, above zero, such as E = 210000.0"]),
+    ("E = 210000.0", "E = true", ["[material.steel] E: is true", "Young's modulus, above zero, such as E = 210000.0"]),
+    ("E = 210000.0", "E = inf", ["[material.steel] E: is inf", "Young's modulus, above zero, such as E = 210000.0"]),
+    ("NU = 0.3", "NU = 0.5", ["[material.steel] NU: is 0.5", "Poisson's ratio, from 0 to below 0.5, such as NU = 0.3"]),
+    ("NU = 0.3", "NU = 0.3\nH = 1.0", ["[material.steel] H: is hardening without a yield stress", "yield = 240.0 beside it"]),
+    ("NU = 0.3", "NU = 0.3\nyield = 210.0\ncurve = [[0.001, 210.0]]",
+     ["[material.steel] curve: stands beside yield or H", "either yield and H, or a curve, whose first point is the yield point"]),
+    ("NU = 0.3", "NU = 0.3\ncurve = [[0.002, 210.0]]",
+     ["[material.steel] curve: its first point, [0.002, 210], is not on the elastic line", "strain 0.001, which is 210 over E"]),
+    ("NU = 0.3", "NU = 0.3\ncurve = [[0.001, 210.0], [0.01, 200.0]]", ["[material.steel] curve: does not rise at the point [0.01, 200]", CURVE]),
+    ("NU = 0.3", "NU = 0.3\ncurve = 210.0", ["[material.steel] curve: is no list of points", CURVE]),
+    ('[body.below]\nmaterial = "steel"', '[body.below]\nmaterial = "stele"',
+     ["[body.below] material: there is no material 'stele'", "one of: steel; did you mean 'steel'?; or a table [material.stele]"]),
+    ('[body.below]\nmaterial = "steel"', "[body.below]", ["[body.below] material: is missing", 'the name of a material, such as material = "steel"']),
+    ("[body.below]", "[body.below]\nthickness = -1.0", ["[body.below] thickness: is -1.0", "a length above zero, such as thickness = 1.0"]),
+    ("floor.y = 0", "floor = 0", ["[support.floor]: is 0", "a table: [support.floor], and its keys below it"]),
+    ("floor.y = 0", "floor = {}", ["[support.floor]: holds nothing", "x = 0 or y = 0, or both"]),
+    ("floor.y = 0", "floor.z = 0", ["[support.floor] z: is no key here", "one of: x, y"]),
+    ("floor.y = 0", 'floor.y = "0"', ['[support.floor] y: is the text "0"', "a displacement; 0 holds, such as y = 0.0"]),
+    ('"y"', '"z"', ['[free] corner: is the text "z"', 'directions of free motion: x, y or xy, such as corner = "y"']),
+    ("top.pressure = 10.0", "top.force = -10.0", ["[load.top] force: is -10.0", "the total in x and y, such as force = [0.0, -100.0]"]),
+    ("top.pressure = 10.0", "top = {}", ["[load.top]: loads nothing", "pressure = 10.0 or force = [0.0, -100.0]"]),
+    ("pressure", "presure", ["[load.top] presure: is no key here", "one of: pressure, force; did you mean 'pressure'?"]),
+    ('slave = "under"', 'slave = "face"', ["[[contact]] master: 'face' is the slave, too", "the line on the other side of the contact"]),
+    ('slave = "under", ', "", ["[[contact]] slave: is missing", 'the name of a line, the one of the coarser mesh, such as slave = "pin"']),
+    ("[load]", "[PARAM]\nSERCH = 0.5\n[load]", ["[PARAM] SERCH: is no key here", "one of: RULE, METHOD, MUP, SOLVER, PRECIS, TOL, SEARCH, ACCURACY, "
+                                              "MAXIT, NLOAD; did you mean 'SEARCH'?"]),
+    ("[load]", "[PARAM]\nMAXIT = 0.5\n[load]", ["[PARAM] MAXIT: is 0.5", "a whole number above zero; epcont --cards PARAM says which"]),
+    ("[load]", '[PARAM]\nPLANE = "STRESS"\n[load]', ["[PARAM] PLANE: is said by the scene itself", "kind = ... before the first table"]),
+    ("[body.below]", "[body.belov]", ["[body.belov]: two.geo has no Physical Surface of that name", "its surfaces: below, above; did you mean 'below'?",
+                                      "[body]: the surface 'below' of two.geo has no table", '[body.below] and below it material = "..."']),
+    ("floor.y", "flor.y", ["[support.flor]: two.geo has no line or point 'flor'", f"{POINTS}; did you mean 'floor'?"]),
+    ("floor.y", "below.y", ["[support.below]: 'below' is a surface of two.geo", POINTS]),
+    ("wall.x = 0", "wall.x = 0\nfloor.x = 0.5", ["[support.wall]: x = 0 at (0, 0), where [support.floor] says 0.5", "one displacement for a node"]),
+    ("corner =", "top =", ["[free] top: its 3 nodes need not move alike in y, and a free motion is that of one",
+                           'a point in two.geo, or a platen: [platen] top = "y"']),
+    ('corner = "y"', 'face = "y"\n[platen]\nface = "x"', ["[platen] face: its node at (0, 2) is held or tied in x by [support.wall], too",
+                                                         "each direction of a node in one of them only",
+                                                         "[free] face: its 3 nodes need not move alike in y, and a free motion is that of one",
+                                                          'a point in two.geo, or a platen: [platen] face = "y"']),
+    ('corner = "y"', 'corner = "y"\n[platen]\ntop = "xy"', ["[platen] top: its node at (0, 4) is held or tied in x by [support.wall], too",
+                                                         "each direction of a node in one of them only"]),
+    ('corner = "y"', 'corner = "y"\n[platen]\ncorner = "y"', ["[platen] corner: 'corner' is a point of two.geo", LINES]),
+    ("wall.x", "corner.y = 0\nwall.x", ["[free] corner: is held in y by [support.corner]", "a direction in which nothing holds the body"]),
+    ("top.pressure", "corner.pressure", ["[load.corner] pressure: 'corner' is a point of two.geo", LINES]),
+    ("under", "wall", ["[[contact]] slave: 'wall' is in 2 pieces: (0, 2) to (0, 0); (0, 4) to (0, 2)",
+                       "one piece a line: a Physical Curve and a [[contact]] for each"]),
+    ('strain"\nunits = "N-MM"', 'strain"\nunits = "N-MM"\nmaterial = 3', ["line 7, column 16: is no TOML: Cannot overwrite a value", FORM]),
+]
+GMSH = "a file that Gmsh itself opens and meshes without an error"
+WITHIN = "triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1)"
+
+#: The same of the file of Gmsh.
+MESH = [
+    ("Line(4*k + 1)", "Lien(4*k + 1)", ["mesh: two.geo, line 4: Gmsh says: syntax error ({)", GMSH]),
+    ("= {k + 1};\nEndFor", "= {k + 7};\nEndFor", ["mesh: two.geo: Gmsh says: Unknown curve loop 7 in GEO surface 1", GMSH]),
+    ('Physical Surface("below") = {1};\nPhysical Surface("above") = {2};', "",
+     ["mesh: two.geo has no Physical Surface, so there are no bodies", 'Physical Surface("name") = {...};']),
+    ('Surface("above")', "Surface(5)", ["mesh: Physical Surface(5) of two.geo has no name", 'Physical Surface("name") = {...};']),
+    ('("below") = {1}', '("below") = {1, 2}', ["mesh: surface 2 of two.geo is in two groups: below, above", "in one of them only"]),
+    ('("corner") = {7};', '("corner") = {9}; Point(9) = {1, 7, 0};',
+     ["[free] corner: 1 of the 1 nodes of 'corner' are on no body", "the boundary of a named surface; points within one by Point{..} In Surface{..} in two.geo"]),
+    ('Point("corner")', 'Point("wall")', ["[support.wall]: two.geo has both a line and a point 'wall'", "names of their own",
+                                          "[free] corner: two.geo has no line or point 'corner'", LINES + "; its points: wall"]),
+    ('Curve("top")', "Curve(77)", ["[load.top] pressure: two.geo has no line 'top'", "its lines: floor, face, under, wall"]),
+    ('("above") = {2};', '("above") = {2}; Mesh.ElementOrder = 3;',
+     ["[body.below]: 14 of its elements in two.geo are Triangle 10, which epcont has no card for", WITHIN,
+      "[body.above]: 14 of its elements in two.geo are Triangle 10, which epcont has no card for", WITHIN]),
+    ('("above") = {2};', '("above") = {2}; Recombine Surface{1}; Mesh.ElementOrder = 2;',
+     ["[body.below]: 6 of its elements in two.geo are second-order quadrilaterals, which epcont has no card for", WITHIN]),
+    ("EndFor", "EndFor\nCoherence;", ["[[contact]] slave: two.geo has no line 'under'", "its lines: floor, face, top, wall",
+                                      "[[contact]] master: 'face' has a side between two elements (above, below), at (2, 2), (1, 2)",
+                                      "a line along the outside; bodies in contact need curves and points of their own each, not common ones"]),
+    ('("face") = {3}', '("face") = {3, 1}', ["[[contact]] master: 'face' is in 2 pieces: (0, 0) to (2, 0); (2, 2) to (0, 2)",
+                                             "one piece a line: a Physical Curve and a [[contact]] for each"]),
+]
+JUNK = ["0", "-1", "1e40", "nan", "true", '"x"', '""', "[]", "{}", "[1]", "[[1, 2]]", "1979-05-27", "-0.0", '"y"', "{ x = 1 }", "[{}]", "[[]]", "123456789012345678901",
+        '"\\u0000"', '"\u00e9"', "steel", "PARAM", "contact", "load", "\n", "\n[free]\n", "\n[support.x]\n", "\n[[contact]]\n", "\nmaterial = 1\n", "\nbody.x.y.z = 1\n"]
+RING = [("{0, 2*k, 0, 1}", "{-1, 2*k, 0, 1}"), ("{0, 2*k + 2, 0, 1}", "{-1, 2*k + 2, 0, 1}")]
+
+
+class Mistakes(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.place = pathlib.Path(directory.name)
+
+    def said(self, toml=TOML, geo=GEO, target="scene.dat"):
+        """Exit status, and what goes to both streams; of a process of its own, since Gmsh stumbles again after a mistake."""
+        for name, text in (("scene.toml", toml), ("two.geo", geo)):
+            (self.place / name).write_text(text, encoding="utf-8")
+        run = subprocess.run([sys.executable, "-m", "from_gmsh", "scene.toml", "-o", target], cwd=self.place, capture_output=True, text=True,
+                             env={**os.environ, "PYTHONPATH": str(TOOLS)}, check=False)
+        text = run.stdout + run.stderr
+        self.assertNotIn("Traceback", text)
+        return run.returncode, text
+
+    def rejected(self, expected, **files):
+        status, text = self.said(**files)
+        told = [line for line in text.splitlines() if ": note: " not in line]
+        wanted = [line for what, right in zip(expected[::2], expected[1::2]) for line in (f"scene.toml: {what}", f"  {right}")]
+        count = len(expected) // 2
+        self.assertEqual(told, wanted + [f"scene.toml: {count} error{'s' * (count != 1)}, no deck written"])
+        self.assertEqual(status, 2)
+        self.assertFalse(list(self.place.glob("scene.dat")))
+
+    def replaced(self, text, old, new):
+        self.assertIn(old, text)
+        return text.replace(old, new)
+
+    def test_scenes(self):
+        for old, new, expected in SCENE:
+            with self.subTest(f"{old} -> {new}"):
+                self.rejected(expected, toml=self.replaced(TOML, old, new))
+
+    def test_meshes(self):
+        for old, new, expected in MESH:
+            with self.subTest(f"{old} -> {new}"):
+                self.rejected(expected, geo=self.replaced(GEO, old, new))
+
+    def test_rings(self):
+        toml, geo = self.replaced(TOML, "plane strain", "ring"), GEO
+        self.rejected(["[body.below]: rings have no quadrilaterals", "no Recombine Surface in two.geo, or another kind"],
+                      toml=toml, geo=geo + "Recombine Surface{1};")
+        self.rejected(["[load.wall] force: lies on the axis, where a ring has no area", "a point on the axis"],
+                      toml=toml.replace("top.pressure = 10.0", "wall.force = [0.0, 1.0]"))
+        for old, new in RING:
+            geo = self.replaced(geo, old, new)
+        self.rejected(["[body.below]: 5 of its nodes lie at negative radius, the farthest at (-1, 0)", "in a ring x is the radius, from 0 on, and y the axis",
+                       "[body.above]: 5 of its nodes lie at negative radius, the farthest at (-1, 2)", "in a ring x is the radius, from 0 on, and y the axis"],
+                      toml=toml, geo=geo)
+
+    def test_out_of_plane(self):
+        geo = self.replaced(GEO, ", 0, 1}", ", 0.5, 1}")
+        _, text = self.said(geo=geo)
+        self.assertRegex(text, r"\[body.below\]: 1\d of its nodes are not in the plane z = 0, the first at \(.*, 0.5\)\n  a surface in x and y in two.geo\n")
+
+    def test_notes(self):
+        """What may be meant, and may not."""
+        for toml, geo, note in (
+                (self.replaced(TOML, "NU = 0.3", "NU = 0.3\nyield = 240e3"), GEO,
+                 "[material.steel] yield: 240000 is more than a tenth of E = 210000; are both in the same unit?"),
+                (self.replaced(TOML, "210000.0", "2.1e11"), GEO,
+                 "[material.steel] E: 2.1e+11 is no modulus of a solid in units N-MM: steel is 210000 there"),
+                (self.replaced(TOML, "[material.steel]", "material.brass = { E = 1e5, NU = 0.3 }\n[material.steel]"), GEO, "[material.brass]: no body is made of it"),
+                (TOML, GEO + 'Physical Curve("spare") = {2};', "mesh: the line 'spare' of two.geo is used by nothing"),
+                (TOML, GEO + "Physical Curve(99) = {2};", "mesh: Physical Curve(99) of two.geo has no name, and no effect"),
+                (TOML, GEO + "Plane Surface(9) = {1};", "mesh: surface 9 of two.geo is in no Physical Surface and is left out")):
+            with self.subTest(note):
+                status, text = self.said(toml, geo)
+                self.assertIn(f"scene.toml: note: {note}\n", text)
+                self.assertEqual(status, 0, text)
+
+    def test_files(self):
+        for target, said in (("none/scene.dat", "none/scene.mesh.bdf cannot be written: No such file or directory"),
+                             ("scene.toml", "scene.toml or scene.mesh.bdf is what the scene is made of; another name behind -o"),
+                             ("it's.dat", "it's.dat: the name of a deck ends in .dat, say, and has no quotes; the deck includes a file of like name")):
+            with self.subTest(target):
+                self.assertEqual(self.said(target=target), (3, f"tools/deck: {said}\n"))
+        run = subprocess.run([sys.executable, "-m", "from_gmsh", "other.toml"], cwd=self.place, capture_output=True, text=True,
+                             env={**os.environ, "PYTHONPATH": str(TOOLS)}, check=False)
+        self.assertEqual(run.stderr, "other.toml: scene: there is no such file\n  TOML files beside it: scene.toml\nother.toml: 1 error, no deck written\n")
+
+    def test_garbage(self):
+        """Files that are nothing like what they should be."""
+        (self.place / "mesh.msh").write_bytes(bytes(range(256)))
+        for mesh in ("mesh.msh", "two.geo"):
+            status, text = self.said(toml=self.replaced(TOML, "two.geo", mesh), geo="\u20ac")
+            self.assertEqual(status, 2, text)
+            self.assertIn(f"scene.toml: mesh: {mesh}", text)
+
+    def test_beyond_measure(self):
+        for value, said in (("9" * 400, "[material.steel] E: is " + "9" * 400), ("9" * 5000, "end of the file: is no TOML: "),
+                            ("[" * 3000 + "]" * 3000, "scene.toml: ")):
+            status, text = self.said(toml=self.replaced(TOML, "E = 210000.0", f"E = {value}"))
+            self.assertEqual(status, 2, text)
+            self.assertIn(said, text)
+
+    def test_junk(self):
+        """Whatever stands for a value or a word of a scene, it is read or rejected."""
+        rng, outcomes = random.Random(1), collections.Counter()
+        for _ in range(1000):
+            text = TOML
+            for _ in range(rng.randint(1, 2)):
+                place = rng.choice(list(re.finditer(r"(?<== )[^#\n]+|[A-Za-z]+|\n.*\n", text)))
+                text = text[:place.start()] + rng.choice(JUNK) + text[place.end():]
+            (self.place / "scene.toml").write_text(text, encoding="utf-8")
+            faults = Faults("scene.toml")
+            try:
+                read_scene(self.place / "scene.toml", faults)
+                outcomes["read"] += 1
+            except Rejected:
+                outcomes["rejected"] += bool(faults.errors)
+        self.assertEqual(sum(outcomes.values()), 1000)
+        self.assertGreater(min(outcomes["read"], outcomes["rejected"]), 50)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,199 @@
+"""The scenes in input/from_gmsh, as they are kept and made anew: what they give, against closed forms."""
+import csv
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(TOP / "tools"), str(TOP / "tests" / "independent")]
+import gmsh  # noqa: E402
+from deck import read, real  # noqa: E402
+from from_gmsh.cards import card, written  # noqa: E402
+from from_gmsh.faults import Faults  # noqa: E402
+from from_gmsh.scene import PARAMETERS, read_scene  # noqa: E402
+
+PROGRAM = os.environ["EPCONT_PROGRAM"]
+SCENES = TOP / "input" / "from_gmsh"
+
+
+def make(scene, deck):
+    return subprocess.run([sys.executable, "-m", "from_gmsh", scene, "-o", deck], capture_output=True, text=True, check=False,
+                          env={**os.environ, "PYTHONPATH": str(TOP / "tools")})
+
+
+def hertz(load=500.0, radii=(20.0, 10.0), young=210000.0, poisson=0.3):
+    """Largest pressure and half-width of two cylinders."""
+    stiff, radius = young / 2 / (1 - poisson**2), 1 / sum(1 / r for r in radii)
+    width = math.sqrt(4 * load * radius / (math.pi * stiff))
+    return 2 * load / (math.pi * width), width
+
+
+def lame(a=20.0, b=30.0, c=45.0, overlap=0.02, inside=50.0, inner=(110000.0, 0.34), outer=(210000.0, 0.3)):
+    """Pressure between two rings without axial stress: their radii at the fit must become one."""
+    gives = b / outer[0] * ((c * c + b * b) / (c * c - b * b) + outer[1]) + b / inner[0] * ((b * b + a * a) / (b * b - a * a) - inner[1])
+    return (overlap + 2 * inside * a * a * b / (inner[0] * (b * b - a * a))) / gives
+
+
+class Scenes(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.place = pathlib.Path(directory.name)
+
+    def solved(self, deck):
+        run = subprocess.run([PROGRAM, deck, "-o", self.place, "--tables", "all", "--quiet"], capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        table = {name: list(csv.DictReader((self.place / f"{deck.stem}.{name}.csv").read_text().splitlines()))
+                 for name in ("summary", "contact", "zones", "nodes")}
+        table["summary"] = {row["key"]: row["value"] for row in table["summary"]}
+        return table
+
+    def both(self, name):
+        """Tables of the deck that is kept, and of the one made from the same scene."""
+        made = self.place / f"{name}.dat"
+        told = make(SCENES / f"{name}.toml", made)
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertRegex(told.stdout, rf"{name}.dat: \d+ nodes, ")
+        for deck in (SCENES / f"{name}.dat", made):
+            with self.subTest(deck.parent.name):
+                yield self.solved(deck)
+
+    def near(self, actual, expected, relative):
+        self.assertLessEqual(abs(float(actual) - expected), relative * abs(expected), f"{actual}, known {expected}")
+
+    def approach(self, table):
+        return next(float(value) for key, value in table["summary"].items() if key.startswith("approach"))
+
+    def test_two_cylinders(self):
+        pressure, width = hertz()
+        for table in self.both("two_cylinders"):
+            self.near(table["summary"]["max_pressure"], pressure, 0.005)
+            self.near(table["zones"][0]["half_width"], width, 0.03)
+            self.near(table["summary"]["total_contact_force"], 250.0, 1e-3)
+
+    def test_pin(self):
+        """Persson; the same scene on a mesh of quadrilateral patches, by tools/decks, is in input/pin_in_lug."""
+        by_hand = float(self.solved(TOP / "input/pin_in_lug/pin_in_lug.dat")["summary"]["max_pressure"])
+        for table in self.both("pin"):
+            self.near(table["summary"]["max_pressure"], 88.2111, 0.002)
+            self.near(table["summary"]["max_pressure"], by_hand, 0.002)
+            touching = [row for row in table["contact"] if float(row["force"]) > 0.0]
+            self.assertLess(max(math.degrees(math.atan2(float(row["x"]), -float(row["y"]))) for row in touching), 47.0)
+
+    def test_press_fit(self):
+        for table in self.both("press_fit"):
+            for row in table["contact"]:
+                self.near(row["pressure"], lame(), 0.003)
+
+    def test_blocks(self):
+        sinks = 2 * 0.006 + 1.5 * 250.0 / 70000.0   # the lower block's strain is on its curve at 250
+        for table in self.both("blocks"):
+            for row in table["contact"]:
+                self.near(row["pressure"], 250.0, 1e-9)
+            self.near(self.approach(table), -sinks, 1e-9)
+
+    def variant(self, *changes):
+        """The two blocks on three-node triangles, from a scene with other texts; its tables."""
+        text = (SCENES / "blocks.toml").read_text()
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        geo = re.sub("Recombine.*", "", (SCENES / "blocks.geo").read_text()) + 'Physical Point("corner") = {13};'
+        (self.place / "blocks.geo").write_text(geo)
+        (self.place / "scene.toml").write_text(text)
+        told = make(self.place / "scene.toml", self.place / "made.dat")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertNotIn("CQUAD4", told.stdout)
+        table = self.solved(self.place / "made.dat")
+        for row in table["contact"]:
+            self.near(row["pressure"], 250.0, 1e-9)
+        return table
+
+    def test_forces(self):
+        """On a platen; spread over a line that is none, with the motion of a point; at points, where a line is held."""
+        force = ("top.pressure = 250.0 ", "top.force = [0.0, -3750.0] ")
+        for changes in ((force,), (force, ('[platen]\ntop = "y"\n', ""), ('[free]\ntop', "[free]\ncorner"))):
+            with self.subTest(changes):
+                self.near(self.approach(self.variant(*changes)), -0.01735714285714, 1e-9)
+
+    def test_ring_force(self):
+        """Spread over the area of the ring: the same axial stress everywhere."""
+        (self.place / "ring.geo").write_text((SCENES / "press_fit.geo").read_text() + 'Physical Curve("top") = {13};')
+        text = (SCENES / "press_fit.toml").read_text().replace("press_fit.geo", "ring.geo").replace("[load]", "[load]\ntop.force = [0.0, -1e5]")
+        (self.place / "ring.toml").write_text(text)
+        self.assertEqual(make(self.place / "ring.toml", self.place / "ring.dat").returncode, 0)
+        self.solved(self.place / "ring.dat")
+        rows = list(csv.DictReader((self.place / "ring.elements.csv").read_text().splitlines()))
+        hub = [float(row["sy"]) for row in rows if float(row["x"]) > 30.02]
+        self.assertGreater(len(hub), 20)
+        for stress in hub:
+            self.near(stress, -1e5 / (math.pi * (45.0**2 - 30.0**2)), 0.005)
+
+    def test_travel(self):
+        """A line that is moved by so much takes the place of the force, and a force on what is held has no effect."""
+        table = self.variant(('[platen]\ntop = "y"\n', ""), ('[free]\ntop = "y"', "[support.top]\ny = -0.01735714285714286"),
+                             ("top.pressure = 250.0 ", "wall.force = [7.0, 0.0] "))
+        pushed = sum(float(row["ry"]) for row in table["nodes"] if float(row["y"]) == 3.5)
+        self.near(pushed, -3750.0, 1e-9)
+
+    def test_msh(self):
+        gmsh.initialize(["gmsh", "-v", "0"], readConfigFiles=False)
+        gmsh.open(str(SCENES / "blocks.geo"))
+        gmsh.model.mesh.generate(2)
+        gmsh.write(str(self.place / "blocks.msh"))
+        gmsh.finalize()
+        (self.place / "blocks.toml").write_text((SCENES / "blocks.toml").read_text().replace("blocks.geo", "blocks.msh"))
+        self.assertEqual(make(self.place / "blocks.toml", self.place / "blocks.dat").returncode, 0)
+        geo, msh = ((place / "blocks.mesh.bdf").read_text().splitlines()[1:] for place in (SCENES, self.place))
+        self.assertEqual(len(geo), len(msh))
+        for row in self.solved(self.place / "blocks.dat")["contact"]:
+            self.near(row["pressure"], 250.0, 1e-9)
+
+    def test_clockwise(self):
+        """A surface drawn clockwise gives elements counterclockwise, and the same answer."""
+        geo = (SCENES / "press_fit.geo").read_text()
+        turned = geo.replace("Curve Loop(1) = {1, 2, 3, 4}", "Curve Loop(1) = {-4, -3, -2, -1}")
+        self.assertNotEqual(geo, turned)
+        (self.place / "press_fit.geo").write_text(turned)
+        (self.place / "press_fit.toml").write_text((SCENES / "press_fit.toml").read_text())
+        self.assertEqual(make(self.place / "press_fit.toml", self.place / "press_fit.dat").returncode, 0)
+        deck = read(self.place / "press_fit.dat")
+        x = {card[1]: (real(card[3]), real(card[4])) for card in deck.of("GRID")}
+        areas = [(b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+                 for a, b, c in ([x[node] for node in card[3:9:2]] for card in deck.of("CTRAX6"))]
+        self.assertGreater(min(areas), 0.0)
+        for row in self.solved(self.place / "press_fit.dat")["contact"]:
+            self.near(row["pressure"], lame(), 0.003)
+
+    def test_manual(self):
+        """The scene in input/README.md has every key there is, as it says, and no fault."""
+        text = (TOP / "input/README.md").read_text().partition('this has every key there is:\n')[2].partition("Names with blanks")[0]
+        (self.place / "wheel.toml").write_text("".join(line[4:] or "\n" for line in text.splitlines(True)))
+        faults = Faults("wheel.toml")
+        scene = read_scene(self.place / "wheel.toml", faults)
+        self.assertEqual(faults.errors + faults.notes, [])
+        for name in ("title", "mesh", "kind", "units", "materials", "bodies", "supports", "loads", "platens", "free", "contacts", "parameters"):
+            self.assertTrue(getattr(scene, name), name)
+
+    def test_parameters(self):
+        """Those of the scene are those of the program, but for what the scene says otherwise or has no use for."""
+        told = subprocess.run([PROGRAM, "--cards", "PARAM"], capture_output=True, text=True, check=True).stdout
+        names = re.findall(r"^([A-Z]+) +(?:a |[A-Z]+[, ]|NO )", told.partition("NAME      VALUE")[2], re.MULTILINE)
+        self.assertEqual(sorted(set(names) - {"PLANE", "UNITS", "GAPGEOM"}), sorted(PARAMETERS))
+
+    def test_fields(self):
+        for value, small, large in ((0.0, "0.", "0."), (-0.0, "0.", "0."), (1.0, "1.", "1."), (-0.5, "-.5", "-.5"), (210000.0, "210000.", "210000."),
+                                    (1 / 3, ".3333333", ".333333333333333"), (-1 / 3, "-.333333", "-.33333333333333"), (1e-5, "1.-5", "1.-5"),
+                                    (1e30, "1.+30", "1.+30"), (-1.23456789012345e-17, "-1.23-17", "-1.2345678901-17")):
+            self.assertEqual((written(value, 8), written(value, 16)), (small, large))
+        self.assertEqual(card("MATS1", 1, None, "PLASTIC", 0.0, 1, 1, 1 / 3),
+                         ["MATS1*  1                               PLASTIC         0.", "*       1               1               .333333333333333"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""The manuals hold what they promise: every card and PARAM of the catalogue, every deck and its picture, every link.
+
+EPCONT_SOURCE_DIR is the project, EPCONT_PROGRAM the executable.
+"""
+import functools
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+import urllib.parse
+
+TOP = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
+INPUT = TOP / "input"
+MANUAL = (INPUT / "README.md").read_text(encoding="utf-8")
+
+LINK = re.compile(r"(?<!`)!?\[[^\]]*\]\(([^)\s]+)\)")
+FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+
+
+@functools.cache
+def catalogue(*arguments):
+    return subprocess.run([os.environ["EPCONT_PROGRAM"], "--cards", *arguments], capture_output=True, text=True, check=True).stdout
+
+
+def cards():
+    return [line.split()[0] for line in catalogue().splitlines()]
+
+
+def parameters():
+    return [line.split()[0] for line in catalogue("PARAM").partition("NAME      VALUE\n")[2].splitlines()]
+
+
+def examples():
+    """Lines of example decks: indented by four, in columns."""
+    return [line[4:] for line in MANUAL.splitlines() if line.startswith("    ")]
+
+
+def documents():
+    """All pages of the repository; nothing that was built or fetched."""
+    parts = [part for part in sorted(TOP.iterdir()) if part.is_dir() and part.name not in ("build", ".git")]
+    return sorted(TOP.glob("*.md")) + [path for part in parts for path in sorted(part.rglob("*.md"))]
+
+
+def links(path):
+    return LINK.findall(FENCED.sub("", path.read_text(encoding="utf-8")))
+
+
+def anchors(path):
+    """What GitHub makes of the headings of a page."""
+    titles = re.findall(r"^#+ (.*)$", FENCED.sub("", path.read_text(encoding="utf-8")), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+def cards_of(deck):
+    """Names of the cards of a deck and of the files it includes."""
+    text = deck.read_text(encoding="latin-1")
+    for name in re.findall(r"^INCLUDE '(.*)'", text, re.MULTILINE):
+        text += "\n" + (deck.parent / name).read_text(encoding="latin-1")
+    return {re.split(r"[ *,]", line)[0] for line in text.splitlines()} | {"PARAM " + name for name in re.findall(r"^PARAM[ ,]+(\w+)", text, re.MULTILINE)}
+
+
+class Manual(unittest.TestCase):
+    def test_catalogue_is_read(self):
+        self.assertIn("GRID", cards())
+        self.assertIn("ACCURACY", parameters())
+
+    def test_every_card_has_an_example(self):
+        shown = {re.split(r"[ *]", line)[0] for line in examples()}
+        self.assertEqual(set(cards()) - shown, set())
+
+    def test_every_card_is_in_a_table(self):
+        tables = re.findall(r"^\| card \| is \|.*\n(?:\|.*\n)+", MANUAL, re.MULTILINE)
+        rows = re.findall(r"^\| (\w+) \| ", "".join(tables), re.MULTILINE)
+        self.assertEqual(sorted(row for row in rows if row != "card"), sorted(set(cards()) - {"PARAM"}))
+
+    def test_every_parameter_has_an_example(self):
+        for name in parameters():
+            self.assertRegex(MANUAL, rf"(?m)^\| {name} \| `PARAM   {name} +\S+` \| ")
+
+    def test_decks_named_with_a_card_have_it(self):
+        seen = 0
+        for row in re.findall(r"^\| .* \|$", MANUAL, re.MULTILINE):
+            name, *_, place = [cell.strip() for cell in row.strip("|").split(" | ")]
+            wanted = "PARAM " + name if name in parameters() else name
+            if wanted in cards() or name in parameters():
+                for deck in LINK.findall(place):
+                    self.assertIn(wanted, cards_of(INPUT / deck), deck)
+                    seen += 1
+        self.assertGreater(seen, len(cards()))
+
+    def test_every_deck_is_named(self):
+        for deck in sorted(INPUT.glob("*/*.dat")):
+            self.assertIn(f"]({deck.relative_to(INPUT).as_posix()})", MANUAL)
+
+    def test_every_deck_has_its_picture_in_the_manual(self):
+        for deck in sorted(INPUT.glob("*/*.dat")):
+            if deck.name != "no_suport.dat":  # rejected: there is nothing to draw
+                self.assertIn(f"]({deck.parent.name}/pictures/{deck.stem}.png)", MANUAL)
+
+    def test_every_picture_is_shown_somewhere(self):
+        named = {(page.parent / link).resolve() for page in documents() for link in links(page)}
+        for picture in sorted(INPUT.glob("*/pictures/*.png")):
+            self.assertIn(picture.resolve(), named)
+
+
+class Examples(unittest.TestCase):
+    """The lines of the manual are cards: what they refer to may be missing, but every field is as it must be."""
+
+    @staticmethod
+    def faults(text):
+        with tempfile.TemporaryDirectory() as place:
+            deck = pathlib.Path(place) / "example.dat"
+            deck.write_text(text, encoding="ascii")
+            run = subprocess.run([os.environ["EPCONT_PROGRAM"], "--check", deck], capture_output=True, text=True, check=False, cwd=place)
+        return run.returncode, [line for line in run.stderr.splitlines() if line.startswith(str(deck) + ":")]
+
+    def test_cards(self):
+        part = MANUAL[MANUAL.index("### Case control"):MANUAL.index("## Choices")]
+        lines = [line[4:] for line in re.findall(r"^    (?!sed|tools).*", part, re.MULTILINE)]
+        _, faults = self.faults("\n".join([*lines, "PARAM,PLANE,STRAIN", "ENDDATA", ""]))
+        self.assertGreater(len(faults), 10)   # GRIDs that are missing: the cards were read
+        self.assertEqual([fault for fault in faults[:-1] if not re.search("there is no|a ring in a deck of plane elements", fault)], [])
+
+    def test_parameters(self):
+        deck = (INPUT / "hertz" / "hertz900.dat").read_text(encoding="ascii")
+        for example in re.findall(r"^\| \w+ \| `(PARAM +(\w+) .*?)` \|", MANUAL, re.MULTILINE):
+            other = re.sub(rf"(?m)^PARAM +{example[1]} .*\n", "", deck)
+            self.assertEqual(self.faults(other.replace("BEGIN BULK\n", f"BEGIN BULK\n{example[0]}\n"))[0], 0, example[0])
+
+
+class Links(unittest.TestCase):
+    def test_relative_links_resolve(self):
+        seen = 0
+        for page in documents():
+            for link in links(page):
+                address, _, anchor = urllib.parse.unquote(link).partition("#")
+                if "://" in address or address.startswith("mailto:"):
+                    continue
+                target = (page.parent / address) if address else page
+                self.assertTrue(target.exists(), f"{page.relative_to(TOP)}: {link}")
+                if anchor and target.suffix == ".md":
+                    self.assertIn(anchor, anchors(target), f"{page.relative_to(TOP)}: {link}")
+                seen += 1
+        self.assertGreater(seen, 100)
+
+
+if __name__ == "__main__":
+    unittest.main()

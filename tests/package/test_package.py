@@ -1,0 +1,187 @@
+"""The Debian package: built, unpacked into an empty root, and run there with nothing but what it says it depends on.
+
+The root has the package, the files of its dependencies (copied from this machine's packages, which must be installed) and no
+folder of this project; the environment is empty. Not kept apart: the kernel and its devices, the user, the network; and the
+dependencies are those of this machine, not ones that apt has just fetched.
+Exit status 77: a tool that it takes is not here.
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT, BUILD = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"]), pathlib.Path(os.environ["EPCONT_BUILD_DIR"])
+PROGRAM, CMAKE = os.environ["EPCONT_PROGRAM"], os.environ["EPCONT_CMAKE"]
+CPACK = shutil.which("cpack", path=str(pathlib.Path(CMAKE).parent)) or "cpack"
+TOOLS = [CPACK, "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file", "gzip", "unshare", "chroot"]
+DECK = "share/doc/epcont/examples/hertz44.dat"
+INSTALLED = {"bin/epcont", "share/man/man1/epcont.1", "share/doc/epcont/README.md", "share/doc/epcont/CHANGELOG.md",
+             "share/doc/epcont/copyright", DECK}
+PACKED = {"bin/epcont", "share/man/man1/epcont.1.gz", "share/doc/epcont/README.md", "share/doc/epcont/changelog.gz",
+          "share/doc/epcont/copyright", DECK}
+
+
+def run(*command, **options):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, **options)
+
+
+def files(folder):
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if not path.is_dir() or path.is_symlink()}
+
+
+def results(folder):
+    return {path.name: path.read_bytes() for path in folder.glob("hertz44.*") if path.suffix != ".dat"}
+
+
+class Closure:
+    """The installed packages that a list of dependencies comes to, with theirs."""
+
+    def __init__(self, depends):
+        self.depends, self.providers = {}, {}
+        shown = run("dpkg-query", "-W", "-f", "${Package}\t${Architecture}\t${db:Status-Status}\t${Provides}\t${Depends}, ${Pre-Depends}\n").stdout
+        for line in shown.splitlines():
+            name, architecture, status, provides, wanted = line.split("\t")
+            if status != "installed":
+                continue
+            self.depends[name] = wanted
+            for one in [name] + self.names(provides):
+                self.providers.setdefault(one, []).append((name, architecture))
+        self.packages = {}
+        self.add(depends)
+
+    @staticmethod
+    def names(text):
+        return [re.match(r"[\w.+-]+", word.strip())[0] for word in re.split(r"[,|]", text) if word.strip()]
+
+    def add(self, depends):
+        for group in filter(str.strip, depends.split(",")):
+            found = [provider for name in self.names(group) for provider in self.providers.get(name, [])]
+            if not found:
+                self.stand_in(group)
+                continue
+            name, architecture = found[0]
+            if name not in self.packages:
+                self.packages[name] = architecture
+                self.add(self.depends[name])
+
+    def stand_in(self, group):
+        """What is not installed here gives nothing to the root but what it depends on in its turn, as apt knows it."""
+        shown = run("apt-cache", "show", "--no-all-versions", self.names(group)[0]).stdout
+        depends = re.search(r"^Depends: (.*)", shown, re.MULTILINE)
+        if not depends:
+            raise AssertionError(f"not installed here, and unknown to apt: {group.strip()}")
+        print(f"not installed here; what it depends on stands for it: {group.strip()}")
+        self.add(depends[1])
+
+    def copy_to(self, root):
+        """Their libraries, and the links that alternatives have made to these."""
+        for folder in ("lib", "lib64"):
+            (root / "usr" / folder).mkdir(parents=True, exist_ok=True)
+            if pathlib.Path("/" + folder).is_symlink():
+                (root / folder).symlink_to(f"usr/{folder}")
+        for name in self.packages:
+            for path in map(pathlib.Path, run("dpkg-query", "-L", name).stdout.splitlines()):
+                if not re.match(r"(/usr)?/lib", str(path)) or path.is_dir() and not path.is_symlink():
+                    continue
+                self.copy(path, root)
+        for link in pathlib.Path("/usr/lib").glob("*/lib*.so*"):
+            if link.is_symlink() and os.readlink(link).startswith("/etc/alternatives/"):
+                chosen = pathlib.Path(os.readlink(link))
+                if (root / os.readlink(chosen).lstrip("/")).exists():
+                    self.copy(link, root)
+                    self.copy(chosen, root)
+
+    @staticmethod
+    def copy(path, root):
+        there = root / str(path).lstrip("/")
+        there.parent.mkdir(parents=True, exist_ok=True)
+        if path.exists() and not there.is_symlink() and not there.exists():
+            shutil.copy2(path, there, follow_symlinks=False)
+
+
+class Installed(unittest.TestCase):
+    def test_install(self):
+        """`cmake --install` puts the same files below any folder, and the program runs from there."""
+        with tempfile.TemporaryDirectory() as name:
+            place = pathlib.Path(name)
+            done = run(CMAKE, "--install", BUILD, "--prefix", place)
+            self.assertEqual(0, done.returncode, done.stderr)
+            self.assertEqual(INSTALLED, files(place))
+            self.assertEqual(run(PROGRAM, "--man").stdout, (place / "share/man/man1/epcont.1").read_text())
+            done = run(place / "bin/epcont", place / DECK, cwd=place, env={})
+            self.assertEqual((0, ""), (done.returncode, done.stderr))
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        directory = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(directory.cleanup)
+        cls.place = pathlib.Path(directory.name)
+        done = run(CPACK, "--config", BUILD / "CPackConfig.cmake", "-G", "DEB", "-B", cls.place / "pack")
+        assert done.returncode == 0, done.stdout + done.stderr
+        cls.package, = (cls.place / "pack").glob("*.deb")
+        cls.root = cls.place / "root"
+        done = run("dpkg-deb", "-x", cls.package, cls.root)
+        assert done.returncode == 0, done.stderr
+        cls.unpacked = files(cls.root)
+
+    def field(self, name):
+        return run("dpkg-deb", "-f", self.package, name).stdout.strip()
+
+    def test_name(self):
+        version = run(PROGRAM, "--version").stdout.split()[1]
+        self.assertEqual(f"epcont_{version}_{run('dpkg', '--print-architecture').stdout.strip()}.deb", self.package.name)
+        self.assertEqual(("epcont", version), (self.field("Package"), self.field("Version")))
+
+    def test_contents(self):
+        """These files and no others, of root, which all may read."""
+        self.assertEqual({f"usr/{name}" for name in PACKED}, self.unpacked)
+        for line in run("dpkg-deb", "-c", self.package).stdout.splitlines():
+            mode, owner = line.split()[:2]
+            self.assertEqual("root/root", owner)
+            self.assertIn(mode, ("drwxr-xr-x", "-rwxr-xr-x" if "/bin/" in line else "-rw-r--r--"), line)
+        self.assertIn("Permission is hereby granted", (self.root / "usr/share/doc/epcont/copyright").read_text())
+
+    def test_depends(self):
+        """Every library that the program is linked with is in a package that is named."""
+        depends = Closure.names(self.field("Depends"))
+        self.assertLessEqual({"libc6", "libgfortran5"}, set(depends))
+        self.assertRegex(" ".join(depends), r"blas")
+        needed = re.findall(r"NEEDED\s+(\S+)", run("objdump", "-p", self.root / "usr/bin/epcont").stdout)
+        if any("mumps" in library for library in needed):
+            self.assertRegex(" ".join(depends), r"libmumps-seq")
+
+    def test_run(self):
+        """In a root of its own; without its dependencies it does not run there, so that it is they which make it."""
+        deck, out = "/usr/" + DECK, self.root / "out"
+        out.mkdir()
+        enter = ["chroot", self.root] if os.geteuid() == 0 else ["unshare", "--map-root-user", "chroot", self.root]
+        command = [*enter, "/usr/bin/epcont", deck, "-o", "/out", "--tables", "all"]
+        self.assertNotEqual(0, run(*command, env={"PATH": os.environ["PATH"]}).returncode)
+        Closure(self.field("Depends")).copy_to(self.root)
+        self.assertFalse((self.root / str(ROOT).lstrip("/")).exists())
+        done = run(shutil.which(command[0]), *command[1:], env={}, cwd="/")
+        if "Operation not permitted" in done.stderr:
+            self.skipTest("no right to change the root: the package was not run")
+        self.assertEqual((0, ""), (done.returncode, done.stderr))
+        self.assertRegex(done.stdout, r"^hertz44  valid  p_max ")
+        here = self.place / "here"
+        # Without environment, too: a variable may choose OpenBLAS' kernels, and these the last digits.
+        done = run(PROGRAM, self.root / deck.lstrip("/"), "-o", here, "--tables", "all", cwd=self.place, env={})
+        self.assertEqual(0, done.returncode, done.stderr)
+        self.assertEqual(7, len(results(here)))
+        self.assertEqual(results(here), results(out))
+
+
+if __name__ == "__main__":
+    missing = [tool for tool in TOOLS if not shutil.which(tool)]
+    if missing:
+        print("skipped: no " + ", ".join(missing))
+        sys.exit(77)
+    print(__doc__)
+    unittest.main()

@@ -1,0 +1,114 @@
+"""Decks through pyNastran: read, written again in each form, run; and how far the tables of two runs are apart."""
+import csv
+import os
+import pathlib
+import subprocess
+import sys
+
+from pyNastran.bdf.bdf import BDF
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(TOP / "tests" / "independent"), str(TOP / "tools")]
+from deck import ids, real  # noqa: E402
+from deck import read as read_cards  # noqa: E402
+from from_gmsh.cards import written  # noqa: E402
+
+PROGRAM = os.environ["EPCONT_PROGRAM"]
+#: What pyNastran writes: small fields, large fields, large fields with D exponents.
+FORMS = {"small": {"size": 8}, "large": {"size": 16}, "double": {"size": 16, "is_double": True}}
+#: Columns by what their largest is the measure of.
+KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
+                     "place": ["x", "y"]},
+         "nodes": {"length": ["ux", "uy"], "force": ["rx", "ry"], "place": ["x", "y"]},
+         "elements": {"stress": ["sx", "sy", "sz", "txy", "equivalent_stress"], "strain": ["equivalent_strain"],
+                      "modulus": ["secant_modulus"], "place": ["x", "y"]}}
+
+
+def read_bdf(path, punch=False, xref=True):
+    model = BDF(debug=False, log=None)
+    model.read_bdf(str(path), xref=xref, punch=punch)
+    return model
+
+
+def write_bdf(model, path, form):
+    model.write_bdf(str(path), write_header=False, interspersed=False, **FORMS[form])
+
+
+def lines_of(path):
+    """Nodes of each BLSEG of a deck, in its order."""
+    return {int(card[1]): ids(card[2:]) for card in read_cards(path).of("BLSEG")}
+
+
+def restore_lines(model, lines):
+    """pyNastran 1.4.1 sorts the nodes of a BLSEG and drops the one that closes it; the ids of those that this has changed."""
+    changed = [number for number, nodes in lines.items() if model.blseg[number].node_ids != nodes]
+    for number in changed:
+        model.blseg[number].nodes, model.blseg[number].nodes_ref = lines[number], None
+    return changed
+
+
+def rewritten(path, form=None):
+    """The cards of a deck by a writer of our own, with commas; reals as they are, or cut to what a form leaves of them."""
+    deck = read_cards(path)
+    lines = [f"{key} = {value}" for key, value in deck.case.items()] + ["BEGIN BULK"]
+    for card in deck.cards:
+        fields = [cut(field, form) for field in card[1:]]
+        while fields and not fields[-1]:
+            fields.pop()
+        lines += [",".join([card[0] if i == 0 else ""] + fields[i:i + 8]) for i in range(0, len(fields), 8)]
+    return "\n".join(lines + ["ENDDATA", ""])
+
+
+def cut(field, form):
+    """What a form of pyNastran leaves of a field: eight columns; ten digits, where there is a D exponent."""
+    if form is None or len(field) <= 8:
+        return field
+    return written(real(field), 8) if form == "small" else written(float(f"{real(field):.9e}"), 16)
+
+
+def run(paths, out):
+    """Exit status and tables by stem; one run for all."""
+    out.mkdir(exist_ok=True)
+    subprocess.run([PROGRAM, *paths, "-o", out, "--tables", "all", "--quiet"], capture_output=True, text=True, timeout=600, check=False)
+    return {path.stem: Tables(out, path.stem) for path in paths}
+
+
+class Tables:
+    def __init__(self, out, stem):
+        self.stem = stem
+        self.table = {name: self.read(out / f"{stem}.{name}.csv") for name in KINDS}
+        self.summary = {row["key"]: row["value"] for row in self.rows(out / f"{stem}.summary.csv")}
+
+    @staticmethod
+    def rows(path):
+        return list(csv.DictReader(path.read_text(encoding="ascii").splitlines())) if path.is_file() else []
+
+    def read(self, path):
+        rows = self.rows(path)
+        key = list(rows[0])[0] if rows else None
+        return {row[key]: row for row in rows}
+
+    @property
+    def status(self):
+        return self.summary.get("status", "rejected")
+
+    def apart(self, other, discrete=True, tables=tuple(KINDS)):
+        """The largest difference from another run's tables, relative to the largest of its kind; where."""
+        worst, pieces = (0.0, ""), {}
+        if self.status != other.status:
+            return float("inf"), f"status {self.status}, {other.status}"
+        for name in tables:
+            kinds, ours, theirs = KINDS[name], self.table[name], other.table[name]
+            if set(ours) != set(theirs):
+                return float("inf"), f"{name} has other rows"
+            for kind, columns in kinds.items():
+                pieces.setdefault(kind, []).extend(
+                    (float(row[c]), float(theirs[key][c]), f"{name} {key} {c}") for key, row in ours.items() for c in columns if row[c])
+            for key, row in ours.items() if discrete else ():
+                for column in ("status", "state"):
+                    if row.get(column) != theirs[key].get(column):
+                        return float("inf"), f"{name} {key} {column}: {row[column]}, {theirs[key][column]}"
+        for values in pieces.values():
+            scale = max((abs(a) for a, _, _ in values), default=0.0) or 1.0
+            worst = max([worst] + [(abs(a - b) / scale, where) for a, b, where in values])
+        return worst

@@ -1,0 +1,65 @@
+"""Every deck below input: read by pyNastran, written by it in each of its forms, solved again, to the same values."""
+import pathlib
+import tempfile
+import unittest
+
+from forms import FORMS, TOP, lines_of, read_bdf, restore_lines, rewritten, run, write_bdf
+
+DECKS = sorted(TOP.glob("input/**/*.dat"))
+INCLUDED = sorted(TOP.glob("input/**/*.inc")) + sorted(TOP.glob("input/**/*.bdf"))
+SAME = 1e-10   # of the largest of its kind
+LARGE_FIELD = 1e-8   # sixteen columns leave eleven digits or more; what is left is how a scene magnifies them
+LOST = 3.0     # times what our own rounding to as many digits does: the same digits need not be lost
+
+
+class Input(unittest.TestCase):
+    def test_included_files(self):
+        for path in INCLUDED:
+            with self.subTest(path.name):
+                self.assertTrue(read_bdf(path, punch=True, xref=False).card_count)
+
+    def test_decks(self):
+        with tempfile.TemporaryDirectory() as directory:
+            place = pathlib.Path(directory)
+            runs = list(DECKS)
+            for path in DECKS:
+                with self.subTest(path.name):
+                    runs += self.through(path, place)
+            found = run(runs, place / "out")
+            for path in DECKS:
+                with self.subTest(path.name):
+                    self.assertTrue(found[path.stem].status == "valid" or path.parent.name == "faults", found[path.stem].status)
+                    self.judge(path.stem, found)
+
+    def through(self, path, place):
+        """The deck by pyNastran in its forms, each by our own writer too; and the deck's own cards, cut to what a form leaves."""
+        model = read_bdf(path)
+        self.assertFalse(model.reject_lines + model.reject_cards)
+        changed = restore_lines(model, lines_of(path))
+        if path.parent.name == "from_gmsh":
+            self.assertFalse(changed)   # tools/deck numbers nodes along its lines
+        made = []
+        for form in FORMS:
+            made.append(place / f"{path.stem}_{form}.dat")
+            write_bdf(model, made[-1], form)
+            made.append(place / f"{path.stem}_{form}_twin.dat")
+            made[-1].write_text(rewritten(made[-2]))
+            if form != "large":
+                made.append(place / f"{path.stem}_{form}_cut.dat")
+                made[-1].write_text(rewritten(path, form))
+        return made
+
+    def judge(self, stem, found):
+        """Read the same by epcont as from our own writer; off the deck's values by no more than the digits that are lost."""
+        original = found[stem]
+        for form in FORMS:
+            there = found[f"{stem}_{form}"]
+            apart, where = there.apart(found[f"{stem}_{form}_twin"])
+            self.assertLessEqual(apart, SAME, f"{form} and its twin: {where}")
+            apart, where = original.apart(there, discrete=form == "large")
+            allowed = LARGE_FIELD if form == "large" else LOST * original.apart(found[f"{stem}_{form}_cut"], discrete=False)[0] + SAME
+            self.assertLessEqual(apart, allowed, f"{form}: {where}")
+
+
+if __name__ == "__main__":
+    unittest.main()

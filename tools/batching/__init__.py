@@ -1,0 +1,1 @@
+"""Many decks as one batch: lists, runs, journals, the table, Slurm."""

@@ -1,0 +1,184 @@
+"""What a batch keeps in DIR/.batch, so that nothing is lost whenever it is stopped: its plan, and journals of what has ended.
+
+The plan is written whole or not at all. A journal is only added to, a line when a deck begins and one when it has ended; a
+line that was cut off is no line. Each process that runs decks has a journal of its own; the table is made from all of them.
+"""
+import contextlib
+import csv
+import errno
+import fcntl
+import io
+import json
+import os
+
+from .decks import Deck, Refused, fingerprint
+from .outcome import ANSWERED, COLUMNS, KILLED, NOT_RUN
+
+NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
+
+
+class Book:
+    def __init__(self, directory):
+        self.directory = directory
+        self.folder = os.path.join(directory, ".batch")
+        self.plan_path = os.path.join(self.folder, "plan.json")
+        self.table_path = os.path.join(directory, "batch.csv")
+
+    def make(self):
+        try:
+            os.makedirs(self.folder, exist_ok=True)
+        except OSError as error:
+            raise Refused(f"{self.directory}: cannot be written: {error.strerror}") from None
+
+    def load(self):
+        """The plan of an earlier call."""
+        try:
+            with open(self.plan_path, encoding="utf-8") as file:
+                plan = json.load(file)
+        except (OSError, ValueError):
+            raise Refused(f"{self.directory}: no batch was begun here (no {self.plan_path})") from None
+        plan["decks"] = [Deck(*fields) for fields in plan["decks"]]
+        return plan
+
+    def save(self, plan):
+        decks = [[deck.path, deck.place, deck.values, deck.size] for deck in plan["decks"]]
+        write_whole(self.plan_path, json.dumps({**plan, "decks": decks}, indent=0))
+
+    def journal(self, name):
+        return os.path.join(self.folder, f"{name}.journal")
+
+    def stem(self, deck):
+        """Path of the results of a deck, without their suffixes."""
+        return os.path.join(self.directory, deck.place)
+
+    def entries(self):
+        """Of each place the last end in the journals, and the places where a deck was begun."""
+        ends, begun = {}, set()
+        for name in sorted(os.listdir(self.folder)):
+            if name.endswith(".journal"):
+                for entry in read_journal(os.path.join(self.folder, name)):
+                    begun.add(entry["place"])
+                    if "row" in entry and ends.get(entry["place"], entry)["at"] <= entry["at"]:
+                        ends[entry["place"]] = entry
+        return ends, begun
+
+    def begin(self, decks, resume, version):
+        """Put aside what earlier calls have left, but what may be kept; the decks still to run."""
+        for name in os.listdir(self.folder):
+            if name.endswith(".journal"):
+                with open(os.path.join(self.folder, name), "ab") as file:
+                    lock(file.fileno(), self.directory, False)   # of a task that runs elsewhere
+        kept = self.kept(decks, version) if resume else []
+        write_whole(self.journal("kept"), "".join(json.dumps(entry) + "\n" for entry in kept))
+        for name in os.listdir(self.folder):
+            if name.endswith((".journal", ".out")) and name != "kept.journal":
+                os.unlink(os.path.join(self.folder, name))
+        places = {entry["place"] for entry in kept}
+        return [deck for deck in decks if deck.place not in places]
+
+    def kept(self, decks, version):
+        """The ends of decks that are as they were then, with their listings, of this version."""
+        ends, kept = self.entries()[0], []
+        for deck in decks:
+            entry = ends.get(deck.place)
+            if entry and entry["row"]["status"] in ANSWERED and entry["version"] == version \
+                    and entry["listing"] == size_of(self.stem(deck) + ".lst") and entry["inputs"] == fingerprint(deck.path)[0]:
+                entry["row"]["deck"] = deck.path
+                kept.append(entry)
+        return kept
+
+    def rows(self, plan, ends):
+        """One row a deck, in the order of the list."""
+        for deck in plan["decks"]:
+            row = ends[deck.place]["row"] if deck.place in ends else \
+                {**dict.fromkeys(COLUMNS, ""), "deck": deck.path, "status": NOT_RUN}
+            lost = plan.get("lost", {}).get(deck.place)
+            if lost and row["status"] in (NOT_RUN, KILLED):
+                row = {**row, "status": "lost", "message": lost}
+            yield {**row, **deck.values}
+
+    def write_table(self, plan, ends):
+        rows = list(self.rows(plan, ends))
+        columns = COLUMNS[:1] + list(plan["decks"][0].values) + COLUMNS[1:]
+        text = io.StringIO()
+        table = csv.DictWriter(text, columns, lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
+        write_whole(self.table_path, text.getvalue())
+        return rows
+
+
+class Journal:
+    """Open for adding; locked, and what the lock is inherited by are the runs: as long as one lives, nobody else begins."""
+
+    def __init__(self, path, wait=False):
+        self.path = path
+        self.descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+        lock(self.descriptor, path, wait)
+        os.set_inheritable(self.descriptor, True)
+        self.add({})   # what was cut off ends here
+
+    def add(self, entry):
+        line = (json.dumps(entry) + "\n").encode() if entry else b"\n"
+        try:
+            whole = os.write(self.descriptor, line) == len(line)
+        except OSError:
+            whole = False
+        if not whole:
+            raise Refused(f"{self.path}: cannot be written: is the disk full?")
+
+
+@contextlib.contextmanager
+def alone(book):
+    """Nobody else works on this batch."""
+    path = os.path.join(book.folder, "lock")
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT, 0o666)
+    try:
+        lock(descriptor, book.directory, False)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def lock(descriptor, what, wait):
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    except BlockingIOError:
+        raise Refused(f"{what}: another tools/batch is at work there, or what it began is still running") from None
+    except OSError as error:
+        if error.errno not in NO_LOCKS:   # some file systems have none
+            raise
+
+
+def read_journal(path):
+    try:
+        with open(path, encoding="utf-8", errors="replace") as file:
+            text = file.read()
+    except OSError:
+        return
+    for line in text.split("\n")[:-1]:
+        try:
+            entry = json.loads(line)
+        except ValueError:
+            continue
+        if isinstance(entry, dict) and "place" in entry:
+            yield entry
+
+
+def write_whole(path, text):
+    """A file appears whole or not at all."""
+    try:
+        with open(path + ".part", "w", encoding="utf-8", errors="surrogateescape", newline="") as file:
+            file.write(text)
+        os.replace(path + ".part", path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            os.unlink(path + ".part")
+        raise Refused(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def size_of(path):
+    try:
+        return os.stat(path).st_size
+    except OSError:
+        return -1

@@ -1,0 +1,124 @@
+"""What came of one deck: its row of the table, from how the run ended, what it said and what it wrote."""
+import csv
+import os
+import re
+import signal
+
+COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "nodes", "p_max", "approach", "p_max_error",
+           "certificate", "certificate_part"]
+ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "singular stiffness", "contact not found", "ill-conditioned",
+            "not certified"}   # words of a whole listing
+NOT_RUN = "not run"
+KILLED = "killed"              # from outside: whoever has the right may run the deck again
+FIGURE = re.compile(r"^  (\S.*?)  +(< )?([+-]?\d[\d.E+-]*)$")
+
+
+def row_of(deck, stem, ended):
+    """The row of a deck whose run has ended (`ended`: see running.Ended)."""
+    row = dict.fromkeys(COLUMNS, "")
+    row.update(deck=deck.path, exit_status=ended.code if ended.code >= 0 else "",
+               seconds=f"{ended.seconds:.3f}", memory_MB=f"{ended.memory / 1024:.1f}" if ended.memory else "")
+    listing, summary = read_text(stem + ".lst"), read_summary(stem + ".summary.csv")
+    row["status"], row["message"] = judge(ended, listing, summary)
+    if row["status"] in ANSWERED:
+        row.update(figures(listing, summary))
+    return row
+
+
+def judge(ended, listing, summary):
+    """Status and message."""
+    said = first_fault(ended.said)
+    if ended.limit:
+        return "timed out", f"no end within {ended.limit:g} s"
+    if ended.code == -signal.SIGKILL:
+        return KILLED, "by SIGKILL: out of memory, or somebody's doing"
+    if ended.code < 0:
+        return "crashed", f"by {name_of(-ended.code)}" + (f": {said}" if said else "")
+    if ended.code == 2:
+        return "rejected", said
+    if ended.code == 3:
+        return "refused", said
+    if ended.code not in (0, 1, 4):
+        return "internal error", said or f"exit status {ended.code}"
+    word = summary.get("status", "")
+    if not whole(listing, word) or (word == "valid") != (ended.code == 0):
+        return "incomplete", f"exit status {ended.code} without a whole listing" + (f": {said}" if said else "")
+    return word, said
+
+
+def name_of(number):
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"
+
+
+def whole(listing, word):
+    """Has the listing its end? The program renames it when it is written, so that only another one would leave a half."""
+    if word not in ANSWERED or not listing.startswith("epcont ") or not listing.endswith("\n"):
+        return False
+    return "\nACCURACY" in listing if word == "valid" else "\n  *NOT VALID*  " in listing
+
+
+def first_fault(said):
+    """The first message that is no warning, with its place."""
+    for line in said.splitlines():
+        if line.strip() and not line.startswith(" ") and not re.search(r":\d[\d:-]*: warning: ", line):
+            return line.strip()
+    return ""
+
+
+def figures(listing, summary):
+    """The columns that need a listing."""
+    found = {}
+    nodes = re.search(r"^  (\d+) nodes?,", listing, re.MULTILINE)
+    if nodes:
+        found["nodes"] = nodes[1]
+    found["p_max"] = summary.get("max_pressure", "")
+    found["approach"] = next((value for key, value in summary.items() if key.startswith("approach_")), "")
+    error, pressure = number(summary.get("mesh_error_max_pressure")), number(found["p_max"])
+    if error is not None and pressure:
+        found["p_max_error"] = f"{error / pressure:.3g}"
+    found["certificate"], found["certificate_part"] = worst_of_certificate(listing)
+    return found
+
+
+def worst_of_certificate(listing):
+    """The figure that takes most of what it may, and how much of it: above 1 it does not hold."""
+    block = re.search(r"^CERTIFICATE .*tolerance (\S+?)\).*\n((?:  .*\n)+)", listing, re.MULTILINE)
+    if not block:
+        return "", ""
+    lines = [match.groups() for match in map(FIGURE.match, block[2].splitlines()) if match]
+    allowed = {"stress off the curve": next((float(value) for name, _, value in lines if name.startswith("of which")), None)}
+    parts = [(float(value) / (allowed.get(name) or float(block[1])), name) for name, _, value in lines
+             if not name.startswith("of which")]
+    part, name = max(parts, default=(None, ""), key=lambda each: abs(each[0]))
+    return name, "" if part is None else f"{abs(part):.2g}"
+
+
+def number(text):
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return None
+
+
+def read_summary(path):
+    return {row[0]: row[1] for row in csv.reader(read_text(path).splitlines()) if len(row) > 1}
+
+
+def read_text(path):
+    try:
+        with open(path, encoding="latin-1") as file:
+            return file.read()
+    except OSError:
+        return ""
+
+
+def forget(stem):
+    """What an earlier run has left must not be taken for this one's."""
+    for suffix in (".lst", ".summary.csv"):
+        try:
+            os.unlink(stem + suffix)
+        except OSError:
+            pass

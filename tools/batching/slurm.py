@@ -1,0 +1,130 @@
+"""A batch as an array job of Slurm: each task runs a share of the decks, and nothing but files tells what has ended.
+
+`sbatch`, `squeue` and `scontrol` are all that is asked for: no database of accounts. A task that is no longer in the queue and
+whose journal lacks ends was killed; it is submitted again with what was asked, and goes on where it was.
+"""
+import os
+import re
+import shlex
+import subprocess
+import sys
+import time
+
+from .decks import Refused
+from .outcome import KILLED
+
+CHUNK = 50             # decks a task, where nothing else is asked
+MOST_TASKS = 1000      # Slurm's MaxArraySize is 1001 where nobody changed it
+TRIES = 3              # a task is submitted at most so often
+SHORTEST, LONGEST = 2.0, 30.0   # s between looks at the queue
+
+
+def shares(decks, chunk):
+    """Tasks of about `chunk` decks each; they are dealt like cards, so that the first, long ones do not meet in one task."""
+    chunk = chunk or max(CHUNK, -(-len(decks) // MOST_TASKS))
+    tasks = -(-len(decks) // chunk)
+    return [[deck.place for deck in decks[k::tasks]] for k in range(tasks)]
+
+
+def submit(book, plan, tasks, script):
+    """One array job of these tasks."""
+    for task in tasks:   # there from the beginning, so that no node's memory of the folder hides it
+        open(book.journal(f"task{task}"), "ab").close()
+    folder = os.path.abspath(book.folder)
+    command = ["sbatch", "--parsable", "--job-name=epcont", f"--array={','.join(map(str, tasks))}", f"--chdir={plan['cwd']}",
+               f"--output={os.path.join(folder.replace('%', '%%'), 'task%a.out')}", "--open-mode=append", "--ntasks=1",
+               f"--cpus-per-task={plan['processes']}", *plan["sbatch"]]
+    text = f"#!/bin/sh\nexec {shlex.quote(script)} --task {shlex.quote(os.path.abspath(book.directory))} " \
+           f"\"$SLURM_ARRAY_TASK_ID\" {plan['id']}\n"
+    try:
+        done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise Refused(f"sbatch cannot be started: {error.strerror}; without Slurm leave --slurm out") from None
+    if done.returncode:
+        raise Refused(f"sbatch: {done.stderr.strip() or done.stdout.strip()}")
+    job = done.stdout.strip().split(";")[0]
+    plan["jobs"].append({"id": job, "tasks": tasks})
+    book.save(plan)
+    return job
+
+
+def queued():
+    """(job, task) of all that wait or run, or nothing where Slurm does not answer."""
+    command = ["squeue", "--noheader", "--array", f"--user={os.getuid()}", "--format=%F %K"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError:
+        return None
+    if done.returncode:
+        return None
+    return {tuple(line.split()) for line in done.stdout.splitlines()}
+
+
+def reason(job, task):
+    """Why a task has ended, as long as Slurm knows."""
+    command = ["scontrol", "--oneliner", "show", "job", f"{job}_{task}"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError:
+        return "unknown to Slurm"
+    state = re.search(r"\bJobState=(\S+)", done.stdout)
+    return state[1] if state else "unknown to Slurm"
+
+
+class Watch:
+    """Looks after the tasks of a plan until each deck has ended or is lost."""
+
+    def __init__(self, book, plan, script):
+        self.book, self.plan, self.script = book, plan, script
+        self.missing = set()    # tasks that were not in the queue when it was last looked at
+
+    def unfinished(self, ends):
+        """Places without an end that are not lost, by task."""
+        found = {}
+        for task, places in enumerate(self.plan["tasks"]):
+            left = [place for place in places if place not in self.plan["lost"]
+                    and (place not in ends or ends[place]["row"]["status"] == KILLED)]
+            if left:
+                found[task] = left
+        return found
+
+    def jobs_of(self, task):
+        return [job["id"] for job in self.plan["jobs"] if task in job["tasks"]]
+
+    def wait(self, show):
+        """`show(ends)` is given the state now and then."""
+        pause, answered = SHORTEST, True
+        while True:
+            queue = queued()            # before the journals: what has left the queue has written them
+            if queue is None and answered:
+                print("squeue does not answer: waiting for it, and for what ends meanwhile", file=sys.stderr)
+            answered = queue is not None
+            ends = self.book.entries()[0]
+            show(ends)
+            left = self.unfinished(ends)
+            if not left:
+                return
+            if queue is not None:
+                self.look_after(left, queue)
+            pause = SHORTEST if self.missing else min(1.3 * pause, LONGEST)
+            time.sleep(pause)
+
+    def look_after(self, left, queue):
+        """Submit again what was killed; what was killed too often is lost. Missing twice, that is: files may be late."""
+        gone = {task for task in left if not any((job, str(task)) in queue for job in self.jobs_of(task))}
+        killed, self.missing = sorted(gone & self.missing), gone - self.missing
+        again = []
+        for task in killed:
+            jobs = self.jobs_of(task)
+            why = reason(jobs[-1], task) if jobs else "never submitted"
+            print(f"task {task}: {why}, {len(left[task])} decks left" +
+                  ("; submitted again" if len(jobs) < TRIES else f"; given up after {TRIES} times"), file=sys.stderr)
+            if len(jobs) < TRIES:
+                again.append(task)
+            else:
+                said = f"killed {TRIES} times, last: {why}; see {self.book.folder}/task{task}.out"
+                self.plan["lost"].update(dict.fromkeys(left[task], said))
+        if again:
+            submit(self.book, self.plan, again, self.script)
+        elif killed:
+            self.book.save(self.plan)

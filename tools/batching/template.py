@@ -1,0 +1,114 @@
+"""A deck with places, `%name%`: where they stand, and the deck when they are filled."""
+import os
+import re
+from dataclasses import dataclass
+
+from .fitting import Unfit, fit
+
+PLACE = re.compile(r"%([A-Za-z_]\w*)%")
+INCLUDE = re.compile(r"""([ ]*include[ ]*)(['"])(.*?)\2(.*)""", re.IGNORECASE)
+FIRST, LAST, LONGEST = 8, 72, 256   # columns of a name, of data, of a free line
+
+
+@dataclass
+class Place:
+    name: str
+    line: int            # from 0
+    first: int           # characters of the line that are replaced
+    last: int
+    kind: str = "text"   # of the field
+    width: int = 0       # 0: none
+    what: str = ""       # `MAT1 field 3 (E)`
+
+
+class Template:
+    """`faults` has what is wrong with the deck itself, with file, line and columns."""
+
+    def __init__(self, path, text, catalogue):
+        self.path, self.lines, self.catalogue = path, re.sub(r"\r?\n?\Z", "", text).replace("\r\n", "\n").split("\n"), catalogue
+        self.places, self.faults = [], []
+        bulk = next((k + 1 for k, line in enumerate(self.lines) if line.upper().split("$")[0].split() == ["BEGIN", "BULK"]), 0)
+        card, slot, ended = "", 0, False
+        for k, line in enumerate(self.lines):
+            code = line.split("$")[0].rstrip()
+            self.plain(k, line, len(code))
+            if k < bulk or ended or not code.strip() or INCLUDE.match(code):
+                self.plain(k, code, 0)
+                continue
+            ended = code.strip().upper() == "ENDDATA"
+            name = re.split(r"[,\s]", code[:FIRST])[0].upper() if code[0] not in " +*," else ""
+            wide = "*" in code[:FIRST].split(",")[0]
+            if name:
+                card, slot = name.rstrip("*"), 0
+            elif slot % 8 and not wide:
+                slot += 4   # a row of large fields that ends with its first half
+            self.cut(k, code, card, slot, 4 if wide else 8)
+            slot += 4 if wide else 8
+
+    def fault(self, k, first, last, what):
+        self.faults.append(f"{self.path}:{k + 1}:{first + 1}-{last}: {what}")
+
+    def plain(self, k, text, start):
+        """Places in comments, titles and names of files: any text."""
+        self.places += [Place(match[1], k, *match.span()) for match in PLACE.finditer(text, start)]
+
+    def cut(self, k, code, card, slot, most):
+        """Places in the fields of a card, which they must fill."""
+        if "," in code:
+            ends = [match.start() for match in re.finditer(",", code)] + [len(code)]
+            fields = [(a + 1, b, 0) for a, b in zip(ends, ends[1:])]
+        else:
+            step = (LAST - FIRST) // most
+            fields = [(a, a + step, step) for a in range(FIRST, LAST, step)]
+        for match in PLACE.finditer(code):
+            index, (first, last, width) = next(((i, each) for i, each in enumerate(fields) if each[0] <= match.start() < each[1]),
+                                               (-1, (0, 0, 0)))
+            if index < 0 or code[first:last].strip() != match[0]:
+                self.fault(k, *match.span(), f"{match[0]} does not fill a field of its own: a shorter name, a large field "
+                           "(a * behind the card's name) or a free one (commas) would be right")
+                continue
+            field = slot + index
+            column = self.column(card, field, code)
+            label = f"{card} field {field // 8 * 10 + field % 8 + 2}" + (f" ({column.name})" if column.name else "")
+            self.places.append(Place(match[1], k, first, last, column.kind, width, label))
+
+    def column(self, card, field, code):
+        if card == "PARAM" and field == 1:
+            words = re.split(r"[,\s*]+", code.upper())
+            return self.catalogue.parameters.get(words[1] if len(words) > 1 else "", self.catalogue.column("", 0))
+        return self.catalogue.column(card, field)
+
+    def fill(self, values, folder, faults):
+        """The deck of these values, as it must be to stand in `folder`; what does not fit is added to `faults`."""
+        lines = list(self.lines)
+        for place in sorted(self.places, key=lambda place: (place.line, -place.first)):
+            value = values[place.name]
+            try:
+                text = self.text_of(place, value)
+            except Unfit as unfit:
+                faults.append(f"column {place.name}, {value!r}: {self.path}:{place.line + 1}:{place.first + 1}-{place.last}: "
+                              f"{place.what}: {unfit}")
+                continue
+            line = lines[place.line].ljust(place.last)
+            lines[place.line] = (line[:place.first] + text + line[place.last:]).rstrip()
+            if "," in lines[place.line] and place.what and len(lines[place.line].split("$")[0].rstrip()) > LONGEST:
+                faults.append(f"column {place.name}, {value!r}: {self.path}:{place.line + 1}: "
+                              f"the line has more than {LONGEST} characters")
+        return "\n".join(self.moved(k, line, folder, faults) for k, line in enumerate(lines)) + "\n"
+
+    def text_of(self, place, value):
+        if place.kind == "text":
+            if not value.isascii() or not value.isprintable():
+                raise Unfit("printable ASCII would be right")
+            return value
+        return fit(value, place.kind, place.width).ljust(place.width)
+
+    def moved(self, k, line, folder, faults):
+        """An INCLUDE as seen from the folder of the deck."""
+        match = INCLUDE.match(line)
+        if not match or os.path.isabs(match[3]):
+            return line
+        path = os.path.join(os.path.dirname(self.path), match[3])
+        if not os.path.isfile(path):
+            faults.append(f"{self.path}:{k + 1}: INCLUDE: {path}: no such file")
+        return f"{match[1]}{match[2]}{os.path.relpath(path, folder)}{match[2]}{match[4]}"

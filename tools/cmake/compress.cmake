@@ -1,0 +1,11 @@
+# CPack, before the package is closed: Debian wants manual pages and changes compressed, without a time in them.
+file(GLOB_RECURSE pages "${CPACK_TEMPORARY_DIRECTORY}/*.1" "${CPACK_TEMPORARY_DIRECTORY}/CHANGELOG.md")
+foreach(page IN LISTS pages)
+  get_filename_component(name "${page}" NAME)
+  get_filename_component(directory "${page}" DIRECTORY)
+  if(name STREQUAL "CHANGELOG.md")
+    file(RENAME "${page}" "${directory}/changelog")
+    set(page "${directory}/changelog")
+  endif()
+  execute_process(COMMAND gzip -9n "${page}" COMMAND_ERROR_IS_FATAL ANY)
+endforeach()

@@ -1,0 +1,33 @@
+# What `cmake --install` puts where, and the Debian package that `cpack -G DEB` makes of it.
+include(GNUInstallDirs)
+# What is installed is the program and its page: tests need not be built for it.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
+
+# The program prints its own manual page, from the table of options that it reads by.
+set(man_page "${PROJECT_BINARY_DIR}/epcont.1")
+add_custom_command(OUTPUT "${man_page}" COMMAND epcont --man > "${man_page}" DEPENDS epcont
+  COMMENT "Writing the manual page" VERBATIM)
+add_custom_target(man_page ALL DEPENDS "${man_page}")
+
+install(TARGETS epcont RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+install(FILES "${man_page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright)   # where Debian looks for it
+install(FILES input/hertz/hertz44.dat DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "elastoplastic contact of plane bodies and rings")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"From decks of NASTRAN bulk data: what touches, with what force, how far the
+bodies approach and where they have yielded. Contact is exact to rounding, and
+every answer is certified by code of its own.")
+set(CPACK_PACKAGE_CONTACT "The epcont authors" CACHE STRING "Whom the package names as its maintainer: NAME <ADDRESS>")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)   # the libraries that it was linked with, by their packages
+# Folders that anyone may enter, whatever the umask of whoever packs.
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/tools/cmake/compress.cmake")
+include(CPack)

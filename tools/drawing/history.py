@@ -1,0 +1,26 @@
+"""A panel of the iteration: what changes, what is off the curve, what touches and has yielded."""
+import numpy as np
+
+from drawing.style import BLUE, DARK, GREEN, GREY, RED
+
+
+def draw(figure, run):
+    """Two plots on logarithmic scales, one above the other; grey lines where a load step begins."""
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    n = run.history["iteration"]
+    mark = "o-" if len(n) <= 40 else "-"
+    for key, colour, name in (("change", BLUE, "change"), ("residual", RED, "off the curve")):
+        positive = run.history[key] > 0
+        above.semilogy(n[positive], run.history[key][positive], mark, ms=3, lw=1.0, color=colour, label=name)
+    for key, colour, name in (("pairs_in_contact", DARK, "pairs touching"), ("plastic_elements", GREEN, "elements yielded")):
+        positive = run.history[key] > 0
+        if positive.any():
+            below.semilogy(n[positive], run.history[key][positive], mark, ms=3, lw=1.0, color=colour, label=name)
+    for axes in (above, below):
+        for first in np.flatnonzero(np.diff(run.history["load_factor"])):
+            axes.axvline(n[first] + 0.5, color=GREY, lw=0.5)
+        axes.legend()
+        low, high = below.get_ylim()
+    below.set(xlabel="iteration", ylim=(low / 1.5, high * 1.5))
+    below.xaxis.get_major_locator().set_params(integer=True)
+    above.set_title(f"iteration, {len(n)} solves")

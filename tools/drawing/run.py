@@ -1,0 +1,163 @@
+"""A deck and what epcont gives for it, as arrays."""
+import csv
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+TOP = pathlib.Path(__file__).resolve().parent.parent.parent
+PROGRAM = TOP / "build/release/epcont"
+sys.path.insert(0, str(TOP / "tests" / "independent"))
+from deck import DeckError, at, ids, read, real  # noqa: E402
+
+#: Nodes of each kind of element in their order round it, as positions among the nodes of its card.
+ROUND = {"CTRIA3": [0, 1, 2], "CTRAX3": [0, 1, 2], "CQUAD4": [0, 1, 2, 3], "CTRIA6": [0, 3, 1, 4, 2, 5], "CTRAX6": [0, 1, 2, 3, 4, 5]}
+
+
+class Refused(Exception):
+    """No picture: the message says why, `status` is the exit status."""
+
+    def __init__(self, message, status=3):
+        super().__init__(message)
+        self.status = status
+
+
+class Run:
+    """Places and displacements of the nodes, elements round about, stresses, contact lines, history.
+
+    What a run that failed does not give is absent: displacements and stresses are 0 then, lines and history empty.
+    """
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        with tempfile.TemporaryDirectory() as place:
+            run = subprocess.run([PROGRAM, self.path, "-o", place, "--tables", "all"], capture_output=True, text=True, check=False)
+            if run.returncode not in (0, 1, 4):
+                raise Refused(run.stderr.strip() or run.stdout.strip(), run.returncode)
+            self.message = run.stderr.strip()
+            tables = {name: table(pathlib.Path(place) / f"{self.path.stem}.{name}.csv")
+                      for name in ("nodes", "elements", "contact", "zones", "history", "summary")}
+            self.title = title(pathlib.Path(place) / f"{self.path.stem}.lst")
+        try:
+            deck = read(self.path)
+        except DeckError as error:
+            raise Refused(f"{self.path}: epcont reads this deck, the reader of the pictures does not: {error}") from error
+        self.exit_status = run.returncode
+        self.status = next(row["value"] for row in tables["summary"] if row["key"] == "status")
+        self.take_mesh(deck, tables["nodes"], tables["elements"])
+        self.take_contact(deck, tables["contact"], tables["zones"])
+        self.history = {key: np.array([float(row[key]) for row in tables["history"]]) for key in (tables["history"] or [{}])[0]}
+        self.young, self.nu = next((real(at(card, 2)), real(at(card, 4))) for card in deck.of("MAT1"))
+        self.unit = {at(card, 1): at(card, 2) for card in deck.of("PARAM")}.get("UNITS", "")
+        self.rings = bool(deck.of("PSOLID"))
+
+    def take_mesh(self, deck, nodes, elements):
+        grids = deck.of("GRID")
+        self.row = {int(card[1]): i for i, card in enumerate(grids)}
+        self.x = np.array([[real(at(card, 3)), real(at(card, 4))] for card in grids])
+        self.u = np.zeros_like(self.x)
+        for node in nodes:
+            self.u[self.row[int(node["node"])]] = float(node["ux"]), float(node["uy"])
+        self.around, number = [], {}
+        for kind, order in ROUND.items():
+            for card in deck.of(kind):
+                number[int(card[1])] = len(self.around)
+                self.around.append([self.row[int(card[3 + i])] for i in order])
+        keys = ("sx", "sy", "sz", "equivalent_stress")
+        self.stress = {key: np.zeros(len(self.around)) for key in keys}
+        self.plastic = np.zeros(len(self.around), bool)
+        for element in elements:
+            e = number[int(element["element"])]
+            self.plastic[e] = element["state"] == "plastic"
+            for key in keys:
+                self.stress[key][e] = float(element[key])
+        self.solved = bool(elements)
+        self.bare = sorted(set(range(len(self.x))) - {node for nodes in self.around for node in nodes})
+
+    def take_contact(self, deck, pairs, zones):
+        """Contact lines: the pairs of each BCONP, and CGAPs whose nodes are neighbours on a boundary."""
+        slaves = {int(card[1]): {int(node) for node in ids(card[2:])} for card in deck.of("BLSEG")}
+        left, self.lines = list(pairs), []
+        for card in deck.of("BCONP"):
+            own = [p for p in left if p["pair"] == p["gb"] and int(p["gb"]) in slaves[int(card[2])]]
+            left = [p for p in left if p not in own]
+            self.lines += [Line(f"BCONP {card[1]}", own)] if own else []
+        for chain in chains(left, self.neighbours()):
+            first, last = chain[0]["pair"], chain[-1]["pair"]
+            self.lines.append(Line(f"CGAP {first} to {last}" if first != last else f"CGAP {first}", chain))
+        node = {p["pair"]: self.row[int(p["gb"])] for p in pairs}
+        self.zones = [(float(z["force"]), node[z["first_pair"]], node[z["last_pair"]]) for z in zones]
+
+    def neighbours(self):
+        """Ids of the nodes that a side connects with each id."""
+        number = {i: node for node, i in self.row.items()}
+        beside = {}
+        for a, b in self.sides():
+            beside.setdefault(number[a], set()).add(number[b])
+            beside.setdefault(number[b], set()).add(number[a])
+        return beside
+
+    def sides(self, chosen=None):
+        """Sides that belong to one only of the chosen elements (all, if none are given)."""
+        count = {}
+        for nodes, wanted in zip(self.around, np.ones(len(self.around), bool) if chosen is None else chosen):
+            if wanted:
+                for ends in zip(nodes, nodes[1:] + nodes[:1]):
+                    key = tuple(sorted(ends))
+                    count[key] = count.get(key, 0) + 1
+        return [ends for ends, times in count.items() if times == 1]
+
+    def size(self):
+        """Larger extent of the scene."""
+        return np.ptp(self.x, axis=0).max()
+
+    def stress_unit(self):
+        """KGF-MM says kgf/mm2; other words say it themselves."""
+        force, _, length = self.unit.partition("-")
+        names = {"KGF": "kgf", "N": "N", "MM": "mm", "M": "m"}
+        return f"{names.get(force, force)}/{names.get(length, length)}$^2$" if length else "force/length$^2$"
+
+    def length_unit(self):
+        """`, mm` for KGF-MM; nothing for other words."""
+        length = self.unit.partition("-")[2]
+        return f", {length.lower()}" if length in ("MM", "M") else ""
+
+
+class Line:
+    """The pairs of one contact line: places, forces, pressures, gaps before the load."""
+
+    def __init__(self, name, pairs):
+        self.name = name
+        self.x = np.array([[float(p["x"]), float(p["y"])] for p in pairs])
+        self.force, self.pressure, self.gap = (np.array([float(p[key] or 0) for p in pairs]) for key in ("force", "pressure", "initial_gap"))
+        self.touching = self.force > 0
+
+
+def table(path):
+    """Rows of a table, none where the run wrote no such table."""
+    if not path.exists():
+        return []
+    with open(path, newline="", encoding="ascii") as file:
+        return list(csv.DictReader(file))
+
+
+def title(listing):
+    """The TITLE of the deck, as the third line of its listing has it."""
+    lines = listing.read_text(encoding="latin-1").splitlines() if listing.exists() else []
+    return lines[2].strip() if len(lines) > 2 and lines[2].startswith("  ") and not lines[2].startswith("  units:") else ""
+
+
+def chains(pairs, beside):
+    """Sets of pairs connected by sides between their A nodes or between their B nodes."""
+    left = list(pairs)
+    while left:
+        chain, front = [], [left.pop(0)]
+        while front:
+            pair = front.pop()
+            chain.append(pair)
+            near = [p for p in left if any(int(p[end]) in beside.get(int(pair[end]), ()) for end in ("ga", "gb"))]
+            left = [p for p in left if p not in near]
+            front += near
+        yield [p for p in pairs if p in chain]

@@ -1,0 +1,102 @@
+"""Write a deck from a Gmsh file with named groups and a scene in TOML.
+
+    tools/deck SCENE.toml [-o NAME.dat]
+
+NAME.dat (by default SCENE.dat beside the scene) has materials, supports, loads and contacts, and includes NAME.mesh.bdf with
+nodes and elements. If epcont has been built, its own check of the deck follows. input/README.md ("From Gmsh") says how to write a
+scene; input/from_gmsh has some.
+
+Exit status: 0 written; 2 the scene is rejected, or epcont rejects the deck; 3 usage or files.
+"""
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+
+from .faults import Faults, Rejected
+from .scene import read_scene
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+REJECTED, UNUSABLE = 2, 3
+
+
+class Unusable(Exception):
+    """Files or the machine, not the scene."""
+
+
+def make(scene_path, path, faults):
+    """Writes deck and mesh; gives what made them."""
+    scene = read_scene(scene_path, faults)
+    try:
+        from .mesh import read_mesh
+    except ImportError as error:
+        raise Unusable(f"no Gmsh for this Python ({error}); use tools/deck, or pip install -r tools/requirements.txt") from error
+    except OSError as error:
+        raise Unusable(f"Gmsh does not load ({error}); remove build/venv/installed and try again") from error
+    from .deck import Maker
+    mesh_path = path.with_suffix(".mesh.bdf")
+    source = scene_path.parent / scene.mesh
+    taken = [p.resolve() for p in (scene_path, source)]
+    if path.resolve() in taken or mesh_path.resolve() in taken:
+        raise Unusable(f"{path} or {mesh_path.name} is what the scene is made of; another name behind -o")
+    maker = Maker(scene, read_mesh(source, faults), faults)
+    made = f"made by tools/deck from {scene_path.name} and {source.name}"
+    write(mesh_path, maker.mesh_lines())
+    write(path, maker.deck_lines(made, mesh_path.name))
+    return maker
+
+
+def write(path, lines):
+    try:
+        path.write_text("\n".join(lines + [""]), encoding="utf-8")
+    except OSError as error:
+        raise Unusable(f"{path} cannot be written: {error.strerror}") from error
+
+
+def check(path, maker):
+    """epcont's own opinion, if there is an epcont; the nodes that it names, in the terms of the scene."""
+    program = next((p for p in (TOP / "build" / preset / "epcont" for preset in ("release", "debug", "sanitize")) if p.is_file()), None)
+    if program is None:
+        print("epcont is not built: tools/run DECK builds and runs it")
+        return 0
+    run = subprocess.run([program, "--check", path], capture_output=True, text=True, check=False)
+    print(run.stdout + run.stderr, end="")
+    for number in sorted({int(n) for n in re.findall(r"\bGRID (\d+)", run.stderr)}):
+        print(maker.described(number))
+    if not run.returncode:
+        return 0
+    print("mend the scene, not the deck; in the scene SPC1 and SPC are [support], SUPORT [free], RBE2 [platen], BLSEG and BCONP [[contact]]")
+    return REJECTED
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="tools/deck", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.toml")
+    parser.add_argument("-o", dest="deck", type=pathlib.Path, metavar="NAME.dat")
+    try:
+        options = parser.parse_args(arguments)
+    except SystemExit as ended:
+        return UNUSABLE if ended.code else 0
+    faults = Faults(options.scene.name)
+    path = options.deck or options.scene.with_suffix(".dat")
+    try:
+        if not path.suffix or not path.name.isascii() or set("'\"") & set(path.name):
+            raise Unusable(f"{path}: the name of a deck ends in .dat, say, and has no quotes; the deck includes a file of like name")
+        maker = make(options.scene, path, faults)
+    except Rejected:
+        print("\n".join(faults.notes + faults.errors), file=sys.stderr)
+        print(f"{faults.file}: {len(faults.errors)} error{'s' * (len(faults.errors) != 1)}, no deck written", file=sys.stderr)
+        return REJECTED
+    except Unusable as error:
+        print(f"tools/deck: {error}", file=sys.stderr)
+        return UNUSABLE
+    except Exception as error:   # a user is not shown the inside of this program
+        print(f"tools/deck: a fault of its own, {type(error).__name__}: {error}; please report it with the scene", file=sys.stderr)
+        return UNUSABLE
+    print("\n".join(faults.notes + [f"{path}: {maker.told()}"]), flush=True)
+    return check(path, maker)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,236 @@
+"""The cards of a scene on its mesh."""
+from .cards import card
+from .faults import listed, spot
+from .lines import shares
+from .match import Groups, check_bodies
+
+AXES = {"1": "x", "2": "y"}
+ELEMENTS = {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6"}
+RINGS = {3: "CTRAX3", 6: "CTRAX6"}
+
+
+class Maker:
+    """Checks a scene against its mesh, and makes the lines of the deck and of the mesh file that it includes."""
+
+    def __init__(self, scene, mesh, faults):
+        self.scene, self.mesh, self.faults = scene, mesh, faults
+        check_bodies(scene, mesh, faults)
+        self.groups = Groups(mesh, faults)
+        self.contacts = self.find_contacts()
+        self.held = self.find_held()
+        self.platens = self.find_platens()
+        self.free = self.find_free()
+        self.pressures, self.forces = self.find_loads()
+        self.groups.note_unused()
+        faults.end_stage()
+        self.number = self.numbers()
+        self.first = {}   # number of the first element of each body
+        for name, elements in mesh.bodies.items():
+            self.first[name] = 1 + sum(len(mesh.bodies[other]) for other in self.first)
+        self.elements = sum(map(len, mesh.bodies.values()))
+
+    def find_contacts(self):
+        """(slave, master) of each contact, their nodes in order."""
+        found = []
+        for k, (slave, master) in enumerate(self.scene.contacts, 1):
+            where = f"[[contact]] {k}" if len(self.scene.contacts) > 1 else "[[contact]]"
+            lines = self.groups.chain(f"{where} slave", slave), self.groups.chain(f"{where} master", master)
+            common = set(lines[0][1:-1]) & set(lines[1]) | set(lines[1][1:-1]) & set(lines[0])
+            if common:
+                self.faults.add(where, f"'{slave}' and '{master}' have {len(common)} nodes in common, the first at "
+                                f"{spot(self.mesh.place[min(common)])}", "points and curves of their own for each body: no Coherence, no "
+                                f"BooleanFragments, and Geometry.AutoCoherence = 0 in {self.mesh.file}")
+            found.append(lines)
+        return found
+
+    def find_held(self):
+        """{node: {direction: (value, table)}}; on the axis of rings direction 1 is held."""
+        held = {}
+        for name, values in self.scene.supports.items():
+            where = f"[support.{name}]"
+            for node in self.groups.find(where, name):
+                for digit, value in values.items():
+                    other, table = held.setdefault(node, {}).setdefault(digit, (value, where))
+                    if other != value:
+                        self.faults.add(where, f"{AXES[digit]} = {value:g} at {spot(self.mesh.place[node])}, where {table} says {other:g}",
+                                        "one displacement for a node")
+                        return held
+        for node, place in self.mesh.place.items():
+            if self.scene.rings and place[0] == 0.0:
+                held.setdefault(node, {}).setdefault("1", (0.0, "the axis of the rings"))
+        return held
+
+    def find_platens(self):
+        """{line: (directions, nodes)}; the first node leads."""
+        found, tied = {}, {}
+        for name, digits in self.scene.platens.items():
+            where = f"[platen] {name}"
+            nodes = self.groups.find(where, name, points_too=False)
+            for node in nodes:
+                for digit in digits:
+                    table = self.held.get(node, {}).get(digit, (0.0, tied.get((node, digit))))[1]
+                    if table:
+                        self.faults.add(where, f"its node at {spot(self.mesh.place[node])} is held or tied in {AXES[digit]} by {table}, too",
+                                        "each direction of a node in one of them only")
+                        return found
+                    tied[node, digit] = where
+            found[name] = (digits, nodes)
+        return found
+
+    def leader(self, node, digit):
+        """The node whose motion this one's is."""
+        return next((nodes[0] for digits, nodes in self.platens.values() if digit in digits and node in nodes), node)
+
+    def find_free(self):
+        """(node, direction) of each SUPORT freedom."""
+        found = []
+        for name, digits in self.scene.free.items():
+            where = f"[free] {name}"
+            nodes = self.groups.find(where, name)
+            for digit in digits if nodes else "":
+                leaders = dict.fromkeys(self.leader(node, digit) for node in nodes)
+                table = self.held.get(nodes[0], {}).get(digit, (0.0, ""))[1]
+                if len(leaders) > 1:
+                    self.faults.add(where, f"its {len(nodes)} nodes need not move alike in {AXES[digit]}, and a free motion is that of one",
+                                    f'a point in {self.mesh.file}, or a platen: [platen] {name} = "{AXES[digit]}"')
+                elif table:
+                    self.faults.add(where, f"is held in {AXES[digit]} by {table}", "a direction in which nothing holds the body")
+                else:
+                    found.append((*leaders, digit))
+        return found
+
+    def find_loads(self):
+        """(body, element, a, b, pressure) of each side pressed; {node: [x, y]} of forces."""
+        pressures, forces = [], {}
+        for name, load in self.scene.loads.items():
+            where = f"[load.{name}]"
+            if "pressure" in load:
+                pressures += [(body, k, side[0], side[1], load["pressure"]) for side, body, k in self.groups.boundary(f"{where} pressure", name)]
+            if "force" in load:
+                nodes = self.groups.find(f"{where} force", name)
+                parts = dict.fromkeys(nodes, 1.0 / max(len(nodes), 1))
+                if nodes and name in self.mesh.lines:
+                    parts = shares(self.mesh.lines[name], self.mesh.place, self.scene.rings)
+                if parts is None:
+                    self.faults.add(f"{where} force", "lies on the axis, where a ring has no area", "a point on the axis")
+                for node, part in (parts or {}).items():
+                    for c, digit in enumerate("12"):
+                        if load["force"][c] == 0.0:
+                            continue
+                        forces.setdefault(self.leader(node, digit), [0.0, 0.0])[c] += part * load["force"][c]
+        return pressures, forces
+
+    def numbers(self):
+        """Numbers of the nodes: along the lines in contact first, so that they rise there (pyNastran sorts a BLSEG's nodes)."""
+        found = {}
+        for line in [line for pair in self.contacts for line in pair]:
+            for node in line[::-1] if line[-1] in found and line[0] not in found else line:
+                found.setdefault(node, len(found) + 1)
+        for node in sorted(self.mesh.place):
+            found.setdefault(node, len(found) + 1)
+        return found
+
+    def mesh_lines(self):
+        """GRID and elements."""
+        lines = [f"$ mesh of {self.mesh.file}: the deck includes this file"]
+        for node, number in sorted(self.number.items(), key=lambda item: item[1]):
+            lines += card("GRID", number, None, *self.mesh.place[node][:2], 0.0)
+        for section, (name, elements) in enumerate(self.mesh.bodies.items(), 1):
+            lines.append(f"$ {name}")
+            for k, (corners, nodes) in enumerate(elements):
+                if self.scene.rings and len(nodes) == 6:   # CTRAX6 goes round its sides
+                    nodes = [nodes[i] for i in (0, 3, 1, 4, 2, 5)]
+                kind = (RINGS if self.scene.rings else ELEMENTS)[len(nodes)]
+                lines += card(kind, self.first[name] + k, section, *(self.number[node] for node in nodes))
+        return lines + ["ENDDATA"]
+
+    def deck_lines(self, made, mesh_file):
+        """Everything else; `made` says what of."""
+        scene = self.scene
+        lines = [f"$ {made}", "SOL 106", "CEND", f"TITLE = {scene.title}"]
+        lines += ["SPC = 1"] if any(self.held.values()) else []
+        lines += ["LOAD = 1"] if self.pressures or self.forces else []
+        lines += ["BEGIN BULK"] + ([] if scene.rings else card("PARAM", "PLANE", scene.kind.split()[1].upper()))
+        lines += card("PARAM", "UNITS", scene.units.upper()) if scene.units else []
+        for name, value in scene.parameters.items():
+            lines += card("PARAM", name, value.upper() if isinstance(value, str) else value)
+        lines += self.sections() + self.supports() + self.loads() + self.touching()
+        return lines + [f"INCLUDE '{mesh_file}'", "ENDDATA"]
+
+    def sections(self):
+        lines = []
+        used = dict.fromkeys(self.scene.bodies[name][0] for name in self.mesh.bodies)
+        for number, name in enumerate(self.mesh.bodies, 1):
+            material, thickness = self.scene.bodies[name]
+            which = list(used).index(material) + 1
+            lines += [f"$ body {name}"]
+            lines += card("PSOLID", number, which) if self.scene.rings else card("PSHELL", number, which, thickness)
+        for number, name in enumerate(used, 1):
+            material = self.scene.materials[name]
+            lines += [f"$ material {name}"] + card("MAT1", number, material.young, None, material.poisson)
+            if material.curve:
+                points = [0.0, 0.0] + [value for point in material.curve for value in point]
+                lines += card("MATS1", number, number, "PLASTIC", None, 1, 1, material.stress)
+                lines += card("TABLES1", number, *[None] * 7, *points, "ENDT")
+            elif material.stress:
+                lines += card("MATS1", number, None, "PLASTIC", material.hardening, 1, 1, material.stress)
+        return lines
+
+    def supports(self):
+        """SPC1 where nothing moves, SPC where it is prescribed; one remark for each table."""
+        lines, sets = [], {}
+        for node, own in self.held.items():
+            for table in dict.fromkeys(table for _, table in own.values()):
+                still = "".join(sorted(digit for digit, (value, t) in own.items() if t == table and value == 0.0))
+                moved = tuple((digit, value) for digit, (value, t) in sorted(own.items()) if t == table and value != 0.0)
+                sets.setdefault((table, still, moved), []).append(self.number[node])
+        for (table, still, moved), nodes in sorted(sets.items()):
+            lines.append(f"$ {table}")
+            for i in range(0, len(nodes) if still else 0, 6):
+                lines += card("SPC1", 1, still, *sorted(nodes)[i:i + 6])
+            for digit, value in moved:
+                for node in sorted(nodes):
+                    lines += card("SPC", 1, node, digit, value)
+        for k, (name, (digits, nodes)) in enumerate(self.platens.items(), 1):
+            lead, *others = (self.number[node] for node in nodes)
+            lines += [f"$ [platen] {name}"] + card("RBE2", self.elements + k, lead, digits, *others)
+        for node, digit in self.free:
+            lines += ["$ [free]"] + card("SUPORT", self.number[node], digit)
+        return lines
+
+    def loads(self):
+        lines = ["$ [load]"] if self.pressures or self.forces else []
+        for body, k, a, b, value in self.pressures:
+            lines += card("PLOADX1", 1, self.first[body] + k, value, value, self.number[a], self.number[b])
+        for node, (x, y) in sorted(self.forces.items(), key=lambda item: self.number[item[0]]):
+            lines += card("FORCE", 1, self.number[node], 0, 1.0, x, y, 0.0)
+        return lines
+
+    def touching(self):
+        lines, number = [], {}
+        for (slave, master), (slave_nodes, master_nodes) in zip(self.scene.contacts, self.contacts):
+            for name, nodes in ((slave, slave_nodes), (master, master_nodes)):
+                if name not in number:
+                    number[name] = len(number) + 1
+                    nodes = [self.number[node] for node in nodes]
+                    rising = nodes[::-1] if nodes[0] > nodes[-1] else nodes
+                    lines += [f"$ line {name}"] + card("BLSEG", number[name], *rising)
+        for k, (slave, master) in enumerate(self.scene.contacts, 1):
+            lines += [f"$ {slave} on {master}"] + card("BCONP", k, number[slave], number[master])
+        return lines
+
+    def told(self):
+        """What has been made, in a line."""
+        kinds = {}
+        for elements in self.mesh.bodies.values():
+            for _, nodes in elements:
+                kind = (RINGS if self.scene.rings else ELEMENTS)[len(nodes)]
+                kinds[kind] = kinds.get(kind, 0) + 1
+        return f"{len(self.number)} nodes, " + ", ".join(f"{count} {kind}" for kind, count in kinds.items()) + \
+            f"; bodies: {listed(self.mesh.bodies)}"
+
+    def described(self, number):
+        """Where the node of a GRID is."""
+        node = next(node for node, other in self.number.items() if other == number)
+        bodies = [name for name, elements in self.mesh.bodies.items() if any(node in nodes for _, nodes in elements)]
+        return f"GRID {number} is at {spot(self.mesh.place[node])}, on {listed(bodies)}"

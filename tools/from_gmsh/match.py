@@ -1,0 +1,122 @@
+"""The scene's names against the mesh's groups: nodes of what is held, loaded and touched, or what is wrong with them."""
+import math
+
+from .faults import likely, listed, spot
+from .lines import chains, nodes_of
+from .mesh import describe
+
+NEGLIGIBLE = 1e-9    # of the size of all: a distance that is none
+
+
+def check_bodies(scene, mesh, faults):
+    """Surfaces and tables, one each; elements that epcont has, in the plane."""
+    for name in scene.bodies:
+        if name not in mesh.bodies:
+            faults.add(f"[body.{name}]", f"{mesh.file} has no Physical Surface of that name",
+                       f"its surfaces: {listed(mesh.bodies)}{likely(name, mesh.bodies)}")
+    for name, elements in mesh.bodies.items():
+        if name not in scene.bodies:
+            faults.add("[body]", f"the surface '{name}' of {mesh.file} has no table", f'[body.{name}] and below it material = "..."')
+        elif not elements:
+            faults.add(f"[body.{name}]", f"the surface has no elements in {mesh.file}", "a surface that is meshed")
+        elif scene.rings and any(corners == 4 for corners, _ in elements):
+            faults.add(f"[body.{name}]", "rings have no quadrilaterals", f"no Recombine Surface in {mesh.file}, or another kind")
+    faults.end_stage()
+    flatten(scene, mesh, faults)
+
+
+def flatten(scene, mesh, faults):
+    """Nodes of bodies alone, with coordinates of twelve digits of the size of all: Gmsh leaves as many, and 22.5049999999934 for 22.505."""
+    used = [node for elements in mesh.bodies.values() for _, nodes in elements for node in nodes]
+    places = [mesh.place[node] for node in used]
+    size = max(max(place[c] for place in places) - min(place[c] for place in places) for c in (0, 1, 2))
+    digits = 12 - math.ceil(math.log10(size or 1.0))
+    mesh.place = {node: tuple(round(v, digits) + 0.0 for v in mesh.place[node]) for node in dict.fromkeys(used)}
+    for name, elements in mesh.bodies.items():
+        nodes = list(dict.fromkeys(node for _, own in elements for node in own))
+        outside = [node for node in nodes if abs(mesh.place[node][2]) > NEGLIGIBLE * size]
+        if outside:
+            faults.add(f"[body.{name}]", f"{len(outside)} of its nodes are not in the plane z = 0, the first at {mesh.place[outside[0]]}",
+                       f"a surface in x and y in {mesh.file}")
+        beyond = [node for node in nodes if scene.rings and mesh.place[node][0] < -NEGLIGIBLE * size]
+        if beyond:
+            farthest = min(mesh.place[node] for node in beyond)
+            faults.add(f"[body.{name}]", f"{len(beyond)} of its nodes lie at negative radius, the farthest at {spot(farthest)}",
+                       "in a ring x is the radius, from 0 on, and y the axis")
+    faults.end_stage()
+
+
+class Groups:
+    """Named lines and points; each is asked for by the key of the scene that names it."""
+
+    def __init__(self, mesh, faults):
+        self.mesh, self.faults, self.used, self.sides = mesh, faults, set(), mesh.sides()
+
+    def find(self, where, name, points_too=True):
+        """Nodes of a line or a point, all of them on bodies; empty with a fault."""
+        mesh = self.mesh
+        self.used.add(name)
+        if name in mesh.lines and name in mesh.points and points_too:
+            self.faults.add(where, f"{mesh.file} has both a line and a point '{name}'", "names of their own")
+            return []
+        if name in mesh.lines:
+            nodes = nodes_of(mesh.lines[name])
+        elif name in mesh.points and points_too:
+            nodes = mesh.points[name]
+        else:
+            self.unknown(where, name, points_too)
+            return []
+        strange = [node for node in nodes if node not in mesh.place]
+        if strange or not nodes:
+            what = f"{len(strange)} of the {len(nodes)} nodes of '{name}' are on no body" if nodes else f"'{name}' has no nodes"
+            self.faults.add(where, what, f"the boundary of a named surface; points within one by Point{{..}} In Surface{{..}} in {mesh.file}")
+            return []
+        return nodes
+
+    def unknown(self, where, name, points_too):
+        mesh = self.mesh
+        names = list(mesh.lines) + (list(mesh.points) if points_too else [])
+        if name in mesh.bodies:
+            what = f"'{name}' is a surface of {mesh.file}"
+        elif name in mesh.points:
+            what = f"'{name}' is a point of {mesh.file}"
+        else:
+            what = f"{mesh.file} has no {'line or point' if points_too else 'line'} '{name}'"
+        points = f"; its points: {listed(mesh.points)}" if points_too else ""
+        self.faults.add(where, what, f"its lines: {listed(mesh.lines)}{points}{likely(name, names)}")
+
+    def boundary(self, where, name):
+        """(side, body, element) of each side of a line along a boundary; empty with a fault."""
+        if not self.find(where, name, points_too=False):
+            return []
+        found = []
+        for side in self.mesh.lines[name]:
+            owners = self.sides.get(frozenset(side[:2]), [])
+            if len(owners) != 1:
+                what = "between two elements" if owners else "of no element"
+                bodies = f" ({listed(sorted({body for body, _ in owners}))})" if owners else ""
+                self.faults.add(where, f"'{name}' has a side {what}{bodies}, at {describe(self.mesh, side[:2])}",
+                                "a line along the outside; bodies in contact need curves and points of their own each, not common ones")
+                return []
+            found.append((side, *owners[0]))
+        return found
+
+    def chain(self, where, name):
+        """Nodes of a line in one piece, in their order; empty with a fault."""
+        if not self.boundary(where, name):
+            return []
+        pieces = chains(self.mesh.lines[name])
+        if pieces is not None and len(pieces) == 1:
+            return pieces[0]
+        if pieces is None:
+            self.faults.add(where, f"'{name}' branches", "a line from end to end")
+        else:
+            ends = "; ".join(f"{spot(self.mesh.place[piece[0]])} to {spot(self.mesh.place[piece[-1]])}" for piece in pieces[:4])
+            self.faults.add(where, f"'{name}' is in {len(pieces)} pieces: {ends}", "one piece a line: a Physical Curve and a [[contact]] for each")
+        return []
+
+    def note_unused(self):
+        for names, kind in ((self.mesh.lines, "line"), (self.mesh.points, "point")):
+            for name in names:
+                if name not in self.used:
+                    self.faults.note("mesh", f"the {kind} '{name}' of {self.mesh.file} is used by nothing")

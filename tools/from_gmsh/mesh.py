@@ -1,0 +1,150 @@
+"""What Gmsh has: nodes, elements of the named surfaces, sides of the named lines, named points."""
+import re
+from dataclasses import dataclass, field
+
+import gmsh
+
+from .faults import Faults, listed, spot
+
+#: Corners and nodes of the elements of Gmsh that have a card, by its number of their kind.
+SURFACES = {2: (3, 3), 3: (4, 4), 9: (3, 6)}
+LINES = {1: 2, 8: 3}
+NAMES = {4: "second-order quadrilaterals", 10: "second-order quadrilaterals", 16: "second-order quadrilaterals"}
+POINT, LINE, SURFACE = 0, 1, 2
+KIND = {POINT: "Physical Point", LINE: "Physical Curve", SURFACE: "Physical Surface"}
+
+
+@dataclass
+class Mesh:
+    file: str = ""
+    place: dict = field(default_factory=dict)      # node: (x, y, z)
+    bodies: dict = field(default_factory=dict)     # surface: elements, each (corners, nodes), counterclockwise
+    lines: dict = field(default_factory=dict)      # line: sides, each (start, end) or (start, end, middle)
+    points: dict = field(default_factory=dict)     # point: nodes
+
+    def sides(self):
+        """The bodies' elements at each pair of corners that a side joins: (body, number in the body)."""
+        found = {}
+        for name, elements in self.bodies.items():
+            for k, (corners, nodes) in enumerate(elements):
+                for i in range(corners):
+                    found.setdefault(frozenset((nodes[i], nodes[(i + 1) % corners])), []).append((name, k))
+        return found
+
+
+def read_mesh(path, faults: Faults):
+    """The mesh of a .msh, or of a .geo once it is meshed."""
+    if path.suffix.lower() not in (".geo", ".msh"):
+        faults.add("mesh", f"{path.name} is neither .geo nor .msh", "a script or a mesh of Gmsh")
+    elif not path.is_file():
+        beside = sorted(p.name for p in path.parent.glob("*") if p.suffix in (".geo", ".msh"))
+        faults.add("mesh", f"there is no file {path.name} beside the scene", f"one of: {listed(beside)}")
+    faults.end_stage()
+    gmsh.initialize(["gmsh"], readConfigFiles=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.logger.start()
+        open_file(path, faults)
+        return collect(path, faults)
+    finally:
+        gmsh.finalize()
+
+
+def open_file(path, faults):
+    failed = ""
+    try:
+        gmsh.open(str(path))
+        if path.suffix.lower() == ".geo" and len(gmsh.model.mesh.getElements(SURFACE)[0]) == 0:
+            gmsh.model.mesh.generate(2)
+    except Exception as error:   # Gmsh raises nothing more special
+        failed = str(error)
+    told = [line for line in gmsh.logger.get() if line.startswith("Error")] or ([failed] if failed else [])
+    for line in told[:3]:   # one mistake makes Gmsh stumble again and again
+        match = re.fullmatch(r"(?:Error\s*: )?(?:'.*?', line (\d+): )?(.*)", line, re.DOTALL)
+        faults.add("mesh", f"{path.name}{f', line {match[1]}' if match[1] else ''}: Gmsh says: {match[2]}",
+                   "a file that Gmsh itself opens and meshes without an error")
+    faults.end_stage()
+
+
+def collect(path, faults):
+    mesh = Mesh(path.name)
+    tags, values, _ = gmsh.model.mesh.getNodes()
+    mesh.place = {int(tag): tuple(float(v) for v in values[3 * i:3 * i + 3]) for i, tag in enumerate(tags)}
+    check_groups(mesh, faults)
+    owner = {}
+    for name, entities in groups(SURFACE):
+        mesh.bodies[name] = [element for entity in entities for element in surface(entity, mesh, name, faults)]
+        for entity in entities:
+            if owner.setdefault(entity, name) != name:
+                faults.add("mesh", f"surface {entity} of {path.name} is in two groups: {owner[entity]}, {name}", "in one of them only")
+    for name, entities in groups(LINE):
+        mesh.lines[name] = [side for entity in entities for side in line(entity)]
+    for name, entities in groups(POINT):
+        mesh.points[name] = [int(tag) for entity in entities for tag in gmsh.model.mesh.getNodes(POINT, entity)[0]]
+    faults.end_stage()
+    return mesh
+
+
+def groups(dimension):
+    """(name, entities) of each named group; each entity once, in whatever sense."""
+    found = {}
+    for _, tag in gmsh.model.getPhysicalGroups(dimension):
+        name = gmsh.model.getPhysicalName(dimension, tag)
+        if name:
+            found.setdefault(name, {}).update((abs(int(e)), None) for e in gmsh.model.getEntitiesForPhysicalGroup(dimension, tag))
+    return found.items()
+
+
+def check_groups(mesh, faults):
+    """Surfaces without a group, groups without a name."""
+    grouped = {abs(int(e)) for _, tag in gmsh.model.getPhysicalGroups(SURFACE) for e in gmsh.model.getEntitiesForPhysicalGroup(SURFACE, tag)}
+    for dimension, tag in gmsh.model.getPhysicalGroups():
+        if dimension in KIND and not gmsh.model.getPhysicalName(dimension, tag):
+            said = KIND[dimension]
+            if dimension == SURFACE:
+                faults.add("mesh", f"{said}({tag}) of {mesh.file} has no name", f'{said}("name") = ' + "{...};")
+            else:
+                faults.note("mesh", f"{said}({tag}) of {mesh.file} has no name, and no effect")
+        if dimension == 3:
+            faults.add("mesh", f"{mesh.file} has a Physical Volume", "bodies are surfaces in the plane z = 0")
+    if not grouped:
+        faults.add("mesh", f"{mesh.file} has no Physical Surface, so there are no bodies", 'Physical Surface("name") = {...};')
+    for _, entity in gmsh.model.getEntities(SURFACE):
+        if grouped and entity not in grouped:
+            faults.note("mesh", f"surface {entity} of {mesh.file} is in no Physical Surface and is left out")
+
+
+def surface(entity, mesh, name, faults):
+    """Elements of a surface, counterclockwise."""
+    for kind, tags, nodes in zip(*gmsh.model.mesh.getElements(SURFACE, entity)):
+        if int(kind) not in SURFACES:
+            said = NAMES.get(int(kind)) or gmsh.model.mesh.getElementProperties(int(kind))[0]
+            faults.add(f"[body.{name}]", f"{len(tags)} of its elements in {mesh.file} are {said}, which epcont has no card for",
+                       "triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1)")
+            continue
+        corners, count = SURFACES[int(kind)]
+        for i in range(len(tags)):
+            own = [int(node) for node in nodes[count * i:count * (i + 1)]]
+            yield corners, turned(own, corners, mesh.place)
+
+
+def turned(nodes, corners, place):
+    """The nodes counterclockwise, from the same first corner: corners, then the nodes between them."""
+    x = [place[node] for node in nodes[:corners]]
+    area = sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(x, x[1:] + x[:1]))
+    if area >= 0.0:
+        return nodes
+    return nodes[:1] + nodes[1:corners][::-1] + nodes[corners:][::-1]
+
+
+def line(entity):
+    """Sides of a curve; such as have more than three nodes belong to surfaces that are refused."""
+    for kind, tags, nodes in zip(*gmsh.model.mesh.getElements(LINE, entity)):
+        count = LINES.get(int(kind), 0)
+        for i in range(len(tags) if count else 0):
+            yield tuple(int(node) for node in nodes[count * i:count * (i + 1)])
+
+
+def describe(mesh, nodes):
+    """Where nodes are, the first few of them."""
+    return ", ".join(spot(mesh.place[node]) for node in nodes[:3]) + (", ..." if len(nodes) > 3 else "")
