@@ -17,7 +17,7 @@ module epcont_accuracy_zone_error
   !! from the smooth stress, of the smaller of the two, and of h/b. Smooth stresses of linear elements may be off by more than
   !! the pressure: of three nodes they count where the parabola says as much, of four they do not.
   real(wp), parameter :: of_parabola(3) = [0.0_wp, 4.0_wp, 0.2_wp], of_stress(3) = [0.0_wp, 0.0_wp, 1.0_wp]
-  real(wp), parameter :: of_smaller(3) = [2.2_wp, 0.0_wp, 0.0_wp], of_spacing(3) = [0.11_wp, 0.018_wp, 0.016_wp]
+  real(wp), parameter :: of_smaller(3) = [2.0_wp, 0.0_wp, 0.0_wp], of_spacing(3) = [0.12_wp, 0.018_wp, 0.016_wp]
   !> Part of a spacing that the end of a zone is uncertain by, for the same; and at most.
   real(wp), parameter :: of_end(3) = [0.25_wp, 0.25_wp, 0.18_wp], end_most = 0.5_wp
   !> Pressures that differ by less than this part are the same all over the zone.
