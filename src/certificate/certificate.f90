@@ -31,6 +31,7 @@ module epcont_certificate_certificate
     real(wp) :: equilibrium = 0.0_wp      !! largest unbalanced nodal force / largest sum of element forces at a node
     real(wp) :: smallest_force = 0.0_wp   !! [force]
     real(wp) :: smallest_gap = 0.0_wp     !! [length]
+    real(wp) :: overlap = 0.0_wp          !! largest by which a gap is below zero and its rounding [length]
     real(wp) :: force_gap = 0.0_wp        !! largest |R gap| [force*length]
     real(wp) :: off_curve = 0.0_wp        !! largest difference of a stress from its curve / largest stress
     real(wp) :: motion_strain = 0.0_wp    !! largest strain of the rigid motions / its rounding
@@ -94,7 +95,7 @@ contains
     certificate%balanced = .not. vanishes .and. certificate%motion_strain <= most_roundings &
                            .and. certificate%equilibrium <= tolerance .and. certificate%energy <= tolerance &
                            .and. certificate%smallest_force >= -tolerance*certificate%force_scale &
-                           .and. certificate%smallest_gap >= -exact &
+                           .and. certificate%overlap <= exact &
                            .and. certificate%force_gap <= exact*certificate%force_scale &
                            .and. certificate%gap_rounding <= largest_rounding*certificate%length_scale
     certificate%curve_tolerance = max(tolerance, curve_tolerance)
@@ -180,7 +181,7 @@ contains
     real(wp), intent(in) :: displacement(:, :), force(:)
     real(wp), intent(inout) :: residual(:, :)
     type(certificate_type), intent(inout) :: certificate
-    real(wp) :: gap, apart(2), travel
+    real(wp) :: gap, apart(2), rounding, travel
     integer :: i, k
 
     if (model%pairs == 0) return
@@ -198,10 +199,11 @@ contains
         end associate
       end do
       gap = model%initial_gap(k) + sum(model%normal(:, k)*apart)
+      rounding = roundings*epsilon(1.0_wp)*max(abs(model%initial_gap(k)), travel)
       certificate%smallest_gap = min(certificate%smallest_gap, gap)
+      certificate%overlap = max(certificate%overlap, -gap - rounding)
       certificate%force_gap = max(certificate%force_gap, abs(gap*force(k)))
-      if (force(k) > 0.0_wp) certificate%gap_rounding = &
-        max(certificate%gap_rounding, roundings*epsilon(1.0_wp)*max(abs(model%initial_gap(k)), travel))
+      if (force(k) > 0.0_wp) certificate%gap_rounding = max(certificate%gap_rounding, rounding)
     end do
   end subroutine check_pairs
 

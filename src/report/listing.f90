@@ -277,7 +277,7 @@ contains
     call figure(file, 'most negative force, of the largest', &
                 right(rounding_number(max(0.0_wp, -certificate%smallest_force)/certificate%force_scale), 13))
     call figure(file, 'most negative gap, of the largest length', &
-                right(rounding_number(max(0.0_wp, -certificate%smallest_gap)/certificate%length_scale), 13))
+                right(rounding_number(certificate%overlap/certificate%length_scale), 13))
     call figure(file, 'largest force times gap', &
                 right(rounding_number(certificate%force_gap/certificate%force_scale/certificate%length_scale), 13))
     call figure(file, 'stress off the curve', right(rounding_number(certificate%off_curve), 13))

@@ -102,7 +102,7 @@ contains
 
     exact = certificate%tolerance*certificate%length_scale + certificate%gap_rounding
     figure = [certificate%equilibrium, certificate%off_curve, certificate%energy, &
-              -certificate%smallest_force/certificate%force_scale, -certificate%smallest_gap, &
+              -certificate%smallest_force/certificate%force_scale, certificate%overlap, &
               certificate%force_gap/certificate%force_scale, certificate%gap_rounding/certificate%length_scale, &
               certificate%motion_strain]
     associate (tolerance => certificate%tolerance)
