@@ -79,7 +79,7 @@ class Fields(Sweep):
         self.checked()
 
     def test_titles_comments_and_includes(self):
-        for path in (ROOT / "input" / "include").iterdir():
+        for path in (ROOT / "input" / "include").glob("*.*"):
             self.deck(f"sub/{path.name}", path)
         deck = (self.place / "sub" / "patch_case.dat").read_text().replace("mesh.inc", "%part%.inc")
         self.sweep(0, "$ %part%, 99 % of 100 %\n" + deck, "part\nmesh\n", "sub/s.in")
