@@ -41,7 +41,8 @@ module epcont_certificate_certificate
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
     real(wp) :: gap_rounding = 0.0_wp     !! rounding of the gaps of pressed pairs, from their travel [length]
     real(wp) :: tolerance = exact_tolerance  !! largest value of each relative figure but the next of a valid answer
-    real(wp) :: curve_tolerance = exact_tolerance  !! largest `off_curve` of a valid answer: what the iteration was asked for
+    real(wp) :: curve_tolerance = exact_tolerance  !! largest `off_curve` that the iteration was asked for
+    real(wp) :: off_curve_limit = exact_tolerance  !! the same of a valid answer: rounding of displacements may add as much again
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
     logical :: valid = .false.            !! that one too
   end type certificate_type
@@ -99,7 +100,8 @@ contains
                            .and. certificate%force_gap <= exact*certificate%force_scale &
                            .and. certificate%gap_rounding <= largest_rounding*certificate%length_scale
     certificate%curve_tolerance = max(tolerance, curve_tolerance)
-    certificate%valid = certificate%balanced .and. certificate%off_curve <= certificate%curve_tolerance
+    certificate%off_curve_limit = certificate%curve_tolerance + min(certificate%lost_stress, certificate%curve_tolerance)
+    certificate%valid = certificate%balanced .and. certificate%off_curve <= certificate%off_curve_limit
   end subroutine certify
 
   !> a/b, 0 where both are 0; finite.

@@ -106,7 +106,7 @@ contains
               certificate%force_gap/certificate%force_scale, certificate%gap_rounding/certificate%length_scale, &
               certificate%motion_strain]
     associate (tolerance => certificate%tolerance)
-      largest = [tolerance, certificate%curve_tolerance, tolerance, tolerance, exact, exact, largest_rounding, most_roundings]
+      largest = [tolerance, certificate%off_curve_limit, tolerance, tolerance, exact, exact, largest_rounding, most_roundings]
     end associate
     worst = maxloc(figure/largest, dim=1)
     text = ''

@@ -20,7 +20,7 @@ import cases
 
 #: Least part of the figures that estimates must cover: of all, and of each kind.
 COVERED, COVERED_OF_KIND = 0.92, 0.90
-#: Least part of each kind within a factor of 3, in the set that chose nothing. Scenes whose meshes have a node where contact truly ends
+#: Least part of each kind within a factor of 3, in the set that gave no weight its value. Scenes whose meshes have a node where contact truly ends
 #: have errors of the half-width next to nothing, which no estimate is near.
 NEAR = {"p": 0.51, "b": 0.38, "q": 0.70, "all": 0.52}
 #: Errors below this part of a figure are as good as none: an estimate need not be within a factor of 3 of them.

@@ -1,6 +1,6 @@
 """epcont's time, memory and errors beside those of other programs, on this machine.
 
-    tools/bench --quick     up to 11 000 nodes, 3 turns: about ten minutes
+    tools/bench --quick     3 turns, beyond yield up to 11 000 nodes: about half an hour
     tools/bench             up to 42 000 nodes, 5 turns: about an hour, most of it CalculiX's
     tools/bench --part 2    one part only; --quick --part 4: half a minute
 
@@ -45,8 +45,9 @@ def output(*command, **more):
     return subprocess.run([str(word) for word in command], env=ONE_THREAD, capture_output=True, text=True, check=True, **more).stdout
 
 
-def part1(place, sizes, turns):
-    return [row for n in sizes for plastic in (False, True) for row in cylinders.one(TOP, place / f"{n}{plastic}", n, plastic, turns, say)]
+def part1(place, sizes, turns, largest_plastic):
+    kinds = [(n, plastic) for n in sizes for plastic in (False, True) if not plastic or n <= largest_plastic]
+    return [row for n, plastic in kinds for row in cylinders.one(TOP, place / f"{n}{plastic}", n, plastic, turns, say)]
 
 
 def part2(place, sizes, turns, limit):
@@ -110,12 +111,12 @@ def main():
     parser.add_argument("--nodes", type=int, nargs="+", help="of parts 1, 3 and 4")
     options = parser.parse_args()
     turns = options.turns or (3 if options.quick else 5)
-    sizes = options.nodes or (NODES[:-1] if options.quick else NODES)
+    sizes = options.nodes or NODES
     command = shlex.join(["tools/bench", *sys.argv[1:]])
     with tempfile.TemporaryDirectory() as directory:
         place = pathlib.Path(directory)
         solved, growing = (options.nodes or (all_sizes[:-1] if options.quick else all_sizes) for all_sizes in (SOLVED, GROWING))
-        does = {1: lambda: part1(place, sizes, turns), 3: lambda: part3(place, sizes, growing, turns), 4: lambda: part4(place, solved, turns),
+        does = {1: lambda: part1(place, sizes, turns, sizes[-1] if not options.quick else NODES[-2]), 3: lambda: part3(place, sizes, growing, turns), 4: lambda: part4(place, solved, turns),
                 2: lambda: part2(place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 20)}
         for part in (options.part,) if options.part else (4, 3, 1, 2):
             load = f"load {os.getloadavg()[0]:.1f} at the start"
