@@ -161,7 +161,7 @@ def fault_of_certificate(run, name, tolerance):
     for key in RELATIVE:
         if not number(summary.get(key)) <= tolerance:
             return f"valid with {key} = {summary.get(key)}"
-    if not number(summary.get("stress_off_curve")) <= 2 * max(tolerance, number(summary.get("curve_tolerance"))):
+    if not number(summary.get("stress_off_curve")) <= max(tolerance, number(summary.get("stress_off_curve_limit"))):
         return f"valid with stress_off_curve = {summary.get('stress_off_curve')}"
     rows = rows_of(run, name, "contact")
     if rows:
