@@ -37,7 +37,7 @@ INSTEAD = [
     (r"tools/paraview .*", "sh -n tools/paraview && python3 -m py_compile tools/paraviews.py", "wants ParaView"),
     (r"tools/plot --all", "tools/plot --help", "minutes"),
     (r"tools/tradeoff .*", "build/venv/bin/python tools/tradeoffs.py --help", "minutes; installs GNU time"),
-    (r"(python tests/independent/compare.py \S+) input/.*", r"\1 input/hertz/hertz44.dat tests/independent/cases/gmsh_large.bdf", "minutes"),
+    (r"(python tests/independent/compare.py \S+) input/.*", r"\1 input/hertz/hertz44.dat tests/independent/cases/*_size8.dat", "minutes"),
     (r"(python tests/independent/write_random.py .*)-n 60", r"\1-n 6", "half a minute"),
 ]
 # Words of the text that stand for something of the reader's.
@@ -137,7 +137,7 @@ def as_run(command):
 
 
 def chosen(block, group):
-    """What of a block a group runs: `plain` the commands that need no venv, nor a file from one that does; `drawing` all, if any needs it."""
+    """What of a block a group runs: `plain` commands that need no venv, nor a file from one that does; `drawing` all, if any does."""
     plain, made = [], []
     for command in block:
         if FOR_DRAWING.search(as_run(command)[0] or "") or any(name in command.text for name in made):
@@ -189,10 +189,11 @@ def workplace(folder):
 
 
 def run(text, place):
-    paths = [str(place / "build/release"), str(place / "build/venv/bin"), os.environ["PATH"]]
-    environment = {**os.environ, "PATH": ":".join(paths), "PYTHONDONTWRITEBYTECODE": "1"}
+    if text.startswith("python "):   # the line that enters it stands above, for all blocks of a page
+        text = ". tools/venv && " + text
+    environment = {**os.environ, "PATH": f"{place / 'build/release'}:{os.environ['PATH']}", "PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run(["bash", "-c", text], cwd=place, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, errors="replace", check=False, timeout=600)
+                          stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
 
 
 def status_of_fault(text, place):
@@ -235,7 +236,8 @@ def try_block(block, place, told):
         if text:
             done = run(text, place)
             found = list(faults(command, text, done, place))
-        told(f"{command.place}: {command.text}" + (f"  [{why}; instead: {text or 'nothing'}]" if why else "") + f"  {time.monotonic() - begun:.1f} s")
+        instead = f"  [{why}; instead: {text or 'nothing'}]" if why else ""
+        told(f"{command.place}: {command.text}{instead}  {time.monotonic() - begun:.1f} s")
         for fault in found:
             told(f"    {fault}")
         if found:
@@ -247,20 +249,26 @@ def try_block(block, place, told):
 
 
 def documents():
-    """All pages but the changes, which tell of what was."""
+    """All pages of the repository; nothing that was built or fetched."""
     parts = [part for part in sorted(TOP.iterdir()) if part.is_dir() and part.name not in ("build", ".git")]
-    return [TOP / "README.md"] + [path for part in parts for path in sorted(part.rglob("*.md"))]
+    return sorted(TOP.glob("*.md")) + [path for part in parts for path in sorted(part.rglob("*.md"))]
+
+
+def shown_commands():
+    """The blocks of each page but the changes, which tell of what was."""
+    names = [path.relative_to(TOP).as_posix() for path in documents() if path.name != "CHANGELOG.md"]
+    return [list(blocks(name, (TOP / name).read_text(encoding="utf-8"))) for name in names]
 
 
 def main():
     group, part = sys.argv[1], " ".join(sys.argv[2:])
-    shown = {path.relative_to(TOP).as_posix(): list(blocks(path.relative_to(TOP).as_posix(), path.read_text(encoding="utf-8"))) for path in documents()}
-    texts = [command.text for each in shown.values() for block in each for command in block]
+    pages = shown_commands()
+    texts = [command.text for page in pages for block in page for command in block]
     idle = [pattern for pattern, _, _ in INSTEAD if not any(re.fullmatch(pattern, text) for text in texts)]
     print("".join(f"no document has this any more: {pattern}\n" for pattern in idle), end="")
     wrong, tried = len(idle), 0
-    for each in shown.values():
-        taken = [block for block in (chosen(block, group) for block in each) if any(part in command.text for command in block)]
+    for page in pages:
+        taken = [block for block in (chosen(block, group) for block in page) if any(part in command.text for command in block)]
         if not taken:
             continue
         with tempfile.TemporaryDirectory() as folder:

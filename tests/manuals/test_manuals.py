@@ -40,12 +40,6 @@ def examples():
     return [line[4:] for line in MANUAL.splitlines() if line.startswith("    ")]
 
 
-def documents():
-    """All pages of the repository; nothing that was built or fetched."""
-    parts = [part for part in sorted(TOP.iterdir()) if part.is_dir() and part.name not in ("build", ".git")]
-    return sorted(TOP.glob("*.md")) + [path for part in parts for path in sorted(part.rglob("*.md"))]
-
-
 def links(path):
     return LINK.findall(FENCED.sub("", path.read_text(encoding="utf-8")))
 
@@ -103,7 +97,7 @@ class Manual(unittest.TestCase):
                 self.assertTrue(f"]({deck.parent.name}/pictures/{deck.stem}.png)" in MANUAL, deck)
 
     def test_every_picture_is_shown_somewhere(self):
-        named = {(page.parent / link).resolve() for page in documents() for link in links(page)}
+        named = {(page.parent / link).resolve() for page in run_commands.documents() for link in links(page)}
         for picture in sorted(INPUT.glob("*/pictures/*.png")):
             self.assertIn(picture.resolve(), named)
 
@@ -159,6 +153,11 @@ CONTACT
             ("p:3", 'tools/run a.dat --known "x  y"', "writes a.lst", ["shown below"]), ("p:5", "tools/run b.dat; echo $?", "", []),
             ("p:11", "epcont input/*/hertz44.dat && cat hertz44.lst", "", ["CONTACT"])])
 
+    def test_pages_have_commands(self):
+        taken = {command.place.partition(":")[0] for page in run_commands.shown_commands() for block in page for command in block}
+        for name in ("README.md", "input/README.md", "input/coming_from.md", "input/hertz/README.md", "tests/README.md", "tools/README.md"):
+            self.assertIn(name, taken)
+
     def test_without_packages_what_needs_their_files_is_left_out(self):
         block = [run_commands.Command("p:1", text) for text in ("tools/run a.dat", "tools/deck s.toml -o b.dat", "tools/run b.dat")]
         self.assertEqual(run_commands.chosen(block, "plain"), block[:1])
@@ -182,7 +181,7 @@ CONTACT
 class Links(unittest.TestCase):
     def test_relative_links_resolve(self):
         seen = 0
-        for page in documents():
+        for page in run_commands.documents():
             for link in links(page):
                 address, _, anchor = urllib.parse.unquote(link).partition("#")
                 if "://" in address or address.startswith("mailto:"):
