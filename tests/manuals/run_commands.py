@@ -10,6 +10,7 @@ says), the lines shown below a command, and of the remark beside it the number t
 EPCONT_SOURCE_DIR is the project, EPCONT_PROGRAM the executable.
 """
 import dataclasses
+import filecmp
 import os
 import pathlib
 import re
@@ -226,6 +227,14 @@ def faults(command, text, done, place):
             yield f"writes no {name}"
 
 
+def spoilt(place):
+    """Decks kept in input that a command has changed; they are put back."""
+    for kept in sorted((place / "input").rglob("*.dat")):
+        if not filecmp.cmp(kept, TOP / kept.relative_to(place)):
+            shutil.copy2(TOP / kept.relative_to(place), kept)
+            yield f"writes over {kept.relative_to(place)}"
+
+
 def try_block(block, place, told):
     """Runs the commands of a block, then takes away what they have written; the number of faults."""
     before, wrong = set(place.rglob("*")), 0
@@ -235,7 +244,7 @@ def try_block(block, place, told):
         found = []
         if text:
             done = run(text, place)
-            found = list(faults(command, text, done, place))
+            found = [*faults(command, text, done, place), *spoilt(place)]
         instead = f"  [{why}; instead: {text or 'nothing'}]" if why else ""
         told(f"{command.place}: {command.text}{instead}  {time.monotonic() - begun:.1f} s")
         for fault in found:

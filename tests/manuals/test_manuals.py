@@ -177,6 +177,16 @@ CONTACT
                 self.assertEqual(wrong, len(wanted))
                 self.assertEqual(list(pathlib.Path(place).iterdir()), [])
 
+    def test_a_kept_deck_that_is_written_over_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place, told = pathlib.Path(folder), []
+            deck = place / "input/hertz/hertz44.dat"
+            deck.parent.mkdir(parents=True)
+            deck.write_bytes((INPUT / "hertz/hertz44.dat").read_bytes())
+            block = [run_commands.Command("p:1", f"echo ENDDATA {sign} input/hertz/hertz44.dat") for sign in (">", "<")]
+            self.assertEqual(run_commands.try_block(block, place, told.append), 1)
+            self.assertEqual(told[1].strip(), "writes over input/hertz/hertz44.dat")
+
 
 class Links(unittest.TestCase):
     def test_relative_links_resolve(self):
