@@ -73,7 +73,7 @@ def main():
         simple.SaveScreenshot(str(options.output), layout, ImageResolution=[1000 if options.near else 550, 440],
                               CompressionLevel="9")
     simple.Disconnect()   # else it may crash as it ends
-    return 0
+    return run.returncode
 
 
 if __name__ == "__main__":

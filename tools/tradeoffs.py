@@ -12,7 +12,6 @@ are not, and runs whose times are within a few per cent of each other may change
 import argparse
 import collections
 import itertools
-import math
 import pathlib
 import platform
 import statistics

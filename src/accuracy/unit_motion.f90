@@ -6,7 +6,6 @@ module epcont_accuracy_unit_motion
   use epcont_contact_scaling, only: scaled_problem
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_model_model, only: model_type
-  use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
   use epcont_plasticity_linear_scene, only: linear_scene
   implicit none

@@ -1,6 +1,6 @@
 !> Standard output, and how the program ends. Fortran's WRITE does not say whether its text arrived; C does.
 module epcont_app_console
-  use, intrinsic :: iso_c_binding, only: c_associated, c_bool, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, &
+  use, intrinsic :: iso_c_binding, only: c_bool, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, &
                                          c_null_char, c_null_ptr, c_ptr
   use, intrinsic :: iso_fortran_env, only: error_unit
   use epcont_base_error, only: status_internal, status_usage

@@ -1,4 +1,4 @@
-!> THE table of options. The parser, --help and the manual page come from it: there is no other place that knows one.
+!> THE table of options. The parser, --help and the manual page come from it; what each does is in `take` of the arguments.
 module epcont_app_options
   implicit none
   private

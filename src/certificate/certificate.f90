@@ -20,6 +20,8 @@ module epcont_certificate_certificate
 
   !> Roundings that a gap is the sum of.
   real(wp), parameter :: roundings = 8.0_wp
+  !> Stresses are off by as many times `lost_stress`: an element has several nodes.
+  real(wp), parameter :: several = 4.0_wp
   !> Largest part of the bodies' give that the rounding of the gaps may be: a travel far beyond it leaves no digits.
   real(wp), parameter, public :: largest_rounding = 1.0e-6_wp
 
@@ -100,7 +102,7 @@ contains
                            .and. certificate%force_gap <= exact*certificate%force_scale &
                            .and. certificate%gap_rounding <= largest_rounding*certificate%length_scale
     certificate%curve_tolerance = max(tolerance, curve_tolerance)
-    certificate%off_curve_limit = certificate%curve_tolerance + min(certificate%lost_stress, certificate%curve_tolerance)
+    certificate%off_curve_limit = certificate%curve_tolerance + min(several*certificate%lost_stress, certificate%curve_tolerance)
     certificate%valid = certificate%balanced .and. certificate%off_curve <= certificate%off_curve_limit
   end subroutine certify
 

@@ -6,28 +6,13 @@ module epcont_linalg_lapack
   use epcont_base_kinds, only: sp, wp
   implicit none
   private
-  public :: dgemm, dgemv, dsymv, dsyrk, dtrsm, dtrsv, daxpy, ddot
+  public :: dgemm, dgemv, dsyrk, dtrsm, dtrsv
   public :: sgemm, sgemv, ssyrk, strsm, strsv, spotrf
   public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs
-  public :: dgetrf, dgetrs, dgeqp3, dorgqr, dgesvd, dsyev
+  public :: dgetrf, dgetrs, dgesvd, dsyev
 
   ! BLAS
   interface
-    !> y = a x + y
-    pure subroutine daxpy(n, a, x, incx, y, incy)
-      import :: wp
-      integer, intent(in) :: n, incx, incy
-      real(wp), intent(in) :: a, x(*)
-      real(wp), intent(inout) :: y(*)
-    end subroutine daxpy
-
-    !> x.y
-    pure real(wp) function ddot(n, x, incx, y, incy)
-      import :: wp
-      integer, intent(in) :: n, incx, incy
-      real(wp), intent(in) :: x(*), y(*)
-    end function ddot
-
     !> C = alpha op(A) op(B) + beta C
     pure subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
       import :: wp
@@ -47,16 +32,6 @@ module epcont_linalg_lapack
       real(wp), intent(in) :: a(lda, *), x(*)
       real(wp), intent(inout) :: y(*)
     end subroutine dgemv
-
-    !> y = alpha A x + beta y, A symmetric
-    pure subroutine dsymv(uplo, n, alpha, a, lda, x, incx, beta, y, incy)
-      import :: wp
-      character(len=1), intent(in) :: uplo
-      integer, intent(in) :: n, lda, incx, incy
-      real(wp), intent(in) :: alpha, beta
-      real(wp), intent(in) :: a(lda, *), x(*)
-      real(wp), intent(inout) :: y(*)
-    end subroutine dsymv
 
     !> Solve op(A) x = b, A triangular
     pure subroutine dtrsv(uplo, trans, diag, n, a, lda, x, incx)
@@ -234,26 +209,6 @@ module epcont_linalg_lapack
       real(wp), intent(inout) :: b(ldb, *)
       integer, intent(out) :: info
     end subroutine dgetrs
-
-    !> QR factor with column pivoting
-    pure subroutine dgeqp3(m, n, a, lda, jpvt, tau, work, lwork, info)
-      import :: wp
-      integer, intent(in) :: m, n, lda, lwork
-      real(wp), intent(inout) :: a(lda, *)
-      integer, intent(inout) :: jpvt(*)
-      real(wp), intent(out) :: tau(*), work(*)
-      integer, intent(out) :: info
-    end subroutine dgeqp3
-
-    !> The orthogonal matrix of a QR factor
-    pure subroutine dorgqr(m, n, k, a, lda, tau, work, lwork, info)
-      import :: wp
-      integer, intent(in) :: m, n, k, lda, lwork
-      real(wp), intent(inout) :: a(lda, *)
-      real(wp), intent(in) :: tau(*)
-      real(wp), intent(out) :: work(*)
-      integer, intent(out) :: info
-    end subroutine dorgqr
 
     !> Singular values, descending, and singular vectors
     pure subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)

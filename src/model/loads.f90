@@ -36,7 +36,7 @@ contains
         if (force%value(k + 2, i) /= 0.0_wp) &
           call faults%add_error(deck%place(card_force, i, k + 2), deck%identity(card_force, i)// &
                                 ': field 8 (N3) points off the plane', '0.0: scenes lie in the x-y plane')
-        model%load(:, node(1)) = model%load(:, node(1)) + force%value(k - 1, i)*force%value(k:k + 1, i)
+        model%load(:, node(1)) = model%load(:, node(1)) + force%value(k - 1, i)*along_axes(force%value(k:k + 1, i))
       end do
       if (pressure%count > 0) elements = new_id_index(model%element_id)
       do i = 1, pressure%count
@@ -70,6 +70,14 @@ contains
     end do
     side = 0
   end function side_between
+
+  !> A direction without what rounding has left of a right angle, such as the cosine of 90 degrees.
+  pure function along_axes(direction)
+    real(wp), intent(in) :: direction(2)
+    real(wp) :: along_axes(2)
+
+    along_axes = merge(0.0_wp, direction, abs(direction) < epsilon(1.0_wp)*maxval(abs(direction)))
+  end function along_axes
 
   !> Nodal forces of a pressure that varies linearly along a side, from one node to the other: positive into the
   !! element, turned counter-clockwise by theta.

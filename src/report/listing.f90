@@ -283,6 +283,8 @@ contains
     call figure(file, 'stress off the curve', right(rounding_number(certificate%off_curve), 13))
     if (certificate%curve_tolerance > certificate%tolerance) &
       call figure(file, 'of which the iteration may leave', right(short_real(certificate%curve_tolerance), 13))
+    if (certificate%off_curve > certificate%curve_tolerance .and. certificate%off_curve <= certificate%off_curve_limit) &
+      call figure(file, 'and with the rounding of displacements', right(short_real(certificate%off_curve_limit), 13))
     call figure(file, 'energy balance', right(rounding_number(certificate%energy), 13))
   end subroutine list_summary
 end module epcont_report_listing

@@ -57,6 +57,7 @@ contains
       call put('largest_force_gap_product', certificate%force_gap, 'force*length')
       call put('stress_off_curve', certificate%off_curve, '')
       call put('curve_tolerance', certificate%curve_tolerance, '')
+      call put('stress_off_curve_limit', certificate%off_curve_limit, '')
       call put('energy_balance', certificate%energy, '')
       call put('condition', answer%condition, '')
       call put('load_factor', answer%load_factor, '')

@@ -196,7 +196,8 @@ class Misbehaving(Case):
     def test_warnings_are_no_faults(self):
         said = "a.dat:3:9-16: warning: a remark\n  GRID 1\n  ^^^^\na.dat:5:1-4: unknown card\n  GRIT 1\na.dat:9: later\n"
         self.assertEqual("a.dat:5:1-4: unknown card", first_fault(said))
-        self.assertEqual("", first_fault("a.dat:3:9: warning: a remark\n  GRID 1\n"))
+        self.assertEqual("", first_fault("a.dat:3:9: warning: a remark\n  GRID 1\na.dat: 1 warning\n"))
+        self.assertEqual("a.dat: not to be trusted", first_fault("a.dat: warning: no place\na.dat: 30 warnings (20 shown)\na.dat: not to be trusted\n"))
 
     def test_results_of_an_earlier_run_are_not_taken(self):
         self.decks("a_silent.dat")

@@ -80,6 +80,8 @@ def main():
         sys.exit(f"exit status {one} by {words[0]}, {other} by {words[1]}")
     if tables.keys() != others.keys():
         sys.exit(f"tables {sorted(tables)} by {words[0]}, {sorted(others)} by {words[1]}")
+    if one in (2, 3):
+        sys.exit(f"exit status {one}: nothing was solved")
     if one != 0:
         return
     if not tables:

@@ -10,6 +10,7 @@ ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "singular sti
             "not certified"}   # words of a whole listing
 NOT_RUN = "not run"
 KILLED = "killed"              # from outside: whoever has the right may run the deck again
+NO_FAULT = re.compile(r": warning: |: \d+ warnings?(?: \(\d+ shown\))?$")
 FIGURE = re.compile(r"^  (\S.*?)  +(< )?([+-]?\d[\d.E+-]*)$")
 
 
@@ -63,7 +64,7 @@ def whole(listing, word):
 def first_fault(said):
     """The first message that is no warning, with its place."""
     for line in said.splitlines():
-        if line.strip() and not line.startswith(" ") and not re.search(r":\d[\d:-]*: warning: ", line):
+        if line.strip() and not line.startswith(" ") and not NO_FAULT.search(line):
             return line.strip()
     return ""
 
@@ -79,19 +80,19 @@ def figures(listing, summary):
     error, pressure = number(summary.get("mesh_error_max_pressure")), number(found["p_max"])
     if error is not None and pressure:
         found["p_max_error"] = f"{error / pressure:.3g}"
-    found["certificate"], found["certificate_part"] = worst_of_certificate(listing)
+    found["certificate"], found["certificate_part"] = worst_of_certificate(listing, summary)
     return found
 
 
-def worst_of_certificate(listing):
+def worst_of_certificate(listing, summary):
     """The figure that takes most of what it may, and how much of it: above 1 it does not hold."""
     block = re.search(r"^CERTIFICATE .*tolerance (\S+?)\).*\n((?:  .*\n)+)", listing, re.MULTILINE)
     if not block:
         return "", ""
     lines = [match.groups() for match in map(FIGURE.match, block[2].splitlines()) if match]
-    allowed = {"stress off the curve": next((float(value) for name, _, value in lines if name.startswith("of which")), None)}
+    allowed = {"stress off the curve": number(summary.get("stress_off_curve_limit"))}
     parts = [(float(value) / (allowed.get(name) or float(block[1])), name) for name, _, value in lines
-             if not name.startswith("of which")]
+             if not name.startswith(("of which", "and with"))]
     part, name = max(parts, default=(None, ""), key=lambda each: abs(each[0]))
     return name, "" if part is None else f"{abs(part):.2g}"
 

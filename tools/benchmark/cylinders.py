@@ -17,7 +17,7 @@ APPROACH = {False: P * (1 - NU * NU) / (math.pi * E) * (2 * math.log(4 * R / HAL
 #: A run counts as sound where it ends at full load with these of epcont's: flow theory has 4 % less pressure.
 APPROACH_WITHIN, P_MAX_WITHIN = 0.01, {False: 0.01, True: 0.06}
 
-#: Seconds. Short runs are settled and take three times as many turns; long ones take one.
+#: Seconds. Short runs are settled, and where all are short there are three times as many turns; where one is long, one turn.
 SHORT, LONG = 5.0, 60.0
 #: Beyond so many nodes elastoplastic runs of CalculiX take minutes: those settings alone that are the fastest below.
 LARGE = 20000
@@ -144,8 +144,8 @@ def one(top, place, wanted, plastic, repeats, say):
         found = [p for p in others if p.name == name and among in p.setting and sound(p, ours, plastic)]
         limit = near * min((p.first for p in found), default=0.0)
         chosen += [p for p in found if p.first <= limit and p not in chosen]
-    shortest = min(p.first for p in chosen[1:])
-    for _ in range(3 * repeats if shortest < SHORT else repeats if shortest < LONG else 1):
+    longest = max(p.first for p in chosen)
+    for _ in range(3 * repeats if longest < SHORT else repeats if longest < LONG else 1):
         for program in chosen:
             program.run(place)
             if program.name == "scikit-fem":

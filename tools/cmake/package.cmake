@@ -5,9 +5,7 @@ set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
 # The program prints its own manual page, from the table of options that it reads by.
 set(man_page "${PROJECT_BINARY_DIR}/epcont.1")
-add_custom_command(OUTPUT "${man_page}" COMMAND epcont --man > "${man_page}" DEPENDS epcont
-  COMMENT "Writing the manual page" VERBATIM)
-add_custom_target(man_page ALL DEPENDS "${man_page}")
+add_custom_command(TARGET epcont POST_BUILD COMMAND epcont --man > "${man_page}" BYPRODUCTS "${man_page}" VERBATIM)
 
 install(TARGETS epcont RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(FILES "${man_page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")

@@ -81,7 +81,7 @@ class Maker:
 
 def means_other_things(card):
     """In another form, or in another place: the deck's end; a coordinate without point, which large fields alone may have."""
-    return card.name == "ENDDATA" or card.name == "GRID" and any(text.lstrip("+-").isdigit() for text in card.data[2:5])
+    return card.name == "ENDDATA" or card.name[:1] in ("", "*", "+") or card.name == "GRID" and any(text.lstrip("+-").isdigit() for text in card.data[2:5])
 
 
 def noise(pick):

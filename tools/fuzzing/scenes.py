@@ -162,4 +162,4 @@ def load(scene, top, total):
     elif kind != "none":
         for node in top:
             angle = pick.choice([-90.0, -90.0, -80.0, 90.0, 0.0])
-            scene.add("FORCE", 1, node, 0, total / len(top), math.cos(math.radians(angle)), math.sin(math.radians(angle)))
+            scene.add("FORCE", 1, node, 0, total / len(top), *(round(turn(math.radians(angle)), 15) for turn in (math.cos, math.sin)))

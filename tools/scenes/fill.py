@@ -1,7 +1,7 @@
 """Triangles of a given size between curves: Delaunay's triangulation of points from a quadtree, evened out."""
 import math
 
-from .mesh import Mesh, without_unused
+from .mesh import without_unused
 
 
 def segment(a, b):

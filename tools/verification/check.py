@@ -149,7 +149,7 @@ def check(scene, tables, tolerance):
     bounds = {name: tolerance * scale.get(name, 1.0) for name in KEYS}
     bounds["equilibrium"] = bounds["energy"] = max(loose, lost)
     bounds["off_curve"] = max(tolerance, lost)
-    allowed = {**bounds, "off_curve": max(tolerance, scene.off_curve) + lost}
+    allowed = {**bounds, "off_curve": max(tolerance, scene.off_curve) + 4 * lost}  # of a travel the tables leave no digits
     lines, faults = [], 0
 
     def line(name, ours, theirs, good):

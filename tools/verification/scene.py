@@ -108,7 +108,9 @@ class Scene:
                     self.add(int(c[2]), i, real(c[4]) * real(at(c, 5 + i)))
             else:
                 first, pa = int(c[5]), real(c[3])
-                side = self.side[frozenset((first, int(c[6])))]
+                side = self.side.get(frozenset((first, int(c[6]))))
+                if side is None:
+                    raise DeckError(f"PLOADX1 between {first} and {c[6]}: inside a body")
                 for node, i, value in edge_forces(side, self.x, first, (pa, real(c[4], pa)), real(at(c, 7))):
                     self.add(node, i, value)
 
