@@ -189,6 +189,10 @@ CONTACT
 
 
 class Links(unittest.TestCase):
+    def test_no_place_is_left_to_fill(self):
+        for page in documents():
+            self.assertNotRegex(page.read_text(encoding="utf-8"), r"(?m)@[A-Z]+@|^(<<<<<<<|>>>>>>>)", page)
+
     def test_relative_links_resolve(self):
         seen = 0
         for page in run_commands.documents():
