@@ -13,6 +13,7 @@ import unittest
 import urllib.parse
 
 import run_commands
+from run_commands import documents
 
 TOP = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
 INPUT = TOP / "input"
@@ -97,7 +98,7 @@ class Manual(unittest.TestCase):
                 self.assertTrue(f"]({deck.parent.name}/pictures/{deck.stem}.png)" in MANUAL, deck)
 
     def test_every_picture_is_shown_somewhere(self):
-        named = {(page.parent / link).resolve() for page in run_commands.documents() for link in links(page)}
+        named = {(page.parent / link).resolve() for page in documents() for link in links(page)}
         for picture in sorted(INPUT.glob("*/pictures/*.png")):
             self.assertIn(picture.resolve(), named)
 
@@ -195,7 +196,7 @@ class Links(unittest.TestCase):
 
     def test_relative_links_resolve(self):
         seen = 0
-        for page in run_commands.documents():
+        for page in documents():
             for link in links(page):
                 address, _, anchor = urllib.parse.unquote(link).partition("#")
                 if "://" in address or address.startswith("mailto:"):
