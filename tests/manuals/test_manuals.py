@@ -12,6 +12,9 @@ import tempfile
 import unittest
 import urllib.parse
 
+import run_commands
+from run_commands import documents
+
 TOP = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
 INPUT = TOP / "input"
 MANUAL = (INPUT / "README.md").read_text(encoding="utf-8")
@@ -36,12 +39,6 @@ def parameters():
 def examples():
     """Lines of example decks: indented by four, in columns."""
     return [line[4:] for line in MANUAL.splitlines() if line.startswith("    ")]
-
-
-def documents():
-    """All pages of the repository; nothing that was built or fetched."""
-    parts = [part for part in sorted(TOP.iterdir()) if part.is_dir() and part.name not in ("build", ".git")]
-    return sorted(TOP.glob("*.md")) + [path for part in parts for path in sorted(part.rglob("*.md"))]
 
 
 def links(path):
@@ -129,6 +126,67 @@ class Examples(unittest.TestCase):
         for example in re.findall(r"^\| \w+ \| `(PARAM +(\w+) .*?)` \|", MANUAL, re.MULTILINE):
             other = re.sub(rf"(?m)^PARAM +{example[1]} .*\n", "", deck)
             self.assertEqual(self.faults(other.replace("BEGIN BULK\n", f"BEGIN BULK\n{example[0]}\n"))[0], 0, example[0])
+
+
+class Commands(unittest.TestCase):
+    """What run_commands.py takes from a page, and that it sees what is not so."""
+
+    PAGE = """Text, `tools/decks hertz` and `tools/decks`, `tools/plot [--only KIND]`, `tools/plot.py`.
+
+    tools/run a.dat --known "x  y"      # writes a.lst
+    shown below
+    tools/run b.dat; echo $?
+
+    GRID    1
+
+From `hertz44.lst`:
+
+```
+CONTACT
+         ...
+```
+"""
+
+    def test_what_is_a_command(self):
+        taken = [(each.place, each.text, each.remark, each.shown) for block in run_commands.blocks("p", self.PAGE) for each in block]
+        self.assertEqual(taken, [
+            ("p:1", "tools/decks hertz", "", []), ("p:1", "tools/plot --help", "", ["--only"]),
+            ("p:3", 'tools/run a.dat --known "x  y"', "writes a.lst", ["shown below"]), ("p:5", "tools/run b.dat; echo $?", "", []),
+            ("p:11", "epcont input/*/hertz44.dat && cat hertz44.lst", "", ["CONTACT"])])
+
+    def test_pages_have_commands(self):
+        taken = {command.place.partition(":")[0] for page in run_commands.shown_commands() for block in page for command in block}
+        for name in ("README.md", "input/README.md", "input/coming_from.md", "input/hertz/README.md", "tests/README.md", "tools/README.md"):
+            self.assertIn(name, taken)
+
+    def test_without_packages_what_needs_their_files_is_left_out(self):
+        block = [run_commands.Command("p:1", text) for text in ("tools/run a.dat", "tools/deck s.toml -o b.dat", "tools/run b.dat")]
+        self.assertEqual(run_commands.chosen(block, "plain"), block[:1])
+        self.assertEqual(run_commands.chosen(block, "drawing"), block)
+        self.assertEqual(run_commands.chosen(block[:1], "drawing"), [])
+
+    def test_what_is_not_as_shown_is_told(self):
+        for text, remark, shown, wanted in (
+                ("true", "", [], []), ("false", "not (exit status 1)", [], []), ("echo 1.5", "1.5", ["1.5"], []), ("echo > a.lst", "a.lst", [], []),
+                ("false", "", [], ["exit status 1, not 0"]), ("true", "exit status 2", [], ["exit status 0, not 2"]),
+                ("echo 1.55", "1.5", [], ["does not print 1.5"]), ("true", "writes b.lst", [], ["writes no b.lst"]),
+                ("echo a", "", ["b"], ["does not print: b"])):
+            with tempfile.TemporaryDirectory() as place:
+                told = []
+                wrong = run_commands.try_block([run_commands.Command("p:1", text, remark, shown)], pathlib.Path(place), told.append)
+                self.assertEqual([line.strip() for line in told[1:1 + len(wanted)]], wanted)
+                self.assertEqual(wrong, len(wanted))
+                self.assertEqual(list(pathlib.Path(place).iterdir()), [])
+
+    def test_a_kept_deck_that_is_written_over_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place, told = pathlib.Path(folder), []
+            deck = place / "input/hertz/hertz44.dat"
+            deck.parent.mkdir(parents=True)
+            deck.write_bytes((INPUT / "hertz/hertz44.dat").read_bytes())
+            block = [run_commands.Command("p:1", f"echo ENDDATA {sign} input/hertz/hertz44.dat") for sign in (">", "<")]
+            self.assertEqual(run_commands.try_block(block, place, told.append), 1)
+            self.assertEqual(told[1].strip(), "writes over input/hertz/hertz44.dat")
 
 
 class Links(unittest.TestCase):
