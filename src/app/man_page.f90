@@ -60,7 +60,7 @@ contains
 
     text = ''
     do k = 1, size(options)
-      text = text//'.TP'//newline//heading(options(k))//paragraph(trim(options(k)%text))
+      text = text//entry(heading(options(k)), options(k)%text)
       if (options(k)%more /= '') text = text//'.br'//newline//paragraph(trim(options(k)%more))
     end do
   end function option_list
@@ -73,11 +73,11 @@ contains
     names = roff(trim(option%name))
     if (option%short /= '') names = roff(option%short)//', '//names
     if (option%value == '') then
-      text = '.B '//names//newline
+      text = '.B '//names
     else if (upper(option%value) == option%value) then
-      text = '.BI "'//names//' " '//roff(trim(option%value))//newline
+      text = '.BI "'//names//' " '//roff(trim(option%value))
     else
-      text = '.B '//names//' '//roff(trim(option%value))//newline
+      text = '.B '//names//' '//roff(trim(option%value))
     end if
   end function heading
 
@@ -87,7 +87,7 @@ contains
 
     text = ''
     do k = lbound(status_meaning, dim=1), ubound(status_meaning, dim=1)
-      text = text//'.TP'//newline//'.B '//text_of(k)//newline//paragraph(trim(status_meaning(k)))
+      text = text//entry('.B '//text_of(k), status_meaning(k))
     end do
   end function status_list
 
@@ -97,7 +97,7 @@ contains
 
     text = ''
     do k = 1, size(result_files)
-      text = text//'.TP'//newline//'.IB DECK '//roff(trim(result_files(k)%suffix))//newline//paragraph(trim(result_files(k)%text))
+      text = text//entry('.IB DECK '//roff(trim(result_files(k)%suffix)), result_files(k)%text)
     end do
   end function file_list
 
@@ -107,9 +107,17 @@ contains
 
     text = ''
     do k = 1, size(examples)
-      text = text//'.TP'//newline//'.B '//roff(trim(examples(k)%command))//newline//paragraph(trim(examples(k)%text))
+      text = text//entry('.B '//roff(trim(examples(k)%command)), examples(k)%text)
     end do
   end function example_list
+
+  !> What is explained, in its own line, and the explanation.
+  pure function entry(name, explanation) result(text)
+    character(len=*), intent(in) :: name, explanation
+    character(len=:), allocatable :: text
+
+    text = '.TP'//newline//name//newline//paragraph(trim(explanation))
+  end function entry
 
   !> Text, in lines of a source that can be read.
   pure function paragraph(text)

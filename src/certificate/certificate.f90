@@ -65,7 +65,7 @@ contains
     type(certificate_type), intent(out) :: certificate
     real(wp), intent(in), optional :: rounding_error  !! of strains and contact forces; not given: that of double precision
     real(wp), allocatable :: residual(:, :), element_force(:)
-    real(wp) :: exact, forces, largest_stress, stored, terms, tolerance, work
+    real(wp) :: exact, forces, largest_stress, stored, terms, tolerance, travel, work
     logical :: vanishes
 
     if (present(rounding_error)) certificate%tolerance = max(exact_tolerance, rounding_errors*rounding_error)
@@ -82,10 +82,11 @@ contains
     forces = sum(abs(load)) + sum(abs(reaction)) + sum(abs(force))
     certificate%length_scale = ratio(stored, forces)
     ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there is.
-    if (forces == 0.0_wp) certificate%length_scale = maxval(abs(displacement))
+    travel = maxval(abs(displacement))
+    if (forces == 0.0_wp) certificate%length_scale = travel
     certificate%length_scale = max(certificate%length_scale, tiny(1.0_wp))
     ! Work below the range of numbers is no work that anything could be held against.
-    vanishes = forces > 0.0_wp .and. maxval(abs(displacement)) > 0.0_wp .and. forces*maxval(abs(displacement)) < tiny(1.0_wp)
+    vanishes = min(forces, travel) > 0.0_wp .and. forces*travel < tiny(1.0_wp)
     call check_pairs(model, maxval(abs(load)), displacement, force, residual, certificate)
     call gather_ties(model, residual)
     certificate%equilibrium = ratio(maxval(abs(residual)), max(maxval(element_force), maxval(abs(load)), &

@@ -116,8 +116,10 @@ def main():
     with tempfile.TemporaryDirectory() as directory:
         place = pathlib.Path(directory)
         solved, growing = (options.nodes or (all_sizes[:-1] if options.quick else all_sizes) for all_sizes in (SOLVED, GROWING))
-        does = {1: lambda: part1(place, sizes, turns, sizes[-1] if not options.quick else NODES[-2]), 3: lambda: part3(place, sizes, growing, turns), 4: lambda: part4(place, solved, turns),
-                2: lambda: part2(place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 20)}
+        does = {1: lambda: part1(place, sizes, turns, NODES[-2] if options.quick else sizes[-1]),
+                2: lambda: part2(place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 20),
+                3: lambda: part3(place, sizes, growing, turns),
+                4: lambda: part4(place, solved, turns)}
         for part in (options.part,) if options.part else (4, 3, 1, 2):
             load = f"load {os.getloadavg()[0]:.1f} at the start"
             kept(part).write_text(json.dumps({"command": command, "load": load, "rows": does[part]()}), encoding="ascii")
