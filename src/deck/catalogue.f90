@@ -7,8 +7,8 @@ module epcont_deck_catalogue
                                     card_ctrax6, card_ctria3, card_ctria6, card_force, card_grid, card_kinds, card_mat1, &
                                     card_mats1, card_param, card_pgap, card_ploadx1, card_pshell, card_psolid, card_rbe2, &
                                     card_spc, card_spc1, card_suport, card_tables1
-  use epcont_deck_entry, only: any_field, card_entry, components_field, field_entry, id_field, integer_field, largest_id, &
-                               new_card, number_of, real_field, word_field
+  use epcont_deck_entry, only: any_field, card_entry, cause, components_field, field_entry, id_field, integer_field, largest_id, &
+                               new_card, noted, number_of, positive, real_field, word_field
   implicit none
   private
   public :: catalogue, parameters
@@ -167,10 +167,10 @@ contains
     call card%add(id_field(2, 'SID', 'set'))
     call card%add(id_field(3, 'G1', 'node'))
     call card%add(components_field(4, 'C1', 'directions', required=.true.))
-    call card%add(real_field(5, 'D1', 'displacement', 'length', default=0.0_wp))
+    call card%add(cause(real_field(5, 'D1', 'displacement', 'length', default=0.0_wp)))
     call card%add(id_field(6, 'G2', 'second node', with=7))
     call card%add(components_field(7, 'C2', 'directions', required=.false., with=6))
-    call card%add(real_field(8, 'D2', 'displacement', 'length', default=0.0_wp))
+    call card%add(cause(real_field(8, 'D2', 'displacement', 'length', default=0.0_wp)))
   end function spc
 
   function spc1() result(card)
@@ -189,7 +189,7 @@ contains
     call card%add(id_field(2, 'SID', 'set'))
     call card%add(id_field(3, 'G', 'node'))
     call card%add(zero(4, 'CID', 'system of N1 to N3: the basic one'))
-    call card%add(real_field(5, 'F', 'factor', 'force', required=.true.))
+    call card%add(cause(real_field(5, 'F', 'factor', 'force', required=.true.)))
     call card%add(real_field(6, 'N1', 'direction x', '', default=0.0_wp))
     call card%add(real_field(7, 'N2', 'direction y', '', default=0.0_wp))
     call card%add(real_field(8, 'N3', 'direction z; 0.0 in plane scenes', '', default=0.0_wp))
@@ -202,8 +202,8 @@ contains
     card = new_card('PLOADX1', 'pressure on the edge of an element')
     call card%add(id_field(2, 'SID', 'set'))
     call card%add(id_field(3, 'EID', 'element'))
-    call card%add(real_field(4, 'PA', 'pressure at GA, positive into the element', 'stress', required=.true.))
-    pressure = real_field(5, 'PB', 'pressure at GB', 'stress')
+    call card%add(cause(real_field(4, 'PA', 'pressure at GA, positive into the element', 'stress', required=.true.)))
+    pressure = cause(real_field(5, 'PB', 'pressure at GB', 'stress'))
     pressure%same_as = 4
     call card%add(pressure)
     call card%add(id_field(6, 'GA', 'corner at which the edge begins'))
@@ -269,7 +269,7 @@ contains
 
     card = new_card('PGAP', 'property of contact pairs')
     call card%add(id_field(2, 'PID', 'property'))
-    call card%add(real_field(3, 'U0', 'initial gap', 'length', default=0.0_wp))
+    call card%add(cause(real_field(3, 'U0', 'initial gap', 'length', default=0.0_wp)))
     call card%add(zero_real(4, 'F0', 'preload', 'there is no preload'))
     call card%add(noted(real_field(5, 'KA', 'closed stiffness: contact is exact', '')))
     call card%add(noted(real_field(6, 'KB', 'open stiffness', '')))
@@ -378,22 +378,4 @@ contains
     field%highest = 0.0_wp
     field%reason = reason
   end function zero_real
-
-  function positive(plain) result(field)
-    type(field_entry), intent(in) :: plain
-    type(field_entry) :: field
-
-    field = plain
-    field%lowest = 0.0_wp
-    field%above_lowest = .true.
-  end function positive
-
-  !> A field that is checked and has no effect.
-  function noted(plain) result(field)
-    type(field_entry), intent(in) :: plain
-    type(field_entry) :: field
-
-    field = plain
-    field%used = .false.
-  end function noted
 end module epcont_deck_catalogue

@@ -6,6 +6,7 @@ module epcont_deck_entry
   private
   public :: field_entry, card_entry, new_card
   public :: id_field, integer_field, real_field, components_field, word_field, any_field
+  public :: positive, cause, noted
   public :: slot_of, number_of
 
   !> Kinds of fields.
@@ -14,6 +15,11 @@ module epcont_deck_entry
   integer, parameter, public :: largest_id = 99999999
   !> Data fields on one line: numbers 2 to 9, then 12 to 19, and so on.
   integer, parameter :: fields_a_line = 8
+
+  !> Sizes of numbers that have an effect: at most `farthest`; where zero is none, at least `least_divisor`; of what loads a scene
+  !! (force, pressure, prescribed displacement, gap), zero or at least `least_cause`. Then works are numbers, though they are
+  !! squares of it over stiffnesses, areas and lengths of `farthest`, and of what rounding leaves where loads cancel.
+  real(wp), parameter, public :: farthest = 1.0e30_wp, least_divisor = 1.0e-30_wp, least_cause = 1.0e-60_wp
 
   !> One field of a card, or one PARAM. The procedures below make it; its user refines it.
   type :: field_entry
@@ -27,6 +33,7 @@ module epcont_deck_entry
     real(wp) :: default = 0.0_wp       !! the value of a blank field
     logical :: has_default = .false.   !! false: a blank has a meaning of its own
     real(wp) :: lowest = -huge(1.0_wp), highest = huge(1.0_wp)
+    real(wp) :: least = 0.0_wp           !! least size, zero apart, of a number that has an effect
     logical :: point_optional = .false.  !! in large field a real without a decimal point serves too
     logical :: above_lowest = .false., below_highest = .false.  !! the limit itself is out of range
     character(len=:), allocatable :: choices  !! the words allowed, with blanks between; any if not allocated
@@ -255,6 +262,35 @@ contains
     field%meaning = meaning
     field%unit = unit
   end function new_field
+
+  !> A field that is above zero.
+  function positive(plain) result(field)
+    type(field_entry), intent(in) :: plain
+    type(field_entry) :: field
+
+    field = plain
+    field%lowest = 0.0_wp
+    field%above_lowest = .true.
+    field%least = least_divisor
+  end function positive
+
+  !> A field that loads the scene.
+  function cause(plain) result(field)
+    type(field_entry), intent(in) :: plain
+    type(field_entry) :: field
+
+    field = plain
+    field%least = least_cause
+  end function cause
+
+  !> A field that is checked and has no effect.
+  function noted(plain) result(field)
+    type(field_entry), intent(in) :: plain
+    type(field_entry) :: field
+
+    field = plain
+    field%used = .false.
+  end function noted
 
   !> What the field may hold, in words: `a real above 0.0`.
   pure function allowed(self) result(text)

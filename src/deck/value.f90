@@ -1,7 +1,8 @@
 !> A field's characters and its entry in the catalogue to a value, or to what is wrong with it.
 module epcont_deck_value
   use epcont_base_kinds, only: i8, wp
-  use epcont_deck_entry, only: field_entry, kind_any, kind_components, kind_integer, kind_real, kind_word
+  use epcont_base_text, only: short_real
+  use epcont_deck_entry, only: farthest, field_entry, kind_any, kind_components, kind_integer, kind_real, kind_word
   use epcont_deck_field, only: scan_components, scan_integer, scan_malformed, scan_no_point, scan_real, scan_sound, &
                                scan_too_large, scan_too_long, scan_too_small, scan_word
   implicit none
@@ -10,10 +11,6 @@ module epcont_deck_value
 
   !> A fault that is not one of form, beside the outcomes of a scan.
   integer, parameter :: out_of_range = -1, out_of_reach = -2
-
-  !> The size of a number that has an effect is at most this, and one that must be above zero is at least 1/this: up to
-  !! their tenth power, products of such numbers are numbers.
-  real(wp), parameter :: farthest = 1.0e30_wp
 
 contains
 
@@ -68,8 +65,7 @@ contains
     real(wp), intent(in) :: value
     type(field_entry), intent(in) :: entry
 
-    within_reach = abs(value) <= farthest
-    if (entry%lowest == 0.0_wp .and. entry%above_lowest) within_reach = within_reach .and. value >= 1.0_wp/farthest
+    within_reach = abs(value) <= farthest .and. (value == 0.0_wp .or. abs(value) >= entry%least)
   end function within_reach
 
   !> A fault in words: `what` goes behind `field 4 (X1) `.
@@ -92,7 +88,7 @@ contains
       remedy = '0.0, or at least 2.226E-308'
     case (out_of_reach)
       what = 'is too far from 1.0'
-      remedy = 'other units: sizes up to 1.0E+30, and where zero is none, from 1.0E-30'
+      remedy = reach_of(entry)
     case (scan_too_long)
       what = 'has more than 8 characters'
     case (scan_malformed)
@@ -101,6 +97,17 @@ contains
       call range_fault(text, entry, what, remedy)
     end select
   end subroutine fault_of
+
+  !> The sizes that a number which has an effect may have, in words.
+  pure function reach_of(entry) result(text)
+    type(field_entry), intent(in) :: entry
+    character(len=:), allocatable :: text
+
+    text = 'other units: sizes'
+    if (entry%least > 0.0_wp) text = text//' from '//short_real(entry%least)
+    text = text//' to '//short_real(farthest)
+    if (entry%least > 0.0_wp .and. .not. entry%above_lowest) text = text//', or 0.0'
+  end function reach_of
 
   pure subroutine range_fault(text, entry, what, remedy)
     character(len=*), intent(in) :: text

@@ -4,9 +4,11 @@ module epcont_model_loads
   use epcont_base_geometry, only: turned
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index, new_id_index
+  use epcont_base_text, only: short_real
   use epcont_deck_card_kinds, only: card_force, card_ploadx1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
+  use epcont_deck_entry, only: farthest, least_cause
   use epcont_model_elements, only: element_name
   use epcont_model_model, only: model_type
   use epcont_model_reference, only: resolve
@@ -36,6 +38,10 @@ contains
         if (force%value(k + 2, i) /= 0.0_wp) &
           call faults%add_error(deck%place(card_force, i, k + 2), deck%identity(card_force, i)// &
                                 ': field 8 (N3) points off the plane', '0.0: scenes lie in the x-y plane')
+        if (out_of_reach(force%value(k - 1, i), force%value(k:k + 1, i))) &
+          call faults%add_error(deck%place(card_force, i, k - 1), deck%identity(card_force, i)// &
+                                ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', 'other units: forces from '// &
+                                short_real(least_cause)//' to '//short_real(farthest)//', or 0.0')
         model%load(:, node(1)) = model%load(:, node(1)) + force%value(k - 1, i)*along_axes(force%value(k:k + 1, i))
       end do
       if (pressure%count > 0) elements = new_id_index(model%element_id)
@@ -57,6 +63,16 @@ contains
       end do
     end associate
   end subroutine build_loads
+
+  !> Is a force not zero, but of a size that no field may give it?
+  pure logical function out_of_reach(factor, direction)
+    real(wp), intent(in) :: factor          !! [force]
+    real(wp), intent(in) :: direction(2)
+    real(wp) :: largest
+
+    largest = abs(factor)*maxval(abs(direction))
+    out_of_reach = factor /= 0.0_wp .and. any(direction /= 0.0_wp) .and. (largest < least_cause .or. largest > farthest)
+  end function out_of_reach
 
   !> The side of an element that ends at two nodes; 0 where there is none.
   pure integer function side_between(model, element, node) result(side)

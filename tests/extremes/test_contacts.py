@@ -1,7 +1,7 @@
 """Extremes of pairs: how many, how far apart, how alike."""
 import unittest
 
-from scene import Deck, Extremes
+from scene import Deck, Extremes, written
 from test_scales import punch
 
 
@@ -60,12 +60,28 @@ class Gaps(Extremes):
             self.near(result.force, [1.0/40*(0.5 if k in (0, 40) else 1.0) for k in range(41)])
 
     def test_gaps_beyond_sight(self):
-        """1e-300 is a gap like any other: of no size."""
+        """1e-60 is a gap like any other: of no size. Below, an overlap would do work that is no number."""
         exact = self.valid(row(20))
-        for size in (1e-300, 2.3e-308, 1e-100, 1e-30):
+        for size in (1e-60, 1e-46, 1e-30):
             result = self.valid(row(20, lambda k: size*(k % 3)))
             self.near(result.force, exact.force)
             self.assertTrue(all(result.touching))
+        for size in (0.9e-60, 1e-300, -1e-200):
+            self.refused(row(20, lambda k: size), 2, "PGAP.*U0. is too far from 1.0")
+
+    def test_gaps_of_places_beyond_sight(self):
+        """What a mesher's iterations leave of zero in coordinates is zero: no gap, no overlap."""
+        for place in (1e-300, -1e-100, 0.9e-60):
+            deck = bar(load=1.0)
+            deck.parameter("GAPGEOM", "YES")
+            text = deck.text().replace("GRID,1,,0.0,0.0", f"GRID,1,,{written(place)},{written(place)}")
+            self.assertNotEqual(text, deck.text())
+            deck.card("GRID", 2001, None, 2.0, place)
+            deck.card("GRID", 2002, None, 2.0, 0.0)
+            deck.hold(12, 2001, 2002)
+            deck.pair(2001, 2001, 2002)
+            result = self.valid(deck)
+            self.assertEqual(result.gap[-1], 0.0)
 
     def test_gaps_within_one_rounding(self):
         """Ties within one unit of the last place leave no pair out and none in twice."""
@@ -158,7 +174,7 @@ class Walls(Extremes):
     def test_pair_between_held_nodes(self):
         """It can neither open nor close, and says so; closed by its supports it carries nothing."""
         deck = bar(0.25)
-        for gap in (0.0, 0.5, 1e-300):
+        for gap in (0.0, 0.5, 1e-60):
             deck = bar(0.25)
             for node in (3001, 3002):
                 deck.grid(node, 5.0, 5.0)

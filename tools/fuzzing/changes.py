@@ -140,14 +140,14 @@ class Changes:
     def gaps(self, deck):
         card = self.card(deck, "PGAP")
         if card and len(card.data) > 1:
-            card.data[1] = self.pick.choice(["-1.-4", "-0.01", "-1.0", "1.0", "-1.+6", "1.+6", "1.-300", "1.-12", "-1.-12"])
+            card.data[1] = self.pick.choice(["-1.-4", "-0.01", "-1.0", "1.0", "-1.+6", "1.+6", "1.-300", "-1.-60", "1.-12", "-1.-12"])
 
     def loads(self, deck):
         card = self.card(deck, "FORCE", "PLOADX1", "SPC")
         if card:
             slot = {"FORCE": 3, "PLOADX1": 2, "SPC": 3}[card.name]
             card.data += [""] * (slot + 1 - len(card.data))
-            card.data[slot] = self.pick.choice(["0.0", "1.+3", "1.+6", "1.+12", "1.+30", "1.+100", "1.+200", "1.-200", "-1.+6", "-1.0"])
+            card.data[slot] = self.pick.choice(["0.0", "1.+3", "1.+6", "1.+12", "1.+30", "1.+100", "1.+200", "1.-200", "1.-60", "-1.+6", "-1.0"])
 
     def parameter(self, deck):
         """A PARAM: a name that is known or not, a value that is right or not."""
