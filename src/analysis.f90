@@ -46,7 +46,7 @@ contains
     call solve(model, motions, numbering, plan, run, answer, watch)
     singular = run%singular
     answer%lacks_memory = run%lacks_memory
-    if (singular > 0) return
+    if (singular > 0 .or. allocated(answer%against_double)) return
     answer%contact = run%state%contact
     if (answer%contact%state /= contact_solved) return
 
@@ -84,6 +84,10 @@ contains
     call choose_method(plan%method, method)
     call follow_loads(model, motions, numbering, now, method, run, watch)
     if (plan%precision /= precision_double .and. .not. (run%converged .and. run%rounding_error <= plan%rounding_error)) then
+      if (allocated(plan%against_double)) then
+        answer%against_double = plan%against_double
+        return
+      end if
       now%precision = precision_double
       call choose_method(plan%method, method)
       call follow_loads(model, motions, numbering, now, method, run, watch)

@@ -49,7 +49,7 @@ contains
     type(arguments_type), intent(in) :: arguments
     type(progress_type), intent(inout) :: watch
     integer, intent(out) :: status
-    type(error_type), allocatable :: error
+    type(error_type), allocatable :: error, in_double
     type(run_results) :: run
     type(numbering_type) :: numbering
     type(iteration_plan) :: iteration
@@ -70,7 +70,9 @@ contains
         call print_text(stem_of(path)//run%plan, status)
         return
       end if
-      call check_memory(run%model, expected, arguments%memory, error)
+      call check_memory(run%model, expected%bytes, arguments%memory, error)
+      call check_memory(run%model, expected%double_bytes, arguments%memory, in_double)
+      if (allocated(in_double)) iteration%against_double = in_double%message
       if (allocated(error)) error%message = path//': '//error%message
       if (.not. allocated(error)) then
         call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)

@@ -15,6 +15,7 @@ module epcont_plan_forecast
 
   type :: forecast_type
     integer(i8) :: bytes = 0            !! of the matrices
+    integer(i8) :: double_bytes = 0     !! of the same in double precision
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
   end type forecast_type
 
@@ -22,18 +23,18 @@ module epcont_plan_forecast
 
 contains
 
-  !> Refuse a scene whose matrices are above the limit, or for which the system has not enough memory.
-  subroutine check_memory(model, expected, limit, error)
+  !> Refuse matrices that are above the limit, or for which, and for the scene, the system has not enough memory.
+  subroutine check_memory(model, matrices, limit, error)
     type(model_type), intent(in) :: model
-    type(forecast_type), intent(in) :: expected
-    real(wp), intent(in) :: limit   !! [GB]
+    integer(i8), intent(in) :: matrices   !! [bytes]
+    real(wp), intent(in) :: limit         !! [GB]
     type(error_type), allocatable, intent(out) :: error
     integer(i8), parameter :: part = 10000_i8   !! of a node or an element, with all that is kept of it: up to here [bytes]
     integer(i8) :: bytes
 
-    bytes = expected%bytes + part*(model%nodes + model%elements) + memory_of_libraries
-    if (real(expected%bytes, wp) > giga*limit) then
-      call raise(error, status_usage, 'the matrices need '//gigabytes(real(expected%bytes, wp))//', and --memory allows '// &
+    bytes = matrices + part*(model%nodes + model%elements) + memory_of_libraries
+    if (real(matrices, wp) > giga*limit) then
+      call raise(error, status_usage, 'the matrices need '//gigabytes(real(matrices, wp))//', and --memory allows '// &
                  gigabytes(giga*limit))
     else if (.not. has_memory(bytes)) then
       call raise(error, status_usage, 'the scene needs up to '//gigabytes(real(bytes, wp))// &
@@ -62,6 +63,7 @@ contains
       associate (body => numbering%body(b))
         factor = merge(sparse_entries(body%equations), panel_entries(body%reach), body%sparse)
         expected%bytes = expected%bytes + factor*merge(8, 4, body%sparse .or. plan%precision == precision_double)
+        expected%double_bytes = expected%double_bytes + 8_i8*factor
         entries = entries + int(body%equations, i8)*body%border
         if (body%contact_last .or. body%sparse) then
           entries = entries + int(body%contact_equations, i8)**2
@@ -74,6 +76,7 @@ contains
     end do
     ! F, its scaled copy, and the tableau or factors.
     expected%bytes = expected%bytes + 8_i8*(entries + 3_i8*pairs**2)
+    expected%double_bytes = expected%double_bytes + 8_i8*(entries + 3_i8*pairs**2)
     if (plan%contact%by_blocks) then
       ! The full set factored twice; the sets on the way to it are smaller, or little of them is factored.
       expected%operations = expected%operations + 2.0_wp/3.0_wp*real(pairs, wp)**3

@@ -5,6 +5,7 @@ module epcont_report_outcome
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_certificate_certificate, only: certificate_type, largest_rounding, most_roundings
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
+  use epcont_model_controls, only: precision_name
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_result_answer, only: answer_type
@@ -39,7 +40,12 @@ contains
     integer :: k
 
     outcome%sentence = ''
-    if (answer%lacks_memory) then
+    if (allocated(answer%against_double)) then
+      outcome%status = status_usage
+      outcome%word = 'out of memory'
+      outcome%sentence = 'factors in single precision ('//trim(precision_name(answer%asked_precision))// &
+                         ') give no answer to be trusted, and in double '//answer%against_double
+    else if (answer%lacks_memory) then
       outcome%status = status_usage
       outcome%word = 'out of memory'
       outcome%sentence = 'there is not enough memory to factor the body of GRID '//first_node(model, singular)

@@ -2,8 +2,8 @@
 module epcont_report_plan
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: plural, short_real, text_of
-  use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, precision_name, &
-                                   precision_open, solver_auto
+  use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, precision_double, &
+                                   precision_name, precision_open, solver_auto
   use epcont_model_model, only: line_contact, model_type
   use epcont_plan_contact_plan, only: contact_plan, many_pairs
   use epcont_plan_forecast, only: forecast_type
@@ -61,9 +61,17 @@ contains
       end associate
     end do
     if (model%bodies > most) text = text//'  and '//plural(model%bodies - most, 'further one')//newline
-    text = text//newline//'  memory for matrices '//text_of((expected%bytes + 999999_i8)/1000000_i8)//' MB, operations '// &
-           short_real(expected%operations)//trim(merge(' a solve', '        ', iteration%yields))//newline
+    text = text//newline//'  memory for matrices '//megabytes(expected%bytes)
+    if (iteration%precision /= precision_double) text = text//' (in double '//megabytes(expected%double_bytes)//')'
+    text = text//', operations '//short_real(expected%operations)//trim(merge(' a solve', '        ', iteration%yields))//newline
   end function plan_text
+
+  pure function megabytes(bytes) result(text)
+    integer(i8), intent(in) :: bytes
+    character(len=:), allocatable :: text
+
+    text = text_of((bytes + 999999_i8)/1000000_i8)//' MB'
+  end function megabytes
 
   !> What PARAM ACCURACY has chosen.
   pure function accuracy_text(model, iteration) result(text)

@@ -37,6 +37,7 @@ module epcont_result_answer
     type(weak_pivot) :: weakest                      !! of the stiffness
     type(iteration_record), allocatable :: history(:)  !! every solve
     integer :: factorizations = 0                    !! of bodies
+    character(len=:), allocatable :: against_double  !! single precision has failed, and this stands against double
     logical :: lacks_memory = .false.                !! a body could not be factored for want of memory
     logical :: converged = .false.                   !! all of the load, to the tolerance of the iteration
     logical :: runs_away = .false.                   !! no equilibrium: the displacements grow without end

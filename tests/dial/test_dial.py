@@ -13,7 +13,7 @@ FIGURE = "error that single precision leaves"
 
 
 class Dial(unittest.TestCase):
-    def run_deck(self, name, *parameters, left_out="none", words={}):
+    def run_deck(self, name, *parameters, left_out="none", words={}, memory="16"):
         """The run, the listing and the contact pressures of a deck with further PARAMs, one left out, words replaced."""
         text = (INPUT / f"{name}.dat").read_text()
         names = [parameter.split(",")[0] for parameter in parameters] + [left_out]
@@ -25,7 +25,7 @@ class Dial(unittest.TestCase):
         with tempfile.TemporaryDirectory() as directory:
             where = pathlib.Path(directory)
             (where / "deck.dat").write_text(text)
-            run = subprocess.run([PROGRAM, where / "deck.dat", "-o", where], capture_output=True, text=True)
+            run = subprocess.run([PROGRAM, where / "deck.dat", "-o", where, "--memory", memory], capture_output=True, text=True)
             listing = where / "deck.lst"
             table = where / "deck.contact.csv"
             rows = csv.DictReader(table.read_text().splitlines() if table.exists() else [])
@@ -88,6 +88,32 @@ class Dial(unittest.TestCase):
         double, _, _ = self.run_deck("tube/tube_near_incompressible", "PRECIS,DOUBLE", words=words)
         self.assertEqual(double.returncode, run.returncode)
         self.assertIn("    (factors in double: in single precision there was no answer that refinement could reach)\n", listing)
+
+    def test_memory_that_double_would_need(self):
+        """A limit between the two: single precision has its turn, and where it fails double is refused."""
+        for precision, deck, status in (("SINGLE", "tube/tube_near_incompressible", 3), ("MIXED", "tube/tube_near_incompressible", 3),
+                                        ("SINGLE", "hertz/hertz330_elastic", 0), ("MIXED", "hertz/hertz330_elastic", 0)):
+            with self.subTest(deck, precision=precision):
+                words = {".4999": ".4999999"} if status else {}
+                needs = [re.search(r"the matrices need (\S+) GB", self.run_deck(deck, f"PRECIS,{each}", words=words, memory=".000000001")[0].stderr)[1]
+                         for each in (precision, "DOUBLE")]
+                between = f"{sum(map(float, needs))/2:.9f}"
+                run, listing, pressures = self.run_deck(deck, f"PRECIS,{precision}", words=words, memory=between)
+                self.assertEqual(status, run.returncode, run.stderr)
+                if status:
+                    self.assertRegex(run.stderr, rf"deck.dat: factors in single precision \({precision}\) give no answer to be trusted, and in"
+                                     rf" double the matrices need {needs[1]} GB, and --memory allows \S+ GB\n")
+                    self.assertTrue(run.stdout.startswith("deck  out of memory"), run.stdout)
+                    self.assertIn("  *NOT VALID*  out of memory: factors in single precision", listing)
+                    self.assertEqual([], pressures)
+                run, _, _ = self.run_deck(deck, f"PRECIS,{precision}", words=words, memory=f"{0.9*float(needs[0]):.9f}")
+                self.assertEqual(3, run.returncode)
+                self.assertIn(f"deck.dat: the matrices need {needs[0]} GB", run.stderr)
+
+    def test_the_plan_tells_of_both(self):
+        single, double = [self.run_deck("pin_in_lug/pin_in_lug", f"PRECIS,{precision}")[1] for precision in ("MIXED", "DOUBLE")]
+        needed = re.search(r"memory for matrices (\d+ MB), operations", double)[1]
+        self.assertRegex(single, rf"memory for matrices \d+ MB \(in double {needed}\), operations")
 
     def test_faults(self):
         run, _, _ = self.run_deck("hertz/hertz44", "SOLVER,SPARSE", "PRECIS,MIXED")
