@@ -15,7 +15,7 @@ module epcont_accuracy_contact_stress
 contains
 
   !> The normal stress at each pair, as a pressure: the mean of both sides', of which each has errors of its own; 0 where neither
-  !! is of elements [stress] [pairs].
+  !! gives way [stress] [pairs].
   pure function smooth_pressures(model, table, material, smooth) result(pressure)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
@@ -32,8 +32,7 @@ contains
       weight = 0.0_wp
       do i = model%row_start(k), model%row_start(k + 1) - 1
         associate (node => model%row_node(i))
-          if (table%around%start(node) == table%around%start(node + 1)) cycle
-          if (model%held(1, model%leader(1, node)) .and. model%held(2, model%leader(2, node))) cycle
+          if (.not. gives_way(model, table, node)) cycle
           n = merge(1, 2, i == model%row_start(k))   ! the row's first node is one side, the others share the other
           side(n) = side(n) + model%row_weight(i)*normal_pressure(model, table, material, smooth(:, node), node, model%normal(:, k))
           weight(n) = weight(n) + model%row_weight(i)
@@ -43,6 +42,16 @@ contains
       if (any(seen)) pressure(k) = sum(side/merge(weight, 1.0_wp, seen), mask=seen)/count(seen)
     end do
   end function smooth_pressures
+
+  !> Is a node one of elements, and not held all over?
+  pure logical function gives_way(model, table, node)
+    type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
+    integer, intent(in) :: node
+
+    gives_way = table%around%start(node) < table%around%start(node + 1) .and. &
+                .not. (model%held(1, model%leader(1, node)) .and. model%held(2, model%leader(2, node)))
+  end function gives_way
 
   !> Normal stress of a smooth strain at a node, as a pressure.
   pure real(wp) function normal_pressure(model, table, material, strain, node, n)
@@ -60,7 +69,7 @@ contains
     end associate
   end function normal_pressure
 
-  !> 1/E*, of both sides of a pair: (1 - nu**2)/E, 1/E of sheets, 0 of nodes without elements [1/stress].
+  !> 1/E*, of both sides of a pair: (1 - nu**2)/E, 1/E of sheets, 0 of nodes that give way nowhere [1/stress].
   pure real(wp) function surface_compliance(model, table, pair) result(compliance)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
@@ -70,7 +79,7 @@ contains
     compliance = 0.0_wp
     do i = model%row_start(pair), min(model%row_start(pair) + 1, model%row_start(pair + 1) - 1)
       associate (node => model%row_node(i))
-        if (table%around%start(node) == table%around%start(node + 1)) cycle
+        if (.not. gives_way(model, table, node)) cycle
         section = model%section(table%around%group(table%around%start(node)))
         compliance = compliance + (1.0_wp - merge(0.0_wp, model%poisson(section)**2, model%kinematics(section) == plane_stress)) &
                                   /model%young(section)

@@ -1,4 +1,4 @@
-!> What the program says of a deck that is written in a line.
+!> What the program says of a deck that is written in a line, and makes of it.
 module deck_faults
   use epcont_base_error, only: error_type
   use epcont_deck_deck, only: deck_type, read_deck
@@ -10,7 +10,7 @@ module deck_faults
   use epcont_report_motions, only: report_motion_faults
   implicit none
   private
-  public :: faults_of
+  public :: faults_of, model_of
 
   character(len=*), parameter :: path = 'bad.dat'
   character(len=1), parameter :: newline = new_line('a')
@@ -27,11 +27,8 @@ contains
     type(model_type) :: model
     type(free_motions) :: motions
     type(motion_fault), allocatable :: loose(:)
-    integer :: unit
 
-    open (newunit=unit, file=path, access='stream', form='unformatted', status='replace')
-    write (unit) replaced(cards//'ENDDATA|', '|', newline)
-    close (unit)
+    call write_deck(cards)
     call read_deck(path, deck, faults, error)
     call build_model(deck, model, faults)
     if (faults%error_count() == 0) then
@@ -40,6 +37,29 @@ contains
     end if
     words = replaced(render(faults, deck%source), newline, '|')
   end function faults_of
+
+  !> The scene of a deck that is sound, its lines ended by bars.
+  function model_of(cards) result(model)
+    character(len=*), intent(in) :: cards
+    type(model_type) :: model
+    type(deck_type) :: deck
+    type(diagnostics) :: faults
+    type(error_type), allocatable :: error
+
+    call write_deck(cards)
+    call read_deck(path, deck, faults, error)
+    call build_model(deck, model, faults)
+    if (faults%error_count() > 0) error stop 'deck_faults: the deck is not sound'
+  end function model_of
+
+  subroutine write_deck(cards)
+    character(len=*), intent(in) :: cards
+    integer :: unit
+
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='replace')
+    write (unit) replaced(cards//'ENDDATA|', '|', newline)
+    close (unit)
+  end subroutine write_deck
 
   !> A text with one character for another.
   pure function replaced(text, old, new) result(other)
