@@ -12,6 +12,19 @@ module deck_faults
   private
   public :: faults_of, model_of
 
+  !> A square of two triangles: nodes 1 to 4, elements 1 and 2; two of its nodes held.
+  character(len=*), parameter, public :: square = &
+    'PARAM,PLANE,STRAIN|' // &
+    'GRID,1,,0.0,0.0|' // &
+    'GRID,2,,1.0,0.0|' // &
+    'GRID,3,,1.0,1.0|' // &
+    'GRID,4,,0.0,1.0|' // &
+    'CTRIA3,1,1,1,2,3|' // &
+    'CTRIA3,2,1,1,3,4|' // &
+    'PSHELL,1,1,1.0|' // &
+    'MAT1,1,1.0+5,,0.3|'
+  character(len=*), parameter, public :: held = 'SPC1,1,12,1,2|'
+
   character(len=*), parameter :: path = 'bad.dat'
   character(len=1), parameter :: newline = new_line('a')
 
