@@ -105,7 +105,7 @@ contains
     if (kinematics == plane_stress) strain_across = -mu/(1.0_wp - mu)*(strain(1) + strain(2))
   end function strain_across
 
-  !> Stress of the uniaxial curve at a total strain; the last slope goes on.
+  !> Stress of the uniaxial curve at a total strain; the last slope goes on. From the lower point up: nothing cancels.
   pure real(wp) function stress_at(strain, stress, total)
     real(wp), intent(in) :: strain(:), stress(:), total
     integer :: k
@@ -115,6 +115,6 @@ contains
       if (strain(k) >= total) exit
       k = k + 1
     end do
-    stress_at = stress(k) + (stress(k) - stress(k - 1))/(strain(k) - strain(k - 1))*(total - strain(k))
+    stress_at = stress(k - 1) + (stress(k) - stress(k - 1))/(strain(k) - strain(k - 1))*(total - strain(k - 1))
   end function stress_at
 end module epcont_certificate_yielding

@@ -179,6 +179,15 @@ class Curves(Extremes):
             self.near(result.approach, [-(1e-9 + (1.0 - 1e-6)/100.0)]*2, 1e-8)
             self.assertEqual(result.summary["plastic_elements"], 2)
 
+    def test_yield_point_far_below_the_next(self):
+        """A load near a yield stress that is 1e-12 to 1e-32 of the next stress: no digits of the next point are in the answer."""
+        for stress in (1e-10, 1e-20, 1e-30):
+            for method in ("NEWTON", "INISTR"):
+                with self.subTest(stress=stress, method=method):
+                    pressure = 2.0*stress
+                    result = self.valid(yielding([(stress/1000.0, stress), (1.0, 100.0)], pressure, method=method))
+                    self.near(result.approach, [-(stress/1000.0 + (pressure - stress)/100.0)]*2, 1e-6 if method == "NEWTON" else 0.02)
+
     def test_curve_of_a_thousand_points(self):
         points = [(0.001*k**0.5 if k == 1 else 0.001 + 1e-5*(k - 1), 1.0 + 0.002*math.sqrt(k - 1)) for k in range(1, 1001)]
         for k in (2, 500, 999):

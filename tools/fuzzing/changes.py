@@ -111,22 +111,35 @@ class Changes:
             card.data[slot] = self.pick.choice(["1", "2", "12", "3", "6", "123", ""])
 
     def table(self, deck):
-        """Points of a curve in another order, gone, equal or falling."""
+        """Points of a curve in another order, gone, equal or falling; a yield point far below the others."""
         card = self.card(deck, "TABLES1")
         if not card or len(card.data) < 11:
             return
         body = [text for text in card.data[8:] if text]
         i, j = self.pick.randrange(len(body)), self.pick.randrange(len(body))
-        how = self.pick.randrange(4)
+        how = self.pick.randrange(5)
         if how == 0:
             body[i], body[j] = body[j], body[i]
         elif how == 1:
             body[i] = body[j]
         elif how == 2:
             del body[i]
-        else:
+        elif how == 3:
             body[i:i] = self.pick.choice([["SKIP"], ["SKIP", "SKIP"], ["ENDT"], [""], ["1.0", "1.0"]])
+        else:
+            self.lower_yield_point(deck, card.data[0], body)
         card.data[8:] = body
+
+    def lower_yield_point(self, deck, table, body):
+        """Along the elastic line, so that the curve is one still; LIMIT1 with it."""
+        point = [value(text) for text in body[2:4]]
+        if len(point) < 2 or None in point:
+            return
+        factor = self.pick.choice([0.3, 1e-6, 1e-12, 1e-30, 1e-150])
+        body[2:4] = [number(factor * each) for each in point]
+        for card in deck.cards:
+            if card.name == "MATS1" and len(card.data) > 6 and card.data[1] == table and card.data[6]:
+                card.data[6] = body[3]
 
     def material(self, deck):
         card = self.card(deck, "MAT1", "MATS1", "PSHELL")
