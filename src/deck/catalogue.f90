@@ -7,8 +7,8 @@ module epcont_deck_catalogue
                                     card_ctrax6, card_ctria3, card_ctria6, card_force, card_grid, card_kinds, card_mat1, &
                                     card_mats1, card_param, card_pgap, card_ploadx1, card_pshell, card_psolid, card_rbe2, &
                                     card_spc, card_spc1, card_suport, card_tables1
-  use epcont_deck_entry, only: any_field, card_entry, cause, components_field, field_entry, id_field, integer_field, largest_id, &
-                               new_card, noted, number_of, positive, real_field, word_field
+  use epcont_deck_entry, only: any_field, card_entry, cause, components_field, field_entry, id_field, integer_field, &
+                               largest_id, new_card, noted, number_of, positive, real_field, word_field
   implicit none
   private
   public :: catalogue, parameters

@@ -16,9 +16,9 @@ module epcont_deck_entry
   !> Data fields on one line: numbers 2 to 9, then 12 to 19, and so on.
   integer, parameter :: fields_a_line = 8
 
-  !> Sizes of numbers that have an effect: at most `farthest`; where zero is none, at least `least_divisor`; of what loads a scene
-  !! (force, pressure, prescribed displacement, gap), zero or at least `least_cause`. Then works are numbers, though they are
-  !! squares of it over stiffnesses, areas and lengths of `farthest`, and of what rounding leaves where loads cancel.
+  !> Sizes of numbers that have an effect: at most `farthest`; where zero is none, at least `least_divisor`; of what loads a
+  !! scene (force, pressure, prescribed displacement, gap), zero or at least `least_cause`. Then works are numbers, though
+  !! they are squares of it over stiffnesses, areas and lengths of `farthest`, and of what rounding leaves where loads cancel.
   real(wp), parameter, public :: farthest = 1.0e30_wp, least_divisor = 1.0e-30_wp, least_cause = 1.0e-60_wp
 
   !> One field of a card, or one PARAM. The procedures below make it; its user refines it.

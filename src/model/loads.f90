@@ -40,8 +40,8 @@ contains
                                 ': field 8 (N3) points off the plane', '0.0: scenes lie in the x-y plane')
         if (out_of_reach(force%value(k - 1, i), force%value(k:k + 1, i))) &
           call faults%add_error(deck%place(card_force, i, k - 1), deck%identity(card_force, i)// &
-                                ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', 'other units: forces from '// &
-                                short_real(least_cause)//' to '//short_real(farthest)//', or 0.0')
+                                ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
+                                'other units: forces from '//short_real(least_cause)//' to '//short_real(farthest)//', or 0.0')
         model%load(:, node(1)) = model%load(:, node(1)) + force%value(k - 1, i)*along_axes(force%value(k:k + 1, i))
       end do
       if (pressure%count > 0) elements = new_id_index(model%element_id)

@@ -63,7 +63,8 @@ contains
     if (model%bodies > most) text = text//'  and '//plural(model%bodies - most, 'further one')//newline
     text = text//newline//'  memory for matrices '//megabytes(expected%bytes)
     if (iteration%precision /= precision_double) text = text//' (in double '//megabytes(expected%double_bytes)//')'
-    text = text//', operations '//short_real(expected%operations)//trim(merge(' a solve', '        ', iteration%yields))//newline
+    text = text//', operations '//short_real(expected%operations)// &
+           trim(merge(' a solve', '        ', iteration%yields))//newline
   end function plan_text
 
   pure function megabytes(bytes) result(text)
