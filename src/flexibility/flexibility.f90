@@ -136,23 +136,25 @@ contains
   end function motion_columns
 
   !> P = Phi' f, the loads along the free motions [motions]. Where they cancel, or act across the motion, but for rounding, there
-  !! are none: else rounding would tell whether the body moves off.
+  !! are none: else rounding would tell whether the body moves off. What acts on a held freedom does not count: its support has it.
   pure function motion_resultants(model, motions) result(resultant)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     real(wp), allocatable :: resultant(:)
     real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
-    real(wp) :: all_loads, moved(2)
-    integer :: i, m
+    real(wp) :: all_loads, load(2), moved(2)
+    integer :: c, i, m
 
     allocate (resultant(motions%count), source=0.0_wp)
     do m = 1, motions%count
       all_loads = 0.0_wp
       do i = 1, model%nodes
-        if (model%body(i) /= motions%body(m) .or. all(model%load(:, i) == 0.0_wp)) cycle
+        if (model%body(i) /= motions%body(m)) cycle
+        load = [(merge(0.0_wp, model%load(c, i), model%held(c, model%leader(c, i))), c=1, 2)]
+        if (all(load == 0.0_wp)) cycle
         moved = motions%displacement(model, i, m)
-        resultant(m) = resultant(m) + dot_product(moved, model%load(:, i))
-        all_loads = all_loads + norm2(moved)*norm2(model%load(:, i))
+        resultant(m) = resultant(m) + dot_product(moved, load)
+        all_loads = all_loads + norm2(moved)*norm2(load)
       end do
       if (abs(resultant(m)) <= rounding*all_loads) resultant(m) = 0.0_wp
     end do

@@ -3,7 +3,7 @@ module epcont_plasticity_iteration
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
   use epcont_base_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
-  use epcont_contact_problem, only: contact_solved
+  use epcont_contact_problem, only: contact_solved, contact_stalled
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_material_total_theory, only: respond, response_type
@@ -146,7 +146,8 @@ contains
       if (run%singular > 0) return
       call loop%scene%solve(model, motions, numbering, loop%law, part, loop%touching, found, watch)
       if (found%contact%state /= contact_solved) then
-        state = found
+        ! Not found about a later state, such as one beyond the limit load: what was found before is not converged.
+        if (iteration == 1 .or. found%contact%state /= contact_stalled) state = found
         return
       end if
       now%load_factor = part
