@@ -19,7 +19,7 @@ STOPS = 24   # moments at which a run is stopped
 
 
 def sanitized():
-    return b"AddressSanitizer" in pathlib.Path(PROGRAM).read_bytes()
+    return b"__asan_init" in pathlib.Path(PROGRAM).read_bytes()
 
 
 class Case(unittest.TestCase):

@@ -115,6 +115,7 @@ contains
   subroutine solve_once(spent)
     real(wp), intent(inout) :: spent(times)
     logical, allocatable :: start(:)   !! no guess
+    real(wp), allocatable :: load(:, :)
     logical :: all_changed(model%elements)
     integer :: b
 
@@ -138,7 +139,8 @@ contains
     call solve_contact(problem, solution, start, plan%by_blocks)
     spent(contact) = lap()
     if (solution%state /= contact_solved) error stop 'no contact found'
-    displacement = bodies%displacements(model, numbering, model%load + pair_forces(model, solution%force), 1.0_wp)
+    load = model%load + pair_forces(model, solution%force)   ! as an argument gfortran 12 would not free it
+    displacement = bodies%displacements(model, numbering, load, 1.0_wp)
     spent(displacing) = lap()
   end subroutine solve_once
 
