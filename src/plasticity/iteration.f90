@@ -24,6 +24,8 @@ module epcont_plasticity_iteration
   real(wp), parameter :: far_away = 1.0e4_wp
   !> Stresses this near to their curves, of the largest stress, are on them but for rounding.
   real(wp), parameter, public :: rounding = 1.0e-10_wp
+  !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, it has lost the answer.
+  real(wp), parameter :: stagnant = 1.0e-3_wp
   !> A strain that falls by less than this part of it stays.
   real(wp), parameter :: least_fall = 1.0e-6_wp
 
@@ -245,7 +247,8 @@ contains
     associate (now => history(n))
       is_over = now%yielded + loop%yielded == 0
       if (now%change <= loop%plan%tolerance) is_over = is_over .or. now%residual <= loop%plan%off_curve
-      if (now%iteration > 3 .and. now%residual <= rounding) is_over = is_over .or. now%change >= history(n - 2)%change
+      if (now%iteration > 3 .and. now%residual <= rounding .and. now%change <= stagnant) &
+        is_over = is_over .or. now%change >= history(n - 2)%change
     end associate
   end function is_over
 
