@@ -134,7 +134,7 @@ contains
   end function has_rings
 
   !> Can an element yield?
-  pure function can_yield(self, element)
+  elemental function can_yield(self, element)
     class(model_type), intent(in) :: self
     integer, intent(in) :: element
     logical :: can_yield
