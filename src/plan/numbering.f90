@@ -12,8 +12,9 @@ module epcont_plan_numbering
   private
   public :: body_numbering, element_numbers, numbering_type, number_equations
 
-  !> Nodes of a body from which on SOLVER AUTO is FRONTAL.
-  integer, parameter, public :: many_nodes = 6000
+  !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact bodies (13 000 nodes of two
+  !! cylinders) and on long ones, on elastic ones and on those that yield.
+  real(wp), parameter, public :: many_operations = 6.0e8_wp
 
   !> One body's system of equations.
   type :: body_numbering
@@ -91,8 +92,7 @@ contains
       call number_nodes(model, at_contact, nodes, equation, body)
       call find_reach(model, equation, body)
       if (model%controls%solver == solver_sparse .and. body%equations > 0) body%solver = solver_sparse
-    else if (model%controls%solver == solver_frontal .or. &
-             (model%controls%solver == solver_auto .and. size(nodes) >= many_nodes)) then
+    else if (model%controls%solver == solver_frontal) then
       call number_fronts(model, nodes, at_contact, equation, body)
     else
       call number_band(model, around, nodes, at_contact, equation, body)
@@ -152,7 +152,7 @@ contains
 
   !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come last: then the
   !! trailing block of the factor alone gives the flexibility. Or, where that widens the band by more than forward
-  !! substitution of all pairs costs, they are rooted at the body's far end.
+  !! substitution of all pairs costs, they are rooted at the body's far end. Where even that band is a wide one, fronts are taken.
   pure subroutine number_band(model, around, nodes, at_contact, equation, body)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: around
@@ -173,7 +173,10 @@ contains
     call find_reach(model, equation, plain)
     plain%contact_last = .false.
     plain%operations = panel_operations(plain%reach)
-    if (.not. any(at_contact(nodes))) then
+    if (model%controls%solver == solver_auto .and. plain%operations > many_operations) then
+      call number_fronts(model, nodes, at_contact, equation, body)
+      return
+    else if (.not. any(at_contact(nodes))) then
       body = plain
       return
     end if

@@ -9,7 +9,7 @@ module epcont_report_plan
   use epcont_plan_forecast, only: forecast_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_numbering, only: body_numbering, many_nodes, numbering_type
+  use epcont_plan_numbering, only: body_numbering, many_operations, numbering_type
   use epcont_report_layout, only: newline, right
   use epcont_report_precision, only: precision_text
   implicit none
@@ -118,7 +118,8 @@ contains
     if (.not. any(numbering%body%solver == solver_frontal)) return
     text = '  bodies factored in nested fronts (FRONTAL): '//text_of(count(numbering%body%solver == solver_frontal))//newline
     if (model%controls%solver /= solver_auto) return
-    text = text//'    chosen here (AUTO): the faster solver of bodies from '//text_of(many_nodes)//' nodes on'//newline
+    text = text//'    chosen here (AUTO): faster where a band (BAND) takes more than '//short_real(many_operations)// &
+           ' operations'//newline
   end function solver_text
 
   !> Half-bandwidth, or the solver of a body that has none.
