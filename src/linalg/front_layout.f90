@@ -18,6 +18,7 @@ module epcont_linalg_front_layout
     integer, allocatable :: row(:)         !! equations reached, ascending in each front
     integer, allocatable :: own(:)         !! how many equations are a front's own [fronts]
     integer, allocatable :: reached(:)     !! and how many it reaches [fronts]
+    integer, allocatable :: element(:)     !! the elements in the order of the first fronts that they have equations of
   contains
     procedure :: find
     procedure :: entries
@@ -36,7 +37,8 @@ contains
     type(incidence) :: at
     logical, allocatable :: seen(:)
     integer, allocatable :: child(:), next(:), reached(:), row(:)
-    integer :: c, found, fronts, k, p
+    integer, allocatable :: home(:, :)
+    integer :: c, e, found, fronts, k, p
 
     fronts = size(first) - 1
     layout%first = first
@@ -44,7 +46,9 @@ contains
     do p = 1, fronts
       layout%front_of(first(p):first(p + 1) - 1) = p
     end do
-    at = new_incidence(lowest_front(layout%front_of, numbers), fronts)
+    home = lowest_front(layout%front_of, numbers)
+    at = new_incidence(home, fronts)
+    layout%element = [at%group, pack([(e, e=1, size(home))], home(1, :) == 0)]
     allocate (layout%parent(fronts), child(fronts), next(fronts), source=0)
     allocate (layout%row_start(fronts + 1), source=1)
     allocate (seen(size(layout%front_of)), source=.false.)

@@ -132,6 +132,8 @@ contains
     body%fronts = new_front_layout([pack(first(:size(first) - 1), first(2:) > first(:size(first) - 1)), body%equations + 1], &
                                    element_numbers(model, equation, body))
     body%operations = body%fronts%operations() + real(body%contact_equations, wp)**3
+    ! What is assembled together stands together in memory.
+    body%element = body%element(body%fronts%element)
   end subroutine number_fronts
 
   !> Equations of the elements of a body, x and y of their nodes in turn, zeros behind [any, elements].
