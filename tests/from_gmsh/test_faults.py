@@ -119,7 +119,8 @@ SCENE = [
                        "one piece a line: a Physical Curve and a [[contact]] for each"]),
     ('strain"\nunits = "N-MM"', 'strain"\nunits = "N-MM"\nmaterial = 3', ["line 7, column 16: is no TOML: Cannot overwrite a value", FORM]),
 ]
-GMSH = "a file that Gmsh itself opens and meshes without an error"
+GMSH = "mend the drawing until it opens and meshes in Gmsh itself without an error"
+THERE = " that the drawing has; bodies in contact have their own each: no Coherence, no BooleanFragments"
 WITHIN = "triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1)"
 
 #: The same of the file of Gmsh.
@@ -140,9 +141,16 @@ MESH = [
       "[body.above]: 14 of its elements in two.geo are Triangle 10, which epcont has no card for", WITHIN]),
     ('("above") = {2};', '("above") = {2}; Recombine Surface{1}; Mesh.ElementOrder = 2;',
      ["[body.below]: 6 of its elements in two.geo are second-order quadrilaterals, which epcont has no card for", WITHIN]),
-    ("EndFor", "EndFor\nCoherence;", ["[[contact]] slave: two.geo has no line 'under'", "its lines: floor, face, top, wall",
-                                      "[[contact]] master: 'face' has a side between two elements (above, below), at (2, 2), (1, 2)",
-                                      "a line along the outside; bodies in contact need curves and points of their own each, not common ones"]),
+    ("EndFor", "EndFor\nCoherence;", ["mesh: two.geo has no curve 5, which its Physical Curve 'under' asks for", f"curves{THERE}"]),
+    ('("under") = {5}', '("under") = {3}; Coherence', [
+        part for which, name in (("slave", "under"), ("master", "face")) for part in (
+            f"[[contact]] {which}: '{name}' has a side between two elements (above, below), at (2, 2), (1, 2)",
+            "a line along the outside; bodies in contact need curves and points of their own each, not common ones")]),
+    ('("face") = {3}', '("face") = {3, 33}', ["mesh: two.geo has no curve 33, which its Physical Curve 'face' asks for", f"curves{THERE}"]),
+    ('("face") = {3}', '("face") = {33}', ["mesh: two.geo has no curve 33, which its Physical Curve 'face' asks for", f"curves{THERE}"]),
+    ('("corner") = {7}', '("corner") = {7, 70}', ["mesh: two.geo has no point 70, which its Physical Point 'corner' asks for", f"points{THERE}"]),
+    ('("above") = {2}', '("above") = {2, 5}', ["mesh: two.geo has no surface 5, which its Physical Surface 'above' asks for",
+                                               f"surfaces{THERE}"]),
     ('("face") = {3}', '("face") = {3, 1}', ["[[contact]] master: 'face' is in 2 pieces: (0, 0) to (2, 0); (2, 2) to (0, 2)",
                                              "one piece a line: a Physical Curve and a [[contact]] for each"]),
 ]
@@ -203,6 +211,27 @@ class Mistakes(unittest.TestCase):
         self.rejected(["[body.below]: 5 of its nodes lie at negative radius, the farthest at (-1, 0)", "in a ring x is the radius, from 0 on, and y the axis",
                        "[body.above]: 5 of its nodes lie at negative radius, the farthest at (-1, 2)", "in a ring x is the radius, from 0 on, and y the axis"],
                       toml=toml, geo=geo)
+
+    def test_free_to_move(self):
+        """What epcont says of nodes, in the words of the scene: where to hold what."""
+        free = '[free]\ncorner = "y"\n'
+        for old, new, said in (
+                ("", "", ["nothing holds above in y", '  [support] NAME.y = 0; or, where contact is to hold it, [free] NAME = "y", of a point or a '
+                          "[platen]; its lines: under, top, wall; its points: corner"]),
+                ("wall.x = 0\n", "", ["nothing holds above in x, nor in y, nor against turning", "  [support] NAME.x = 0 and NAME.y = 0; or, where contact "
+                                       'is to hold it, [free] NAME = "xy", of a point or a [platen]; against turning, one more point; '
+                                       "its lines: under, top, wall; its points: corner",
+                                       "nothing holds below in x", '  [support] NAME.x = 0; or, where contact is to hold it, [free] NAME = "x", of a '
+                                       "point or a [platen]; its lines: floor, face, wall; its points: none"])):
+            with self.subTest(old):
+                status, text = self.said(toml=self.replaced(TOML, free, "").replace(old, new))
+                if "epcont is not built" in text:
+                    self.skipTest("there is no epcont in a build folder that tools/deck looks at")
+                self.assertEqual(status, 2)
+                told = text.splitlines()
+                first = next(i for i, line in enumerate(told) if line.startswith("nothing holds"))
+                self.assertEqual(told[first:-1], said)
+                self.assertRegex(told[-1], "^mend the scene, not the deck; ")
 
     def test_out_of_plane(self):
         geo = self.replaced(GEO, ", 0, 1}", ", 0.5, 1}")

@@ -64,6 +64,8 @@ def check(path, maker):
     print(run.stdout + run.stderr, end="")
     for number in sorted({int(n) for n in re.findall(r"\bGRID (\d+)", run.stderr)}):
         print(maker.described(number))
+    for number, motions in re.findall(r"the body of GRID (\d+) is free to move: (.*)", run.stderr):
+        print(maker.freed(int(number), motions))
     if not run.returncode:
         return 0
     print("mend the scene, not the deck; in the scene SPC1 and SPC are [support], SUPORT [free], RBE2 [platen], BLSEG and BCONP [[contact]]")

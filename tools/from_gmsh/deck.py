@@ -1,7 +1,7 @@
 """The cards of a scene on its mesh."""
 from .cards import card
 from .faults import listed, spot
-from .lines import shares
+from .lines import nodes_of, shares
 from .match import Groups, check_bodies
 
 AXES = {"1": "x", "2": "y"}
@@ -231,6 +231,23 @@ class Maker:
 
     def described(self, number):
         """Where the node of a GRID is."""
-        node = next(node for node, other in self.number.items() if other == number)
-        bodies = [name for name, elements in self.mesh.bodies.items() if any(node in nodes for _, nodes in elements)]
+        node, bodies = self.home(number)
         return f"GRID {number} is at {spot(self.mesh.place[node])}, on {listed(bodies)}"
+
+    def home(self, number):
+        """The node of a GRID, and its bodies."""
+        node = next(node for node, other in self.number.items() if other == number)
+        return node, [name for name, elements in self.mesh.bodies.items() if any(node in nodes for _, nodes in elements)]
+
+    def freed(self, number, motions):
+        """What a scene says against free motions, in epcont's words, of the body of a GRID."""
+        _, bodies = self.home(number)
+        own = {node for name in bodies for _, nodes in self.mesh.bodies[name] for node in nodes}
+        lines = [name for name, sides in self.mesh.lines.items() if own & set(nodes_of(sides))]
+        points = [name for name, nodes in self.mesh.points.items() if own & set(nodes)]
+        axes = [axis for axis, shift in (("x", "shifts along (1.000, 0.0)"), ("y", "shifts along (0.0, 1.000)")) if shift in motions]
+        missing = [f"in {axis}" for axis in axes] + ["against turning"] * ("turns" in motions)
+        held = " and ".join(f"NAME.{axis} = 0" for axis in axes or "x")
+        return f"nothing holds {listed(bodies)} {', nor '.join(missing or ['in one direction'])}\n" \
+            f"  [support] {held}; or, where contact is to hold it, [free] NAME = \"{''.join(axes) or 'x'}\", of a point or a [platen]" \
+            f"{'; against turning, one more point' * ('turns' in motions)}; its lines: {listed(lines)}; its points: {listed(points)}"
