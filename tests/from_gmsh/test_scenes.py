@@ -121,6 +121,28 @@ class Scenes(unittest.TestCase):
         x, y = map(float, re.search(r"refine first: .* the first at (\S+) (\S+);", accuracy).groups())
         self.assertLess(math.hypot(x - 2.0, y), 0.5)
 
+    def listed(self, *changes):
+        """The lines of ACCURACY behind those of the mesh, of the punch with other texts in its scene."""
+        text = (SCENES / "punch.toml").read_text()
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        (self.place / "punch.geo").write_text((SCENES / "punch.geo").read_text())
+        (self.place / "punch.toml").write_text(text)
+        self.assertEqual(make(self.place / "punch.toml", self.place / "punch.dat").returncode, 0)
+        self.solved(self.place / "punch.dat")
+        return (self.place / "punch.lst").read_text().partition("refine first")[2].splitlines()[1:]
+
+    def test_what_no_mesh_mends(self):
+        """A contact that is cut off by SEARCH, and displacements that are not small: the answer holds, of another question."""
+        self.assertEqual(self.listed(), [])
+        cut = self.listed(("[[contact]]", "[PARAM]\nSEARCH = 0.001\n[[contact]]"))
+        self.assertEqual(len(cut), 1)
+        self.assertRegex(cut[0], r"^  BCONP 1: pair \d+ touches beside nodes that were left out: the contact may go on there; PARAM SEARCH above 0.001000$")
+        large = self.listed(("-7500.0", "-750000.0"))[-2:]
+        self.assertRegex(large[0], r"^  not small: turned, stretched by over 0.1 +\d\d %   of the volume$")
+        self.assertRegex(large[1], r"^    \(most at \S+ \S+, \S+; equilibrium and contact are those of the undeformed shape: loads, moduli, units\?\)$")
+
     def variant(self, *changes):
         """The two blocks on three-node triangles, from a scene with other texts; its tables."""
         text = (SCENES / "blocks.toml").read_text()
