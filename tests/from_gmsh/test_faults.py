@@ -246,6 +246,8 @@ class Mistakes(unittest.TestCase):
                 (self.replaced(TOML, "210000.0", "2.1e11"), GEO,
                  "[material.steel] E: 2.1e+11 is no modulus of a solid in units N-MM: steel is 210000 there"),
                 (self.replaced(TOML, "[material.steel]", "material.brass = { E = 1e5, NU = 0.3 }\n[material.steel]"), GEO, "[material.brass]: no body is made of it"),
+                (self.replaced(TOML, "top.pressure = 10.0", ""), GEO,
+                 "[load]: there is none, and no support that moves: nothing but overlaps of the drawing gives forces"),
                 (TOML, GEO + 'Physical Curve("spare") = {2};', "mesh: the line 'spare' of two.geo is used by nothing"),
                 (TOML, GEO + "Physical Curve(99) = {2};", "mesh: Physical Curve(99) of two.geo has no name, and no effect"),
                 (TOML, GEO + "Plane Surface(9) = {1};", "mesh: surface 9 of two.geo is in no Physical Surface and is left out")):
@@ -263,6 +265,17 @@ class Mistakes(unittest.TestCase):
         run = subprocess.run([sys.executable, "-m", "from_gmsh", "other.toml"], cwd=self.place, capture_output=True, text=True,
                              env={**os.environ, "PYTHONPATH": str(TOOLS)}, check=False)
         self.assertEqual(run.stderr, "other.toml: scene: there is no such file\n  TOML files beside it: scene.toml\nother.toml: 1 error, no deck written\n")
+
+    def test_one_for_another(self):
+        """A drawing or a scene where a deck is wanted, and the other way round."""
+        for tool, name, said in (
+                ("run", "scene.toml", "scene.toml is no deck; tools/deck SCENE.toml -o DECK.dat makes one"),
+                ("plot", "two.geo", "two.geo is no deck; tools/deck SCENE.toml -o DECK.dat makes one"),
+                ("paraview", "two.msh", "two.msh is no deck; tools/deck SCENE.toml -o DECK.dat makes one"),
+                ("deck", "two.geo", 'two.geo is no scene: that is a .toml, with mesh = "NAME.geo" (input/README.md, "From Gmsh")')):
+            run = subprocess.run([TOOLS / tool, name], cwd=self.place, capture_output=True, text=True, check=False)
+            self.assertEqual(run.returncode, 3, run.stderr)
+            self.assertRegex(run.stderr, rf"^\S*tools/{tool}: {re.escape(said)}\n$")
 
     def test_garbage(self):
         """Files that are nothing like what they should be."""

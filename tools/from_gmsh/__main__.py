@@ -83,6 +83,8 @@ def main(arguments=None):
     faults = Faults(options.scene.name)
     path = options.deck or options.scene.with_suffix(".dat")
     try:
+        if options.scene.suffix.lower() in (".geo", ".msh", ".dat", ".bdf"):
+            raise Unusable(f'{options.scene} is no scene: that is a .toml, with mesh = "NAME.geo" (input/README.md, "From Gmsh")')
         if not path.suffix or not path.name.isascii() or set("'\"") & set(path.name):
             raise Unusable(f"{path}: the name of a deck ends in .dat, say, and has no quotes; the deck includes a file of like name")
         maker = make(options.scene, path, faults)

@@ -22,6 +22,8 @@ class Maker:
         self.free = self.find_free()
         self.pressures, self.forces = self.find_loads()
         self.groups.note_unused()
+        if not self.pressures and not self.forces and not any(value for own in self.held.values() for value, _ in own.values()):
+            faults.note("[load]", "there is none, and no support that moves: nothing but overlaps of the drawing gives forces")
         faults.end_stage()
         self.number = self.numbers()
         self.first = {}   # number of the first element of each body
