@@ -222,7 +222,10 @@ class Mistakes(unittest.TestCase):
                                        'is to hold it, [free] NAME = "xy", of a point or a [platen]; against turning, one more point; '
                                        "its lines: under, top, wall; its points: corner",
                                        "nothing holds below in x", '  [support] NAME.x = 0; or, where contact is to hold it, [free] NAME = "x", of a '
-                                       "point or a [platen]; its lines: floor, face, wall; its points: none"])):
+                                       "point or a [platen]; its lines: floor, face, wall; its points: none"]),
+                ("floor.y = 0\nwall.x = 0", "floor = { x = 0, y = 0 }\ncorner = { x = 0, y = 0 }",
+                 ["nothing holds above against turning", "  [support] NAME.x = 0 or NAME.y = 0 of one more point; or, where contact is to hold it, "
+                  '[free] NAME = "x" or "y" of one more; its lines: under, top, wall; its points: corner'])):
             with self.subTest(old):
                 status, text = self.said(toml=self.replaced(TOML, free, "").replace(old, new))
                 if "epcont is not built" in text:

@@ -248,8 +248,13 @@ class Maker:
         lines = [name for name, sides in self.mesh.lines.items() if own & set(nodes_of(sides))]
         points = [name for name, nodes in self.mesh.points.items() if own & set(nodes)]
         axes = [axis for axis, shift in (("x", "shifts along (1.000, 0.0)"), ("y", "shifts along (0.0, 1.000)")) if shift in motions]
-        missing = [f"in {axis}" for axis in axes] + ["against turning"] * ("turns" in motions)
-        held = " and ".join(f"NAME.{axis} = 0" for axis in axes or "x")
+        turns = "turns" in motions
+        missing = [f"in {axis}" for axis in axes] + ["against turning"] * turns
+        if axes or not turns:
+            held = " and ".join(f"NAME.{axis} = 0" for axis in axes or "x")
+            remedy = f'{held}; or, where contact is to hold it, [free] NAME = "{"".join(axes) or "x"}", of a point or a [platen]' \
+                f"{'; against turning, one more point' * turns}"
+        else:
+            remedy = 'NAME.x = 0 or NAME.y = 0 of one more point; or, where contact is to hold it, [free] NAME = "x" or "y" of one more'
         return f"nothing holds {listed(bodies)} {', nor '.join(missing or ['in one direction'])}\n" \
-            f"  [support] {held}; or, where contact is to hold it, [free] NAME = \"{''.join(axes) or 'x'}\", of a point or a [platen]" \
-            f"{'; against turning, one more point' * ('turns' in motions)}; its lines: {listed(lines)}; its points: {listed(points)}"
+            f"  [support] {remedy}; its lines: {listed(lines)}; its points: {listed(points)}"
