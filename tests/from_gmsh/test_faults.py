@@ -251,6 +251,7 @@ class Mistakes(unittest.TestCase):
                 (self.replaced(TOML, "[material.steel]", "material.brass = { E = 1e5, NU = 0.3 }\n[material.steel]"), GEO, "[material.brass]: no body is made of it"),
                 (self.replaced(TOML, "top.pressure = 10.0", ""), GEO,
                  "[load]: there is none, and no support that moves: nothing but overlaps of the drawing gives forces"),
+                (TOML, GEO + "a = 1; b = 2;", "mesh: the last line of two.geo has no end of line: Gmsh reads the first of its commands alone"),
                 (TOML, GEO + 'Physical Curve("spare") = {2};', "mesh: the line 'spare' of two.geo is used by nothing"),
                 (TOML, GEO + "Physical Curve(99) = {2};", "mesh: Physical Curve(99) of two.geo has no name, and no effect"),
                 (TOML, GEO + "Plane Surface(9) = {1};", "mesh: surface 9 of two.geo is in no Physical Surface and is left out")):

@@ -8,11 +8,13 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tools"), str(TOP / "tests" / "independent")]
 import gmsh  # noqa: E402
 from deck import read, real  # noqa: E402
+from drawing.run import Run  # noqa: E402
 from from_gmsh.cards import card, written  # noqa: E402
 from from_gmsh.faults import Faults  # noqa: E402
 from from_gmsh.scene import PARAMETERS, read_scene  # noqa: E402
@@ -142,6 +144,39 @@ class Scenes(unittest.TestCase):
         large = self.listed(("-7500.0", "-750000.0"))[-2:]
         self.assertRegex(large[0], r"^  not small: turned, stretched by over 0.1 +\d\d %   of the volume$")
         self.assertRegex(large[1], r"^    \(most at \S+ \S+, \S+; equilibrium and contact are those of the undeformed shape: loads, moduli, units\?\)$")
+
+    def test_one_line_in_two_contacts(self):
+        """A roller between two blocks, its rim one closed line: Hertz at both, and two curves in the picture."""
+        (self.place / "roller.geo").write_text("""SetFactory("OpenCASCADE");
+            Mesh.ElementOrder = 2;
+            Rectangle(1) = {-10, -6, 0, 20, 6};  Disk(2) = {0, 3, 0, 3};  Rectangle(3) = {-8, 6, 0, 16, 5};
+            Point(100) = {0, 3, 0, 1};  Point(101) = {1, 3, 0, 1};  Point{100, 101} In Surface{2};
+            Field[1] = Box;  Field[1].XMin = -0.5;  Field[1].XMax = 0.5;  Field[1].YMin = -1;  Field[1].YMax = 7;
+            Field[1].VIn = 0.08;  Field[1].VOut = 2;  Field[1].Thickness = 4;  Background Field = 1;
+            Physical Surface("below") = {1};  Physical Surface("roller") = {2};  Physical Surface("above") = {3};
+            Physical Curve("bed") = {3};  Physical Curve("ground") = {1};  Physical Curve("rim") = {5};
+            Physical Curve("under") = {6};  Physical Curve("top") = {8};
+            Physical Point("hub") = {100};  Physical Point("side") = {101};
+            """)
+        (self.place / "roller.toml").write_text("""mesh = "roller.geo"
+kind = "plane strain"
+material.steel = { E = 210000.0, NU = 0.3 }
+body = { below.material = "steel", roller.material = "steel", above.material = "steel" }
+support = { ground = { x = 0, y = 0 }, hub.x = 0, top.x = 0 }
+platen.top = "y"
+free = { top = "y", hub = "y", side = "y" }
+load.top.force = [0.0, -500.0]
+contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" }]
+""")
+        told = make(self.place / "roller.toml", self.place / "roller.dat")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.near(self.solved(self.place / "roller.dat")["summary"]["max_pressure"], hertz(500.0, (3.0, 1e30))[0], 0.02)
+        with unittest.mock.patch("drawing.run.PROGRAM", PROGRAM):
+            lines = Run(self.place / "roller.dat").lines
+        self.assertEqual([line.name for line in lines], ["BCONP 1", "BCONP 2"])
+        for line, height in zip(lines, (0.0, 6.0)):
+            self.near(line.force.sum(), 500.0, 1e-6)
+            self.assertLess(abs(line.x[line.touching][:, 1] - height).max(), 0.1)
 
     def variant(self, *changes):
         """The two blocks on three-node triangles, from a scene with other texts; its tables."""

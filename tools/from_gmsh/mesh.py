@@ -41,6 +41,8 @@ def read_mesh(path, faults: Faults):
         beside = sorted(p.name for p in path.parent.glob("*") if p.suffix in (".geo", ".msh"))
         faults.add("mesh", f"there is no file {path.name} beside the scene", f"one of: {listed(beside)}")
     faults.end_stage()
+    if path.suffix.lower() == ".geo" and path.read_bytes().rpartition(b"\n")[2].count(b";") > 1:
+        faults.note("mesh", f"the last line of {path.name} has no end of line: Gmsh reads the first of its commands alone")
     gmsh.initialize(["gmsh"], readConfigFiles=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
