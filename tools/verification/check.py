@@ -1,8 +1,8 @@
 """The figures of a certificate, recomputed from a scene and the tables of its run, and held against the program's own."""
-import csv
 import math
 import pathlib
 
+import tables
 from deck import integer
 from kinds import KINDS
 from pressures import pressures
@@ -27,15 +27,16 @@ ROUNDINGS = 128 * 2.0 ** -52
 class Tables:
     def __init__(self, directory, stem):
         self.directory, self.stem = pathlib.Path(directory), stem
-        self.summary = {row["key"]: row["value"] for row in self.read("summary")}
+        self.summary = tables.summary(self.path("summary"))
         self.nodes = {int(row["node"]): row for row in self.read("nodes")}
         self.elements = {int(row["element"]): row for row in self.read("elements")}
-        contact = self.directory / f"{stem}.contact.csv"
-        self.contact = {int(row["pair"]): row for row in self.read("contact")} if contact.exists() else {}
+        self.contact = {int(row["pair"]): row for row in self.read("contact")} if self.path("contact").exists() else {}
+
+    def path(self, name):
+        return self.directory / f"{self.stem}.{name}.csv"
 
     def read(self, name):
-        with open(self.directory / f"{self.stem}.{name}.csv", newline="", encoding="ascii") as file:
-            return list(csv.DictReader(file))
+        return tables.rows(self.path(name))
 
 
 def add_elements(scene, tables, u, rest):
