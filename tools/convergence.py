@@ -11,6 +11,7 @@ Unknowns: equations of the bodies, as `epcont --plan` counts them.
 """
 import argparse
 import math
+import os
 import pathlib
 import re
 import subprocess
@@ -103,10 +104,23 @@ def draw(contact, wall, name):
     style.save(figure, name)
 
 
+def check_folder(parser, output):
+    """Before minutes of runs: can the files be written?"""
+    if not output:
+        return
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        parser.error(f"-o {output}: {error.filename}: {error.strerror}")
+    if not os.access(output.parent, os.W_OK):
+        parser.error(f"-o {output}: {output.parent} cannot be written")
+
+
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="tools/convergence", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of a picture, without .png and .svg")
     options = parser.parse_args()
+    check_folder(parser, options.output)
     with tempfile.TemporaryDirectory() as place:
         contact = {element: [two_cylinders(element, n, place) for n in ACROSS[element]] for element in ELEMENTS}
         wall = {element: [tube(element, n, place) for n in PARTS[element]] for element in ELEMENTS}

@@ -50,7 +50,7 @@ class Case(unittest.TestCase):
             self.script(self.place / "bin" / name, text)
         self.script(self.place / "made", MADE)
         # Nothing of this machine's Pythons.
-        for name in ("sh", "cat", "cmp", "cp", "rm", "mkdir", "touch", "sed", "seq", "tail", "dirname", "sleep", "flock", "timeout"):
+        for name in ("sh", "cat", "cmp", "cp", "rm", "basename", "mkdir", "touch", "sed", "seq", "tail", "dirname", "sleep", "flock", "timeout"):
             if shutil.which(name):
                 (self.place / "bin" / name).symlink_to(shutil.which(name))
 
@@ -155,7 +155,8 @@ class Refusals(Case):
         self.refused(f"{self.top}/build cannot be written")
 
     def test_usage(self):
-        self.assertIn("tools/make_venv [tools|vtk|benchmark]", self.run_it(3, "nonsense").stderr)
+        self.assertIn("nonsense: tools, vtk or benchmark would be right", self.run_it(3, "nonsense").stderr)
+        self.assertIn("tools/make_venv [tools|vtk|benchmark]: makes", self.run_it(0, "--help").stdout)
 
 
 class Skipping(Case):
