@@ -21,7 +21,7 @@ esac
 MADE = """#!/bin/sh
 echo "venv $*" >> {place}/calls
 case "$*" in
-  --version) echo "Python 3.$MINOR.1" ;;
+  *version_info*) echo "$MINOR" ;;
   "-m pip "*) [ ! -e {place}/slow ] || sleep 1; [ ! -e {place}/offline ] || {{ echo "pip: no route to host" >&2; exit 1; }} ;;
   "-c import gmsh"*) [ ! -e {place}/headless ] || {{ echo "OSError: libGLU.so.1" >&2; exit 1; }} ;;
   *) exit 9 ;;
