@@ -37,6 +37,7 @@ INSTEAD = [
     (r"tools/fuzz --minutes .*", "tools/fuzz --decks 4 --program build/release/epcont", "minutes; builds the preset sanitize"),
     (r"tools/paraview .*", "sh -n tools/paraview && python3 tools/paraviews.py --help", "wants ParaView"),
     (r"tools/make_venv \w+", "sh -n tools/make_venv", "fetches packages; the ctest `tools_make_venv` runs it"),
+    (r"tests/in_venv", "sh -n tests/in_venv", "runs a test"),
     (r"tools/plot --all", "tools/plot --help", "minutes"),
     (r"tools/tradeoff .*", "build/venv/bin/python tools/tradeoffs.py --help", "minutes; installs GNU time"),
     (r"(python tests/independent/compare.py \S+) input/.*", r"\1 input/hertz/hertz44.dat tests/independent/cases/*_size8.dat", "minutes"),

@@ -166,6 +166,9 @@ class Skipping(Case):
         self.run_it(77, "tools", "any.py", tool="tests/in_venv", EPCONT_NEED_VENV="0")
         self.run_it(1, "tools", "any.py", tool="tests/in_venv", EPCONT_NEED_VENV="1")
 
+    def test_usage(self):
+        self.assertIn("SCRIPT", self.run_it(3, tool="tests/in_venv").stderr)
+
     def test_a_test_runs(self):
         self.run_it(9, "tools", "any.py", "more", tool="tests/in_venv")   # the stand-in knows no such script
         self.assertEqual(["venv -B any.py more"], self.calls("any.py"))
