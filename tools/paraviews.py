@@ -1,10 +1,10 @@
 """A picture of any deck by ParaView, from the files that `epcont --vtk` writes: equivalent stress on the displaced bodies, and the
 contact pressure along their boundary.
 
-    tools/paraview DECK.dat -o NAME.png [--scale 10] [--near X,Y,HALF_HEIGHT]
+    tools/paraview DECK.dat [-o NAME.png] [--scale 10] [--near X,Y,HALF_HEIGHT]
 
 One panel shows the whole, displacements times --scale; the other what is near a place, meshes and all, displacements as they are.
-The exit status is that of epcont: a deck that is rejected has no picture; 3: usage or files.
+NAME is DECK.paraview, here, if not given. The exit status is that of epcont: a deck that is rejected has no picture.
 """
 import argparse
 import math
@@ -17,43 +17,36 @@ import tempfile
 TOP = pathlib.Path(__file__).resolve().parent.parent
 
 
-class Parser(argparse.ArgumentParser):
-    def error(self, message):   # argparse's own exit status is that of a deck that is rejected
-        print(f"tools/paraview: {message}; --help says more", file=sys.stderr)
-        sys.exit(3)
-
-
 def numbers(text, count, right):
     try:
         found = [float(part) for part in text.split(",")]
     except ValueError:
         found = []
     if len(found) != count or not all(map(math.isfinite, found)) or found[-1] <= 0.0:
-        raise argparse.ArgumentTypeError(f"{text}: {right}")
+        raise argparse.ArgumentTypeError(f"'{text}': {right}")
     return found
 
 
 def scale(text):
-    return numbers(text, 1, "a number above 0 would be right")[0]
+    return numbers(text, 1, "a number above zero")[0]
 
 
 def near(text):
-    return numbers(text, 3, "X,Y,HALF_HEIGHT would be right: where to look, and how far up and down, above 0")
-
-
-def picture(text):
-    if not text.lower().endswith(".png"):
-        raise argparse.ArgumentTypeError(f"{text}: the picture is a PNG file: a name that ends in .png would be right")
-    return pathlib.Path(text)
+    return numbers(text, 3, "three numbers and commas, a place and half the height above zero, such as 2.0,-0.5,1.5")
 
 
 def read_arguments():
-    parser = Parser(prog="tools/paraview", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("deck", type=pathlib.Path, metavar="DECK.dat")
-    parser.add_argument("-o", "--output", type=picture, required=True, metavar="NAME.png")
-    parser.add_argument("--scale", type=scale, default=1.0, help="of the displacements, where the whole is drawn")
-    parser.add_argument("--near", type=near, metavar="X,Y,HALF_HEIGHT")
-    return parser.parse_args()
+    parser = argparse.ArgumentParser(prog="tools/paraview", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("deck", metavar="DECK", type=pathlib.Path)
+    parser.add_argument("-o", "--output", metavar="NAME.png", type=pathlib.Path, help="name of the picture")
+    parser.add_argument("--scale", type=scale, default=1.0, help="of the displacements, where the whole is drawn (1)")
+    parser.add_argument("--near", metavar="X,Y,HALF_HEIGHT", type=near,
+                        help="a second panel of this place; behind = where X is negative: --near=-1,0,2")
+    options = parser.parse_args()
+    options.output = options.output or pathlib.Path(f"{options.deck.stem}.paraview.png")
+    if options.output.suffix.lower() != ".png":
+        parser.error(f"-o {options.output}: the picture is a PNG file: a name that ends in .png")
+    return options
 
 
 def main():

@@ -35,7 +35,7 @@ INSTEAD = [
     (r"tools/bench .*", "sh -n tools/bench && grep add_argument tools/benchmark/bench.py", "installs packages; minutes"),
     (r"tools/fuzz --decks \d+ (.*)", r"tools/fuzz --decks 40 \1", "minutes; the ctest `fuzzed_decks` runs more"),
     (r"tools/fuzz --minutes .*", "tools/fuzz --decks 4 --program build/release/epcont", "minutes; builds the preset sanitize"),
-    (r"tools/paraview .*", "sh -n tools/paraview && python3 tools/paraviews.py --help", "wants ParaView"),
+    (r"tools/paraview .*", "sh -n tools/paraview && python3 tools/paraviews.py --help", "wants ParaView; the ctest `vtk_paraview` runs it"),
     (r"tools/make_venv \w+", "sh -n tools/make_venv", "fetches packages; the ctest `tools_make_venv` runs it"),
     (r"tests/in_venv", "sh -n tests/in_venv", "runs a test"),
     (r"tools/plot --all", "tools/plot --help", "minutes"),

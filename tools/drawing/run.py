@@ -78,12 +78,14 @@ class Run:
 
     def take_contact(self, deck, pairs, zones):
         """Contact lines: the pairs of each BCONP, and CGAPs whose nodes are neighbours on a boundary."""
-        slaves = {int(card[1]): {int(node) for node in ids(card[2:])} for card in deck.of("BLSEG")}
+        nodes = {int(card[1]): {int(node) for node in ids(card[2:])} for card in deck.of("BLSEG")}
+        contacts = [(card[1], int(card[2]), int(card[3])) for card in deck.of("BCONP")]
         left, self.lines = list(pairs), []
-        for card in deck.of("BCONP"):
-            own = [p for p in left if p["pair"] == p["gb"] and int(p["gb"]) in slaves[int(card[2])]]
+        for name, slave, master in contacts:
+            alone = sum(other == slave for _, other, _ in contacts) == 1   # else the master's nodes tell its pairs
+            own = [p for p in left if p["pair"] == p["gb"] and int(p["gb"]) in nodes[slave] and (alone or int(p["ga"]) in nodes[master])]
             left = [p for p in left if p not in own]
-            self.lines += [Line(f"BCONP {card[1]}", own)] if own else []
+            self.lines += [Line(f"BCONP {name}", own)] if own else []
         for chain in chains(left, self.neighbours()):
             first, last = chain[0]["pair"], chain[-1]["pair"]
             self.lines.append(Line(f"CGAP {first} to {last}" if first != last else f"CGAP {first}", chain))
