@@ -45,19 +45,22 @@ contains
     type(model_type), intent(in) :: model
     integer, intent(in) :: e
     real(wp), intent(in) :: displacement(:, :)
-    real(wp) :: across(2, 2), adjoint(2, 2), change(2, 2), radius
+    real(wp) :: p(2), q(2), radius, s(2), t(2)
+    integer :: n
 
-    associate (node => model%connectivity(:model%corners(e), e))
-      associate (x => model%x(:, node), u => displacement(:, node), last => size(node))
-        ! Of a quadrilateral its diagonals, of a triangle two sides.
-        across = reshape([x(:, last) - x(:, last - 2), x(:, last - 1) - x(:, max(1, last - 3))], [2, 2])
-        change = reshape([u(:, last) - u(:, last - 2), u(:, last - 1) - u(:, max(1, last - 3))], [2, 2])
-        radius = sum(x(1, :))
-        norm = 0.0_wp
-        if (model%kinematics(model%section(e)) == axisymmetric .and. radius > 0.0_wp) norm = abs(sum(u(1, :)))/radius
+    n = model%corners(e)
+    associate (node => model%connectivity(:n, e), x => model%x, u => displacement)
+      ! Across a quadrilateral along its diagonals, across a triangle along two sides: gradient (s t) = (p q).
+      associate (from => node(max(1, n - 3)), to => node(n - 1))
+        t = x(:, to) - x(:, from)
+        q = u(:, to) - u(:, from)
       end associate
+      s = x(:, node(n)) - x(:, node(n - 2))
+      p = u(:, node(n)) - u(:, node(n - 2))
+      norm = sqrt(sum((p*t(2) - q*s(2))**2) + sum((q*s(1) - p*t(1))**2))/abs(s(1)*t(2) - s(2)*t(1))
+      if (model%kinematics(model%section(e)) /= axisymmetric) return
+      radius = sum(x(1, node))
+      if (radius > 0.0_wp) norm = max(norm, abs(sum(u(1, node)))/radius)
     end associate
-    adjoint = reshape([across(2, 2), -across(2, 1), -across(1, 2), across(1, 1)], [2, 2])
-    norm = max(norm, norm2(matmul(change, adjoint))/abs(across(1, 1)*across(2, 2) - across(1, 2)*across(2, 1)))
   end function norm
 end module epcont_result_gradient
