@@ -256,7 +256,7 @@ contains
              ' faces a side of BLSEG '//text_of(model%line(contact%master)%id)//' within '//short_real(contact%search)
       remedy = 'lines that face each other, or a larger PARAM SEARCH'
       if (same_way > 0) then
-        what = what//'; '//text_of(same_way)//' lie near sides that look the same way'
+        what = what//'; '//text_of(same_way)//' of them near sides that look the same way'
         remedy = 'boundaries of two bodies that face each other'
       end if
     end associate

@@ -13,9 +13,10 @@ import unittest.mock
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tools"), str(TOP / "tests" / "independent")]
 import gmsh  # noqa: E402
+from cards import written  # noqa: E402
 from deck import read, real  # noqa: E402
 from drawing.run import Run  # noqa: E402
-from from_gmsh.cards import card, written  # noqa: E402
+from from_gmsh.cards import card  # noqa: E402
 from from_gmsh.faults import Faults  # noqa: E402
 from from_gmsh.scene import PARAMETERS, read_scene  # noqa: E402
 
