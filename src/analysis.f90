@@ -18,6 +18,7 @@ module epcont_analysis
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line, find_contact_line, find_zones
   use epcont_result_line_pressure, only: compare_sides
+  use epcont_result_gradient, only: find_gradients
   use epcont_result_locking, only: find_locking
   use epcont_result_pressures, only: pair_pressures
   use epcont_result_stresses, only: recover_stresses
@@ -54,6 +55,7 @@ contains
     load = run%load_factor*model%load
     call recover_stresses(model, run%scene%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
     answer%locking = find_locking(model, run%scene%operator%volume, answer%stress, answer%equivalent_stress, answer%secant_modulus)
+    answer%gradient = find_gradients(model, run%scene%operator%volume, answer%displacement)
     line = find_contact_line(model)
     answer%pressure = pair_pressures(model, line, answer%contact%touching, answer%contact%force)
     answer%zones = find_zones(model, line, answer%contact%touching, answer%contact%force, answer%pressure)

@@ -10,8 +10,8 @@ three whole runs (one, where it takes a second), reading and writing included, a
 Unknowns: equations of the bodies, as `epcont --plan` counts them.
 """
 import argparse
-import csv
 import math
+import os
 import pathlib
 import re
 import subprocess
@@ -19,6 +19,7 @@ import sys
 import tempfile
 import time
 
+import tables
 from scenes import cylinders, plastic
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
@@ -52,9 +53,7 @@ def solve(deck, place):
     plan = subprocess.run([EPCONT, "--plan", path], capture_output=True, text=True, check=True).stdout
     bodies = plan[plan.index("equations"):]
     unknowns = sum(int(row.split()[2]) for row in re.findall(r"^ +\d+ +\d+ +\d+ .*$", bodies, re.MULTILINE))
-    with open(path.with_suffix(".summary.csv"), newline="", encoding="ascii") as file:
-        summary = {row["key"]: row["value"] for row in csv.DictReader(file)}
-    return summary, unknowns, min(spent)
+    return tables.summary(path.with_suffix(".summary.csv")), unknowns, min(spent)
 
 
 def two_cylinders(element, across, place):
@@ -67,8 +66,7 @@ def two_cylinders(element, across, place):
 
 def inner_displacement(path):
     """Mean radial displacement of the inner nodes of a tube, from the tables of a run of this deck."""
-    with open(path.with_suffix(".nodes.csv"), newline="", encoding="ascii") as file:
-        nodes = [[float(row[key]) for key in ("x", "y", "ux", "uy")] for row in csv.DictReader(file)]
+    nodes = [[float(row[key]) for key in ("x", "y", "ux", "uy")] for row in tables.rows(path.with_suffix(".nodes.csv"))]
     inner = [math.hypot(ux, uy) for x, y, ux, uy in nodes if abs(math.hypot(x, y) - 100.0) < 1e-6]
     return sum(inner) / len(inner)
 
@@ -106,10 +104,23 @@ def draw(contact, wall, name):
     style.save(figure, name)
 
 
+def check_folder(parser, output):
+    """Before minutes of runs: can the files be written?"""
+    if not output:
+        return
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        parser.error(f"-o {output}: {error.filename}: {error.strerror}")
+    if not os.access(output.parent, os.W_OK):
+        parser.error(f"-o {output}: {output.parent} cannot be written")
+
+
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="tools/convergence", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of a picture, without .png and .svg")
     options = parser.parse_args()
+    check_folder(parser, options.output)
     with tempfile.TemporaryDirectory() as place:
         contact = {element: [two_cylinders(element, n, place) for n in ACROSS[element]] for element in ELEMENTS}
         wall = {element: [tube(element, n, place) for n in PARTS[element]] for element in ELEMENTS}

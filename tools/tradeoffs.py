@@ -22,7 +22,7 @@ import time
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(TOP / "tools/benchmark"), str(TOP / "tests/accuracy")]
 import cases  # noqa: E402
-from convergence import B, ELEMENTS, EPCONT, U_A, inner_displacement, needed  # noqa: E402
+from convergence import B, ELEMENTS, EPCONT, U_A, check_folder, inner_displacement, needed  # noqa: E402
 from process import peak, timed  # noqa: E402
 from report import short, table  # noqa: E402
 from scenes import lines, plastic, quads  # noqa: E402
@@ -239,17 +239,17 @@ def page(found, quick, spent, picture):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="tools/tradeoff", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="two meshes of each element, one choice at a time: a minute")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of page and picture, without .md and .png; tools/tradeoff if not given")
     options = parser.parse_args()
     name = options.output or TOP / ("build/tradeoff_quick" if options.quick else "tools/tradeoff")
+    check_folder(parser, name)
     start, found = time.perf_counter(), []
     for scene in scenes():
         begin = time.perf_counter()
         found.append((scene, *runs_of(scene, options.quick)))
         print(f"{scene.name}: {len(found[-1][1])} runs, {len(found[-1][2])} without an answer, {time.perf_counter() - begin:.0f} s", flush=True)
-    name.parent.mkdir(parents=True, exist_ok=True)
     draw(found, name.with_name(name.name + ".png"))
     name.with_name(name.name + ".md").write_text(page(found, options.quick, time.perf_counter() - start, name.name + ".png"), encoding="utf-8")
     print(name.with_name(name.name + ".md"))

@@ -9,11 +9,14 @@ module epcont_assembly_stiffness
   use epcont_base_kinds, only: wp
   use epcont_linalg_assembled, only: assembled_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
+  use epcont_linalg_front, only: front_matrix
   use epcont_linalg_panel, only: panel_matrix
+  use epcont_linalg_single_front, only: single_front_matrix => front_matrix
   use epcont_linalg_single_panel, only: single_panel_matrix => panel_matrix
   use epcont_linalg_sparse, only: sparse_matrix
+  use epcont_model_controls, only: solver_frontal, solver_sparse
   use epcont_model_model, only: model_type, most_nodes
-  use epcont_plan_numbering, only: body_numbering
+  use epcont_plan_numbering, only: body_numbering, element_numbers
   implicit none
   private
   public :: body_stiffness, assemble_body
@@ -34,7 +37,7 @@ module epcont_assembly_stiffness
 contains
 
   !> Assemble the elements of a body; `matrix` is that of the material at each point [4, 4, points]. Where only some
-  !! elements have changed since it was factored, nothing is touched that stands before their first equation.
+  !! elements have changed since it was factored, nothing is touched that does not depend on them.
   subroutine assemble_body(model, operator, matrix, changed, equation, body, stiffness)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
@@ -44,12 +47,13 @@ contains
     type(body_numbering), intent(in) :: body
     type(body_stiffness), intent(inout) :: stiffness
     real(wp) :: k(2*most_nodes, 2*most_nodes)
-    integer :: e, from, i, n, number(2*most_nodes)
+    logical, allocatable :: stale(:)
+    integer :: e, i, n, number(2*most_nodes)
 
-    from = 1
+    allocate (stale(body%equations), source=.true.)
     if (allocated(stiffness%matrix)) then
-      if (stiffness%is_sound() .and. body%border == 0) from = first_change(model, changed, equation, body)
-      call stiffness%matrix%clear(from)
+      if (stiffness%is_sound() .and. body%border == 0) stale = changed_equations(model, changed, equation, body)
+      call stiffness%matrix%clear(stale)
     else
       call begin(model, equation, body, stiffness%single, stiffness%matrix)
     end if
@@ -62,7 +66,7 @@ contains
         do i = 1, n/2
           number(2*i - 1:2*i) = equation(:, model%connectivity(i, element))
         end do
-        if (maxval(number(:n)) < from .and. body%border == 0) cycle
+        if (body%border == 0 .and. .not. any_of(stale, number(:n))) cycle
         call operator%element_stiffness(model, element, matrix, k)
         call stiffness%matrix%add(k(:n, :n), number(:n))
         if (body%border > 0) call add_to_border(k(:n, :n), number(:n), stiffness)
@@ -70,26 +74,41 @@ contains
     end do
   end subroutine assemble_body
 
-  !> First equation of the elements that have changed; that behind the last where none has.
-  pure integer function first_change(model, changed, equation, body) result(first)
+  !> Is one of these equations marked? Those of number 0 and less are not.
+  pure logical function any_of(marked, number)
+    logical, intent(in) :: marked(:)
+    integer, intent(in) :: number(:)
+    integer :: i
+
+    any_of = .true.
+    do i = 1, size(number)
+      if (number(i) <= 0) cycle
+      if (marked(number(i))) return
+    end do
+    any_of = .false.
+  end function any_of
+
+  !> Which equations the elements that have changed have [equations].
+  pure function changed_equations(model, changed, equation, body) result(stale)
     type(model_type), intent(in) :: model
     logical, intent(in) :: changed(:)
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
+    logical :: stale(body%equations)
     integer :: c, e, i
 
-    first = body%equations + 1
+    stale = .false.
     do e = 1, size(body%element)
       if (.not. changed(body%element(e))) cycle
       do i = 1, model%order(body%element(e))
         do c = 1, 2
           associate (number => equation(c, model%connectivity(i, body%element(e))))
-            if (number > 0) first = min(first, number)
+            if (number > 0) stale(number) = .true.
           end associate
         end do
       end do
     end do
-  end function first_change
+  end function changed_equations
 
   !> A matrix of zeros, of the kind that the plan has chosen.
   subroutine begin(model, equation, body, single, matrix)
@@ -98,14 +117,24 @@ contains
     type(body_numbering), intent(in) :: body
     logical, intent(in) :: single
     class(assembled_matrix), allocatable, intent(inout) :: matrix
+    type(front_matrix), allocatable :: fronts
+    type(single_front_matrix), allocatable :: single_fronts
     type(panel_matrix), allocatable :: panels
     type(single_panel_matrix), allocatable :: single_panels
     type(sparse_matrix), allocatable :: sparse
 
-    if (body%sparse) then
+    if (body%solver == solver_sparse) then
       allocate (sparse)
       call sparse%begin(body%equations, element_numbers(model, equation, body))
       call move_alloc(sparse, matrix)
+    else if (body%solver == solver_frontal .and. single) then
+      allocate (single_fronts)
+      call single_fronts%begin(body%fronts, body%can_yield, body%contact_equations)
+      call move_alloc(single_fronts, matrix)
+    else if (body%solver == solver_frontal) then
+      allocate (fronts)
+      call fronts%begin(body%fronts, body%can_yield, body%contact_equations)
+      call move_alloc(fronts, matrix)
     else if (single) then
       allocate (single_panels)
       call single_panels%begin(body%reach, merge(body%contact_equations, 0, body%contact_last))
@@ -116,21 +145,6 @@ contains
       call move_alloc(panels, matrix)
     end if
   end subroutine begin
-
-  !> Equations of the elements of a body, zeros behind [2 most_nodes, elements].
-  pure function element_numbers(model, equation, body) result(numbers)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: equation(:, :)
-    type(body_numbering), intent(in) :: body
-    integer, allocatable :: numbers(:, :)
-    integer :: e, n
-
-    allocate (numbers(2*maxval(model%order(body%element)), size(body%element)), source=0)
-    do e = 1, size(body%element)
-      n = model%order(body%element(e))
-      numbers(:2*n, e) = reshape(equation(:, model%connectivity(:n, body%element(e))), [2*n])
-    end do
-  end function element_numbers
 
   !> Add an element matrix to the coupling and the border.
   pure subroutine add_to_border(k, number, stiffness)

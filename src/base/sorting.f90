@@ -1,8 +1,9 @@
-!> Sorting and look-up of integer keys.
+!> Sorting and look-up of keys.
 module epcont_base_sorting
+  use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: sorted_order, id_index, new_id_index
+  public :: sorted_order, halve, id_index, new_id_index
 
   !> Finds the position of an id in the list it was made from.
   type :: id_index
@@ -55,6 +56,47 @@ contains
       width = 2*width
     end do
   end function sorted_order
+
+  !> Rearrange items so that no key of the first half is above any of the second; the first half has n/2, rounded down
+  !! (Hoare's selection).
+  pure subroutine halve(key, item)
+    real(wp), intent(in) :: key(:)          !! [n]
+    integer, intent(inout) :: item(:)       !! [n]
+    real(wp) :: sorted(size(key)), pivot
+    integer :: first, i, j, last, middle
+
+    sorted = key
+    middle = size(key)/2
+    first = 1
+    last = size(key)
+    do while (first < last)
+      pivot = sorted((first + last)/2)
+      i = first
+      j = last
+      do
+        do while (sorted(i) < pivot)
+          i = i + 1
+        end do
+        do while (pivot < sorted(j))
+          j = j - 1
+        end do
+        if (i <= j) then
+          sorted([i, j]) = sorted([j, i])
+          item([i, j]) = item([j, i])
+          i = i + 1
+          j = j - 1
+        end if
+        if (i > j) exit
+      end do
+      if (middle <= j) then
+        last = j
+      else if (middle >= i) then
+        first = i
+      else
+        exit
+      end if
+    end do
+  end subroutine halve
 
   !> Index of a list of ids; of equal ids the first is the one found.
   pure function new_id_index(ids) result(index)

@@ -18,12 +18,12 @@ module epcont_linalg_assembled
   end type assembled_matrix
 
   abstract interface
-    !> Make ready to be filled anew where only the equations from `from` on have changed: entries of the lower triangle in
-    !! the columns from there on are zero, those before remain as they are, even factored.
-    pure subroutine clear_entries(self, from)
+    !> Make ready to be filled anew where only the columns of these equations have changed: entries of the lower triangle in
+    !! stale columns are zero, the others remain as they are, even factored.
+    pure subroutine clear_entries(self, stale)
       import :: assembled_matrix
       class(assembled_matrix), intent(inout) :: self
-      integer, intent(inout) :: from         !! on return the first column to be filled, which may stand earlier
+      logical, intent(inout) :: stale(:)     !! on return with those that have to be filled anew on their account [order]
     end subroutine clear_entries
 
     !> Add an element matrix; rows and columns of number 0 and less are left out, and columns that have not been cleared.

@@ -15,11 +15,12 @@ module epcont_linalg_panel
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_assembled, only: add_seen_through, assembled_matrix
   use epcont_linalg_dense, only: cholesky_inverse
-  use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm, trsv => dtrsv
+  use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
   use epcont_linalg_panel_layout, only: find_panels
   implicit none
   private
   public :: panel_matrix
 
   include 'panel_kernel.inc'
+  include 'columns.inc'
 end module epcont_linalg_panel

@@ -118,11 +118,11 @@ contains
   end subroutine begin
 
   !> All of it: MUMPS factors the whole.
-  pure subroutine clear(self, from)
+  pure subroutine clear(self, stale)
     class(sparse_matrix), intent(inout) :: self
-    integer, intent(inout) :: from
+    logical, intent(inout) :: stale(:)
 
-    from = 1
+    stale = .true.
     self%entries = 0.0_wp
   end subroutine clear
 

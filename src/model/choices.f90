@@ -41,7 +41,7 @@ contains
     if (model%controls%solver == solver_sparse .and. model%controls%precision > precision_double) &
       call faults%add_error(deck%place(card_param, deck%parameter_row('PRECIS'), 2), &
                             'PARAM PRECIS: '//trim(word)//' does not go with SOLVER SPARSE: MUMPS works in double precision', &
-                            'PRECIS DOUBLE, or SOLVER BAND or AUTO')
+                            'PRECIS DOUBLE, or SOLVER AUTO, BAND or FRONTAL')
     model%controls%tolerance = deck%parameter_value('TOL', 0.0_wp)
     model%controls%most_iterations = nint(deck%parameter_value('MAXIT', 100.0_wp))
     model%controls%load_steps = nint(deck%parameter_value('NLOAD', 1.0_wp))

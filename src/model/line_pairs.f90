@@ -19,6 +19,8 @@ module epcont_model_line_pairs
 
   !> Where nothing is said of it, a side is looked for within this many times the longest side of the two lines.
   real(wp), parameter :: default_search = 2.0_wp
+  !> A node that is left out would face something within this many times the search: its neighbour's touching may spread to it.
+  real(wp), parameter :: wider = 2.0_wp
   !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off by 3 % and more.
   real(wp), parameter :: finer = 1.3_wp
 
@@ -80,6 +82,7 @@ contains
             cycle
           end if
           call add_pairs(faces, boxes, model, contact)
+          call find_border(model, faces, boxes, contact)
           call warn_of_overlap(deck, i, model, contact, faults)
           call warn_of_finer_slave(deck, i, model, faces, faults)
         end associate
@@ -192,6 +195,34 @@ contains
     model%pairs = contact%last
   end subroutine add_pairs
 
+  !> Pairs whose neighbour along the slave line is left out, though it faces the master line from not much farther away.
+  subroutine find_border(model, faces, boxes, contact)
+    type(model_type), intent(in) :: model
+    type(faces_type), intent(in) :: faces
+    type(side_boxes), intent(in) :: boxes   !! of the master line
+    type(line_contact), intent(inout) :: contact
+    type(facing_type) :: facing
+    logical :: at_border(size(faces%node))
+    integer :: ends(2), k, s
+    real(wp) :: search
+
+    at_border = .false.
+    associate (slave => model%line(contact%slave), master => model%line(contact%master))
+      search = wider*max(contact%search, default_search*max(slave%longest(), master%longest()))
+      do s = 1, size(slave%element)
+        do k = 1, 2   ! from each end of the side to its middle, or to the other end
+          ends = [k, merge(3, 3 - k, slave%segment(3, s) > 0)]
+          if (count(faces%row_of(ends, s) > 0) /= 1) cycle
+          if (faces%row_of(ends(1), s) == 0) ends = ends([2, 1])
+          facing = find_nearest(master, boxes, model%x(:, slave%segment(ends(2), s)), slave%outward(s, ends(2)), search, &
+                                slave%segment(ends(2), s))
+          if (facing%place%found) at_border(faces%row_of(ends(1), s)) = .true.
+        end do
+      end do
+    end associate
+    contact%border = contact%first - 1 + pack([(k, k=1, size(at_border))], at_border)
+  end subroutine find_border
+
   !> Two contacts of the same two lines would share their forces.
   subroutine check_once(deck, i, model, faults)
     type(deck_type), intent(in) :: deck
@@ -225,7 +256,7 @@ contains
              ' faces a side of BLSEG '//text_of(model%line(contact%master)%id)//' within '//short_real(contact%search)
       remedy = 'lines that face each other, or a larger PARAM SEARCH'
       if (same_way > 0) then
-        what = what//'; '//text_of(same_way)//' lie near sides that look the same way'
+        what = what//'; '//text_of(same_way)//' of them near sides that look the same way'
         remedy = 'boundaries of two bodies that face each other'
       end if
     end associate

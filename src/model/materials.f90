@@ -2,7 +2,7 @@
 module epcont_model_materials
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
-  use epcont_base_text, only: short_real, text_of
+  use epcont_base_text, only: plural, short_real, text_of
   use epcont_deck_card_kinds, only: card_mat1, card_mats1, card_tables1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
@@ -175,7 +175,7 @@ contains
 
     if (size(strain) < 3) then
       wrong = size(strain) + 1
-      what = 'has '//text_of(size(strain))//' points'
+      what = 'has '//plural(size(strain), 'point')
       remedy = 'at least 3: 0.0 0.0, the yield point, and one beyond it'
     else if (strain(1) /= 0.0_wp .or. stress(1) /= 0.0_wp) then
       wrong = 1

@@ -22,6 +22,7 @@ module epcont_model_model
     integer :: first = 1, last = 0       !! its pairs
     integer :: left_out = 0              !! nodes of the slave line that face no side of the other
     real(wp) :: search = 0.0_wp          !! how far away a side may be [length]
+    integer, allocatable :: border(:)    !! pairs next to a node that is left out for this alone
   end type line_contact
 
   type :: model_type
@@ -134,7 +135,7 @@ contains
   end function has_rings
 
   !> Can an element yield?
-  pure function can_yield(self, element)
+  elemental function can_yield(self, element)
     class(model_type), intent(in) :: self
     integer, intent(in) :: element
     logical :: can_yield

@@ -5,7 +5,7 @@ module epcont_plan_forecast
   use epcont_base_memory, only: has_memory, memory_of_libraries
   use epcont_base_text, only: short_real
   use epcont_linalg_panel_layout, only: panel_entries
-  use epcont_model_controls, only: precision_double
+  use epcont_model_controls, only: precision_double, solver_frontal, solver_sparse
   use epcont_model_model, only: model_type
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: numbering_type
@@ -61,17 +61,24 @@ contains
     entries = 0
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
-        factor = merge(sparse_entries(body%equations), panel_entries(body%reach), body%sparse)
-        expected%bytes = expected%bytes + factor*merge(8, 4, body%sparse .or. plan%precision == precision_double)
+        select case (body%solver)
+        case (solver_sparse)
+          factor = sparse_entries(body%equations)
+        case (solver_frontal)
+          factor = body%fronts%entries() + body%fronts%remainders(body%can_yield)
+        case default
+          factor = panel_entries(body%reach)
+        end select
+        expected%bytes = expected%bytes + factor*merge(8, 4, body%solver == solver_sparse .or. plan%precision == precision_double)
         expected%double_bytes = expected%double_bytes + 8_i8*factor
         entries = entries + int(body%equations, i8)*body%border
-        if (body%contact_last .or. body%sparse) then
+        if (body%contact_last) then
           entries = entries + int(body%contact_equations, i8)**2
         else
           entries = entries + pairs*(pairs + body%half_bandwidth)
         end if
-        expected%operations = expected%operations + merge(sparse_operations(body%equations), body%operations, body%sparse) &
-                              + 4.0_wp*body%border*factor
+        expected%operations = expected%operations + 4.0_wp*body%border*factor + &
+                              merge(sparse_operations(body%equations), body%operations, body%solver == solver_sparse)
       end associate
     end do
     ! F, its scaled copy, and the tableau or factors.

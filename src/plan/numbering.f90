@@ -3,18 +3,18 @@ module epcont_plan_numbering
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
+  use epcont_linalg_front_layout, only: front_layout, new_front_layout
   use epcont_linalg_panel_layout, only: gram_operations, panel_operations
-  use epcont_linalg_sparse, only: sparse_available
-  use epcont_model_controls, only: precision_double, solver_auto, solver_sparse
+  use epcont_model_controls, only: solver_auto, solver_band, solver_frontal, solver_sparse
   use epcont_model_model, only: model_type
+  use epcont_plan_dissection, only: dissect, dissection
   implicit none
   private
-  public :: body_numbering, numbering_type, number_equations
+  public :: body_numbering, element_numbers, numbering_type, number_equations
 
-  !> Operations of the panels' factorization from which on SOLVER AUTO is SPARSE: on two cylinders both are level about
-  !! there, MUMPS in half of the memory. Bodies that can yield stay with the panels, which keep what has not changed: twice
-  !! as fast at 170 000 equations.
-  real(wp), parameter, public :: many_operations = 1.5e10_wp
+  !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact bodies (13 000 nodes of two
+  !! cylinders) and on long ones, on elastic ones and on those that yield.
+  real(wp), parameter, public :: many_operations = 6.0e8_wp
 
   !> One body's system of equations.
   type :: body_numbering
@@ -23,9 +23,11 @@ module epcont_plan_numbering
     integer :: equations = 0               !! in the band
     integer :: contact_equations = 0       !! of these at nodes of pairs
     logical :: contact_last = .true.       !! the contact equations are the last ones
-    logical :: sparse = .false.            !! for MUMPS, which orders them anew
+    logical :: can_yield = .false.
+    integer :: solver = solver_band        !! or solver_frontal, or solver_sparse: MUMPS, which orders them anew
+    type(front_layout) :: fronts           !! of solver_frontal
     real(wp) :: operations = 0.0_wp        !! of factor and flexibility
-    integer, allocatable :: reach(:)       !! the last equation that each is coupled with [equations]
+    integer, allocatable :: reach(:)       !! the last equation that each is coupled with [equations], of solver_band
     integer :: half_bandwidth = 0
     integer :: border = 0                  !! leaders of ties that nothing holds, kept out of the band
   end type body_numbering
@@ -76,9 +78,7 @@ contains
     if (count_run < 0) count_run = size(keys)
   end function count_run
 
-  !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come last: then the
-  !! trailing block of the factor alone gives the flexibility. Or, where that widens the band by more than forward
-  !! substitution of all pairs costs, they are rooted at the body's far end. A sparse matrix has no need of either.
+  !> Number a body for the solver that the deck asks for, or that which is faster.
   pure subroutine choose_numbers(model, around, nodes, at_contact, equation, body)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: around
@@ -86,31 +86,99 @@ contains
     logical, intent(in) :: at_contact(:)
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
-    type(body_numbering) :: plain
-    integer :: e
-    integer, allocatable :: numbers(:, :), order(:)
 
-    if (model%controls%solver == solver_sparse .and. size(body%element) > 0) then
-      call number_body(model, at_contact, nodes, equation, body)
-      body%sparse = body%equations > 0
-      body%contact_last = .false.
+    body%can_yield = any(model%can_yield(body%element))
+    if (model%controls%solver == solver_sparse .or. size(body%element) == 0) then
+      call number_nodes(model, at_contact, nodes, equation, body)
+      call find_reach(model, equation, body)
+      if (model%controls%solver == solver_sparse .and. body%equations > 0) body%solver = solver_sparse
+    else if (model%controls%solver == solver_frontal) then
+      call number_fronts(model, nodes, at_contact, equation, body)
+    else
+      call number_band(model, around, nodes, at_contact, equation, body)
+    end if
+  end subroutine choose_numbers
+
+  !> Number a body for nested fronts, the contact nodes in the last of them.
+  pure subroutine number_fronts(model, nodes, at_contact, equation, body)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: nodes(:)
+    logical, intent(in) :: at_contact(:)
+    integer, intent(inout) :: equation(:, :)
+    type(body_numbering), intent(inout) :: body
+    type(dissection) :: found
+    integer, allocatable :: first(:)
+    integer :: c, p
+
+    found = dissect(model%x, model%connectivity(:, body%element), nodes, at_contact)
+    call number_nodes(model, at_contact, found%node, equation, body)
+    if (body%equations == 0) then
+      call find_reach(model, equation, body)
       return
     end if
+    body%solver = solver_frontal
+    body%contact_last = .true.
+    ! A front's equations follow on one another, and some fronts have none.
+    allocate (first(size(found%first)))
+    first(1) = 1
+    do p = 1, size(found%first) - 1
+      first(p + 1) = first(p)
+      associate (node => found%node(found%first(p):found%first(p + 1) - 1))
+        do c = 1, 2
+          first(p + 1) = first(p + 1) + count(equation(c, node) > 0 .and. model%leader(c, node) == node)
+        end do
+      end associate
+    end do
+    body%fronts = new_front_layout([pack(first(:size(first) - 1), first(2:) > first(:size(first) - 1)), body%equations + 1], &
+                                   element_numbers(model, equation, body))
+    body%operations = body%fronts%operations() + real(body%contact_equations, wp)**3
+    ! What is assembled together stands together in memory.
+    body%element = body%element(body%fronts%element)
+  end subroutine number_fronts
+
+  !> Equations of the elements of a body, x and y of their nodes in turn, zeros behind [any, elements].
+  pure function element_numbers(model, equation, body) result(numbers)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: equation(:, :)
+    type(body_numbering), intent(in) :: body
+    integer, allocatable :: numbers(:, :)
+    integer :: e, i
+
+    allocate (numbers(2*maxval(model%order(body%element)), size(body%element)), source=0)
+    do e = 1, size(body%element)
+      do i = 1, model%order(body%element(e))
+        numbers(2*i - 1:2*i, e) = equation(:, model%connectivity(i, body%element(e)))
+      end do
+    end do
+  end function element_numbers
+
+  !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come last: then the
+  !! trailing block of the factor alone gives the flexibility. Or, where that widens the band by more than forward
+  !! substitution of all pairs costs, they are rooted at the body's far end. Where even that band is a wide one, fronts are taken.
+  pure subroutine number_band(model, around, nodes, at_contact, equation, body)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: nodes(:)
+    logical, intent(in) :: at_contact(:)
+    integer, intent(inout) :: equation(:, :)
+    type(body_numbering), intent(inout) :: body
+    type(body_numbering) :: plain
+    integer, allocatable :: numbers(:, :), order(:)
+
     order = sweep(model, around, nodes(:1), nodes)
     order = sweep(model, around, order(size(order):), nodes)
     order = sweep(model, around, order(size(order):), nodes)
     ! The contact comes late in the reversed order, and with it what yields: what stands before is factored once.
     if (mean_place(order, at_contact) > 0.5_wp) order = sweep(model, around, order(size(order):), nodes)
-    plain%element = body%element
-    call number_body(model, at_contact, order(size(order):1:-1), equation, plain)
+    plain = body
+    call number_nodes(model, at_contact, order(size(order):1:-1), equation, plain)
+    call find_reach(model, equation, plain)
     plain%contact_last = .false.
     plain%operations = panel_operations(plain%reach)
-    plain%sparse = model%controls%solver == solver_auto .and. plain%operations > many_operations .and. sparse_available() &
-                   .and. model%controls%precision <= precision_double
-    do e = 1, size(body%element)
-      if (model%can_yield(body%element(e))) plain%sparse = .false.
-    end do
-    if (plain%sparse .or. .not. any(at_contact(nodes))) then
+    if (model%controls%solver == solver_auto .and. plain%operations > many_operations) then
+      call number_fronts(model, nodes, at_contact, equation, body)
+      return
+    else if (.not. any(at_contact(nodes))) then
       body = plain
       return
     end if
@@ -118,12 +186,13 @@ contains
     numbers = equation(:, nodes)
     ! The roots stand in the order of the sweep from the far end, which runs along the contact.
     order = sweep(model, around, pack(order, at_contact(order)), nodes)
-    call number_body(model, at_contact, order(size(order):1:-1), equation, body)
+    call number_nodes(model, at_contact, order(size(order):1:-1), equation, body)
+    call find_reach(model, equation, body)
     body%operations = panel_operations(body%reach) + real(body%contact_equations, wp)**3
     if (body%operations <= plain%operations) return
     equation(:, nodes) = numbers
     body = plain
-  end subroutine choose_numbers
+  end subroutine number_band
 
   !> Mean place of the marked nodes in an order, from 0 to 1; 0 where there is none.
   pure real(wp) function mean_place(order, marked)
@@ -205,19 +274,18 @@ contains
 
   !> Number the freedoms of one body along the order of its nodes. A tied freedom has its leader's number; a
   !! leader that is free goes to the border, so that the band never sees a whole line of nodes on one freedom.
-  pure subroutine number_body(model, at_contact, order, equation, body)
+  pure subroutine number_nodes(model, at_contact, order, equation, body)
     type(model_type), intent(in) :: model
     logical, intent(in) :: at_contact(:)
     integer, intent(in) :: order(:)                      !! of its nodes
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
-    integer :: c, e, highest, i, node
+    integer :: c, i, node
 
     body%node = order
     body%border = 0
     body%equations = 0
     body%contact_equations = 0
-    body%half_bandwidth = 0
     do i = 1, size(order)
       equation(:, order(i)) = 0
     end do
@@ -244,6 +312,15 @@ contains
         end if
       end do
     end do
+  end subroutine number_nodes
+
+  !> The last equation that each is coupled with.
+  pure subroutine find_reach(model, equation, body)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: equation(:, :)
+    type(body_numbering), intent(inout) :: body
+    integer :: c, e, highest, i
+
     body%reach = [(e, e=1, body%equations)]
     do e = 1, size(body%element)
       associate (node => model%connectivity(:, body%element(e)), n => model%order(body%element(e)))
@@ -260,6 +337,7 @@ contains
         end do
       end associate
     end do
+    body%half_bandwidth = 0
     if (body%equations > 0) body%half_bandwidth = maxval(body%reach - [(e, e=1, body%equations)])
-  end subroutine number_body
+  end subroutine find_reach
 end module epcont_plan_numbering

@@ -3,7 +3,8 @@ module epcont_report_plan
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, precision_double, &
-                                   precision_name, precision_open, solver_auto
+                                   precision_name, precision_open, solver_auto, solver_band, solver_frontal, &
+                                   solver_name, solver_sparse
   use epcont_model_model, only: line_contact, model_type
   use epcont_plan_contact_plan, only: contact_plan, many_pairs
   use epcont_plan_forecast, only: forecast_type
@@ -122,20 +123,22 @@ contains
     character(len=:), allocatable :: text
 
     text = ''
-    if (.not. any(numbering%body%sparse)) return
-    text = '  bodies factored by MUMPS (SPARSE): '//text_of(count(numbering%body%sparse))//newline
+    if (any(numbering%body%solver == solver_sparse)) &
+      text = '  bodies factored by MUMPS (SPARSE): '//text_of(count(numbering%body%solver == solver_sparse))//newline
+    if (.not. any(numbering%body%solver == solver_frontal)) return
+    text = '  bodies factored in nested fronts (FRONTAL): '//text_of(count(numbering%body%solver == solver_frontal))//newline
     if (model%controls%solver /= solver_auto) return
-    text = text//'    chosen here (AUTO): the faster solver of bodies that cannot yield, where a band (BAND) takes more than '// &
-           short_real(many_operations)//newline//'    operations'//newline
+    text = text//'    chosen here (AUTO): faster where a band (BAND) takes more than '//short_real(many_operations)// &
+           ' operations'//newline
   end function solver_text
 
-  !> Half-bandwidth; a body that is factored by MUMPS has none.
+  !> Half-bandwidth, or the solver of a body that has none.
   pure function width_text(body) result(text)
     type(body_numbering), intent(in) :: body
     character(len=:), allocatable :: text
 
     text = text_of(body%half_bandwidth)
-    if (body%sparse) text = 'SPARSE'
+    if (body%solver /= solver_band) text = trim(solver_name(body%solver))
   end function width_text
 
   !> How a body's flexibility follows from its factor: by inverting the trailing block, or by forward substitution of
@@ -145,7 +148,7 @@ contains
     character(len=:), allocatable :: text
 
     text = '-'
-    if (body%contact_equations > 0) text = trim(merge('inversion   ', 'substitution', body%contact_last .or. body%sparse))
+    if (body%contact_equations > 0) text = trim(merge('inversion   ', 'substitution', body%contact_last))
   end function flexibility_text
 
   !> How often a body is factored.

@@ -20,6 +20,6 @@ contains
     if (model%controls%solver /= solver_sparse .or. sparse_available()) return
     call faults%add_error(deck%place(card_param, deck%parameter_row('SOLVER'), 2), &
                           'PARAM SOLVER: this epcont was built without MUMPS, so there is no SPARSE', &
-                          'SOLVER AUTO or BAND, or a build with libmumps-seq-dev installed')
+                          'SOLVER AUTO, BAND or FRONTAL, or a build with libmumps-seq-dev installed')
   end subroutine report_solver_fault
 end module epcont_report_solver

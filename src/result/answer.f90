@@ -6,6 +6,7 @@ module epcont_result_answer
   use epcont_model_controls, only: precision_double
   use epcont_plasticity_onlooker, only: iteration_record
   use epcont_result_contact_line, only: contact_zone
+  use epcont_result_gradient, only: gradient_type
   use epcont_result_line_pressure, only: line_pressure
   use epcont_result_locking, only: locking_type
   implicit none
@@ -29,6 +30,7 @@ module epcont_result_answer
     type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
     type(locking_type) :: locking                    !! of three-node elements
+    type(gradient_type) :: gradient                  !! of displacements that are not small
     integer :: precision = precision_double          !! of the factors
     integer :: asked_precision = precision_double    !! that did not do, where it is another one
     real(wp) :: rounding_error = 0.0_wp              !! of displacements, strains and forces, relative: what single precision left

@@ -44,6 +44,14 @@ class Page(unittest.TestCase):
         self.assertEqual(["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXIT STATUS", "FILES", "EXAMPLES", "ENVIRONMENT", "COPYRIGHT"],
                          re.findall(r"^\.SH (.*)", PAGE, re.MULTILINE))
 
+    def test_title(self):
+        """Date and version are the program's."""
+        source = (ROOT / "src" / "base" / "version.f90").read_text()
+        date, version = (re.search(rf"{name} = '([^']+)'", source)[1] for name in ("program_date", "program_version"))
+        self.assertEqual(f'.TH EPCONT 1 {date} "epcont {version}" "User Commands"', PAGE.splitlines()[0])
+        said = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(f"epcont {version}\n", said)
+
     def test_lines(self):
         """No blank line, which roff would take for a paragraph, and no blank at an end."""
         for line in PAGE.splitlines():

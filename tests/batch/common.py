@@ -23,7 +23,7 @@ for deck; do
   case "$deck" in
     *segfault*) kill -SEGV $$ ;;
     *killed*) kill -KILL $$ ;;
-    *hangs*) echo $$ >> {folder}/pids; sleep 60 & wait ;;
+    *hangs*) [ -e {folder}/calm ] || {{ echo $$ >> {folder}/pids; sleep 60 & wait; }} ;;
     *deaf*) trap '' TERM; echo $$ >> {folder}/pids; while :; do sleep 1; done ;;
     *half*) printf 'epcont 0.3.0\\n\\nDECK\\n  GRI' > "$out/$(basename "$deck" .dat).lst"; exit 0 ;;
     *silent*) exit 0 ;;

@@ -23,7 +23,7 @@ class Whole(Case):
         self.assertEqual(["0", "2", "0", "3"], [row["exit_status"] for row in rows])
         self.assertEqual("c_rejected.dat:77:1-4: the body of GRID 101 is free to move: it shifts along (0.0, 1.000)", rows[1]["message"])
         self.assertEqual("missing.dat: no such file", rows[3]["message"])
-        self.assertIn("4 decks", run.stdout)
+        self.assertIn("4 decks in ", run.stdout)
         self.assertIn("2 valid, 1 refused, 1 rejected", run.stdout)
         self.assertIn("\n  c_rejected.dat: rejected: c_rejected.dat:77:1-4: the body", run.stdout)
         self.assertIn("\n  missing.dat: refused: no such file", run.stdout)
@@ -130,9 +130,30 @@ class Lists(Case):
                           ["a.dat", "-o", "out", "--resum"], ["a.dat", "-o", "out", "--partition=x"], ["a.dat", "-o", "out", "--slurm", "-p"]):
             with self.subTest(arguments):
                 self.assertIn("tools/batch: ", self.run_it(3, *arguments).stderr)
+        for words, right in ((["--slurm", "--partition", "short", "a.dat"], "--partition short: options of sbatch are written --name=value"),
+                             (["--slurm", "-p", "short", "a.dat"], "-p short: options of sbatch are written --name=value"),
+                             (["--collect", "out", "-j", "2"], "takes nothing beside it but --no-wait; here: -j 2"),
+                             (["--collect=out", "a.dat", "--resume"], "takes nothing beside it but --no-wait; here: a.dat --resume"),
+                             (["--collect", "out", "--partition=short"], "takes nothing beside it but --no-wait; here: --partition=short")):
+            with self.subTest(words):
+                self.assertIn(right, self.run_it(3, *words, "-o", "out").stderr if "--collect" not in words[0] else self.run_it(3, *words).stderr)
         self.assertIn("no such program: tools/build makes it", self.run_it(3, "a.dat", "-o", "out", "--program", "nowhere").stderr)
         self.assertIn("a working epcont would be right", self.run_it(3, "a.dat", "-o", "out", "--program", "/bin/false").stderr)
+        self.assertIn("a working epcont would be right", self.run_it(3, "a.dat", "-o", "out", "--program", "/bin/true").stderr)
         self.assertIn("cannot be written", self.run_it(3, "a.dat", "-o", "a.dat").stderr)
+
+    def test_a_plan_that_is_none(self):
+        (self.place / "out" / ".batch").mkdir(parents=True)
+        for text in ("{}", "[]", "{\"decks\": [3]}", "\0"):
+            (self.place / "out" / ".batch" / "plan.json").write_text(text)
+            self.assertIn("begin the batch anew", self.run_it(3, "--collect", "out").stderr)
+
+    def test_bytes_of_another_encoding(self):
+        """They are handed on as they are."""
+        self.decks("a.dat")
+        (self.place / "list.csv").write_bytes(b"deck,note\na.dat,Gr\xf6\xdfe\n")
+        self.run_it(0, "--list", "list.csv", "-o", "out")
+        self.assertIn(b",Gr\xf6\xdfe,", (self.place / "out" / "batch.csv").read_bytes())
 
 
 class Misbehaving(Case):
@@ -246,6 +267,15 @@ class Resumed(Case):
         self.fake.write_text(self.fake.read_text().replace(f"exec {PROGRAM} --version", "{ echo epcont 9.9; exit 0; }", 1))
         self.assertEqual(5, len(self.again(1)))
 
+    def test_another_build_of_the_version_runs(self):
+        """A copy elsewhere, of any age, is the same program; other bytes are another one."""
+        self.fake = self.fake.rename(self.place / "moved")
+        os.utime(self.fake)
+        self.assertEqual(["c_rejected.dat", "d_segfault.dat"], self.again(1))
+        with open(self.fake, "a") as file:
+            file.write("# built anew\n")
+        self.assertEqual(5, len(self.again(1)))
+
     def test_without_resume_all_run(self):
         self.run_it(1, "--list", "list", "-o", "out", "--program", self.fake)
         self.assertEqual(5, len(self.calls()))
@@ -297,11 +327,11 @@ class StoppedBatch(Case):
                 self.assertIn("not run", said)
                 self.calls()
                 (self.place / "pids").unlink()
-                self.fake.write_text(self.fake.read_text().replace("*hangs*", "*never*"))
+                (self.place / "calm").write_text("")
                 self.run_it(0, *words, "-o", "out", "--resume", "--program", self.fake)
                 ended = [name for name, word in words.items() if word == "valid"]
                 self.assertEqual(sorted(set(words) - set(ended)), self.calls())
-                self.fake.write_text(self.fake.read_text().replace("*never*", "*hangs*"))
+                (self.place / "calm").unlink()
 
     def test_sigkill_leaves_a_whole_table_and_what_ended(self):
         """All but the deck that hangs have ended; the batch is killed at once, its children are not."""
@@ -383,11 +413,28 @@ class StandIn(Case):
         self.assertIn("6 decks in 3 tasks", self.submit(0, names, "--chunk", "2")[0].stderr)
         (self.place / "d3.dat").write_bytes((self.place / "d3.dat").read_bytes().replace(b"20400.", b"20500."))
         run, submitted = self.submit(0, names, "--resume")
-        self.assertIn("1 decks in 1 tasks", run.stderr)
+        self.assertIn("1 deck in 1 task\n", run.stderr)
         self.assertEqual(2, len(submitted))
         self.assertEqual(2, self.calls().count("d3.dat"))
         self.submit(0, names, "--resume")
         self.assertEqual(2, len((self.place / "submitted").read_text().splitlines()))
+
+    def test_waiting_that_is_stopped(self):
+        """By its own exit status; the job goes on."""
+        self.decks("a.dat")
+        (self.place / "bin" / "sbatch").write_text("#!/bin/sh\necho 7\n")
+        (self.place / "bin" / "squeue").write_text("#!/bin/sh\necho 7 0\n")
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            process = subprocess.Popen(self.command("batch", "a.dat", "-o", "out", "--slurm", "--program", self.fake), cwd=self.place, env=self.environment,
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.assertEqual("job 7: 1 deck in 1 task\n", process.stderr.readline())
+            time.sleep(0.5)
+            process.send_signal(number)
+            said, errors = process.communicate(timeout=30)
+            self.assertEqual(128 + number, process.returncode, errors)
+            self.assertIn("the job goes on", errors)
+            self.assertIn("1 deck in ", said)
+            self.assertEqual({"a.dat": "not run"}, self.words())
 
     def test_no_slurm(self):
         self.decks("a.dat")

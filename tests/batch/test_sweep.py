@@ -96,7 +96,7 @@ class Refusals(Sweep):
                              ("1e400", "beyond what a real holds"), ("nan", "a real such as"), ("1 2", "a real such as")):
             with self.subTest(value):
                 self.refused(SMALL_FIELD, f"E,nu\n20400,.3\n{value},.3\n", f"t.csv:3: column E, {value!r}: s.in:{line}:17-24: MAT1 field 3 (E): ",
-                             words, "1 faults, nothing is written")
+                             words, "\ntools/sweep: 1 fault, nothing is written\n")
 
     def test_continued_large_fields(self):
         """A small-field line behind half a row of large fields begins a new row."""
@@ -108,7 +108,7 @@ class Refusals(Sweep):
     def test_kinds(self):
         deck = SMALL_FIELD.replace("FORCE   1       41      0 ", "FORCE   1       %node%  0 ").replace("PARAM   GAPGEOM YES", "PARAM   GAPGEOM %geom%")
         self.refused(deck, "E,nu,node,geom\n1.,.3,41.5,NO\n1.,.3,41,long_words\n1.,.3,123456789,NO\n",
-                     "(G): a whole number would be right", "a word of at most 8 characters", "9 characters in a field of 8", "3 faults")
+                     "(G): a whole number would be right", "a word of at most 8 characters", "9 characters in a field of 8", "3 faults, nothing")
 
     def test_places(self):
         self.refused(SMALL_FIELD.replace("%E%     ", "%young% "), "E,nu\n1.,.3\n", "%young% has no column in t.csv, which has E, nu")
@@ -124,6 +124,15 @@ class Refusals(Sweep):
             with self.subTest(table):
                 self.refused(SMALL_FIELD, table, words)
 
+    def test_what_is_no_text(self):
+        (self.place / "s.in").write_text(SMALL_FIELD)
+        (self.place / "t.csv").write_bytes(b"E,nu\n1.,.3\n\xff\xfe,.3\n")
+        self.assertIn("t.csv:3: not UTF-8", self.run_it(3, "s.in", "t.csv", "-o", "set", tool="sweep").stderr)
+        self.assertIn("nowhere.csv: cannot be read: No such file", self.run_it(3, "s.in", "nowhere.csv", "-o", "set", tool="sweep").stderr)
+        self.assertIn("nowhere.in: cannot be read: No such file", self.run_it(3, "nowhere.in", "t.csv", "-o", "set", tool="sweep").stderr)
+        for program in ("/bin/true", "/bin/false"):
+            self.assertIn("a working epcont would be right", self.run_it(3, "s.in", "t.csv", "-o", "set", "--program", program, tool="sweep").stderr)
+
     def test_a_missing_include(self):
         self.refused(SMALL_FIELD.replace("ENDDATA", "INCLUDE 'nowhere.inc'\nENDDATA"), "E,nu\n1.,.3\n", "INCLUDE: nowhere.inc: no such file")
 
@@ -136,6 +145,13 @@ class Sets(Sweep):
         (self.place / "set" / "mine.dat").write_text("mine")
         self.assertIn("mine.dat is there, and of no earlier sweep", self.sweep(3, SMALL_FIELD, "deck,E,nu\nmine,3.,.3\n").stderr)
         self.assertEqual("mine", (self.place / "set" / "mine.dat").read_text())
+
+    def test_a_sweep_csv_of_somebody_else(self):
+        (self.place / "set").mkdir()
+        for text in (b"\xff\xfe\0", b"", b"name\nx\n"):
+            (self.place / "set" / "sweep.csv").write_bytes(text)
+            self.assertIn("sweep.csv is there, and of no earlier sweep", self.sweep(3, SMALL_FIELD, "E,nu\n1.,.3\n").stderr)
+            self.assertEqual(text, (self.place / "set" / "sweep.csv").read_bytes())
 
     def test_faults_leave_an_earlier_sweep_as_it_was(self):
         self.sweep(0, SMALL_FIELD, "deck,E,nu\na,1.,.3\nb,2.,.3\n")

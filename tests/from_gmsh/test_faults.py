@@ -119,7 +119,8 @@ SCENE = [
                        "one piece a line: a Physical Curve and a [[contact]] for each"]),
     ('strain"\nunits = "N-MM"', 'strain"\nunits = "N-MM"\nmaterial = 3', ["line 7, column 16: is no TOML: Cannot overwrite a value", FORM]),
 ]
-GMSH = "a file that Gmsh itself opens and meshes without an error"
+GMSH = "mend the drawing until it opens and meshes in Gmsh itself without an error"
+THERE = " that the drawing has; bodies in contact have their own each: no Coherence, no BooleanFragments"
 WITHIN = "triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1)"
 
 #: The same of the file of Gmsh.
@@ -140,9 +141,16 @@ MESH = [
       "[body.above]: 14 of its elements in two.geo are Triangle 10, which epcont has no card for", WITHIN]),
     ('("above") = {2};', '("above") = {2}; Recombine Surface{1}; Mesh.ElementOrder = 2;',
      ["[body.below]: 6 of its elements in two.geo are second-order quadrilaterals, which epcont has no card for", WITHIN]),
-    ("EndFor", "EndFor\nCoherence;", ["[[contact]] slave: two.geo has no line 'under'", "its lines: floor, face, top, wall",
-                                      "[[contact]] master: 'face' has a side between two elements (above, below), at (2, 2), (1, 2)",
-                                      "a line along the outside; bodies in contact need curves and points of their own each, not common ones"]),
+    ("EndFor", "EndFor\nCoherence;", ["mesh: two.geo has no curve 5, which its Physical Curve 'under' asks for", f"curves{THERE}"]),
+    ('("under") = {5}', '("under") = {3}; Coherence', [
+        part for which, name in (("slave", "under"), ("master", "face")) for part in (
+            f"[[contact]] {which}: '{name}' has a side between two elements (above, below), at (2, 2), (1, 2)",
+            "a line along the outside; bodies in contact need curves and points of their own each, not common ones")]),
+    ('("face") = {3}', '("face") = {3, 33}', ["mesh: two.geo has no curve 33, which its Physical Curve 'face' asks for", f"curves{THERE}"]),
+    ('("face") = {3}', '("face") = {33}', ["mesh: two.geo has no curve 33, which its Physical Curve 'face' asks for", f"curves{THERE}"]),
+    ('("corner") = {7}', '("corner") = {7, 70}', ["mesh: two.geo has no point 70, which its Physical Point 'corner' asks for", f"points{THERE}"]),
+    ('("above") = {2}', '("above") = {2, 5}', ["mesh: two.geo has no surface 5, which its Physical Surface 'above' asks for",
+                                               f"surfaces{THERE}"]),
     ('("face") = {3}', '("face") = {3, 1}', ["[[contact]] master: 'face' is in 2 pieces: (0, 0) to (2, 0); (2, 2) to (0, 2)",
                                              "one piece a line: a Physical Curve and a [[contact]] for each"]),
 ]
@@ -204,6 +212,30 @@ class Mistakes(unittest.TestCase):
                        "[body.above]: 5 of its nodes lie at negative radius, the farthest at (-1, 2)", "in a ring x is the radius, from 0 on, and y the axis"],
                       toml=toml, geo=geo)
 
+    def test_free_to_move(self):
+        """What epcont says of nodes, in the words of the scene: where to hold what."""
+        free = '[free]\ncorner = "y"\n'
+        for old, new, said in (
+                ("", "", ["nothing holds above in y", '  [support] NAME.y = 0; or, where contact is to hold it, [free] NAME = "y", of a point or a '
+                          "[platen]; its lines: under, top, wall; its points: corner"]),
+                ("wall.x = 0\n", "", ["nothing holds above in x, nor in y, nor against turning", "  [support] NAME.x = 0 and NAME.y = 0; or, where contact "
+                                       'is to hold it, [free] NAME = "xy", of a point or a [platen]; against turning, one more point; '
+                                       "its lines: under, top, wall; its points: corner",
+                                       "nothing holds below in x", '  [support] NAME.x = 0; or, where contact is to hold it, [free] NAME = "x", of a '
+                                       "point or a [platen]; its lines: floor, face, wall; its points: none"]),
+                ("floor.y = 0\nwall.x = 0", "floor = { x = 0, y = 0 }\ncorner = { x = 0, y = 0 }",
+                 ["nothing holds above against turning", "  [support] NAME.x = 0 or NAME.y = 0 of one more point; or, where contact is to hold it, "
+                  '[free] NAME = "x" or "y" of one more; its lines: under, top, wall; its points: corner'])):
+            with self.subTest(old):
+                status, text = self.said(toml=self.replaced(TOML, free, "").replace(old, new))
+                if "epcont is not built" in text:
+                    self.skipTest("there is no epcont in a build folder that tools/deck looks at")
+                self.assertEqual(status, 2)
+                told = text.splitlines()
+                first = next(i for i, line in enumerate(told) if line.startswith("nothing holds"))
+                self.assertEqual(told[first:-1], said)
+                self.assertRegex(told[-1], "^mend the scene, not the deck; ")
+
     def test_out_of_plane(self):
         geo = self.replaced(GEO, ", 0, 1}", ", 0.5, 1}")
         _, text = self.said(geo=geo)
@@ -217,6 +249,9 @@ class Mistakes(unittest.TestCase):
                 (self.replaced(TOML, "210000.0", "2.1e11"), GEO,
                  "[material.steel] E: 2.1e+11 is no modulus of a solid in units N-MM: steel is 210000 there"),
                 (self.replaced(TOML, "[material.steel]", "material.brass = { E = 1e5, NU = 0.3 }\n[material.steel]"), GEO, "[material.brass]: no body is made of it"),
+                (self.replaced(TOML, "top.pressure = 10.0", ""), GEO,
+                 "[load]: there is none, and no support that moves: nothing but overlaps of the drawing gives forces"),
+                (TOML, GEO + "a = 1; b = 2;", "mesh: the last line of two.geo has no end of line: Gmsh reads the first of its commands alone"),
                 (TOML, GEO + 'Physical Curve("spare") = {2};', "mesh: the line 'spare' of two.geo is used by nothing"),
                 (TOML, GEO + "Physical Curve(99) = {2};", "mesh: Physical Curve(99) of two.geo has no name, and no effect"),
                 (TOML, GEO + "Plane Surface(9) = {1};", "mesh: surface 9 of two.geo is in no Physical Surface and is left out")):
@@ -234,6 +269,17 @@ class Mistakes(unittest.TestCase):
         run = subprocess.run([sys.executable, "-m", "from_gmsh", "other.toml"], cwd=self.place, capture_output=True, text=True,
                              env={**os.environ, "PYTHONPATH": str(TOOLS)}, check=False)
         self.assertEqual(run.stderr, "other.toml: scene: there is no such file\n  TOML files beside it: scene.toml\nother.toml: 1 error, no deck written\n")
+
+    def test_one_for_another(self):
+        """A drawing or a scene where a deck is wanted, and the other way round."""
+        for tool, name, said in (
+                ("run", "scene.toml", "scene.toml is no deck; tools/deck SCENE.toml -o DECK.dat makes one"),
+                ("plot", "two.geo", "two.geo is no deck; tools/deck SCENE.toml -o DECK.dat makes one"),
+                ("paraview", "two.msh", "two.msh is no deck; tools/deck SCENE.toml -o DECK.dat makes one"),
+                ("deck", "two.geo", 'two.geo is no scene: that is a .toml, with mesh = "NAME.geo" (input/README.md, "From Gmsh")')):
+            run = subprocess.run([TOOLS / tool, name], cwd=self.place, capture_output=True, text=True, check=False)
+            self.assertEqual(run.returncode, 3, run.stderr)
+            self.assertRegex(run.stderr, rf"^\S*tools/{tool}: {re.escape(said)}\n$")
 
     def test_garbage(self):
         """Files that are nothing like what they should be."""

@@ -1,16 +1,20 @@
 #!/usr/bin/env python3
-"""Check what no compiler checks: layers, names, sizes and habits of the sources (src/README.md), and the version.
+"""Check what no compiler checks: layers, names, sizes and habits of the sources (src/README.md), version and date.
 
 Prints `file:line: fault` for each fault; exit status 1 if there is any.
 """
+import datetime
 import pathlib
 import re
+import subprocess
 import sys
 
 LAYERS = ["base", "deck", "model", "element", "material", "linalg", "plan", "assembly", "flexibility", "contact",
           "plasticity", "result", "certificate", "accuracy", "report", "analysis", "app"]   # analysis: src/analysis.f90
 # A certificate computed by the code it certifies is worth nothing.
 SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "plasticity"}}
+VERSION = "src/base/version.f90"
+PAGE = [VERSION, "src/app/man_page.f90", "src/app/options.f90"]   # what the manual page is made of
 FILE_LINES, PROCEDURE_LINES, COLUMNS = 400, 80, 132
 
 USE = re.compile(r"\s*use\s+(epcont_(\w+?)(?:_\w+)?)\b(\s*,\s*only\s*:)?", re.IGNORECASE)
@@ -101,6 +105,29 @@ def check_version(root):
         yield 1, "the version is not that of src/base/version.f90"
 
 
+def check_date(root):
+    """The date of the manual page: a day, and not before the page was last changed, as far as git knows."""
+    told = re.search(r"program_date = '([^']*)'", (root / VERSION).read_text())
+    try:
+        date = datetime.date.fromisoformat(told[1])
+    except (TypeError, ValueError):
+        yield 1, "program_date is no day such as 2026-11-21"
+        return
+    changed = last_change(root)
+    if changed and date < changed:
+        yield 1, f"program_date {date}: the manual page was changed on {changed}, which would be right"
+
+
+def last_change(root):
+    """Day of the last commit that changed what the page is made of; None where there is no (whole) history."""
+    try:
+        shallow, day = (subprocess.run(["git", "-C", root, *words], capture_output=True, text=True, check=True).stdout.strip()
+                        for words in (["rev-parse", "--is-shallow-repository"], ["log", "-1", "--format=%as", "--", *PAGE]))
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return datetime.date.fromisoformat(day) if shallow == "false" and day else None
+
+
 def check(root):
     """All faults, as (path, line, text)."""
     for path in sorted((root / "src").rglob("*.f90")):
@@ -118,6 +145,7 @@ def check(root):
         yield from ((path, n, text) for checks in (check_size(lines, 2 * FILE_LINES), check_asserts(lines))
                     for n, text in checks)
     yield from ((root / "CMakeLists.txt", n, text) for n, text in check_version(root))
+    yield from ((root / VERSION, n, text) for n, text in check_date(root))
 
 
 def main():

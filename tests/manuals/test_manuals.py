@@ -194,6 +194,13 @@ class Links(unittest.TestCase):
         for page in documents():
             self.assertNotRegex(page.read_text(encoding="utf-8"), r"(?m)@[A-Z]+@|^(<<<<<<<|>>>>>>>)", page)
 
+    def test_every_folder_of_tests_is_named(self):
+        """Layers of src have one row for all."""
+        page = (TOP / "tests" / "README.md").read_text(encoding="utf-8")
+        layers = {path.name for path in (TOP / "src").iterdir()}
+        named = {path.name for path in (TOP / "tests").iterdir() if re.search(rf"^\| `{path.name}[`/]", page, re.MULTILINE)}
+        self.assertEqual(set(), {path.name for path in (TOP / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"} - named - layers)
+
     def test_relative_links_resolve(self):
         seen = 0
         for page in documents():

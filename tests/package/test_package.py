@@ -19,10 +19,11 @@ PROGRAM, CMAKE = os.environ["EPCONT_PROGRAM"], os.environ["EPCONT_CMAKE"]
 CPACK = shutil.which("cpack", path=str(pathlib.Path(CMAKE).parent)) or "cpack"
 TOOLS = [CPACK, "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file", "gzip", "unshare", "chroot"]
 DECK = "share/doc/epcont/examples/hertz44.dat"
+MANUAL = {"share/doc/epcont/input/README.md", "share/doc/epcont/input/coming_from.md"}
 INSTALLED = {"bin/epcont", "share/man/man1/epcont.1", "share/doc/epcont/README.md", "share/doc/epcont/CHANGELOG.md",
-             "share/doc/epcont/copyright", DECK}
+             "share/doc/epcont/copyright", DECK} | MANUAL | MANUAL
 PACKED = {"bin/epcont", "share/man/man1/epcont.1.gz", "share/doc/epcont/README.md", "share/doc/epcont/changelog.gz",
-          "share/doc/epcont/copyright", DECK}
+          "share/doc/epcont/copyright", DECK} | MANUAL
 
 
 def run(*command, **options):

@@ -9,9 +9,9 @@ from pyNastran.bdf.bdf import BDF
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tests" / "independent"), str(TOP / "tools")]
+from cards import written  # noqa: E402
 from deck import ids, real  # noqa: E402
 from deck import read as read_cards  # noqa: E402
-from from_gmsh.cards import written  # noqa: E402
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 #: What pyNastran writes: small fields, large fields, large fields with D exponents.

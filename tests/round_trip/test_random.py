@@ -5,8 +5,7 @@ import re
 import tempfile
 import unittest
 
-from forms import FORMS, lines_of, read_bdf, restore_lines, run, write_bdf
-from from_gmsh.cards import written
+from forms import FORMS, lines_of, read_bdf, restore_lines, run, write_bdf, written
 from write_random import nested, pressed, stack, tongue
 
 MODELS, SEED = 200, 1

@@ -10,6 +10,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
+sys.path.insert(0, str(TOOLS))
 
 
 def load(name):
@@ -64,7 +65,7 @@ class Structure(Case):
 
     def test_columns(self):
         self.assertEqual(self.verdict("1.0 2.0\n", "1.0\n"), 1)
-        self.assertIn("new.lst:1: 1 columns, reference 2", self.output)
+        self.assertIn("new.lst:1: 1 column, reference 2", self.output)
         self.assertEqual(self.verdict("a,b\n1.0,2.0\n", "a\n1.0\n", suffix="csv"), 1)
 
     def test_number_for_word(self):
@@ -130,18 +131,32 @@ class Files(Case):
         self.assertEqual(self.run_tool(compare, self.directory, self.directory), 0)
         (self.directory / "empty").mkdir()
         self.assertEqual(self.run_tool(compare, self.directory / "empty", self.directory / "empty"), 2)
+        self.assertIn("no .lst or .csv in them", self.output)
+        for suffix in ("lst", "csv"):
+            strange = self.directory / f"strange.{suffix}"
+            strange.write_bytes(b"a\n\xff\n")
+            self.assertEqual(self.run_tool(compare, self.write(f"a.{suffix}", "a\n"), strange), 2)
+            self.assertIn(f"compare: {strange}:2: not a text in UTF-8", self.output)
 
     def test_accept(self):
-        new = self.write("new/a.lst", "a 2.0\n")
-        reference = pathlib.Path(self.write("references/a.lst", "a 1.0\n"))
+        new = self.write("new/a.lst", "epcont 1\na 2.0\n")
+        reference = pathlib.Path(self.write("references/a.lst", "epcont 1\na 1.0\n"))
         options = ("--references", reference.parent)
         self.assertEqual(self.run_tool(accept, new, *options), 1)
         self.assertIn("-a 1.0\n+a 2.0\n", self.output)
-        self.assertEqual(reference.read_text(), "a 1.0\n")
+        self.assertEqual(reference.read_text(), "epcont 1\na 1.0\n")
         self.assertEqual(self.run_tool(accept, new, "--yes", *options), 0)
-        self.assertEqual(reference.read_text(), "a 2.0\n")
+        self.assertEqual(reference.read_text(), "epcont 1\na 2.0\n")
         self.assertEqual(self.run_tool(accept, new, *options), 0)
         self.assertEqual(self.output, "")
+
+    def test_only_listings_are_accepted(self):
+        for text in (b"", b"a deck\n", b"\xff\n"):
+            (self.directory / "a.lst").write_bytes(text)
+            self.assertEqual(self.run_tool(accept, self.directory / "a.lst", "--yes", "--references", self.directory / "none"), 2)
+            self.assertIn("a.lst: not a listing of epcont", self.output)
+        self.assertEqual(self.run_tool(accept, self.directory / "b.lst"), 2)
+        self.assertIn("b.lst: No such file", self.output)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import os
 from .decks import Deck, Refused, fingerprint
 from .outcome import ANSWERED, COLUMNS, KILLED, NOT_RUN
 
+ENDED = {"place", "row", "inputs", "at", "version", "listing"}   # what a line that tells of an end has
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 
 
@@ -35,9 +36,11 @@ class Book:
         try:
             with open(self.plan_path, encoding="utf-8") as file:
                 plan = json.load(file)
-        except (OSError, ValueError):
-            raise Refused(f"{self.directory}: no batch was begun here (no {self.plan_path})") from None
-        plan["decks"] = [Deck(*fields) for fields in plan["decks"]]
+            plan["decks"] = [Deck(*fields) for fields in plan["decks"]]
+        except OSError as error:
+            raise Refused(f"{self.directory}: no batch was begun here ({self.plan_path}: {error.strerror})") from None
+        except (ValueError, KeyError, TypeError):
+            raise Refused(f"{self.plan_path}: not what tools/batch of this version writes: begin the batch anew") from None
         return plan
 
     def save(self, plan):
@@ -77,7 +80,7 @@ class Book:
         return [deck for deck in decks if deck.place not in places]
 
     def kept(self, decks, version):
-        """The ends of decks that are as they were then, with their listings, of this version."""
+        """The ends of decks that are as they were then, with their listings, of this program."""
         ends, kept = self.entries()[0], []
         for deck in decks:
             entry = ends.get(deck.place)
@@ -161,7 +164,7 @@ def read_journal(path):
             entry = json.loads(line)
         except ValueError:
             continue
-        if isinstance(entry, dict) and "place" in entry:
+        if isinstance(entry, dict) and isinstance(entry.get("place"), str) and ("row" not in entry or ENDED <= set(entry)):
             yield entry
 
 

@@ -47,19 +47,29 @@ def read_lines(text):
 
 
 def read_table(path, text):
-    decks, rows = [], csv.DictReader(io.StringIO(text, newline=""), strict=True)
+    rows, columns = rows_of(path, text)
+    if "deck" not in columns:
+        raise Refused(f"{path}:1: a list that is a table needs a column `deck`")
+    for line, row in rows:
+        if not row["deck"]:
+            raise Refused(f"{path}:{line}: the deck has no name")
+    return [Deck(row.pop("deck"), values=row) for _, row in rows]
+
+
+def rows_of(path, text):
+    """(line, values by column) of each row of a table that somebody has written; its columns."""
+    reader, rows = csv.DictReader(io.StringIO(text, newline=""), strict=True), []
     try:
-        if "deck" not in (rows.fieldnames or ()):
-            raise Refused(f"{path}:1: a list that is a table needs a column `deck`")
-        for row in rows:
+        columns = reader.fieldnames = [(name or "").strip() for name in reader.fieldnames or []]
+        if not columns or not all(columns) or len(set(columns)) < len(columns):
+            raise Refused(f"{path}:1: a first line with the name of each column, each once, would be right")
+        for row in reader:
             if None in row or None in row.values():
-                raise Refused(f"{path}:{rows.line_num}: {len(rows.fieldnames)} values would be right")
-            if not row["deck"]:
-                raise Refused(f"{path}:{rows.line_num}: the deck has no name")
-            decks.append(Deck(row.pop("deck"), values=row))
+                raise Refused(f"{path}:{reader.line_num}: {len(columns)} values would be right")
+            rows.append((reader.line_num, row))
     except csv.Error as error:
-        raise Refused(f"{path}:{rows.line_num}: {error}") from None
-    return decks
+        raise Refused(f"{path}:{reader.line_num}: {error}") from None
+    return rows, columns
 
 
 def arrange(decks):

@@ -2,6 +2,8 @@
 import re
 from decimal import Decimal
 
+import cards
+
 NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]?([+-]\d+)|[eEdD](\d+))?")
 MOST_ROUNDED = 1e-6   # of a value; most reals of seven digits fit a small field
 
@@ -49,30 +51,13 @@ def real(text, width):
     value = Decimal(f"{match[1]}E{match[2] or match[3] or 0}")
     if not value.is_zero() and not -300 < value.adjusted() < 300:
         raise Unfit("beyond what a real holds")
-    for digits in range(17, 0, -1):
-        short = shortest(value, digits)
-        if len(short) <= (width or len(short)):
-            break
-    else:
-        raise Unfit(f"no real of {width} columns is near it")
+    try:
+        short = cards.written(value, width or None)
+    except ValueError as error:
+        raise Unfit(str(error)) from None
     match = NUMBER.fullmatch(short)
     off = abs(Decimal(f"{match[1]}E{match[2] or 0}") - value)
     if off > abs(value) * Decimal(MOST_ROUNDED):
         raise Unfit(f"{width} columns hold {short}, off by {float(off / abs(value)):.1g} of it; "
                     "a large field (a * behind the card's name) or a free one (commas) holds it")
     return short
-
-
-def shortest(value, digits):
-    """A number rounded to so many digits, with a point, with or without an exponent."""
-    mantissa, exponent = f"{value:.{digits - 1}E}".split("E")
-    if "." not in mantissa:
-        mantissa += "."
-    mantissa = re.sub(r"0+$", "", mantissa)
-    with_exponent = f"{mantissa}{int(exponent):+d}"
-    if not -20 < int(exponent) < 20:
-        return with_exponent
-    plain = format(Decimal(f"{mantissa}0E{exponent}"), "f")
-    plain = re.sub(r"0+$", "", plain) if "." in plain else plain + "."
-    plain = re.sub(r"^([+-]?)0\.(?=\d)", r"\1.", plain)
-    return min(plain, with_exponent, key=len)

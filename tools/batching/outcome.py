@@ -4,6 +4,8 @@ import os
 import re
 import signal
 
+import tables
+
 COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "nodes", "p_max", "approach", "p_max_error",
            "certificate", "certificate_part"]
 ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "singular stiffness", "contact not found", "ill-conditioned",
@@ -105,7 +107,10 @@ def number(text):
 
 
 def read_summary(path):
-    return {row[0]: row[1] for row in csv.reader(read_text(path).splitlines()) if len(row) > 1}
+    try:
+        return tables.summary(path)
+    except (OSError, csv.Error):
+        return {}
 
 
 def read_text(path):

@@ -10,6 +10,8 @@ import subprocess
 import sys
 import time
 
+from wording import counted
+
 from .decks import Refused
 from .outcome import KILLED
 
@@ -117,7 +119,7 @@ class Watch:
         for task in killed:
             jobs = self.jobs_of(task)
             why = reason(jobs[-1], task) if jobs else "never submitted"
-            print(f"task {task}: {why}, {len(left[task])} decks left" +
+            print(f"task {task}: {why}, {counted(len(left[task]), 'deck')} left" +
                   ("; submitted again" if len(jobs) < TRIES else f"; given up after {TRIES} times"), file=sys.stderr)
             if len(jobs) < TRIES:
                 again.append(task)

@@ -3,11 +3,13 @@ import os
 import re
 from dataclasses import dataclass
 
+import cards
+
 from .fitting import Unfit, fit
 
 PLACE = re.compile(r"%([A-Za-z_]\w*)%")
 INCLUDE = re.compile(r"""([ ]*include[ ]*)(['"])(.*?)\2(.*)""", re.IGNORECASE)
-FIRST, LAST, LONGEST = 8, 72, 256   # columns of a name, of data, of a free line
+LONGEST = 256   # characters of a free line
 
 
 @dataclass
@@ -36,13 +38,13 @@ class Template:
                 self.plain(k, code, 0)
                 continue
             ended = code.strip().upper() == "ENDDATA"
-            name = re.split(r"[,\s]", code[:FIRST])[0].upper() if code[0] not in " +*," else ""
-            wide = "*" in code[:FIRST].split(",")[0]
+            name = re.split(r"[,\s]", code[:cards.FIRST])[0].upper() if code[0] not in " +*," else ""
+            wide = cards.is_wide(code)
             if name:
                 card, slot = name.rstrip("*"), 0
             elif slot % 8 and not wide:
                 slot += 4   # a row of large fields that ends with its first half
-            self.cut(k, code, card, slot, 4 if wide else 8)
+            self.cut(k, code, card, slot)
             slot += 4 if wide else 8
 
     def fault(self, k, first, last, what):
@@ -52,21 +54,17 @@ class Template:
         """Places in comments, titles and names of files: any text."""
         self.places += [Place(match[1], k, *match.span()) for match in PLACE.finditer(text, start)]
 
-    def cut(self, k, code, card, slot, most):
+    def cut(self, k, code, card, slot):
         """Places in the fields of a card, which they must fill."""
-        if "," in code:
-            ends = [match.start() for match in re.finditer(",", code)] + [len(code)]
-            fields = [(a + 1, b, 0) for a, b in zip(ends, ends[1:])]
-        else:
-            step = (LAST - FIRST) // most
-            fields = [(a, a + step, step) for a in range(FIRST, LAST, step)]
+        fields = cards.places(code)
         for match in PLACE.finditer(code):
-            index, (first, last, width) = next(((i, each) for i, each in enumerate(fields) if each[0] <= match.start() < each[1]),
-                                               (-1, (0, 0, 0)))
-            if index < 0 or code[first:last].strip() != match[0]:
+            index = next((i for i, each in enumerate(fields) if each.start <= match.start() < each.stop), -1)
+            if index < 0 or code[fields[index]].strip() != match[0]:
                 self.fault(k, *match.span(), f"{match[0]} does not fill a field of its own: a shorter name, a large field "
                            "(a * behind the card's name) or a free one (commas) would be right")
                 continue
+            first, last = fields[index].start, fields[index].stop
+            width = 0 if "," in code else last - first
             field = slot + index
             column = self.column(card, field, code)
             label = f"{card} field {field // 8 * 10 + field % 8 + 2}" + (f" ({column.name})" if column.name else "")

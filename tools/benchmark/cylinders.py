@@ -1,5 +1,4 @@
 """Part 1: two cylinders, elastic and elastoplastic, by whole programs."""
-import csv
 import importlib.util
 import json
 import math
@@ -7,6 +6,7 @@ import statistics
 import sys
 
 import calculix
+import tables
 from process import peak, settled, timed
 from scenes import cylinders
 
@@ -71,8 +71,7 @@ def epcont(top, place, mesh, plastic):
     (place / "scene.dat").write_text(deck.text(), encoding="ascii")
 
     def answer(place):
-        with open(place / "scene.summary.csv", newline="", encoding="ascii") as file:
-            summary = {row["key"]: row["value"] for row in csv.DictReader(file)}
+        summary = tables.summary(place / "scene.summary.csv")
         return float(summary["max_pressure"]), -next(float(v) for key, v in summary.items() if key.startswith("approach"))
 
     return Program("epcont", "NEWTON, 1e-8" if plastic else "", [str(top / "build/release/epcont"), "scene.dat"], answer)

@@ -10,6 +10,7 @@ add_custom_command(TARGET epcont POST_BUILD COMMAND epcont --man > "${man_page}"
 install(TARGETS epcont RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(FILES "${man_page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES input/README.md input/coming_from.md DESTINATION "${CMAKE_INSTALL_DOCDIR}/input")   # where README.md says that they are
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright)   # where Debian looks for it
 install(FILES input/hertz/hertz44.dat DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples")
 

@@ -8,6 +8,8 @@ from drawing.style import DARK, GREY, RED
 SEEN = 0.08
 #: ... but no farther than that closed gaps, which grow as well, make bodies overlap by this part of it.
 OVERLAP = 0.01
+#: Elements below this part of a panel's size have fainter sides, and soon none.
+FAINT = 0.05
 
 
 def factor(run):
@@ -84,10 +86,12 @@ def draw(figure, run, heading, scale=1, window=None, yielded=False):
         bar = [1.04, 0.0, 0.05 * high / wide, 1.0] if beside else [0.0, -0.25 - 0.03 * wide / high, 1.0, 0.02 * wide / high]
         figure.colorbar(drawn, cax=axes.inset_axes(bar), extend="max", orientation="vertical" if beside else "horizontal",
                         label=f"equivalent stress, {run.stress_unit()}")
-    # Sides of elements too small to be told apart would hide the colours.
-    large = [shape for shape in shapes if np.ptp(shape, axis=0).min() > 0.03 * max(wide, high)]
+    # Sides of elements too small to be told apart would hide the colours: the smaller, the fainter.
+    sizes = np.array([np.ptp(shape, axis=0).min() for shape in shapes]) / max(wide, high)
+    faint = np.clip((sizes / FAINT)**2, 0.0, 1.0)
+    large = [shape for shape, part in zip(shapes, faint) if part > 0.1]
     axes.add_collection(PolyCollection(large, facecolors="none" if run.solved else "#dde4ec", edgecolors="white" if run.solved else GREY,
-                                       linewidths=0.25))
+                                       linewidths=0.25 * faint[faint > 0.1]))
     outline = run.sides()
     if scale != 1:
         axes.add_collection(LineCollection([run.x[list(ends)] for ends in outline], colors=GREY, linewidths=0.6))

@@ -19,7 +19,7 @@ def panels(run, formulas):
     if run.plastic.any():
         window = bodies.yielded_window(run)
         found.append(("yielded", width(bodies.proportion(run, window)),
-                      lambda figure: bodies.draw(figure, run, f"yielded: {run.plastic.sum()} of {len(run.plastic)} elements", 1, window, True)))
+                      lambda figure: bodies.draw(figure, run, f"yielded (red): {run.plastic.sum()} of {len(run.plastic)} elements", 1, window, True)))
         near = [view for view in near if view[1] < window[1] / 4]
     for view in near:
         found.append(("shape", width(bodies.proportion(run, view)),

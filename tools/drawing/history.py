@@ -1,5 +1,6 @@
 """A panel of the iteration: what changes, what is off the curve, what touches and has yielded."""
 import numpy as np
+from matplotlib.ticker import LogLocator, NullLocator
 
 from drawing.style import BLUE, DARK, GREEN, GREY, RED
 
@@ -21,6 +22,11 @@ def draw(figure, run):
             axes.axvline(n[first] + 0.5, color=GREY, lw=0.5)
         axes.legend()
         low, high = below.get_ylim()
-    below.set(xlabel="iteration", ylim=(low / 1.5, high * 1.5))
+    low, high = low / 1.5, high * 1.5
+    below.set(xlabel="iteration", ylim=(low, high))
+    if high < 100 * low:   # powers of ten would be too few
+        below.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        below.yaxis.set_minor_locator(NullLocator())
+    below.yaxis.set_major_formatter("{x:g}")
     below.xaxis.get_major_locator().set_params(integer=True)
     above.set_title(f"iteration, {len(n)} solves")

@@ -1,11 +1,11 @@
 """A deck and what epcont gives for it, as arrays."""
-import csv
 import pathlib
 import subprocess
 import sys
 import tempfile
 
 import numpy as np
+import tables
 
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 PROGRAM = TOP / "build/release/epcont"
@@ -37,18 +37,18 @@ class Run:
             if run.returncode not in (0, 1, 4):
                 raise Refused(run.stderr.strip() or run.stdout.strip(), run.returncode)
             self.message = run.stderr.strip()
-            tables = {name: table(pathlib.Path(place) / f"{self.path.stem}.{name}.csv")
-                      for name in ("nodes", "elements", "contact", "zones", "history", "summary")}
+            found = {name: table(pathlib.Path(place) / f"{self.path.stem}.{name}.csv")
+                     for name in ("nodes", "elements", "contact", "zones", "history")}
+            self.status = tables.summary(pathlib.Path(place) / f"{self.path.stem}.summary.csv")["status"]
             self.title = title(pathlib.Path(place) / f"{self.path.stem}.lst")
         try:
             deck = read(self.path)
         except DeckError as error:
             raise Refused(f"{self.path}: epcont reads this deck, the reader of the pictures does not: {error}") from error
         self.exit_status = run.returncode
-        self.status = next(row["value"] for row in tables["summary"] if row["key"] == "status")
-        self.take_mesh(deck, tables["nodes"], tables["elements"])
-        self.take_contact(deck, tables["contact"], tables["zones"])
-        self.history = {key: np.array([float(row[key]) for row in tables["history"]]) for key in (tables["history"] or [{}])[0]}
+        self.take_mesh(deck, found["nodes"], found["elements"])
+        self.take_contact(deck, found["contact"], found["zones"])
+        self.history = {key: np.array([float(row[key]) for row in found["history"]]) for key in (found["history"] or [{}])[0]}
         self.young, self.nu = next((real(at(card, 2)), real(at(card, 4))) for card in deck.of("MAT1"))
         self.unit = {at(card, 1): at(card, 2) for card in deck.of("PARAM")}.get("UNITS", "")
         self.rings = bool(deck.of("PSOLID"))
@@ -78,12 +78,14 @@ class Run:
 
     def take_contact(self, deck, pairs, zones):
         """Contact lines: the pairs of each BCONP, and CGAPs whose nodes are neighbours on a boundary."""
-        slaves = {int(card[1]): {int(node) for node in ids(card[2:])} for card in deck.of("BLSEG")}
+        nodes = {int(card[1]): {int(node) for node in ids(card[2:])} for card in deck.of("BLSEG")}
+        contacts = [(card[1], int(card[2]), int(card[3])) for card in deck.of("BCONP")]
         left, self.lines = list(pairs), []
-        for card in deck.of("BCONP"):
-            own = [p for p in left if p["pair"] == p["gb"] and int(p["gb"]) in slaves[int(card[2])]]
+        for name, slave, master in contacts:
+            alone = sum(other == slave for _, other, _ in contacts) == 1   # else the master's nodes tell its pairs
+            own = [p for p in left if p["pair"] == p["gb"] and int(p["gb"]) in nodes[slave] and (alone or int(p["ga"]) in nodes[master])]
             left = [p for p in left if p not in own]
-            self.lines += [Line(f"BCONP {card[1]}", own)] if own else []
+            self.lines += [Line(f"BCONP {name}", own)] if own else []
         for chain in chains(left, self.neighbours()):
             first, last = chain[0]["pair"], chain[-1]["pair"]
             self.lines.append(Line(f"CGAP {first} to {last}" if first != last else f"CGAP {first}", chain))
@@ -137,10 +139,7 @@ class Line:
 
 def table(path):
     """Rows of a table, none where the run wrote no such table."""
-    if not path.exists():
-        return []
-    with open(path, newline="", encoding="ascii") as file:
-        return list(csv.DictReader(file))
+    return tables.rows(path) if path.exists() else []
 
 
 def title(listing):

@@ -64,6 +64,8 @@ def check(path, maker):
     print(run.stdout + run.stderr, end="")
     for number in sorted({int(n) for n in re.findall(r"\bGRID (\d+)", run.stderr)}):
         print(maker.described(number))
+    for number, motions in re.findall(r"the body of GRID (\d+) is free to move: (.*)", run.stderr):
+        print(maker.freed(int(number), motions))
     if not run.returncode:
         return 0
     print("mend the scene, not the deck; in the scene SPC1 and SPC are [support], SUPORT [free], RBE2 [platen], BLSEG and BCONP [[contact]]")
@@ -81,6 +83,8 @@ def main(arguments=None):
     faults = Faults(options.scene.name)
     path = options.deck or options.scene.with_suffix(".dat")
     try:
+        if options.scene.suffix.lower() in (".geo", ".msh", ".dat", ".bdf"):
+            raise Unusable(f'{options.scene} is no scene: that is a .toml, with mesh = "NAME.geo" (input/README.md, "From Gmsh")')
         if not path.suffix or not path.name.isascii() or set("'\"") & set(path.name):
             raise Unusable(f"{path}: the name of a deck ends in .dat, say, and has no quotes; the deck includes a file of like name")
         maker = make(options.scene, path, faults)

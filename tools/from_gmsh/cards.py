@@ -1,31 +1,8 @@
 """Cards in small fields where all digits of their reals fit, in large ones else."""
 
+from cards import written
+
 SMALL, LARGE = 8, 16
-
-
-def written(value, width):
-    """A real as a field of so many columns has it: with a decimal point, and as many digits as fit."""
-    for digits in range(17, 0, -1):
-        for text in (plain(value, digits), with_exponent(value, digits)):
-            if text and len(text) <= width:
-                return text
-    raise ValueError(value)
-
-
-def plain(value, digits):
-    """`.025`, `12.`; empty where that takes an exponent."""
-    text = f"{value + 0.0:.{digits}g}"   # without the sign of a zero
-    if "e" in text:
-        return ""
-    text = text if "." in text else text + "."
-    return text if text == "0." else text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
-
-
-def with_exponent(value, digits):
-    """`1.5-3`, as NASTRAN has it."""
-    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    mantissa = mantissa.rstrip("0") if "." in mantissa else mantissa + "."
-    return f"{mantissa}{int(exponent):+d}"
 
 
 def fits_small(value):

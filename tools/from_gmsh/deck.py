@@ -1,7 +1,7 @@
 """The cards of a scene on its mesh."""
 from .cards import card
 from .faults import listed, spot
-from .lines import shares
+from .lines import nodes_of, shares
 from .match import Groups, check_bodies
 
 AXES = {"1": "x", "2": "y"}
@@ -22,6 +22,8 @@ class Maker:
         self.free = self.find_free()
         self.pressures, self.forces = self.find_loads()
         self.groups.note_unused()
+        if not self.pressures and not self.forces and not any(value for own in self.held.values() for value, _ in own.values()):
+            faults.note("[load]", "there is none, and no support that moves: nothing but overlaps of the drawing gives forces")
         faults.end_stage()
         self.number = self.numbers()
         self.first = {}   # number of the first element of each body
@@ -231,6 +233,28 @@ class Maker:
 
     def described(self, number):
         """Where the node of a GRID is."""
-        node = next(node for node, other in self.number.items() if other == number)
-        bodies = [name for name, elements in self.mesh.bodies.items() if any(node in nodes for _, nodes in elements)]
+        node, bodies = self.home(number)
         return f"GRID {number} is at {spot(self.mesh.place[node])}, on {listed(bodies)}"
+
+    def home(self, number):
+        """The node of a GRID, and its bodies."""
+        node = next(node for node, other in self.number.items() if other == number)
+        return node, [name for name, elements in self.mesh.bodies.items() if any(node in nodes for _, nodes in elements)]
+
+    def freed(self, number, motions):
+        """What a scene says against free motions, in epcont's words, of the body of a GRID."""
+        _, bodies = self.home(number)
+        own = {node for name in bodies for _, nodes in self.mesh.bodies[name] for node in nodes}
+        lines = [name for name, sides in self.mesh.lines.items() if own & set(nodes_of(sides))]
+        points = [name for name, nodes in self.mesh.points.items() if own & set(nodes)]
+        axes = [axis for axis, shift in (("x", "shifts along (1.000, 0.0)"), ("y", "shifts along (0.0, 1.000)")) if shift in motions]
+        turns = "turns" in motions
+        missing = [f"in {axis}" for axis in axes] + ["against turning"] * turns
+        if axes or not turns:
+            held = " and ".join(f"NAME.{axis} = 0" for axis in axes or "x")
+            remedy = f'{held}; or, where contact is to hold it, [free] NAME = "{"".join(axes) or "x"}", of a point or a [platen]' \
+                f"{'; against turning, one more point' * turns}"
+        else:
+            remedy = 'NAME.x = 0 or NAME.y = 0 of one more point; or, where contact is to hold it, [free] NAME = "x" or "y" of one more'
+        return f"nothing holds {listed(bodies)} {', nor '.join(missing or ['in one direction'])}\n" \
+            f"  [support] {remedy}; its lines: {listed(lines)}; its points: {listed(points)}"

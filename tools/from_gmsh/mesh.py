@@ -11,6 +11,7 @@ SURFACES = {2: (3, 3), 3: (4, 4), 9: (3, 6)}
 LINES = {1: 2, 8: 3}
 NAMES = {4: "second-order quadrilaterals", 10: "second-order quadrilaterals", 16: "second-order quadrilaterals"}
 POINT, LINE, SURFACE = 0, 1, 2
+DIMENSIONS = {"point": POINT, "curve": LINE, "surface": SURFACE}
 KIND = {POINT: "Physical Point", LINE: "Physical Curve", SURFACE: "Physical Surface"}
 
 
@@ -40,6 +41,8 @@ def read_mesh(path, faults: Faults):
         beside = sorted(p.name for p in path.parent.glob("*") if p.suffix in (".geo", ".msh"))
         faults.add("mesh", f"there is no file {path.name} beside the scene", f"one of: {listed(beside)}")
     faults.end_stage()
+    if path.suffix.lower() == ".geo" and path.read_bytes().rpartition(b"\n")[2].count(b";") > 1:
+        faults.note("mesh", f"the last line of {path.name} has no end of line: Gmsh reads the first of its commands alone")
     gmsh.initialize(["gmsh"], readConfigFiles=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
@@ -58,12 +61,28 @@ def open_file(path, faults):
             gmsh.model.mesh.generate(2)
     except Exception as error:   # Gmsh raises nothing more special
         failed = str(error)
-    told = [line for line in gmsh.logger.get() if line.startswith("Error")] or ([failed] if failed else [])
+    log = gmsh.logger.get()
+    told = [line for line in log if line.startswith("Error")] or ([failed] if failed else [])
     for line in told[:3]:   # one mistake makes Gmsh stumble again and again
         match = re.fullmatch(r"(?:Error\s*: )?(?:'.*?', line (\d+): )?(.*)", line, re.DOTALL)
         faults.add("mesh", f"{path.name}{f', line {match[1]}' if match[1] else ''}: Gmsh says: {match[2]}",
-                   "a file that Gmsh itself opens and meshes without an error")
+                   "mend the drawing until it opens and meshes in Gmsh itself without an error")
+    for line in log:
+        check_warning(path, line, faults)
     faults.end_stage()
+
+
+def check_warning(path, line, faults):
+    """What Gmsh leaves out of a group would be left out of a contact or a support, and the answer be another."""
+    match = re.fullmatch(r"Warning\s*: (.*)", line, re.DOTALL)
+    lost = match and re.fullmatch(r"Skipping unknown (\w+) (\d+) in physical (\w+) (\d+)", match[1])
+    if lost:
+        kind, entity, dimension, group = lost.groups()
+        name = gmsh.model.getPhysicalName(DIMENSIONS.get(dimension, POINT), int(group)) or group
+        faults.add("mesh", f"{path.name} has no {kind} {entity}, which its Physical {dimension.capitalize()} '{name}' asks for",
+                   f"{kind}s that the drawing has; bodies in contact have their own each: no Coherence, no BooleanFragments")
+    elif match:
+        faults.note("mesh", f"{path.name}: Gmsh warns: {match[1]}")
 
 
 def collect(path, faults):

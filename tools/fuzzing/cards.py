@@ -1,7 +1,7 @@
-"""Decks as cards, and cards as text; the columns, from the program's own catalogue."""
-import re
-import subprocess
+"""Decks as cards, and cards as text."""
 from dataclasses import dataclass, field
+
+from cards import fields
 
 
 @dataclass
@@ -42,18 +42,6 @@ def parse(text):
     return deck
 
 
-def fields(line):
-    """Name and data fields of one line."""
-    if "," in line:
-        parts = [part.strip() for part in line.split(",")]
-        most = 4 if "*" in parts[0] else 8
-        return parts[0], (parts[1:most + 1] + [""] * most)[:most]
-    line = line.ljust(80)
-    name = line[:8].strip()
-    wide = 16 if "*" in name else 8
-    return name, [line[at:at + wide].strip() for at in range(8, 72, wide)]
-
-
 def write(card, form):
     """The lines of a card in a form: small, large or free. What does not fit makes the card a free one."""
     data = list(card.data)
@@ -80,50 +68,3 @@ def text_of(deck, forms, pick, end=True):
     for card in deck.cards:
         lines += write(card, pick.choice(forms))
     return "\n".join(lines + ["ENDDATA"] * end) + "\n"
-
-
-@dataclass
-class Column:
-    name: str
-    kind: str      # integer, real, word, digits, any; empty where the field must be blank
-    choices: list
-
-
-class Catalogue:
-    """What `epcont --cards` prints of every card."""
-
-    def __init__(self, program):
-        def ask(*name):
-            return subprocess.run([program, "--cards", *name], capture_output=True, text=True, check=True).stdout.splitlines()
-
-        self.names = [line.split()[0] for line in ask()]
-        self.columns, self.lists = {}, {}
-        for name in self.names:
-            self.columns[name] = []
-            for line in ask(name):
-                match = re.match(r"(\d+)(\.\.)?\s+\d+-\d+\s", line)
-                if not match:
-                    continue
-                kind = line[23:30].strip()
-                words = re.findall(r"\b[A-Z]{4,}\b", line[47:].split(";")[-1]) if kind == "word" else []
-                if match[2]:
-                    self.lists[name] = len(self.columns[name])
-                self.columns[name].append(Column(line[16:22].strip(), kind, words))
-        self.parameters = {}
-        lines = ask("PARAM")
-        for line in lines[lines.index("NAME      VALUE") + 1:]:
-            name, said = line.split(None, 1)
-            words = re.findall(r"\b[A-Z]{2,}\b", said.split(":")[0])
-            kind = "word" if words else "integer" if "whole" in said else "real" if "a real" in said else "word"
-            self.parameters[name] = Column(name, kind, words)
-
-    def column(self, name, slot):
-        """What stands in a slot of a card."""
-        columns = self.columns.get(name)
-        if not columns:
-            return Column("", "any", [])
-        if slot < len(columns):
-            return columns[slot]
-        if name in self.lists:
-            return columns[self.lists[name]]
-        return Column("", "", [])

@@ -1,5 +1,4 @@
 """Runs of decks, and what is wrong with them."""
-import csv
 import math
 import os
 import pathlib
@@ -10,6 +9,7 @@ import sys
 
 sys.path.insert(1, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "independent"))
 import deck as deck_reader  # noqa: E402
+import tables  # noqa: E402
 from verification.check import Tables, check, recompute  # noqa: E402
 from verification.scene import Scene  # noqa: E402
 
@@ -142,12 +142,11 @@ def fault_of_messages(told):
 
 
 def rows_of(run, name, table):
-    with open(run.out / f"{name}.{table}.csv", newline="", encoding="latin-1") as file:
-        return list(csv.DictReader(file))
+    return tables.rows(run.out / f"{name}.{table}.csv")
 
 
 def summary_of(run, name):
-    return {row["key"]: row["value"] for row in rows_of(run, name, "summary")}
+    return tables.summary(run.out / f"{name}.summary.csv")
 
 
 def told_tolerance(run, name, tolerance):

@@ -1,25 +1,7 @@
 """Cards of a deck: numbers in fields, and the cards in the order they are asked for."""
 import textwrap
 
-
-def short(value):
-    """A real in at most 8 characters."""
-    if value == int(value) and abs(value) < 1e6:
-        return f"{int(value)}."
-    for digits in range(8, 0, -1):
-        text = f"{value:.{digits}g}"
-        if "e" in text:
-            mantissa, exponent = text.split("e")
-            text = (mantissa if "." in mantissa else mantissa + ".") + f"{int(exponent):+d}"
-        elif text.startswith("0."):
-            text = text[1:]
-        elif text.startswith("-0."):
-            text = "-" + text[2:]
-        elif "." not in text:
-            text += "."
-        if len(text) <= 8:
-            return text
-    raise ValueError(value)
+from cards import written
 
 
 def long(value):
@@ -42,14 +24,14 @@ class Deck:
             self.card("PARAM", "GAPGEOM", "YES")
 
     def card(self, name, *fields):
-        fields = [short(f) if isinstance(f, float) else str(f) for f in fields]
+        fields = [written(f, 8) if isinstance(f, float) else str(f) for f in fields]
         for i in range(0, max(len(fields), 1), 8):
             line = (name if i == 0 else "").ljust(8) + "".join(f.ljust(8) for f in fields[i:i + 8])
             self.lines.append(line.rstrip())
 
     def wide(self, name, *fields):
         """A card in large field, for reals that eight characters would cut."""
-        cells = [str(f) if not isinstance(f, float) else short(f) if f == int(f) else long(f) for f in fields]
+        cells = [str(f) if not isinstance(f, float) else written(f, 8) if f == int(f) else long(f) for f in fields]
         for i in range(0, len(cells), 4):
             line = (name + "*" if i == 0 else "*").ljust(8) + "".join(cell.ljust(16) for cell in cells[i:i + 4])
             self.lines.append(line.rstrip())
@@ -95,7 +77,7 @@ class Deck:
     def follows(self, number, curve):
         """A curve from points of strain and stress, the origin and the yield point first."""
         self.card("MATS1", number, number, "PLASTIC", "", 1, 1, curve[1][1])
-        numbers = [short(value) for point in curve for value in point] + ["ENDT"]
+        numbers = [written(value, 8) for point in curve for value in point] + ["ENDT"]
         self.card("TABLES1", number, *[""] * 7, *numbers)
 
     def press(self, mesh, line, value, first=1, first_node=1, theta=0.0):

@@ -28,6 +28,8 @@ def persson(half):
 def pin_in_lug(half=45.0, around=24, finer=1.4, size=30.0, element="ctria6"):
     """Pin in the hole of a large lug, unlike meshes: Persson's half angle is chosen, the clearance follows."""
     radius, load, stiff = 10.0, 1000.0, STEEL / (1 - 0.09)
+    if not 0 < half < 84.8:   # beyond, Persson's pin has no clearance
+        raise ValueError(f"half {half:g}: an angle above 0 and below 84.8 would be right")
     slack, top = persson(half)
     clearance = slack * load / stiff
     around = 4 * round(around / 4)

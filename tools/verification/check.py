@@ -1,8 +1,8 @@
 """The figures of a certificate, recomputed from a scene and the tables of its run, and held against the program's own."""
-import csv
 import math
 import pathlib
 
+import tables
 from deck import integer
 from kinds import KINDS
 from pressures import pressures
@@ -24,18 +24,49 @@ KEYS = {
 ROUNDINGS = 128 * 2.0 ** -52
 
 
+class TableFault(ValueError):
+    """A table that cannot be what epcont has written for the deck: which, where, why."""
+
+
 class Tables:
     def __init__(self, directory, stem):
         self.directory, self.stem = pathlib.Path(directory), stem
-        self.summary = {row["key"]: row["value"] for row in self.read("summary")}
-        self.nodes = {int(row["node"]): row for row in self.read("nodes")}
-        self.elements = {int(row["element"]): row for row in self.read("elements")}
-        contact = self.directory / f"{stem}.contact.csv"
-        self.contact = {int(row["pair"]): row for row in self.read("contact")} if contact.exists() else {}
+        self.summary = tables.summary(self.path("summary"))
+        for key, value in self.summary.items():
+            if key in KEYS.values() or key in ("total_contact_force", "max_pressure") or key.startswith("approach_"):
+                number(value, self.path("summary"), key)
+        self.nodes = self.read("nodes", "node", "ux", "uy", "rx", "ry")
+        self.elements = self.read("elements", "element", "sx", "sy", "sz", "txy")
+        self.contact = self.read("contact", "pair", "nx", "ny", "force", "gap") if self.path("contact").exists() else {}
 
-    def read(self, name):
-        with open(self.directory / f"{self.stem}.{name}.csv", newline="", encoding="ascii") as file:
-            return list(csv.DictReader(file))
+    def path(self, name):
+        return self.directory / f"{self.stem}.{name}.csv"
+
+    def read(self, name, key, *columns):
+        """Rows by number; these columns are numbers."""
+        found = {}
+        for line, row in enumerate(tables.rows(self.path(name)), 2):
+            if None in row.values():
+                raise TableFault(f"{self.path(name)}:{line}: the line is cut off")
+            for column in (key, *columns):
+                number(row.get(column), f"{self.path(name)}:{line}", column)
+            found[int(row[key])] = row
+        return found
+
+    def hold(self, scene):
+        """All that the deck has must be in the tables."""
+        for name, what, wanted, found in (("nodes", "node", {node for _, nodes, _ in scene.element.values() for node in nodes}, self.nodes),
+                                          ("elements", "element", scene.element, self.elements), ("contact", "pair", scene.pair, self.contact)):
+            lacking = sorted(set(wanted) - set(found))
+            if lacking:
+                raise TableFault(f"{self.path(name)}: no {what} {lacking[0]}: the table of another deck, or cut off")
+
+
+def number(text, place, name):
+    try:
+        float(text)
+    except (TypeError, ValueError):
+        raise TableFault(f"{place}: {name}: {'no such column' if text is None else f'{text!r} is no number'}") from None
 
 
 def add_elements(scene, tables, u, rest):
