@@ -18,10 +18,12 @@ module epcont_linalg_front_layout
     integer, allocatable :: row(:)         !! equations reached, ascending in each front
     integer, allocatable :: own(:)         !! how many equations are a front's own [fronts]
     integer, allocatable :: reached(:)     !! and how many it reaches [fronts]
+    logical :: in_sequence = .true.        !! all fronts below one stand right before it
     integer, allocatable :: element(:)     !! the elements in the order of the first fronts that they have equations of
   contains
     procedure :: find
     procedure :: entries
+    procedure :: remainder_starts
     procedure :: remainders
     procedure :: operations
   end type front_layout
@@ -77,6 +79,7 @@ contains
     layout%row = row(:layout%row_start(fronts + 1) - 1)
     layout%own = first(2:) - first(:fronts)
     layout%reached = layout%row_start(2:) - layout%row_start(:fronts)
+    layout%in_sequence = stand_in_sequence(layout%parent)
   end function new_front_layout
 
   !> The first front that each element has equations of; 0 where it has none [1, elements].
@@ -153,19 +156,57 @@ contains
     entries = sum(int(self%own, i8)*(self%own + self%reached))
   end function entries
 
-  !> Entries of what is left to the later equations when each front has been eliminated: of all fronts where these are kept,
-  !! else of those that are in work at a time, a front and all above it.
+  !> Whether the fronts below each stand right before it: else what one leaves may still be wanted when others, not below the
+  !! same, are eliminated.
+  pure logical function stand_in_sequence(parent)
+    integer, intent(in) :: parent(:)
+    integer :: below(size(parent)), lowest(size(parent)), p
+
+    stand_in_sequence = .true.
+    below = 0
+    lowest = [(p, p=1, size(parent))]
+    do p = 1, size(parent)
+      if (p - lowest(p) /= below(p)) stand_in_sequence = .false.
+      if (parent(p) == 0) cycle
+      below(parent(p)) = below(parent(p)) + below(p) + 1
+      lowest(parent(p)) = min(lowest(parent(p)), lowest(p))
+    end do
+  end function stand_in_sequence
+
+  !> Where to put what each front leaves to the later equations when it has been eliminated: each in its own place where all are
+  !! kept, else each behind that of its parent, where those that are done with were before. And one behind the last [fronts + 1].
+  pure function remainder_starts(self, kept) result(start)
+    class(front_layout), intent(in) :: self
+    logical, intent(in) :: kept
+    integer(i8), allocatable :: start(:)
+    integer(i8) :: last
+    integer :: p
+
+    associate (fronts => size(self%parent))
+      allocate (start(fronts + 1))
+      last = 0
+      do p = fronts, 1, -1
+        if (kept .or. .not. self%in_sequence) then
+          start(p) = last + 1
+        else if (self%parent(p) == 0) then
+          start(p) = 1
+        else
+          start(p) = start(self%parent(p)) + int(self%reached(self%parent(p)), i8)**2
+        end if
+        last = max(last, start(p) - 1 + int(self%reached(p), i8)**2)
+      end do
+      start(fronts + 1) = last + 1
+    end associate
+  end function remainder_starts
+
+  !> Entries that these take.
   pure integer(i8) function remainders(self, kept)
     class(front_layout), intent(in) :: self
     logical, intent(in) :: kept
-    integer(i8), allocatable :: behind(:)
-    integer :: p
+    integer(i8), allocatable :: start(:)
 
-    allocate (behind(0:size(self%parent)), source=0_i8)
-    do p = size(self%parent), 1, -1
-      behind(p) = merge(0_i8, behind(self%parent(p)), kept) + int(self%reached(p), i8)**2
-    end do
-    remainders = merge(sum(behind), maxval(behind), kept)
+    start = self%remainder_starts(kept)
+    remainders = start(size(start)) - 1
   end function remainders
 
   !> Operations that the factorization takes.
