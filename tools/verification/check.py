@@ -141,14 +141,14 @@ def recompute(scene, tables):
     force_scale = max([abs(f) for f in forces] + loads, default=0.0)
     length_scale = max([math.hypot(*v) for v in u.values()] + [abs(pair.initial) for pair in scene.pair.values()], default=0.0)
     scale = max(element_force, force_scale)
-    terms = math.fsum(map(abs, works)) + math.fsum(stored)
+    terms = math.fsum(map(abs, works)) + abs(math.fsum(stored))
     figures = {
         "equilibrium": max((abs(math.fsum(v)) for v in gathered.values()), default=0.0) / (scale or 1.0),
         "smallest_force": min(forces, default=0.0),
         "smallest_gap": min(gaps, default=0.0),
         "product": max((abs(f * g) for f, g in zip(forces, gaps)), default=0.0),
         "off_curve": off / (largest or 1.0),
-        "energy": abs(math.fsum(works) - math.fsum(stored)) / (terms or 1.0),
+        "energy": max(abs(math.fsum(works) - math.fsum(stored)), -math.fsum(stored)) / (terms or 1.0),
     }
     return figures, force_scale, length_scale, spread, max(part(lost, largest), part(lost_force, scale)), \
         largest * reach / (scale or 1.0)
