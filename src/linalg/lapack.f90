@@ -6,8 +6,8 @@ module epcont_linalg_lapack
   use epcont_base_kinds, only: sp, wp
   implicit none
   private
-  public :: dgemm, dgemv, dsyrk, dtrsm, dtrsv
-  public :: sgemm, sgemv, ssyrk, strsm, strsv, spotrf
+  public :: dasum, dgemm, dgemv, dsyrk, dtrsm
+  public :: sasum, sgemm, sgemv, ssyrk, strsm, spotrf
   public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs
   public :: dgetrf, dgetrs, dgesvd, dsyev
 
@@ -23,6 +23,14 @@ module epcont_linalg_lapack
       real(wp), intent(inout) :: c(ldc, *)
     end subroutine dgemm
 
+    !> Sum of magnitudes
+    pure function dasum(n, x, incx)
+      import :: wp
+      integer, intent(in) :: n, incx
+      real(wp), intent(in) :: x(*)
+      real(wp) :: dasum
+    end function dasum
+
     !> y = alpha op(A) x + beta y
     pure subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
       import :: wp
@@ -32,15 +40,6 @@ module epcont_linalg_lapack
       real(wp), intent(in) :: a(lda, *), x(*)
       real(wp), intent(inout) :: y(*)
     end subroutine dgemv
-
-    !> Solve op(A) x = b, A triangular
-    pure subroutine dtrsv(uplo, trans, diag, n, a, lda, x, incx)
-      import :: wp
-      character(len=1), intent(in) :: uplo, trans, diag
-      integer, intent(in) :: n, lda, incx
-      real(wp), intent(in) :: a(lda, *)
-      real(wp), intent(inout) :: x(*)
-    end subroutine dtrsv
 
     !> C = alpha A A' + beta C (or A'A), one triangle of C
     pure subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
@@ -136,6 +135,13 @@ module epcont_linalg_lapack
 
   ! Those of the above that panels in single precision take
   interface
+    pure function sasum(n, x, incx)
+      import :: sp
+      integer, intent(in) :: n, incx
+      real(sp), intent(in) :: x(*)
+      real(sp) :: sasum
+    end function sasum
+
     pure subroutine sgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
       import :: sp
       character(len=1), intent(in) :: trans
@@ -144,14 +150,6 @@ module epcont_linalg_lapack
       real(sp), intent(in) :: a(lda, *), x(*)
       real(sp), intent(inout) :: y(*)
     end subroutine sgemv
-
-    pure subroutine strsv(uplo, trans, diag, n, a, lda, x, incx)
-      import :: sp
-      character(len=1), intent(in) :: uplo, trans, diag
-      integer, intent(in) :: n, lda, incx
-      real(sp), intent(in) :: a(lda, *)
-      real(sp), intent(inout) :: x(*)
-    end subroutine strsv
 
     pure subroutine ssyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
       import :: sp
