@@ -38,7 +38,7 @@ module epcont_certificate_certificate
     real(wp) :: off_curve = 0.0_wp        !! largest difference of a stress from its curve / largest stress
     real(wp) :: motion_strain = 0.0_wp    !! largest strain of the rigid motions / its rounding
     real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes / largest stress
-    real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of all |terms|; that of the stresses, if negative
+    real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of all |terms|, or minus the latter's
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
     real(wp) :: gap_rounding = 0.0_wp     !! rounding of the gaps of pressed pairs, from their travel [length]
@@ -80,7 +80,7 @@ contains
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
     forces = sum(abs(load + reaction)) + sum(abs(force))
-    certificate%length_scale = ratio(stored, forces)
+    certificate%length_scale = ratio(abs(stored), forces)
     ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there is.
     if (forces == 0.0_wp) certificate%length_scale = maxval(abs(displacement))
     certificate%length_scale = max(certificate%length_scale, tiny(1.0_wp))

@@ -28,9 +28,9 @@ contains
     n = size(step)
     if (n < 2) return
     change = step%change
-    error%displacement = still_to_come(change)
+    error%displacement = still_to_come(change, step(n)%residual)
     change = step%force_change
-    error%force = still_to_come(change)
+    error%force = still_to_come(change, step(n)%residual)
     if (step(n)%residual > rounding) return
     ! What changes now is rounding, of that size.
     if (error%displacement < 0.0_wp) error%displacement = step(n)%change
@@ -38,9 +38,11 @@ contains
   end function estimate_iteration_error
 
   !> Sum of the changes to come, if each is the last one times the rate observed: a change of 1 % in a slow iteration
-  !! leaves much more than 1 %. The rate is the larger of that of the last step and of the last two.
-  pure real(wp) function still_to_come(change)
+  !! leaves much more than 1 %. The rate is the larger of that of the last step and of the last two. A mixture may fall into
+  !! place faster than it has come near: as long as stresses are off their curves, no less is left than the last change.
+  pure real(wp) function still_to_come(change, residual)
     real(wp), intent(in) :: change(:)   !! at least two
+    real(wp), intent(in) :: residual    !! of the last step
     real(wp) :: rate
     integer :: n
 
@@ -54,6 +56,6 @@ contains
       if (change(n) >= change(n - 2)) return
       rate = max(rate, sqrt(change(n)/change(n - 2)))
     end if
-    still_to_come = change(n)*rate/(1.0_wp - rate)
+    still_to_come = max(change(n)*rate/(1.0_wp - rate), min(change(n), residual))
   end function still_to_come
 end module epcont_result_iteration_error

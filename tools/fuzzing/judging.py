@@ -227,10 +227,12 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
     if certified > CERTIFIED:   # what single precision leaves is an estimate of strains, certified to ten times it: each may be off by its own
         certified = 3 * (certified + told_tolerance(other, twin, 0.0))
     bound = max(certified / 10, tolerance, 1e-13 * number(condition))
-    # Iterations take other ways to the same tolerance: TOL of the displacements is a tenth of that of the curve.
+    # Iterations take other ways to the same tolerance: TOL of the displacements is a tenth of that of the curve. What each has
+    # left it tells, as an estimate.
     left = number(summary_of(run, name)["curve_tolerance"])
     if left > CERTIFIED:
-        bound = max(bound, left / 10)
+        told = sum(number(summary_of(*answer)["iteration_error_displacement"]) for answer in ((run, name), (other, twin)))
+        bound = max(bound, left / 10, 3 * told)
     for table, key, columns in (("nodes", "node", ("ux", "uy")), ("elements", "element", ("sx", "sy", "sz", "txy"))):
         ours, theirs = ({row[key]: row for row in rows_of(a, b, table)} for a, b in ((run, name), (other, twin)))
         if ours.keys() != theirs.keys():
