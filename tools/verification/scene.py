@@ -76,7 +76,8 @@ class Scene:
                     self.leader[node, int(digit) - 1] = (int(c[2]), int(digit) - 1)
 
     def pairs(self, likely):
-        frame = {int(c[1]): x_axis([real(at(c, i)) for i in range(3, 12)]) for c in self.deck.of("CORD2R")}
+        frame = {0: (1.0, 0.0)}   # the basic system
+        frame.update({int(c[1]): x_axis([real(at(c, i)) for i in range(3, 12)]) for c in self.deck.of("CORD2R")})
         given = {int(c[1]): real(at(c, 2)) for c in self.deck.of("PGAP")}
         within = {node for _, nodes, _ in self.element.values() for node in nodes}
         self.pair, self.contacts = {}, []
