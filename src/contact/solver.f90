@@ -3,7 +3,7 @@ module epcont_contact_solver
   use epcont_base_kinds, only: wp
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
-  use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, contact_solution
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, contact_solution, contact_stalled
   use epcont_contact_scaling, only: drop_motions, negligible, restore_units, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts, ray_tolerance
   use epcont_contact_state, only: contact_state, noise
@@ -21,6 +21,7 @@ contains
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
     logical, intent(in), optional :: by_blocks  !! RULE BLOCK; not given: CONRY
     type(scaled_problem) :: scaled
+    type(contact_solution) :: begun
     type(rigid_start) :: rigid
     type(contact_state) :: state
     real(wp), allocatable :: ray(:)
@@ -42,7 +43,16 @@ contains
       if (by_blocks) call solve_by_blocks(scaled, rigid%touching, guess, solution)
       if (solution%by_blocks) return
     end if
+    begun = solution
     call find_contacts(scaled, rigid%touching, guess, solution, state, ray)
+    if (solution%state == contact_stalled) then
+      ! Ties may have led the path round in a circle: blocks know of no path.
+      call solve_by_blocks(scaled, rigid%touching, guess, begun)
+      if (begun%by_blocks) then
+        solution = begun
+        return
+      end if
+    end if
     if (solution%state == contact_overlap) then
       solution%overlapping = ray > ray_tolerance*maxval(ray)
     else

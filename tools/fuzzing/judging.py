@@ -226,10 +226,10 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
     if one != "valid":
         return None
     condition = summary_of(run, name)["condition"]
-    certified = told_tolerance(run, name, 0.0)
-    if certified > CERTIFIED:   # what single precision leaves is an estimate of strains, certified to ten times it: each may be off by its own
-        certified = 3 * (certified + told_tolerance(other, twin, 0.0))
-    bound = max(certified / 10, tolerance, 1e-13 * number(condition))
+    certified = [told_tolerance(run, name, 0.0), told_tolerance(other, twin, 0.0)]
+    bound = max(max(certified) / 10, tolerance, 1e-13 * number(condition))
+    if max(certified) > CERTIFIED:   # single precision, of one or both, has answers as good as it certifies
+        bound = max(bound, sum(certified))
     # Iterations take other ways to the same tolerance: TOL of the displacements is a tenth of that of the curve. What each has
     # left it tells, as an estimate.
     left = number(summary_of(run, name)["curve_tolerance"])
