@@ -73,7 +73,8 @@ def factors(place, sizes, turns):
     matrices, nodes = [], []
     for n in sizes:
         mesh = cylinders.mesh_of(n)
-        (place / "plan.dat").write_text(cylinders.cylinders.hertz(mesh).text(), encoding="ascii")
+        deck = cylinders.cylinders.hertz(mesh).text().replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,SOLVER,BAND\n")
+        (place / "plan.dat").write_text(deck, encoding="ascii")
         body = re.search(r"^ +1 +\d+ +(\d+) +(\d+) ", output(RELEASE / "epcont", "--plan", place / "plan.dat"), re.MULTILINE)
         matrices += body.groups()
         nodes.append(len(mesh.point))
