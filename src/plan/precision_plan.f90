@@ -15,8 +15,8 @@ module epcont_plan_precision_plan
 
 contains
 
-  !> That of the deck, else that of the accuracy it wants, else double. Refinement pays where bodies are factored once (0.6 of
-  !! the time of double with 41 000 nodes, level with 11 000); where each iteration factors them, it takes 1.3 to 1.6 times as long.
+  !> That of the deck, else that of the accuracy it wants, else double. Refinement pays where bodies are factored once (0.8 of
+  !! the time of double with 42 000 nodes, level with 11 000); where each iteration factors them, it takes 1.3 to 1.6 times as long.
   pure integer function plan_precision(controls, yields) result(precision)
     type(controls_type), intent(in) :: controls
     logical, intent(in) :: yields    !! something can yield
