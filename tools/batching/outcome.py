@@ -35,6 +35,8 @@ def judge(ended, listing, summary):
         return "timed out", f"no end within {ended.limit:g} s"
     if ended.code == -signal.SIGKILL:
         return KILLED, "by SIGKILL: out of memory, or somebody's doing"
+    if ended.code == -signal.SIGTERM:   # Slurm's first word at a time limit goes to the program, too
+        return KILLED, "by SIGTERM: out of time, or somebody's doing"
     if ended.code < 0:
         return "crashed", f"by {name_of(-ended.code)}" + (f": {said}" if said else "")
     if ended.code == 2:
