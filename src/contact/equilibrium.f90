@@ -1,6 +1,6 @@
 !> The start: which pairs touch first if the bodies are rigid.
 !>
-!> The ordinary two-phase simplex, with Bland's rule, on
+!> The ordinary two-phase simplex, with Dantzig's rule and, should that run in circles, Bland's, on
 !>
 !>     minimise g^'R   subject to   A'R = P,   R >= 0
 !>
@@ -119,26 +119,35 @@ contains
     end do
   end subroutine price
 
-  !> Exchange until no force lowers the cost. Bland's rule ends; the limit guards against rounding, and
-  !> a set that is not quite the best serves as well, since the contact simplex lifts its start.
+  !> Exchange until no force lowers the cost. The force that lowers it most enters (Dantzig), so that the basis keeps clear of
+  !> pairs that all but depend on each other: two opposite ones would have to carry a load across them by wedging. That may run in
+  !> circles among ties; Bland's rule ends. The limit guards against rounding, and a set that is not quite the best serves as
+  !> well, since the contact simplex lifts its start.
   pure subroutine minimise(lp, n)
     type(programme), intent(inout) :: lp
     integer, intent(in) :: n   !! columns that may enter
     integer :: column, count, row
+    logical :: by_index
 
     do count = 1, 100*(n + size(lp%basic))
-      column = findloc(lp%reduced_cost(:n) < -negligible, .true., dim=1)
+      by_index = count > 10*(n + size(lp%basic))
+      if (by_index) then
+        column = findloc(lp%reduced_cost(:n) < -negligible, .true., dim=1)
+      else
+        column = minloc(lp%reduced_cost(:n), dim=1, mask=lp%reduced_cost(:n) < -negligible)
+      end if
       if (column == 0) exit
-      row = leaving_row(lp, column)
+      row = leaving_row(lp, column, by_index)
       if (row == 0) exit
       call exchange(lp, row, column)
     end do
   end subroutine minimise
 
-  !> Least ratio; of ties, the variable of least index (Bland). 0: none decreases.
-  pure function leaving_row(lp, column) result(row)
+  !> Least ratio; of ties, the largest pivot, or the variable of least index (Bland). 0: none decreases.
+  pure function leaving_row(lp, column, by_index) result(row)
     type(programme), intent(in) :: lp
     integer, intent(in) :: column
+    logical, intent(in) :: by_index
     integer :: row
     real(wp) :: least, ratio, zero
     integer :: i
@@ -151,7 +160,10 @@ contains
       ratio = lp%value(i)/lp%entry(i, column)
       if (row > 0) then
         if (ratio > least + negligible) cycle
-        if (ratio >= least - negligible .and. lp%basic(i) > lp%basic(row)) cycle
+        if (ratio >= least - negligible) then
+          if (by_index .and. lp%basic(i) > lp%basic(row)) cycle
+          if (.not. by_index .and. lp%entry(i, column) <= lp%entry(row, column)) cycle
+        end if
       end if
       row = i
       least = ratio

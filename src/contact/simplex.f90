@@ -47,9 +47,10 @@ contains
     closed = first_touching
     if (allocated(guess)) closed = closed .or. guess
     state = fresh_state(scaled, closed, first_touching)
-    lifted = unloaded_values(scaled, state)
-    if (allocated(guess)) lifted = max(basic_values(state), 0.0_wp)
+    lifted = max(basic_values(state), 0.0_wp)
+    if (state%basis%sound .and. .not. allocated(guess)) lifted = unloaded_values(scaled, state)
     do attempt = 0, restart_limit
+      if (.not. state%basis%sound) exit   ! the motions are held too badly to be computed
       solution%state = contact_solved
       if (has_right_signs(scaled, state, merge(guess_tolerance, sign_tolerance, attempt == 0))) return
       solution%restarts = attempt

@@ -13,6 +13,7 @@ module epcont_contact_state
   !> Part of a quantity that rounding leaves where it should cancel.
   real(wp), parameter, public :: noise = 100*epsilon(1.0_wp)
 
+  !> Without forces where the basis is not sound.
   type :: contact_state
     type(contact_basis) :: basis
     real(wp), allocatable :: force(:), gap(:)   !! [n]
@@ -30,7 +31,12 @@ contains
 
     state%basis = new_basis(scaled, closed)
     if (.not. state%basis%sound) state%basis = new_basis(scaled, closed .or. first_touching)
-    call basic_solution(state%basis, scaled, scaled%gap, scaled%resultant, state%force, state%gap, state%approach)
+    if (state%basis%sound) then
+      call basic_solution(state%basis, scaled, scaled%gap, scaled%resultant, state%force, state%gap, state%approach)
+    else
+      state%gap = scaled%gap
+      allocate (state%force(size(scaled%gap)), state%approach(size(scaled%resultant)), source=0.0_wp)
+    end if
   end function fresh_state
 
   !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
@@ -42,7 +48,7 @@ contains
     values(state%basis%pairs) = state%force(state%basis%pairs)
   end function basic_values
 
-  !> The test of the fresh solution: R >= 0 and w >= 0, to the rounding of the largest force and gap.
+  !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the largest force and gap.
   pure function has_right_signs(scaled, state, tolerance) result(right)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(in) :: state
@@ -52,6 +58,6 @@ contains
 
     force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
     gap_tolerance = force_tolerance + noise*maxval([abs(scaled%gap), 0.0_wp])
-    right = all(state%force >= -force_tolerance) .and. all(state%gap >= -gap_tolerance)
+    right = state%basis%sound .and. all(state%force >= -force_tolerance) .and. all(state%gap >= -gap_tolerance)
   end function has_right_signs
 end module epcont_contact_state
