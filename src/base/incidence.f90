@@ -20,7 +20,6 @@ contains
     integer, allocatable :: next(:)
 
     allocate (table%start(members + 1), source=0)
-    allocate (table%group(count(member > 0)))
     do g = 1, size(member, 2)
       do k = 1, size(member, 1)
         if (member(k, g) == 0) exit
@@ -31,6 +30,7 @@ contains
     do k = 1, members
       table%start(k + 1) = table%start(k) + table%start(k + 1)
     end do
+    allocate (table%group(table%start(members + 1) - 1))
     next = table%start
     do g = 1, size(member, 2)
       do k = 1, size(member, 1)

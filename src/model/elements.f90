@@ -1,6 +1,7 @@
 !> Elements from their cards, turned counter-clockwise and checked.
 module epcont_model_elements
   use epcont_base_geometry, only: cross_product, polygon_area
+  use epcont_base_incidence, only: new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
   use epcont_base_text, only: short_real, text_of
@@ -67,6 +68,7 @@ contains
     do e = 1, model%elements
       model%point_element(model%first_point(e):model%first_point(e + 1) - 1) = e
     end do
+    model%around = new_incidence(model%connectivity, model%nodes)
     call check_kinds(deck, faults)
   end subroutine build_elements
 

@@ -1,6 +1,5 @@
 !> Boundary lines from BLSEG: sides of elements, end to end.
 module epcont_model_lines
-  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
   use epcont_base_text, only: text_of
@@ -34,7 +33,6 @@ contains
     type(id_index), intent(in) :: nodes
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
-    type(incidence) :: around
     type(walk_type) :: walk
     integer :: i
 
@@ -42,13 +40,12 @@ contains
     associate (blseg => deck%card(card_blseg))
       allocate (model%line(blseg%count))
       if (blseg%count == 0) return
-      around = new_incidence(model%connectivity, model%nodes)
       do i = 1, blseg%count
         model%line(i)%id = nint(blseg%value(1, i))
         allocate (model%line(i)%segment(3, 0), model%line(i)%element(0))
         call read_nodes(deck, i, nodes, walk, faults)
         if (walk%sound) call check_repeated(deck, i, model, walk, faults)
-        if (walk%sound) call find_sides(deck, i, model, around, walk, faults)
+        if (walk%sound) call find_sides(deck, i, model, walk, faults)
         if (walk%sound) call set_line(model, walk, model%line(i))
       end do
     end associate
@@ -118,11 +115,10 @@ contains
   end subroutine check_repeated
 
   !> The sides between consecutive nodes; a middle node between two corners may be listed or left out.
-  subroutine find_sides(deck, i, model, around, walk, faults)
+  subroutine find_sides(deck, i, model, walk, faults)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: i
     type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: around
     type(walk_type), intent(inout) :: walk
     type(diagnostics), intent(inout) :: faults
     integer :: element(2), found, k, side(3), sides
@@ -131,9 +127,9 @@ contains
     found = 0
     k = 1
     do while (k < size(walk%node))
-      call side_between(model, around, walk%node(k), walk%node(k + 1), side, element, sides)
+      call side_between(model, walk%node(k), walk%node(k + 1), side, element, sides)
       if (sides == 0 .and. k + 2 <= size(walk%node)) then
-        call side_between(model, around, walk%node(k), walk%node(k + 2), side, element, sides)
+        call side_between(model, walk%node(k), walk%node(k + 2), side, element, sides)
         if (sides > 0 .and. side(3) == walk%node(k + 1)) then
           k = k + 1
         else
@@ -175,9 +171,8 @@ contains
   end subroutine find_sides
 
   !> The side that ends at two corners, and how many elements have it.
-  pure subroutine side_between(model, around, a, b, found, element, sides)
+  pure subroutine side_between(model, a, b, found, element, sides)
     type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: around
     integer, intent(in) :: a, b
     integer, intent(out) :: found(3)     !! of the first of them
     integer, intent(out) :: element(2)   !! the first and the last
@@ -187,8 +182,8 @@ contains
     sides = 0
     found = 0
     element = 0
-    do i = around%start(a), around%start(a + 1) - 1
-      e = around%group(i)
+    do i = model%around%start(a), model%around%start(a + 1) - 1
+      e = model%around%group(i)
       do k = 1, model%corners(e)
         side = model%edge(e, k)
         if (.not. (all(side(:2) == [a, b]) .or. all(side(:2) == [b, a]))) cycle

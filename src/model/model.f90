@@ -3,6 +3,7 @@
 !> Components come first in all arrays. Nodes, elements and pairs are known by their position; their ids
 !> of the deck serve for output alone.
 module epcont_model_model
+  use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
   use epcont_model_boundary_line, only: boundary_line
   use epcont_model_controls, only: controls_type, uniaxial_curve
@@ -34,6 +35,7 @@ module epcont_model_model
     !> The nodes of each element: its corners counter-clockwise, then the middles of its sides, the first behind the
     !! first corner; 0 where it has no more. [most_nodes, elements]
     integer, allocatable :: connectivity(:, :)
+    type(incidence) :: around                   !! the elements around each node
     integer :: points = 0                       !! integration points of all elements
     integer, allocatable :: first_point(:)      !! of each element; those of element e end before that of e + 1 [elements + 1]
     integer, allocatable :: point_element(:)    !! [points]

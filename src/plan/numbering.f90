@@ -1,6 +1,5 @@
 !> Numbers of the equations of each body: a narrow band, with the contact freedoms last.
 module epcont_plan_numbering
-  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_front_layout, only: front_layout, new_front_layout
@@ -43,12 +42,10 @@ contains
   pure function number_equations(model) result(numbering)
     type(model_type), intent(in) :: model
     type(numbering_type) :: numbering
-    type(incidence) :: around
     integer, allocatable :: order(:), element_order(:), element_body(:)
     logical, allocatable :: at_contact(:)
     integer :: b, first, last, e_first, e_last
 
-    around = new_incidence(model%connectivity, model%nodes)
     allocate (at_contact(model%nodes), source=.false.)
     at_contact(model%row_node) = .true.
     order = sorted_order(model%body)
@@ -63,7 +60,7 @@ contains
       e_last = e_first - 1 + count_run(element_body(element_order(e_first:)), b)
       associate (body => numbering%body(b))
         body%element = element_order(e_first:e_last)
-        call choose_numbers(model, around, order(first:last), at_contact, numbering%equation, body)
+        call choose_numbers(model, order(first:last), at_contact, numbering%equation, body)
       end associate
       first = last + 1
       e_first = e_last + 1
@@ -79,9 +76,8 @@ contains
   end function count_run
 
   !> Number a body for the solver that the deck asks for, or that which is faster.
-  pure subroutine choose_numbers(model, around, nodes, at_contact, equation, body)
+  pure subroutine choose_numbers(model, nodes, at_contact, equation, body)
     type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: around
     integer, intent(in) :: nodes(:)
     logical, intent(in) :: at_contact(:)
     integer, intent(inout) :: equation(:, :)
@@ -95,7 +91,7 @@ contains
     else if (model%controls%solver == solver_frontal) then
       call number_fronts(model, nodes, at_contact, equation, body)
     else
-      call number_band(model, around, nodes, at_contact, equation, body)
+      call number_band(model, nodes, at_contact, equation, body)
     end if
   end subroutine choose_numbers
 
@@ -155,9 +151,8 @@ contains
   !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come last: then the
   !! trailing block of the factor alone gives the flexibility. Or, where that widens the band by more than forward
   !! substitution of all pairs costs, they are rooted at the body's far end. Where even that band is a wide one, fronts are taken.
-  pure subroutine number_band(model, around, nodes, at_contact, equation, body)
+  pure subroutine number_band(model, nodes, at_contact, equation, body)
     type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: around
     integer, intent(in) :: nodes(:)
     logical, intent(in) :: at_contact(:)
     integer, intent(inout) :: equation(:, :)
@@ -165,11 +160,11 @@ contains
     type(body_numbering) :: plain
     integer, allocatable :: numbers(:, :), order(:)
 
-    order = sweep(model, around, nodes(:1), nodes)
-    order = sweep(model, around, order(size(order):), nodes)
-    order = sweep(model, around, order(size(order):), nodes)
+    order = sweep(model, nodes(:1), nodes)
+    order = sweep(model, order(size(order):), nodes)
+    order = sweep(model, order(size(order):), nodes)
     ! The contact comes late in the reversed order, and with it what yields: what stands before is factored once.
-    if (mean_place(order, at_contact) > 0.5_wp) order = sweep(model, around, order(size(order):), nodes)
+    if (mean_place(order, at_contact) > 0.5_wp) order = sweep(model, order(size(order):), nodes)
     plain = body
     call number_nodes(model, at_contact, order(size(order):1:-1), equation, plain)
     call find_reach(model, equation, plain)
@@ -185,7 +180,7 @@ contains
     plain%operations = plain%operations + gram_operations(plain%reach, begins(equation, pack(plain%node, at_contact(plain%node))))
     numbers = equation(:, nodes)
     ! The roots stand in the order of the sweep from the far end, which runs along the contact.
-    order = sweep(model, around, pack(order, at_contact(order)), nodes)
+    order = sweep(model, pack(order, at_contact(order)), nodes)
     call number_nodes(model, at_contact, order(size(order):1:-1), equation, body)
     call find_reach(model, equation, body)
     body%operations = panel_operations(body%reach) + real(body%contact_equations, wp)**3
@@ -216,9 +211,8 @@ contains
 
   !> Breadth-first order from `roots`, at each node its new neighbours by their number of elements. Nodes that
   !! elements do not join to the roots (an RBE2 does) start sweeps of their own.
-  pure function sweep(model, around, roots, nodes) result(order)
+  pure function sweep(model, roots, nodes) result(order)
     type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: around
     integer, intent(in) :: roots(:), nodes(:)
     integer, allocatable :: order(:)
     integer, allocatable :: found(:)
@@ -244,14 +238,14 @@ contains
       end if
       n = order(at)
       first = filled + 1
-      do k = around%start(n), around%start(n + 1) - 1
-        associate (e => around%group(k))
+      do k = model%around%start(n), model%around%start(n + 1) - 1
+        associate (e => model%around%group(k))
           call add_new(model%connectivity(:model%order(e), e), seen, order, filled)
         end associate
       end do
       if (filled > first) then
         found = order(first:filled)
-        order(first:filled) = found(sorted_order(around%start(found + 1) - around%start(found)))
+        order(first:filled) = found(sorted_order(model%around%start(found + 1) - model%around%start(found)))
       end if
     end do
 

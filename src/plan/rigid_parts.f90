@@ -3,7 +3,6 @@
 !> Elements that share an edge turn as one; where parts share a single node they are hinged. A node without
 !> elements is a part that cannot turn.
 module epcont_plan_rigid_parts
-  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_model_model, only: axisymmetric, model_type, most_nodes
@@ -29,12 +28,10 @@ contains
   pure function find_rigid_parts(model) result(parts)
     type(model_type), intent(in) :: model
     type(rigid_parts) :: parts
-    type(incidence) :: around
     integer, allocatable :: of_element(:)
     integer :: e, hinges, i, k
 
-    around = new_incidence(model%connectivity, model%nodes)
-    call join_elements(model, around, of_element, parts%count)
+    call join_elements(model, of_element, parts%count)
     allocate (parts%of_node(model%nodes), source=0)
     do e = 1, model%elements
       do k = 1, model%order(e)
@@ -62,10 +59,10 @@ contains
     allocate (parts%hinge(3, most_nodes*model%elements))
     hinges = 0
     do i = 1, model%nodes
-      do k = around%start(i), around%start(i + 1) - 1
-        e = around%group(k)
+      do k = model%around%start(i), model%around%start(i + 1) - 1
+        e = model%around%group(k)
         if (of_element(e) == parts%of_node(i)) cycle
-        if (any(of_element(around%group(around%start(i):k - 1)) == of_element(e))) cycle
+        if (any(of_element(model%around%group(model%around%start(i):k - 1)) == of_element(e))) cycle
         hinges = hinges + 1
         parts%hinge(:, hinges) = [i, parts%of_node(i), of_element(e)]
       end do
@@ -75,9 +72,8 @@ contains
   end function find_rigid_parts
 
   !> Number the sets of elements joined through edges.
-  pure subroutine join_elements(model, around, of_element, count)
+  pure subroutine join_elements(model, of_element, count)
     type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: around
     integer, allocatable, intent(out) :: of_element(:)
     integer, intent(out) :: count
     type(partition) :: sets
@@ -87,8 +83,8 @@ contains
     do e = 1, model%elements
       do k = 1, model%corners(e)
         side = model%edge(e, k)
-        do j = around%start(side(1)), around%start(side(1) + 1) - 1
-          neighbour = around%group(j)
+        do j = model%around%start(side(1)), model%around%start(side(1) + 1) - 1
+          neighbour = model%around%group(j)
           if (neighbour >= e) exit
           if (any(model%connectivity(:, neighbour) == side(2))) call sets%join(e, neighbour)
         end do

@@ -2,7 +2,6 @@
 module epcont_result_contact_line
   use epcont_base_edge, only: edge_point, edge_point_count, edge_points
   use epcont_base_geometry, only: cross_product
-  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_model_model, only: model_type
@@ -44,10 +43,8 @@ contains
   pure function find_contact_line(model) result(line)
     type(model_type), intent(in) :: model
     type(contact_line) :: line
-    type(incidence) :: around
     integer :: c, last, pair
 
-    around = new_incidence(model%connectivity, model%nodes)
     allocate (line%tributary(model%pairs), source=0.0_wp)
     allocate (line%neighbour(2, model%pairs), source=0)
     allocate (line%part(2, model%pairs), source=0.0_wp)
@@ -55,22 +52,21 @@ contains
     allocate (line%node(model%pairs), line%mirrored(model%pairs))
     do pair = 1, model%pairs
       associate (a => model%pair_node(1, pair), b => model%pair_node(2, pair))
-        line%node(pair) = merge(b, a, around%start(b + 1) > around%start(b))
+        line%node(pair) = merge(b, a, model%around%start(b + 1) > model%around%start(b))
       end associate
     end do
     ! A node may have a pair in each of several contacts: neighbours are of one.
     last = model%pairs
     if (size(model%line_contact) > 0) last = model%line_contact(1)%first - 1
-    call find_edges(model, around, 1, last, line)
+    call find_edges(model, 1, last, line)
     do c = 1, size(model%line_contact)
-      call find_edges(model, around, model%line_contact(c)%first, model%line_contact(c)%last, line)
+      call find_edges(model, model%line_contact(c)%first, model%line_contact(c)%last, line)
     end do
   end function find_contact_line
 
   !> Edges at a range of pairs, and the neighbours among them.
-  pure subroutine find_edges(model, around, first, last, line)
+  pure subroutine find_edges(model, first, last, line)
     type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: around
     integer, intent(in) :: first, last
     type(contact_line), intent(inout) :: line
     integer, allocatable :: pair_at(:)
@@ -84,11 +80,11 @@ contains
     do pair = first, last
       associate (node => line%node(pair), n => model%normal(:, pair))
         line%mirrored(pair) = (model%held(1, node) .and. abs(n(2)) > 0.9_wp) .or. (model%held(2, node) .and. abs(n(1)) > 0.9_wp)
-        do i = around%start(node), around%start(node + 1) - 1
-          e = around%group(i)
+        do i = model%around%start(node), model%around%start(node + 1) - 1
+          e = model%around%group(i)
           do k = 1, model%corners(e)
             side = model%edge(e, k)
-            if (.not. any(side == node) .or. shared(model, around, side(1), side(2))) cycle
+            if (.not. any(side == node) .or. shared(model, side(1), side(2))) cycle
             edge = model%x(:, side(2)) - model%x(:, side(1))
             if (abs(dot_product(edge, n)) > along_tangent*norm2(edge)) cycle
             own = share(model, e, side, node, n)
@@ -153,15 +149,14 @@ contains
   end subroutine add_neighbours
 
   !> Whether two elements share the edge between two nodes.
-  pure logical function shared(model, around, a, b)
+  pure logical function shared(model, a, b)
     type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: around
     integer, intent(in) :: a, b
     integer :: i, found
 
     found = 0
-    do i = around%start(a), around%start(a + 1) - 1
-      if (any(model%connectivity(:, around%group(i)) == b)) found = found + 1
+    do i = model%around%start(a), model%around%start(a + 1) - 1
+      if (any(model%connectivity(:, model%around%group(i)) == b)) found = found + 1
     end do
     shared = found > 1
   end function shared
