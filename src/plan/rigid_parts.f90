@@ -1,6 +1,6 @@
 !> Rigid parts of the bodies, as far as their free motions are concerned.
 !>
-!> Elements that share an edge turn as one; where parts share a single node they are hinged. A node without
+!> Elements that share two nodes turn as one; where parts share a single node they are hinged. A node without
 !> elements is a part that cannot turn.
 module epcont_plan_rigid_parts
   use epcont_base_kinds, only: wp
@@ -71,23 +71,27 @@ contains
     call measure(model, parts)
   end function find_rigid_parts
 
-  !> Number the sets of elements joined through edges.
+  !> Number the sets of elements that share two nodes.
   pure subroutine join_elements(model, of_element, count)
     type(model_type), intent(in) :: model
     integer, allocatable, intent(out) :: of_element(:)
     integer, intent(out) :: count
     type(partition) :: sets
-    integer :: e, j, k, neighbour, side(3)
+    integer, allocatable :: met_by(:)   !! the last element with which each was found to share a node [elements]
+    integer :: e, j, k, neighbour
 
     sets = new_partition(model%elements)
+    allocate (met_by(model%elements), source=0)
     do e = 1, model%elements
-      do k = 1, model%corners(e)
-        side = model%edge(e, k)
-        do j = model%around%start(side(1)), model%around%start(side(1) + 1) - 1
-          neighbour = model%around%group(j)
-          if (neighbour >= e) exit
-          if (any(model%connectivity(:, neighbour) == side(2))) call sets%join(e, neighbour)
-        end do
+      do k = 1, model%order(e)
+        associate (node => model%connectivity(k, e))
+          do j = model%around%start(node), model%around%start(node + 1) - 1
+            neighbour = model%around%group(j)
+            if (neighbour >= e) exit
+            if (met_by(neighbour) == e) call sets%join(e, neighbour)
+            met_by(neighbour) = e
+          end do
+        end associate
       end do
     end do
     call sets%numbers(of_element, count)
