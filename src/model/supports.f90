@@ -99,8 +99,13 @@ contains
   !> Whether the digits (12, 2, 123456) name component c.
   pure logical function has_component(digits, c)
     integer, intent(in) :: digits, c
+    integer :: rest
 
-    has_component = index(text_of(digits), text_of(c)) > 0
+    rest = digits
+    do while (rest > 0 .and. mod(rest, 10) /= c)
+      rest = rest/10
+    end do
+    has_component = rest > 0
   end function has_component
 
   !> RBE2: freedoms that follow a leader. Chains are followed to their end.
