@@ -27,13 +27,16 @@ contains
     integer, allocatable :: id(:), table(:), row(:), order(:)
     integer :: c, i, k, earlier
 
-    allocate (id(0), table(0), row(0))
+    k = sum(deck%card(cards)%count)
+    allocate (id(k), table(k), row(k))
+    k = 0
     do c = 1, size(cards)
-      associate (cards_of_name => deck%card(cards(c)))
-        id = [id, nint(cards_of_name%value(1, :))]
-        table = [table, [(cards(c), i=1, cards_of_name%count)]]
-        row = [row, [(i, i=1, cards_of_name%count)]]
-      end associate
+      do i = 1, deck%card(cards(c))%count
+        k = k + 1
+        id(k) = nint(deck%card(cards(c))%value(1, i))
+        table(k) = cards(c)
+        row(k) = i
+      end do
     end do
     order = sorted_order(id)
     do k = 2, size(id)
