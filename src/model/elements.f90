@@ -91,17 +91,19 @@ contains
     integer, intent(in) :: card, i, e
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
-    real(wp) :: area, extent, longest, x(2, 4)
+    real(wp) :: area, extent, longest, side(2), x(2, 4)
     integer :: k, n
 
     n = model%corners(e)
     do k = 1, n
       x(:, k) = model%x(:, model%connectivity(k, e))
     end do
-    extent = maxval(maxval(x(:, :n), dim=2) - minval(x(:, :n), dim=2))
+    extent = 0.0_wp
     longest = 0.0_wp
     do k = 1, n
-      longest = max(longest, sum((x(:, k) - x(:, mod(k, n) + 1))**2))
+      side = x(:, k) - x(:, mod(k, n) + 1)
+      extent = max(extent, abs(side(1)), abs(side(2)))
+      longest = max(longest, side(1)**2 + side(2)**2)
     end do
     if (extent > 0.0_wp .and. extent < shortest_side) then
       call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)//': its sides are shorter than '// &
