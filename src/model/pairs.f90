@@ -40,7 +40,6 @@ contains
       model%pair_id = nint(cgap%value(1, :))
       allocate (model%pair_node(2, cgap%count), source=0)
       allocate (model%normal(2, cgap%count), model%initial_gap(cgap%count), source=0.0_wp)
-      edge = shortest_edge(model)
       do i = 1, cgap%count
         call resolve(deck, card_cgap, i, 2, properties, 'PGAP', faults, property)
         do k = 1, 2
@@ -81,7 +80,8 @@ contains
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: i
     type(id_index), intent(in) :: systems
-    real(wp), intent(in) :: axis(:, :), edge(:)
+    real(wp), intent(in) :: axis(:, :)
+    real(wp), allocatable, intent(inout) :: edge(:)   !! the shortest at each node, found when a pair first needs it
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
     real(wp) :: between(2)
@@ -97,6 +97,7 @@ contains
       if (system > 0) model%normal(:, i) = axis(:, system)
       return
     end if
+    if (.not. allocated(edge)) edge = shortest_edge(model)
     associate (a => model%pair_node(1, i), b => model%pair_node(2, i))
       between = model%x(:, b) - model%x(:, a)
       if (a == b .or. norm2(between) <= coincident*min(edge(a), edge(b))) then
