@@ -24,14 +24,15 @@ contains
     type(deck_type), intent(in) :: deck
     type(model_type), intent(in) :: model
     type(diagnostics), intent(inout) :: faults
-    real(wp), allocatable :: outward(:, :)
+    real(wp) :: a(2), b(2)
     integer :: c, k, last
 
     if (model%pairs == 0) return
-    outward = boundary_normals(model)
     last = deck%card(card_cgap)%count
     do k = 1, last
-      associate (a => outward(:, model%pair_node(1, k)), b => outward(:, model%pair_node(2, k)), n => model%normal(:, k))
+      a = boundary_normal(model, model%pair_node(1, k))
+      b = boundary_normal(model, model%pair_node(2, k))
+      associate (n => model%normal(:, k))
         if (dot_product(a, n) >= same_way .or. dot_product(b, n) <= -same_way) cycle
         if (dot_product(a, n) > -same_way .and. dot_product(b, n) < same_way) cycle
         call faults%add_warning(deck%place(card_cgap, k, 1), deck%identity(card_cgap, k)// &
@@ -45,35 +46,33 @@ contains
     end do
   end subroutine check_pairs
 
-  !> Outward normals of the boundary at its nodes; zero elsewhere [2, nodes].
-  pure function boundary_normals(model) result(normal)
+  !> Outward normal of the boundary at a node; zero inside a body, and where there is none.
+  pure function boundary_normal(model, node) result(normal)
     type(model_type), intent(in) :: model
-    real(wp), allocatable :: normal(:, :)
-    real(wp), allocatable :: length(:)
-    real(wp) :: along(2)
+    integer, intent(in) :: node
+    real(wp) :: normal(2)
+    real(wp) :: along(2), length
     integer :: e, i, k, side(3)
 
-    allocate (normal(2, model%nodes), length(model%nodes), source=0.0_wp)
-    do e = 1, model%elements
+    normal = 0.0_wp
+    length = 0.0_wp
+    do i = model%around%start(node), model%around%start(node + 1) - 1
+      e = model%around%group(i)
       do k = 1, model%corners(e)
         side = model%edge(e, k)
+        if (all(side /= node)) cycle
         along = model%x(:, side(2)) - model%x(:, side(1))
-        do i = 1, 3
-          if (side(i) == 0) cycle
-          ! Of a side that two elements have, the normals cancel.
-          normal(:, side(i)) = normal(:, side(i)) + [along(2), -along(1)]
-          length(side(i)) = length(side(i)) + norm2(along)
-        end do
+        ! Of a side that two elements have, the normals cancel.
+        normal = normal + [along(2), -along(1)]
+        length = length + norm2(along)
       end do
     end do
-    do i = 1, model%nodes
-      if (norm2(normal(:, i)) > closed*length(i)) then
-        normal(:, i) = normal(:, i)/norm2(normal(:, i))
-      else
-        normal(:, i) = 0.0_wp
-      end if
-    end do
-  end function boundary_normals
+    if (norm2(normal) > closed*length) then
+      normal = normal/norm2(normal)
+    else
+      normal = 0.0_wp
+    end if
+  end function boundary_normal
 
   !> One warning for all pairs of a range whose nodes are held along the normal. `card` i is the first pair's, or that of
   !! their contact. A held overlap is no warning: the run will end with it.
