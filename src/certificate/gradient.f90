@@ -50,7 +50,7 @@ contains
     real(wp), intent(out) :: volume(most_places)                     !! [length**3]
     real(wp) :: place(2, most_places), weight(most_places), at(most_nodes), change(2, most_nodes)
     real(wp) :: x(2, most_nodes), side(2, 2), gradient(2), determinant, radius
-    integer :: k, n, p
+    integer :: c, k, n, p
 
     n = model%order(element)
     do k = 1, n
@@ -61,7 +61,12 @@ contains
       do p = 1, places
         change = differences(n, place(:, p))
         ! d x/d local, one column each; from the first node, so that a place far from the origin takes no digits.
-        side = matmul(x(:, :n) - spread(x(:, 1), 2, n), transpose(change(:, :n)))
+        side = 0.0_wp
+        do k = 2, n
+          do c = 1, 2
+            side(:, c) = side(:, c) + (x(:, k) - x(:, 1))*change(c, k)
+          end do
+        end do
         determinant = side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1)
         volume(p) = weight(p)*determinant*model%thickness(s)
         strain(:, :, :n, p) = 0.0_wp
