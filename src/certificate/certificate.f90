@@ -118,36 +118,42 @@ contains
   pure subroutine sum_elements(model, deformation, motion, stress, internal, magnitude, stored, largest, certificate)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: deformation(:, :), motion(:, :), stress(:, :)
-    real(wp), intent(inout) :: internal(:, :), magnitude(:), stored, largest
+    real(wp), intent(inout) :: internal(:, :), magnitude(:)
+    real(wp), intent(inout) :: stored, largest
     type(certificate_type), intent(inout) :: certificate
-    logical :: moves
-    real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), strain(4), force(2), rounding
-    integer :: c, e, k, p, places
+    logical :: moves, ring
+    real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), u(2, most_nodes), travel(2, most_nodes)
+    real(wp) :: strain(4), force(2), rounding
+    integer :: c, e, k, n, p, places, section
 
     moves = any(motion /= 0.0_wp)
     do e = 1, model%elements
+      n = model%order(e)
+      section = model%section(e)
+      ring = model%kinematics(section) == axisymmetric
       call unit_strains(model, e, places, unit, volume)
-      associate (node => model%connectivity(:model%order(e), e), first => model%first_point(e))
+      associate (node => model%connectivity(:, e), s => stress(:, model%first_point(e):model%first_point(e + 1) - 1))
+        do k = 1, n
+          u(:, k) = deformation(:, node(k))
+          travel(:, k) = motion(:, node(k))
+        end do
         do p = 1, places
-          strain = strain_at(model, e, deformation, unit(:, :, :, p))
-          associate (s => stress(:, first + p - 1))
-            certificate%off_curve = max(certificate%off_curve, maxval(abs(s - stress_on_curve(model, model%section(e), strain))))
-            largest = max(largest, maxval(abs(s)))
-            stored = stored + volume(p)*dot_product(s, strain)
-          end associate
-          rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :size(node), p)))   ! of a strain by unit displacements
-          certificate%lost_stress = max(certificate%lost_stress, &
-                                        model%young(model%section(e))*rounding*maxval(abs(deformation(:, node))))
+          strain = strain_at(n, ring, u, unit(:, :, :, p))
+          certificate%off_curve = max(certificate%off_curve, maxval(abs(s(:, p) - stress_on_curve(model, section, strain))))
+          largest = max(largest, maxval(abs(s(:, p))))
+          stored = stored + volume(p)*dot_product(s(:, p), strain)
+          rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :n, p)))   ! of a strain by unit displacements
+          certificate%lost_stress = max(certificate%lost_stress, model%young(section)*rounding*maxval(abs(u(:, :n))))
           if (.not. moves) cycle
-          strain = strain_at(model, e, motion, unit(:, :, :, p))
-          rounding = rounding*maxval(abs(motion(:, node)) + abs(deformation(:, node)))
+          strain = strain_at(n, ring, travel, unit(:, :, :, p))
+          rounding = rounding*maxval(abs(travel(:, :n)) + abs(u(:, :n)))
           certificate%motion_strain = max(certificate%motion_strain, ratio(maxval(abs(strain)), rounding))
         end do
-        do k = 1, size(node)
-          do c = 1, 2
-            force(c) = 0.0_wp
-            do p = 1, places
-              force(c) = force(c) + volume(p)*dot_product(stress(:, first + p - 1), unit(:, c, k, p))
+        do k = 1, n
+          force = 0.0_wp
+          do p = 1, places
+            do c = 1, 2
+              force(c) = force(c) + volume(p)*dot_product(s(:, p), unit(:, c, k, p))
             end do
           end do
           internal(:, node(k)) = internal(:, node(k)) + force
@@ -159,21 +165,19 @@ contains
 
   !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel without strain,
   !! and comes off first so that it leaves no rounding.
-  pure function strain_at(model, element, displacement, unit) result(strain)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: element
-    real(wp), intent(in) :: displacement(:, :)
+  pure function strain_at(nodes, ring, displacement, unit) result(strain)
+    integer, intent(in) :: nodes
+    logical, intent(in) :: ring
+    real(wp), intent(in) :: displacement(2, most_nodes)
     real(wp), intent(in) :: unit(4, 2, most_nodes)
-    real(wp) :: strain(4), travel(2)
+    real(wp) :: strain(4), apart(2)
     integer :: k
 
-    travel = displacement(:, model%connectivity(1, element))
-    if (model%kinematics(model%section(element)) == axisymmetric) travel(1) = 0.0_wp
     strain = 0.0_wp
-    do k = 1, model%order(element)
-      associate (u => displacement(:, model%connectivity(k, element)))
-        strain = strain + (u(1) - travel(1))*unit(:, 1, k) + (u(2) - travel(2))*unit(:, 2, k)
-      end associate
+    do k = 1, nodes
+      apart = displacement(:, k) - displacement(:, 1)
+      if (ring) apart(1) = displacement(1, k)
+      strain = strain + apart(1)*unit(:, 1, k) + apart(2)*unit(:, 2, k)
     end do
   end function strain_at
 
