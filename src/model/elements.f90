@@ -116,7 +116,7 @@ contains
                             ' lie on one line', 'corners that span an area')
       return
     end if
-    if (.not. bends_one_way(x(:, :n), sign(1.0_wp, area), sliver*longest)) then
+    if (n == 4 .and. .not. bends_one_way(x(:, :n), sign(1.0_wp, area), sliver*longest)) then
       call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)//': its corners '//corner_ids(model, e)// &
                             ' cross over, bend inwards or lie on one line', 'four corners in turn, each bending the same way')
       return
