@@ -49,13 +49,12 @@ contains
     type(model_type), intent(in) :: model
     integer, intent(in) :: node, k
     real(wp) :: u(2)
-    integer :: c
 
     u = 0.0_wp
     if (self%body(k) /= model%body(node)) return
-    do c = 1, 2
-      u(c) = dot_product(self%parts%row(model, node, c), self%coefficient(:, self%parts%of_node(node), k))
-    end do
+    associate (part => self%coefficient(:, self%parts%of_node(node), k))
+      u = part(:2) + part(3)*self%parts%turn(model, node)
+    end associate
   end function displacement
 
   !> Find the free motions of all bodies; a body whose SUPORT freedoms do not fit gives a fault.

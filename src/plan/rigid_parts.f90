@@ -21,6 +21,7 @@ module epcont_plan_rigid_parts
     real(wp), allocatable :: extent(:)      !! of each body, largest half width [length] [bodies]
   contains
     procedure :: row
+    procedure :: turn
   end type rigid_parts
 
 contains
@@ -32,19 +33,15 @@ contains
     integer :: e, hinges, i, k
 
     call join_elements(model, of_element, parts%count)
-    allocate (parts%of_node(model%nodes), source=0)
-    do e = 1, model%elements
-      do k = 1, model%order(e)
-        associate (node => model%connectivity(k, e))
-          if (parts%of_node(node) == 0) parts%of_node(node) = of_element(e)
-        end associate
-      end do
-    end do
     allocate (parts%turns(parts%count), source=.true.)
+    allocate (parts%of_node(model%nodes))
     do i = 1, model%nodes
-      if (parts%of_node(i) > 0) cycle
-      parts%count = parts%count + 1
-      parts%of_node(i) = parts%count
+      if (model%around%start(i) < model%around%start(i + 1)) then
+        parts%of_node(i) = of_element(model%around%group(model%around%start(i)))
+      else
+        parts%count = parts%count + 1
+        parts%of_node(i) = parts%count
+      end if
     end do
     parts%turns = [parts%turns, spread(.false., 1, parts%count - size(parts%turns))]
     allocate (parts%body(parts%count))
@@ -123,12 +120,20 @@ contains
     integer, intent(in) :: node, c
     real(wp) :: row(3)
 
-    associate (b => model%body(node))
-      if (c == 1) then
-        row = [1.0_wp, 0.0_wp, -(model%x(2, node) - self%centre(2, b))/self%extent(b)]
-      else
-        row = [0.0_wp, 1.0_wp, (model%x(1, node) - self%centre(1, b))/self%extent(b)]
-      end if
+    associate (turned => self%turn(model, node))
+      row = [merge(1.0_wp, 0.0_wp, c == 1), merge(0.0_wp, 1.0_wp, c == 1), turned(c)]
     end associate
   end function row
+
+  !> Displacement of a place of a body by the turn that moves the body's extent by one.
+  pure function turn(self, model, node)
+    class(rigid_parts), intent(in) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: node
+    real(wp) :: turn(2)
+
+    associate (b => model%body(node))
+      turn = [-(model%x(2, node) - self%centre(2, b)), model%x(1, node) - self%centre(1, b)]/self%extent(b)
+    end associate
+  end function turn
 end module epcont_plan_rigid_parts
