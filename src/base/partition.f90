@@ -8,9 +8,9 @@ module epcont_base_partition
     private
     integer, allocatable :: parent(:)
   contains
-    procedure :: join
-    procedure :: root
-    procedure :: numbers
+    procedure, non_overridable :: join
+    procedure, non_overridable :: root
+    procedure, non_overridable :: numbers
   end type partition
 
 contains
