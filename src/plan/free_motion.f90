@@ -164,11 +164,11 @@ contains
     integer, allocatable, intent(out) :: freedom(:, :)  !! node, component of each measured row [2, any]
     integer :: c, h, i, leader, p, rows, references
 
-    rows = 2*count(column(parts%hinge(2, :)) + column(parts%hinge(3, :)) > 0) &
-           + 4*size(nodes) + columns
-    allocate (held(rows, columns), source=0.0_wp)
-    allocate (measured(2*size(nodes), columns), source=0.0_wp)
-    allocate (freedom(2, 2*size(nodes)))
+    rows = 2*count(column(parts%hinge(2, :)) + column(parts%hinge(3, :)) > 0) + columns &
+           + count(model%held(:, nodes)) + count(model%leader(:, nodes) /= spread(nodes, 1, 2))
+    references = count(model%reference(:, nodes))
+    allocate (held(rows, columns), measured(references, columns), source=0.0_wp)
+    allocate (freedom(2, references))
     rows = 0
     references = 0
     do h = 1, size(parts%hinge, 2)
@@ -213,8 +213,6 @@ contains
       end associate
     end do
     held = held(:rows, :)
-    measured = measured(:references, :)
-    freedom = freedom(:, :references)
   end subroutine constraint_rows
 
   !> Freedoms that would hold the loose motions: those that move most, one after the other, each motion taken out
