@@ -8,13 +8,24 @@ module epcont_assembly_bodies
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: factored_bodies, new_bodies, weak_pivot
+  public :: factored_bodies, half_solution, new_bodies, weak_pivot
 
   !> The pivot that has lost most of its digits to rounding.
   type :: weak_pivot
     real(wp) :: ratio = 1.0_wp    !! to its diagonal entry
     integer :: body = 0           !! 0: all bodies are rigid
   end type weak_pivot
+
+  !> A body's equations under forces, halfway solved.
+  type :: half_solved_body
+    logical :: loaded = .false.            !! there are any forces
+    real(wp), allocatable :: inner(:, :)   !! [equations, 1]
+    real(wp), allocatable :: border(:, :)  !! [border, 1]
+  end type half_solved_body
+
+  type :: half_solution
+    type(half_solved_body), allocatable :: body(:)
+  end type half_solution
 
   type :: factored_bodies
     type(body_stiffness), allocatable :: body(:)
@@ -26,6 +37,8 @@ module epcont_assembly_bodies
     procedure :: settle
     procedure, nopass :: prescribe
     procedure :: displacements
+    procedure :: add_forces
+    procedure :: finish
     procedure :: condition
     procedure :: weakest
     procedure :: lacks_memory
@@ -139,30 +152,74 @@ contains
     real(wp), intent(in) :: force(:, :)  !! [2, nodes]
     real(wp), intent(in) :: part         !! of the prescribed displacements
     real(wp), allocatable :: u(:, :)
-    real(wp), allocatable :: band(:, :), border(:, :)
+    type(half_solution) :: half
+
+    call self%add_forces(numbering, force, part, half)
+    u = self%finish(model, numbering, half, part, .false.)
+  end function displacements
+
+  !> Put forces on the bodies: the half of the solve that can be done before all of them are known.
+  pure subroutine add_forces(self, numbering, force, part, half)
+    class(factored_bodies), intent(in) :: self
+    type(numbering_type), intent(in) :: numbering
+    real(wp), intent(in) :: force(:, :)          !! [2, nodes]
+    real(wp), intent(in) :: part                 !! of the prescribed displacements, with their forces
+    type(half_solution), intent(inout) :: half   !! what has been put on before
+    real(wp), allocatable :: border(:, :), inner(:, :)
     real(wp) :: total
     integer :: b, c, i, node, number
 
-    allocate (u(2, model%nodes))
-    do b = 1, model%bodies
+    if (.not. allocated(half%body)) allocate (half%body(size(numbering%body)))
+    do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
-        allocate (band(body%equations, 1), border(body%border, 1), source=0.0_wp)
+        allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
         do i = 1, size(body%node)
           node = body%node(i)
           do c = 1, 2
             number = numbering%equation(c, node)
             total = force(c, node) + part*self%settlement(c, node)
-            if (number > 0) band(number, 1) = band(number, 1) + total
+            if (number > 0) inner(number, 1) = inner(number, 1) + total
             if (number < 0) border(-number, 1) = border(-number, 1) + total
           end do
         end do
-        if (any(band /= 0.0_wp) .or. any(border /= 0.0_wp)) call self%body(b)%solve(band, border)
+        if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
+          call self%body(b)%solve_lower(inner, border)
+          half%body(b)%loaded = .true.
+        end if
+        if (allocated(half%body(b)%inner)) then
+          inner = inner + half%body(b)%inner
+          border = border + half%body(b)%border
+        end if
+        call move_alloc(inner, half%body(b)%inner)
+        call move_alloc(border, half%body(b)%border)
+      end associate
+    end do
+  end subroutine add_forces
+
+  !> The other half: displacements under all that has been put on, SUPORT freedoms at zero [2, nodes].
+  pure function finish(self, model, numbering, half, part, at_contact) result(u)
+    class(factored_bodies), intent(in) :: self
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    type(half_solution), intent(in) :: half
+    real(wp), intent(in) :: part         !! of the prescribed displacements
+    logical, intent(in) :: at_contact    !! only nodes of pairs are wanted
+    real(wp), allocatable :: u(:, :)
+    real(wp), allocatable :: border(:, :), inner(:, :)
+    integer :: b, c, i, node, number
+
+    allocate (u(2, model%nodes))
+    do b = 1, model%bodies
+      associate (body => numbering%body(b))
+        inner = half%body(b)%inner
+        border = half%body(b)%border
+        if (half%body(b)%loaded) call self%body(b)%solve_upper(inner, border, merge(body%first_contact, 1, at_contact))
         do i = 1, size(body%node)
           node = body%node(i)
           do c = 1, 2
             number = numbering%equation(c, node)
             if (number > 0) then
-              u(c, node) = band(number, 1)
+              u(c, node) = inner(number, 1)
             else if (number < 0) then
               u(c, node) = border(-number, 1)
             else
@@ -170,8 +227,7 @@ contains
             end if
           end do
         end do
-        deallocate (band, border)
       end associate
     end do
-  end function displacements
+  end function finish
 end module epcont_assembly_bodies

@@ -31,7 +31,8 @@ module epcont_assembly_stiffness
   contains
     procedure :: factor
     procedure :: is_sound
-    procedure :: solve
+    procedure :: solve_lower
+    procedure :: solve_upper
   end type body_stiffness
 
 contains
@@ -191,16 +192,26 @@ contains
     is_sound = self%smallest_ratio > self%matrix%rounding
   end function is_sound
 
-  !> Solve for one right-hand side, in place.
-  pure subroutine solve(self, inner, border)
+  !> The first half of a solve for one right-hand side, in place: what has it behind it may still be added to.
+  pure subroutine solve_lower(self, inner, border)
     class(body_stiffness), intent(in) :: self
     real(wp), contiguous, intent(inout) :: inner(:, :)    !! [order of the matrix, 1]
     real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
 
     border = border - matmul(transpose(self%coupling), inner)
-    call self%matrix%solve(inner)
+    call self%matrix%solve_lower(inner)
+  end subroutine solve_lower
+
+  !> The second half. Of the inner rows those before `first` are not wanted.
+  pure subroutine solve_upper(self, inner, border, first)
+    class(body_stiffness), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: inner(:, :)
+    real(wp), contiguous, intent(inout) :: border(:, :)
+    integer, intent(in) :: first
+
+    call self%matrix%solve_upper(inner, first)
     if (size(border) == 0) return
     call cholesky_solve(self%schur, border)
     inner = inner - matmul(self%coupling, border)
-  end subroutine solve
+  end subroutine solve_upper
 end module epcont_assembly_stiffness

@@ -23,6 +23,7 @@ module epcont_plan_numbering
     integer :: equations = 0               !! in the band
     integer :: contact_equations = 0       !! of these at nodes of pairs
     logical :: contact_last = .true.       !! the contact equations are the last ones
+    integer :: first_contact = 1           !! the first of them; behind the last equation where there is none
     logical :: can_yield = .false.
     integer :: solver = solver_band        !! or solver_frontal, or solver_sparse: MUMPS, which orders them anew
     type(front_layout) :: fronts           !! of solver_frontal
@@ -311,6 +312,12 @@ contains
           if (at_contact(node)) body%contact_equations = body%contact_equations + 1
         end if
       end do
+    end do
+    body%first_contact = body%equations + 1
+    do i = 1, size(body%node)
+      associate (own => equation(:, body%node(i)))
+        if (at_contact(body%node(i))) body%first_contact = min(body%first_contact, minval(own, mask=own > 0))
+      end associate
     end do
   end subroutine number_nodes
 

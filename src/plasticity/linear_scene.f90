@@ -1,7 +1,7 @@
 !> The scene with a linear law of the material, its contact solved exactly: one step of every iteration, and all of
 !> an elastic analysis.
 module epcont_plasticity_linear_scene
-  use epcont_assembly_bodies, only: factored_bodies, new_bodies
+  use epcont_assembly_bodies, only: factored_bodies, half_solution, new_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
   use epcont_base_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, stage_stiffness, &
@@ -163,18 +163,20 @@ contains
     type(scene_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
     real(wp), allocatable :: force(:, :)
+    type(half_solution) :: half
 
     force = part*model%load
     if (any(law%initial_stress /= 0.0_wp)) force = force - self%operator%nodal_forces(model, law%initial_stress)
-    self%problem%load_gap = gap_opening(model, self%bodies%displacements(model, numbering, force, part))
+    call self%bodies%add_forces(numbering, force, part, half)
+    self%problem%load_gap = gap_opening(model, self%bodies%finish(model, numbering, half, part, .true.))
     self%problem%resultant = part*self%resultant
     call watch%lap(stage_displacements)
     call solve_contact(self%problem, state%contact, start, self%by_blocks)   ! without a guess `start` is not there
     call watch%lap(stage_contact)
     if (state%contact%state /= contact_solved) return
-    force = force + pair_forces(model, state%contact%force)
+    call self%bodies%add_forces(numbering, pair_forces(model, state%contact%force), 0.0_wp, half)
     ! Strains are of the deformation: added to a long travel it would lose their digits.
-    state%deformation = self%bodies%displacements(model, numbering, force, part)
+    state%deformation = self%bodies%finish(model, numbering, half, part, .false.)
     state%strain = self%operator%strains(model, state%deformation)
   end subroutine solve_once
 

@@ -1,0 +1,34 @@
+!> Solves in two halves, against whole ones.
+module solve_halves
+  use epcont_base_kinds, only: wp
+  use epcont_linalg_factored, only: factored_matrix
+  implicit none
+  private
+  public :: error_of_halves
+
+contains
+
+  !> Two right-hand sides, the second zero but in the last rows, added between the halves; the rows from each third of the order on
+  !! wanted: largest difference from the whole solve of their sum, as a part of its largest value.
+  function error_of_halves(matrix) result(error)
+    class(factored_matrix), intent(in) :: matrix   !! factored
+    real(wp) :: error
+    real(wp), dimension(matrix%order, 1) :: early, late, half, whole
+    integer :: first, i, k, n
+
+    n = matrix%order
+    early(:, 1) = [(cos(real(i, wp)), i=1, n)]
+    late(:, 1) = [(merge(sin(real(i, wp)), 0.0_wp, 3*i > 2*n), i=1, n)]
+    whole = early + late
+    call matrix%solve(whole)
+    call matrix%solve_lower(early)
+    call matrix%solve_lower(late)
+    error = 0.0_wp
+    do k = 0, 3
+      first = 1 + k*n/3
+      half = early + late
+      call matrix%solve_upper(half, first)
+      if (first <= n) error = max(error, maxval(abs(half(first:, 1) - whole(first:, 1)))/maxval(abs(whole)))
+    end do
+  end function error_of_halves
+end module solve_halves
