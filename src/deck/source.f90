@@ -98,7 +98,7 @@ contains
     inquire (unit=unit, size=bytes)
     if (bytes < 0) then
       trouble = 'not a file that can be read'
-    else if (self%used + bytes >= huge(1)) then
+    else if (self%used + bytes >= huge(1) - 1) then   ! behind come a newline and the place of a next line
       trouble = 'the deck is larger than 2 GiB'
     else
       call grow_text(self, self%used + int(bytes) + 1)
