@@ -67,7 +67,9 @@ contains
     logical, intent(in) :: same   !! the two fields are one
     real(wp), allocatable :: energy(:)
     type(kind_type) :: kind(most_nodes)
-    real(wp) :: own(4, most_places), error(4, most_places), error2(4, most_places)
+    type(response_type) :: response
+    real(wp), dimension(4, most_places) :: error, error2, own, own2
+    real(wp) :: part
     integer :: e, k, n
 
     kind([3, 4, 6]) = [kind_of(3), kind_of(4), kind_of(6)]
@@ -77,15 +79,17 @@ contains
       n = model%order(e)
       associate (first => model%first_point(e), last => model%first_point(e + 1) - 1)
         call compare(kind(n), table%place(:n, e), strain(:, first:last), smooth, own, error)
-        if (.not. same) call compare(kind(n), table%place(:n, e), strain2(:, first:last), smooth2, own, error2)
+        if (same) then
+          error2(:, :kind(n)%places) = error(:, :kind(n)%places)
+        else
+          call compare(kind(n), table%place(:n, e), strain2(:, first:last), smooth2, own2, error2)
+        end if
         do k = 1, kind(n)%places
-          if (same) then
-            energy(e) = energy(e) + sum(kind(n)%v(:last - first + 1, k)*volume(first:last))* &
-              density(material(model%section(e)), own(:, k), error(:, k), error(:, k))
-          else
-            energy(e) = energy(e) + sum(kind(n)%v(:last - first + 1, k)*volume(first:last))* &
-              density(material(model%section(e)), own(:, k), error(:, k), error2(:, k))
-          end if
+          part = sum(kind(n)%v(:last - first + 1, k)*volume(first:last))
+          associate (m => material(model%section(e)))
+            if (m%yields .and. (k == 1 .or. n > 3)) response = respond(m, own(:, k))
+            energy(e) = energy(e) + part*density(m, response, own(:, k), error(:, k), error2(:, k))
+          end associate
         end do
       end associate
     end do
@@ -156,15 +160,15 @@ contains
   end function kind_of
 
   !> Stress error times strain error.
-  pure real(wp) function density(material, own, error, error2)
+  pure real(wp) function density(material, response, own, error, error2)
     type(material_type), intent(in) :: material
-    real(wp), intent(in) :: own(4)                 !! strain of the element
+    type(response_type), intent(in) :: response    !! at the strain of the element, where the material yields
+    real(wp), intent(in) :: own(4)                 !! that strain
     real(wp), intent(in) :: error(4), error2(4)    !! smooth less own
-    type(response_type) :: response, after
+    type(response_type) :: after
     real(wp) :: cross
 
     if (material%yields) then
-      response = respond(material, own)
       after = respond(material, own + error)
       if (response%curve%yielded .or. after%curve%yielded) then
         density = dot_product(after%stress - response%stress, error2)

@@ -75,6 +75,7 @@ contains
       if (allocated(in_double)) iteration%against_double = in_double%message
       if (allocated(error)) error%message = path//': '//error%message
       if (.not. allocated(error)) then
+        call run%deck%forget_fields()
         call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)
         call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular, watch)
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)

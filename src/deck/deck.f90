@@ -28,6 +28,7 @@ module epcont_deck_deck
     procedure :: parameter_row
     procedure :: parameter_word
     procedure :: parameter_value
+    procedure :: forget_fields
   end type deck_type
 
 contains
@@ -46,6 +47,17 @@ contains
     call read_case_control(deck%source, deck%case_control, bulk, faults)
     call read_bulk(deck%source, bulk, deck%card, faults)
   end subroutine read_deck
+
+  !> The fields of all cards but the parameters are done with: their memory is free for what follows. How many cards there are
+  !! remains known.
+  pure subroutine forget_fields(self)
+    class(deck_type), intent(inout) :: self
+    integer :: k
+
+    do k = 1, size(self%card)
+      if (k /= card_param) call self%card(k)%forget_fields()
+    end do
+  end subroutine forget_fields
 
   !> Where a field of a card stands; the card is cut into fields once more to find out.
   function place(self, card, i, field)

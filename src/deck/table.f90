@@ -34,6 +34,7 @@ module epcont_deck_table
     procedure :: add_item
     procedure :: add_point
     procedure :: finish
+    procedure :: forget_fields
   end type card_table
 
 contains
@@ -147,6 +148,15 @@ contains
     call resize_integers(self%list_step, self%items)
     call resize_integers(self%list_field, self%items)
   end subroutine finish
+
+  !> All but the count of cards.
+  pure subroutine forget_fields(self)
+    class(card_table), intent(inout) :: self
+
+    deallocate (self%value, self%given, self%sound, self%line, self%list_start)
+    deallocate (self%list_from, self%list_to, self%list_step, self%list_field, self%list_point)
+    if (allocated(self%word)) deallocate (self%word)
+  end subroutine forget_fields
 
   !> Room for `room` cards, the cards so far kept.
   subroutine resize(self, room)

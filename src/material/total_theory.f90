@@ -106,14 +106,20 @@ contains
     type(material_type), intent(in) :: material
     type(response_type), intent(in) :: response
     real(wp) :: d(4, 4)
-    real(wp) :: across(4)
+    real(wp) :: across(4), radial
+    integer :: j
 
-    d = isotropic_matrix(material%bulk, response%curve%modulus/3.0_wp, .false.) &
-        + radial_stiffness(response)*spread(response%deviator, 2, 4)*spread(response%deviator, 1, 4)
+    d = isotropic_matrix(material%bulk, response%curve%modulus/3.0_wp, .false.)
+    radial = radial_stiffness(response)
+    do j = 1, 4
+      d(:, j) = d(:, j) + radial*response%deviator*response%deviator(j)
+    end do
     if (.not. material%sheet) return
     ! The stress zz is zero: its strain is eliminated.
     across = d(:, 3)
-    d = d - spread(across, 2, 4)*spread(across, 1, 4)/across(3)
+    do j = 1, 4
+      d(:, j) = d(:, j) - across*across(j)/across(3)
+    end do
     d(3, :) = 0.0_wp
     d(:, 3) = 0.0_wp
   end function tangent_matrix

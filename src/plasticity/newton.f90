@@ -159,13 +159,14 @@ contains
       real(wp), intent(in) :: length
       real(wp), intent(out) :: value, magnitude
       type(response_type) :: response
-      real(wp) :: term
+      real(wp) :: strain(4), term
       integer :: p
 
       value = -work
       magnitude = work_terms
       do p = 1, model%points
-        response = respond(material(model%section(model%point_element(p))), about%strain(:, p) + length*along(:, p))
+        strain = about%strain(:, p) + length*along(:, p)
+        response = respond(material(model%section(model%point_element(p))), strain)
         term = volume(p)*dot_product(response%stress, along(:, p))
         value = value + term
         magnitude = magnitude + abs(term)

@@ -54,6 +54,7 @@ contains
       outcome%word = 'singular stiffness'
       outcome%sentence = 'the stiffness of the body of GRID '//first_node(model, singular)// &
                          ' cannot be factored: '//reason
+      if (model%has_flat_curve()) outcome%sentence = outcome%sentence//'; or a flat curve carries no more (limit load)'
     else if (answer%contact%state == contact_no_equilibrium) then
       outcome%status = status_no_answer
       outcome%word = 'no equilibrium'
