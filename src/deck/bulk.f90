@@ -3,7 +3,7 @@ module epcont_deck_bulk
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_deck_card, only: card_fields, gather
-  use epcont_deck_card_kinds, only: card_kinds
+  use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_catalogue, only: catalogue, parameters
   use epcont_deck_complaint, only: add_fault, add_unknown, add_value_fault, field_text, identity
   use epcont_deck_diagnostic, only: diagnostics
@@ -51,7 +51,11 @@ contains
           if (card%sound) call add_unknown(lines, card, entry, faults)
         else
           call table(k)%add_card(line)
-          if (card%sound) call read_card(lines, card, entry(k), parameter_entry, table(k), faults)
+          if (card%sound .and. k == card_param) then
+            call read_parameter(lines, card, entry(k), parameter_entry, table(k), faults)
+          else if (card%sound) then
+            call read_card(lines, card, entry(k), table(k), faults)
+          end if
           table(k)%sound(table(k)%count) = faults%error_count() == errors
         end if
       end if
@@ -69,19 +73,22 @@ contains
     integer, intent(in) :: first
     type(card_entry), intent(in) :: entry(:)
     type(card_table), intent(inout) :: table(:)
-    character(len=8) :: name
+    character(len=8) :: text, before, name
     integer :: cards(size(entry))
     integer :: line, k, cut
 
     cards = 0
-    k = 1
+    k = 0
+    before = ''
     do line = first, lines%count
-      if (lines%blank(line)) cycle
-      name = lines%text(lines%first(line):min(lines%last(line), lines%first(line) + 7))
-      if (name(1:1) < 'A') cycle
-      cut = scan(name, ',*')
-      if (cut > 0) name(cut:) = ''
-      call find_card(name, entry, k)
+      text = lines%text(lines%first(line):min(lines%last(line), lines%first(line) + 7))
+      if (text(1:1) < 'A') cycle
+      if (text /= before) then
+        cut = scan(text//',', ',*')
+        name = text(:cut - 1)
+        call find_card(name, entry, k)
+        before = text
+      end if
       if (k > 0) cards(k) = cards(k) + 1
     end do
     do k = 1, size(entry)
@@ -103,27 +110,49 @@ contains
     end do
   end subroutine find_card
 
-  !> Read one card into the last row of its table.
-  subroutine read_card(lines, card, entry, parameter_entry, table, faults)
+  !> Read one PARAM: what its second field may hold depends on its first.
+  subroutine read_parameter(lines, card, entry, parameter_entry, table, faults)
     type(source), intent(in) :: lines
     type(card_fields), intent(in) :: card
     type(card_entry), intent(in) :: entry
     type(field_entry), intent(in) :: parameter_entry(:)
     type(card_table), intent(inout) :: table
     type(diagnostics), intent(inout) :: faults
-    integer :: column, named
+    type(card_entry) :: with_value
+    integer :: named
 
-    named = 0
-    if (entry%name == 'PARAM') call find_parameter(lines, card, parameter_entry, faults, named)
+    call find_parameter(lines, card, parameter_entry, faults, named)
     if (named < 0) return
-    do column = 1, size(entry%field)
-      if (named > 0 .and. column == 2) then
-        call read_field(lines, card, parameter_entry(named), column, table, faults)
+    with_value = entry
+    if (named > 0) with_value%field(2) = parameter_entry(named)
+    call read_card(lines, card, with_value, table, faults)
+  end subroutine read_parameter
+
+  !> Read one card into the last row of its table.
+  subroutine read_card(lines, card, entry, table, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    type(card_entry), intent(in) :: entry
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    integer :: slot, last, column
+    logical :: blank
+
+    last = max(card%count, size(entry%column_at))   ! behind `count` all are blank
+    if (entry%list_number > 0) last = slot_of(entry%list_number) - 1
+    do slot = 1, last
+      column = 0
+      if (slot <= size(entry%column_at)) column = entry%column_at(slot)
+      blank = slot > card%count
+      if (.not. blank) blank = card%last(slot) < card%first(slot)
+      if (blank) then
+        if (column > 0) call take_blank(lines, card, entry%field(column), column, table, faults)
+      else if (column > 0) then
+        call read_field(lines, card, slot, entry%field(column), column, table, faults)
       else
-        call read_field(lines, card, entry%field(column), column, table, faults)
+        call add_surplus(lines, card, slot, entry, faults)
       end if
     end do
-    call check_blanks(lines, card, entry, faults)
     if (entry%has_points) then
       call read_points(lines, card, entry, table, faults)
     else if (entry%list_number > 0) then
@@ -160,24 +189,19 @@ contains
     call faults%add_error(card%place(lines, 1), 'unknown parameter '//trim(word), remedy)
   end subroutine find_parameter
 
-  !> Read one field into the last row of the table.
-  subroutine read_field(lines, card, entry, column, table, faults)
+  !> Read one field that is not blank into the last row of the table.
+  subroutine read_field(lines, card, slot, entry, column, table, faults)
     type(source), intent(in) :: lines
     type(card_fields), intent(in) :: card
+    integer, intent(in) :: slot
     type(field_entry), intent(in) :: entry
     integer, intent(in) :: column
     type(card_table), intent(inout) :: table
     type(diagnostics), intent(inout) :: faults
     real(wp) :: value
     character(len=8) :: word
-    integer :: slot, outcome
+    integer :: outcome
 
-    slot = slot_of(entry%number)
-    if (.not. card%filled(slot)) then
-      if (table%same_as(column) > 0) table%value(column, table%count) = table%value(table%same_as(column), table%count)
-      if (needed(card, entry)) call add_fault(lines, card, entry, 'is blank', entry%allowed(), faults)
-      return
-    end if
     call read_value(lines%text(card%first(slot):card%last(slot)), entry, value, word, outcome)
     if (outcome == scan_no_point .and. entry%point_optional .and. card%is_large(slot)) outcome = scan_sound
     if (outcome == scan_sound) then
@@ -192,35 +216,34 @@ contains
     if (table%noted(column) == 1) table%noted_card(column) = table%count
   end subroutine read_field
 
-  !> May the field not be blank?
-  pure logical function needed(card, entry)
-    type(card_fields), intent(in) :: card
-    type(field_entry), intent(in) :: entry
-
-    needed = entry%required
-    if (.not. needed .and. entry%with > 0) needed = card%filled(slot_of(entry%with))
-  end function needed
-
-  !> Fields that the catalogue does not know must be blank.
-  subroutine check_blanks(lines, card, entry, faults)
+  !> A blank field: it may have the value of another, and there are some that may not be blank.
+  subroutine take_blank(lines, card, entry, column, table, faults)
     type(source), intent(in) :: lines
     type(card_fields), intent(in) :: card
+    type(field_entry), intent(in) :: entry
+    integer, intent(in) :: column
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    logical :: needed
+
+    if (table%same_as(column) > 0) table%value(column, table%count) = table%value(table%same_as(column), table%count)
+    needed = entry%required
+    if (.not. needed .and. entry%with > 0) needed = card%filled(slot_of(entry%with))
+    if (needed) call add_fault(lines, card, entry, 'is blank', entry%allowed(), faults)
+  end subroutine take_blank
+
+  !> A field that the catalogue does not know must be blank.
+  subroutine add_surplus(lines, card, slot, entry, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(in) :: card
+    integer, intent(in) :: slot
     type(card_entry), intent(in) :: entry
     type(diagnostics), intent(inout) :: faults
-    integer :: slot, last
 
-    last = card%count
-    if (entry%list_number > 0) last = min(last, slot_of(entry%list_number) - 1)
-    do slot = 1, last
-      if (card%last(slot) < card%first(slot)) cycle
-      if (slot <= size(entry%column_at)) then
-        if (entry%column_at(slot) > 0) cycle
-      end if
-      call faults%add_error(card%place(lines, slot), &
-                            identity(lines, card)//': '//field_text(number_of(slot), '')//' must be blank', &
-                            'blank; '//trim(entry%name)//' ends with field '//text_of(entry%last_number()))
-    end do
-  end subroutine check_blanks
+    call faults%add_error(card%place(lines, slot), &
+                          identity(lines, card)//': '//field_text(number_of(slot), '')//' must be blank', &
+                          'blank; '//trim(entry%name)//' ends with field '//text_of(entry%last_number()))
+  end subroutine add_surplus
 
   !> List once each field that was filled and has no effect.
   subroutine add_notes(lines, entry, table, faults)

@@ -28,8 +28,7 @@ module epcont_deck_card
     integer :: name_first = 1, name_last = 0     !! the name in the buffer, without `*`
     character(len=8) :: name = ''                !! the name in capitals, cut at eight characters
     integer :: count = 0                         !! slots: eight for each row
-    integer, allocatable :: at_line(:)           !! [slots or more] line of each slot
-    integer, allocatable :: left(:), right(:)    !! [slots or more] columns of the whole field
+    type(place_type), allocatable :: field(:)    !! [slots or more] the columns of the whole field
     integer, allocatable :: first(:), last(:)    !! [slots or more] the value in the buffer; last < first: blank
     logical :: sound = .true.                    !! the lines can be cut into fields
     logical, private :: half_open = .false.      !! the last line was the first half of a large-field row
@@ -47,7 +46,7 @@ contains
     class(card_fields), intent(in) :: self
     integer, intent(in) :: slot
 
-    is_large = self%right(slot) - self%left(slot) == 15
+    is_large = self%field(slot)%last - self%field(slot)%first == 15
   end function is_large
 
   !> Collect the card that begins at `line`, which is not blank, with its continuations.
@@ -57,7 +56,7 @@ contains
     type(card_fields), intent(inout) :: card  !! its arrays are used again
     type(diagnostics), intent(inout) :: faults
 
-    if (.not. allocated(card%left)) call extend(card, 64)
+    if (.not. allocated(card%field)) call extend(card, 64)
     card%line = line
     card%count = 0
     card%sound = .true.
@@ -107,7 +106,7 @@ contains
       large = lines%text(lines%first(line):lines%first(line)) == '*'
     end if
     if (.not. card%sound) return
-    call open_slots(lines, line, large, card, slot)
+    call open_slots(large, card, slot)
     if (comma > 0) then
       call cut_free(lines, line, comma, merge(4, 8, large), slot, card, faults)
     else
@@ -125,9 +124,8 @@ contains
     integer :: at, code, longest
 
     comma = 0
-    do at = lines%first(line), lines%last(line)
+    do at = lines%special(line), lines%last(line)
       code = iachar(lines%text(at:at))
-      if (code == 32 .or. (code > iachar(',') .and. code < 127)) cycle   ! as most are
       if (code < 32 .or. code > 126) then
         call add_character_fault(lines%columns(line, at, at), code, faults)
         sound = .false.
@@ -171,17 +169,15 @@ contains
       card%name_last = card%name_last - 1
       call trim_blanks(text, card%name_first, card%name_last)
     end if
-    card%name = upper(text(card%name_first:min(card%name_last, card%name_first + 7)))
+    card%name = text(card%name_first:min(card%name_last, card%name_first + 7))
+    card%name = upper(card%name)
   end subroutine take_name
 
   !> The slot where the fields of a line begin: a new row of eight, or the second half of a large-field row.
-  subroutine open_slots(lines, line, large, card, slot)
-    type(source), intent(in) :: lines
-    integer, intent(in) :: line
+  subroutine open_slots(large, card, slot)
     logical, intent(in) :: large
     type(card_fields), intent(inout) :: card
     integer, intent(out) :: slot
-    integer :: behind
 
     if (large .and. card%half_open) then
       slot = card%count - 3
@@ -190,15 +186,25 @@ contains
       slot = card%count + 1
       card%half_open = large
       card%count = card%count + 8
-      if (card%count > size(card%left)) call extend(card, 2*card%count)
+      if (card%count > size(card%field)) call extend(card, 2*card%count)
     end if
-    behind = lines%last(line) - lines%first(line) + 2
-    card%at_line(slot:card%count) = line
-    card%left(slot:card%count) = behind
-    card%right(slot:card%count) = behind
-    card%first(slot:card%count) = 1
-    card%last(slot:card%count) = 0
   end subroutine open_slots
+
+  !> Blank slots to the end of the row, of which the line says nothing: they are behind its end.
+  subroutine add_blanks(lines, line, slot, card)
+    type(source), intent(in) :: lines
+    integer, intent(in) :: line
+    integer, intent(in) :: slot  !! the first of them
+    type(card_fields), intent(inout) :: card
+    integer :: i, behind
+
+    behind = lines%last(line) - lines%first(line) + 2
+    do i = slot, card%count
+      card%field(i) = place_type(line, behind, behind)
+      card%first(i) = 1
+      card%last(i) = 0
+    end do
+  end subroutine add_blanks
 
   !> Cut a line of fields of fixed width.
   subroutine cut_fixed(lines, line, fields, slot, card)
@@ -207,21 +213,20 @@ contains
     integer, intent(in) :: fields  !! on the line, 8 or 4
     integer, intent(in) :: slot    !! the first of them
     type(card_fields), intent(inout) :: card
-    integer :: i, step, column, start, from, to
+    integer :: i, step, column, from, to
 
     step = (last_data - width)/fields
-    start = lines%first(line) - 1
+    column = width + 1
     do i = slot, slot + fields - 1
-      column = width + (i - slot)*step
-      card%left(i) = column + 1
-      card%right(i) = column + step
-      from = start + column + 1
-      to = min(start + column + step, lines%last(line))
-      if (from > to) cycle
+      card%field(i) = place_type(line, column, column + step - 1)
+      from = lines%first(line) + column - 1
+      to = min(from + step - 1, lines%last(line))
       call trim_blanks(lines%text, from, to)
       card%first(i) = from
       card%last(i) = to
+      column = column + step
     end do
+    call add_blanks(lines, line, slot + fields, card)
   end subroutine cut_fixed
 
   !> Cut a line at its commas. Behind the data fields only a continuation mark may stand.
@@ -235,6 +240,7 @@ contains
     type(diagnostics), intent(inout) :: faults
     integer :: i, from, to, left, right
 
+    call add_blanks(lines, line, slot, card)
     left = comma + 1
     i = slot
     do while (left <= lines%last(line))
@@ -244,8 +250,7 @@ contains
       to = right
       call trim_blanks(lines%text, from, to)
       if (i < slot + fields) then
-        card%left(i) = left - lines%first(line) + 1
-        card%right(i) = max(right, left) - lines%first(line) + 1
+        card%field(i) = lines%columns(line, left, max(right, left))
         card%first(i) = from
         card%last(i) = to
       else if (from <= to .and. (i > slot + fields .or. scan(lines%text(from:max(from, to)), '+*') /= 1)) then
@@ -259,23 +264,31 @@ contains
     end do
   end subroutine cut_free
 
-  !> Move `from` and `to` inwards over blanks.
+  !> Move `from` and `to` inwards over blanks. These are compared by their codes: a character compared with a blank becomes
+  !! a call of len_trim, which for so few characters costs more than the loop.
   pure subroutine trim_blanks(text, from, to)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to
 
-    to = from - 1 + len_trim(text(from:to))
-    if (from < to) from = from - 1 + verify(text(from:to), ' ')
+    do while (from <= to)
+      if (iachar(text(to:to)) /= iachar(' ')) exit
+      to = to - 1
+    end do
+    do while (from < to)
+      if (iachar(text(from:from)) /= iachar(' ')) exit
+      from = from + 1
+    end do
   end subroutine trim_blanks
 
   !> Room for `slots` slots.
   subroutine extend(card, slots)
     type(card_fields), intent(inout) :: card
     integer, intent(in) :: slots
+    type(place_type), allocatable :: longer(:)
 
-    call lengthen(card%at_line, slots)
-    call lengthen(card%left, slots)
-    call lengthen(card%right, slots)
+    allocate (longer(slots))
+    if (allocated(card%field)) longer(:size(card%field)) = card%field
+    call move_alloc(longer, card%field)
     call lengthen(card%first, slots)
     call lengthen(card%last, slots)
   end subroutine extend
@@ -309,7 +322,7 @@ contains
     if (slot > self%count) then
       place = self%name_place(lines)
     else
-      place = place_type(self%at_line(slot), self%left(slot), self%right(slot))
+      place = self%field(slot)
     end if
   end function place
 

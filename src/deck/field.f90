@@ -16,8 +16,8 @@ module epcont_deck_field
   integer, parameter, public :: scan_too_small = 4  !! a real that is not zero, but nearer to it than the least normal one
   integer, parameter, public :: scan_too_long = 5   !! a word of more than eight characters
 
-  !> Decimal digits that certainly fit an integer of eight bytes.
-  integer, parameter :: most_digits = 18
+  !> From here on one more decimal digit would not certainly fit an integer of eight bytes: 18 digits do.
+  integer(i8), parameter :: full = 10_i8**17
   !> All whole numbers up to this one are exact reals.
   integer(i8), parameter :: exact_mantissa = 2_i8**53
   !> Powers of ten that are exact reals: one product or quotient of two exact reals is rounded correctly.
@@ -34,13 +34,12 @@ module epcont_deck_field
 
   !> The parts of a real as it is written: digits x 10**exponent.
   type :: decimal
-    integer(i8) :: digits = 0      !! the first `most_digits` significant digits
-    integer :: significant = 0     !! significant digits, leading zeros not counted
-    integer :: fraction = 0        !! digits behind the point
-    integer :: exponent = 0        !! the exponent as written
+    integer(i8) :: digits = 0      !! the first 18 significant digits
+    integer :: dropped = 0         !! significant digits behind these
+    integer :: point = 0           !! the point among the characters; 0: there is none
     integer :: mantissa_last = 0   !! last character of the mantissa
+    integer :: exponent = 0        !! the exponent as written
     logical :: negative = .false.
-    logical :: point = .false.
   end type decimal
 
 contains
@@ -50,22 +49,26 @@ contains
     character(len=*), intent(in) :: text  !! without blanks around it
     integer(i8), intent(out) :: number
     integer, intent(out) :: outcome       !! one of the outcomes above
-    integer :: at, first, digit, significant
+    integer :: at, first, digit
+    logical :: too_large
 
     number = 0
     outcome = scan_malformed
     first = 1
     if (len(text) > 0) first = merge(2, 1, is_sign(text(1:1)))
     if (first > len(text)) return
-    significant = 0
+    too_large = .false.
     do at = first, len(text)
       digit = iachar(text(at:at)) - iachar('0')
       if (digit < 0 .or. digit > 9) return
-      if (significant > 0 .or. digit > 0) significant = significant + 1
-      if (significant <= most_digits) number = 10*number + digit
+      if (number < full) then
+        number = 10*number + digit
+      else
+        too_large = .true.
+      end if
     end do
     if (text(1:1) == '-') number = -number
-    outcome = merge(scan_too_large, scan_sound, significant > most_digits)
+    outcome = merge(scan_too_large, scan_sound, too_large)
   end subroutine scan_integer
 
   !> A real: `7.0`, `.7E1`, `0.7+1`, `7.-2`, `7.D0`. It has a decimal point, and is rounded correctly.
@@ -79,8 +82,9 @@ contains
     number = 0.0_wp
     call take_apart(text, parts, outcome)
     if (all(outcome /= [scan_sound, scan_no_point]) .or. parts%digits == 0) return
-    power = parts%exponent - parts%fraction
-    if (parts%significant <= most_digits .and. parts%digits <= exact_mantissa .and. abs(power) <= exact_power) then
+    power = parts%exponent
+    if (parts%point > 0) power = power - (parts%mantissa_last - parts%point)
+    if (parts%digits <= exact_mantissa .and. abs(power) <= exact_power) then
       number = real(parts%digits, wp)
       if (power < 0) then
         number = number/power_of_ten(-power)
@@ -91,7 +95,7 @@ contains
     else
       call convert(text(:parts%mantissa_last), parts, power, number, outcome)
     end if
-    if (outcome == scan_sound .and. .not. parts%point) outcome = scan_no_point
+    if (outcome == scan_sound .and. parts%point == 0) outcome = scan_no_point
   end subroutine scan_real
 
   !> The parts of a real; `outcome` says whether it is one.
@@ -99,32 +103,33 @@ contains
     character(len=*), intent(in) :: text
     type(decimal), intent(out) :: parts
     integer, intent(out) :: outcome
-    integer :: at, digit, digits
+    integer :: at, first, digit
 
     outcome = scan_malformed
     if (len(text) == 0) return
     parts%negative = text(1:1) == '-'
-    digits = 0
-    do at = merge(2, 1, is_sign(text(1:1))), len(text)
+    first = merge(2, 1, is_sign(text(1:1)))
+    do at = first, len(text)
       digit = iachar(text(at:at)) - iachar('0')
       if (digit >= 0 .and. digit <= 9) then
-        digits = digits + 1
-        if (parts%point) parts%fraction = parts%fraction + 1
-        if (parts%significant > 0 .or. digit > 0) parts%significant = parts%significant + 1
-        if (parts%significant <= most_digits) parts%digits = 10*parts%digits + digit
-      else if (text(at:at) == '.' .and. .not. parts%point) then
-        parts%point = .true.
+        if (parts%digits < full) then
+          parts%digits = 10*parts%digits + digit
+        else
+          parts%dropped = parts%dropped + 1
+        end if
+      else if (text(at:at) == '.' .and. parts%point == 0) then
+        parts%point = at
       else
         exit
       end if
     end do
     parts%mantissa_last = at - 1
-    if (digits == 0) return
+    if (at - first == merge(1, 0, parts%point > 0)) return   ! without a digit
     if (at <= len(text)) then
       call take_exponent(text(at:), parts%exponent, outcome)
       if (outcome /= scan_sound) return
     end if
-    outcome = merge(scan_sound, scan_no_point, parts%point)
+    outcome = merge(scan_sound, scan_no_point, parts%point > 0)
   end subroutine take_apart
 
   !> The exponent of a real, from its letter or sign to the end of the field.
@@ -160,13 +165,24 @@ contains
     real(wp), intent(out) :: number
     integer, intent(out) :: outcome
     character(len=len(mantissa) + 8) :: clean
-    integer :: leading, status
+    integer(i8) :: first_digits  ! 17 of them, filled up with zeros
+    integer :: leading           ! exponent of the first of them
+    integer :: status
 
     number = 0.0_wp
-    leading = power + parts%significant - 1
+    first_digits = parts%digits
+    leading = power + parts%dropped + 16
+    if (first_digits >= full) then
+      first_digits = first_digits/10
+      leading = leading + 1
+    end if
+    do while (first_digits < full/10)
+      first_digits = 10*first_digits
+      leading = leading - 1
+    end do
     outcome = scan_too_large
     if (leading > largest_exponent) return
-    if (leading == largest_exponent .and. first_digits(parts) > largest_digits) return
+    if (leading == largest_exponent .and. first_digits > largest_digits) return
     outcome = scan_too_small
     if (leading < -largest_exponent) return
     clean = mantissa//'E'//text_of(parts%exponent)
@@ -174,19 +190,6 @@ contains
     if (status /= 0) outcome = scan_malformed
     if (abs(number) >= tiny(number)) outcome = scan_sound
   end subroutine convert
-
-  !> The first 17 significant digits, filled up with zeros.
-  pure integer(i8) function first_digits(parts)
-    type(decimal), intent(in) :: parts
-    integer :: have
-
-    have = min(parts%significant, most_digits)
-    if (have <= 17) then
-      first_digits = parts%digits*10_i8**(17 - have)
-    else
-      first_digits = parts%digits/10_i8**(have - 17)
-    end if
-  end function first_digits
 
   !> Directions: digits from 1 to 6, each at most once, such as `12`.
   pure subroutine scan_components(text, number, outcome)

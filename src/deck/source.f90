@@ -1,7 +1,7 @@
 !> The text of a deck: its file and the files it includes, cut into lines in deck order.
 !>
-!> All files lie one after the other in one buffer; a line is a stretch of it. INCLUDE and ENDDATA are
-!> dealt with here, so that what reads the cards sees one run of lines.
+!> All files lie one after the other in one buffer, a newline behind each; a line is a stretch of it.
+!> INCLUDE and ENDDATA are dealt with here, so that what reads the cards sees one run of lines.
 module epcont_deck_source
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_kinds, only: i8
@@ -15,6 +15,8 @@ module epcont_deck_source
   integer, parameter :: deepest = 8
   !> How many INCLUDE lines a deck may have: files that include each other twice would double at every depth.
   integer, parameter :: most_files = 10000
+  !> What ends a line.
+  character(len=*), parameter :: newline = achar(10)
 
   !> One file of the deck.
   type :: source_file
@@ -31,6 +33,7 @@ module epcont_deck_source
     integer :: used = 0                          !! characters of `text` in use
     integer :: count = 0                         !! number of lines
     integer, allocatable :: first(:), last(:)    !! [count or more]
+    integer, allocatable :: special(:)           !! first comma or character that is not printable; > last: none
     integer, allocatable :: number(:)            !! line number in its file [count or more]
     integer, allocatable :: file(:)              !! its file [count or more]
     type(source_file), allocatable :: files(:)   !! [files]
@@ -54,7 +57,8 @@ contains
     character(len=:), allocatable :: trouble
     logical :: ended
 
-    allocate (lines%files(0), lines%first(1024), lines%last(1024), lines%number(1024), lines%file(1024))
+    allocate (lines%first(1024), lines%last(1024), lines%special(1024), lines%number(1024), lines%file(1024))
+    allocate (lines%files(0))
     allocate (character(len=0) :: lines%text)
     call load(lines, path, 0, trouble)
     if (allocated(trouble)) then
@@ -75,7 +79,6 @@ contains
     integer(i8) :: bytes
     integer :: unit, status
     logical :: exists
-    character(len=1) :: byte
 
     inquire (file=path, exist=exists)
     if (.not. exists) then
@@ -95,22 +98,20 @@ contains
     inquire (unit=unit, size=bytes)
     if (bytes < 0) then
       trouble = 'not a file that can be read'
-    else if (bytes == 0) then
-      read (unit, iostat=status) byte
-      if (status == 0) trouble = 'a pipe or a device, not a file of known size'
-    else if (self%used + bytes >= huge(1)) then
+    else if (self%used + bytes >= huge(1) - 1) then   ! behind come a newline and the place of a next line
       trouble = 'the deck is larger than 2 GiB'
     else
-      call grow_text(self, self%used + int(bytes))
-      read (unit, iostat=status) self%text(self%used + 1:self%used + int(bytes))
-      if (status /= 0) trouble = 'cannot be read'
+      call grow_text(self, self%used + int(bytes) + 1)
+      read (unit, iostat=status) self%text(self%used + 1:self%used + max(int(bytes), 1))
+      if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
+      if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
     end if
     close (unit, iostat=status)
     if (allocated(trouble)) return
     call add_file(self, path, parent, self%used + int(bytes))
   end subroutine load
 
-  !> Enter the file that has just been read, up to the character `last`.
+  !> Enter the file that has just been read, up to the character `last`; there is room for a newline behind.
   subroutine add_file(self, path, parent, last)
     type(source), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -121,7 +122,8 @@ contains
     longer(:size(self%files)) = self%files
     longer(size(longer)) = source_file(path, parent, self%used + 1, last)
     call move_alloc(longer, self%files)
-    self%used = last
+    self%used = last + 1
+    self%text(last + 1:last + 1) = newline
   end subroutine add_file
 
   !> Room for `length` characters. The first file gets just its size; included ones make the buffer double.
@@ -145,52 +147,60 @@ contains
     integer, intent(in) :: file
     type(diagnostics), intent(inout) :: faults
     logical, intent(out) :: ended
-    integer :: at, last, next, line, number
+    integer :: at, last, special, next, line, number
+    character(len=7) :: word
 
     ended = .false.
     at = self%files(file)%first
     number = 0
     do while (at <= self%files(file)%last .and. .not. ended)
       number = number + 1
-      call find_end(self%text, at, self%files(file)%last, last, next)
-      call add_line(self, file, number, at, last)
+      call find_end(self%text, at, last, special, next)
+      call add_line(self, file, number, at, last, special)
       line = self%count
-      select case (statement(self%text(at:last)))
-      case ('ENDDATA')
+      word = statement(self%text(at:last))
+      if (word == 'ENDDATA') then
         self%last(line) = at - 1
         ended = .true.
-      case ('INCLUDE')
+      else if (word == 'INCLUDE') then
         call include_file(self, line, faults)
         self%last(line) = at - 1
-      end select
+      end if
       at = next
     end do
   end subroutine cut
 
   !> The end of the line that begins at `first`: its last character that is neither comment nor blank, and
-  !! the first character of the next line.
-  pure subroutine find_end(text, first, end_of_file, last, next)
+  !! the first character of the next line. On the way, its first comma or character that is not printable ASCII.
+  pure subroutine find_end(text, first, last, special, next)
     character(len=*), intent(in) :: text
-    integer, intent(in) :: first, end_of_file
-    integer, intent(out) :: last, next
-    integer :: at, comment
+    integer, intent(in) :: first
+    integer, intent(out) :: last, special, next
+    integer :: at, comment, code
+    ! By code, the characters that mean nothing but themselves: printable ASCII but `$` and `,`.
+    logical, parameter :: plain(0:255) = [(code >= 32 .and. code <= 126 .and. all(code /= iachar(['$', ','])), code=0, 255)]
 
-    comment = 0
-    do at = first, end_of_file
-      if (text(at:at) > '$') cycle
-      if (text(at:at) == achar(10)) exit
-      if (text(at:at) == '$' .and. comment == 0) comment = at
+    comment = huge(1)
+    special = huge(1)
+    at = first
+    do
+      if (.not. plain(iachar(text(at:at)))) then
+        if (text(at:at) == newline) exit
+        if (text(at:at) == '$') then
+          comment = min(comment, at)
+        else
+          special = min(special, at)
+        end if
+      end if
+      at = at + 1
     end do
     next = at + 1
     last = at - 1
     if (last >= first) then
       if (text(last:last) == achar(13)) last = last - 1
     end if
-    if (comment > 0) last = comment - 1
-    do while (last >= first)
-      if (text(last:last) /= ' ') exit
-      last = last - 1
-    end do
+    last = min(last, comment - 1)
+    last = first - 1 + len_trim(text(first:last))
   end subroutine find_end
 
   !> INCLUDE or ENDDATA if the line is that statement, else blank.
@@ -201,7 +211,7 @@ contains
 
     word = ''
     if (len(line) == 0) return
-    if (scan(line(1:1), 'IiEe ') == 0) return
+    if (.not. any(line(1:1) == ['I', 'i', 'E', 'e', ' '])) return
     at = max(verify(line, ' '), 1)
     if (len(line) < at + 6) return
     word = upper(line(at:at + 6))
@@ -295,19 +305,21 @@ contains
     if (self%files(file)%parent > 0) levels = 1 + depth(self, self%files(file)%parent)
   end function depth
 
-  subroutine add_line(self, file, number, first, last)
+  subroutine add_line(self, file, number, first, last, special)
     type(source), intent(inout) :: self
-    integer, intent(in) :: file, number, first, last
+    integer, intent(in) :: file, number, first, last, special
 
     if (self%count == size(self%first)) then
       call double(self%first)
       call double(self%last)
+      call double(self%special)
       call double(self%number)
       call double(self%file)
     end if
     self%count = self%count + 1
     self%first(self%count) = first
     self%last(self%count) = last
+    self%special(self%count) = special
     self%number(self%count) = number
     self%file(self%count) = file
   end subroutine add_line
@@ -345,13 +357,11 @@ contains
     integer, intent(in) :: from  !! first column wanted
     integer, intent(in) :: most
     character(len=:), allocatable :: text
-    integer :: last, end_of_file, column
+    integer :: last, column
 
     last = self%first(line) - 1
-    end_of_file = self%files(self%file(line))%last
     do column = 1, from + most - 1
-      if (last == end_of_file) exit
-      if (self%text(last + 1:last + 1) == achar(10)) exit
+      if (self%text(last + 1:last + 1) == newline) exit
       last = last + 1
     end do
     text = self%text(self%first(line) + from - 1:last)
