@@ -7,6 +7,7 @@
 program bench_contact
   use, intrinsic :: iso_fortran_env, only: int32
   use epcont_base_kinds, only: wp
+  use epcont_base_large_pages, only: prepare_heap
   use epcont_contact_problem, only: contact_problem, contact_solution
   use epcont_contact_solver, only: solve_contact
   use epcont_linalg_dense, only: add_product
@@ -20,6 +21,7 @@ program bench_contact
   real(wp) :: begun, ended
   integer :: k, repeats
 
+  call prepare_heap()   ! as the program does
   call read_problem(argument(1), problem)
   rule = argument(3)
   repeats = number(argument(4))
