@@ -26,6 +26,7 @@ module epcont_assembly_stiffness
     real(wp), allocatable :: coupling(:, :)   !! K_br, then W [equations, border]
     real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
     logical :: single = .false.               !! K_bb is factored in single precision
+    real(wp) :: unit = 1.0_wp                 !! K is over this, in the range of single precision; a power of four [force/length]
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
     integer :: weakest = 0                    !! its equation
   contains
@@ -57,6 +58,7 @@ contains
       call stiffness%matrix%clear(stale)
     else
       call begin(model, equation, body, stiffness%single, stiffness%matrix)
+      if (stiffness%single) stiffness%unit = unit_of(model, operator, matrix, body)
     end if
     if (allocated(stiffness%coupling)) deallocate (stiffness%coupling, stiffness%schur)
     if (stiffness%matrix%lacks_memory) return
@@ -69,11 +71,32 @@ contains
         end do
         if (body%border == 0 .and. .not. any_of(stale, number(:n))) cycle
         call operator%element_stiffness(model, element, matrix, k)
+        if (stiffness%single) k(:n, :n) = k(:n, :n)/stiffness%unit
         call stiffness%matrix%add(k(:n, :n), number(:n))
         if (body%border > 0) call add_to_border(k(:n, :n), number(:n), stiffness)
       end associate
     end do
   end subroutine assemble_body
+
+  !> A power of four near the largest stiffness of a body's elements [force/length].
+  pure real(wp) function unit_of(model, operator, matrix, body)
+    type(model_type), intent(in) :: model
+    type(strain_operator), intent(in) :: operator
+    real(wp), intent(in) :: matrix(:, :, :)   !! [4, 4, points]
+    type(body_numbering), intent(in) :: body
+    real(wp) :: largest
+    integer :: e, p
+
+    largest = 0.0_wp
+    do e = 1, size(body%element)
+      do p = model%first_point(body%element(e)), model%first_point(body%element(e) + 1) - 1
+        associate (b => operator%b(:, operator%column(p) + 1:operator%column(p) + 2*model%order(body%element(e))))
+          largest = max(largest, operator%volume(p)*maxval(abs(matrix(:, :, p)))*maxval(abs(b))**2)
+        end associate
+      end do
+    end do
+    unit_of = scale(1.0_wp, exponent(largest)/2*2)
+  end function unit_of
 
   !> Is one of these equations marked? Those of number 0 and less are not.
   pure logical function any_of(marked, number)
@@ -198,7 +221,8 @@ contains
     real(wp), contiguous, intent(inout) :: inner(:, :)    !! [order of the matrix, 1]
     real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
 
-    border = border - matmul(transpose(self%coupling), inner)
+    inner = inner/self%unit
+    border = border/self%unit - matmul(transpose(self%coupling), inner)
     call self%matrix%solve_lower(inner)
   end subroutine solve_lower
 

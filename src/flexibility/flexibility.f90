@@ -24,6 +24,7 @@ contains
 
     if (numbering%body(b)%contact_equations + numbering%body(b)%border == 0) return
     call body_rows(model, numbering, b, start, equation, weight)
+    weight = weight/sqrt(stiffness%unit)
     call stiffness%matrix%add_gram(start, equation, weight, flexibility)
     if (numbering%body(b)%border > 0) call add_border(stiffness, start, equation, weight, flexibility)
   end subroutine add_body_flexibility

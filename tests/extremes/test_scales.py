@@ -64,6 +64,19 @@ class Scales(Extremes):
             with self.subTest(young=f"1e{exponent}"):
                 self.column_is_right(young=float(f"1e{exponent}"))
 
+    def test_single_precision_in_any_unit(self):
+        """Stiffnesses far beyond the numbers that it has."""
+        for exponent in (-25, -12, 0, 12, 25):
+            with self.subTest(young=f"1e{exponent}", thickness=f"1e{exponent}"):
+                scale = {"young": 10.0**exponent, "thickness": 10.0**exponent}
+                deck = column(**scale)
+                deck.parameter("PRECIS", "SINGLE")
+                result = self.valid(deck)
+                self.assertNotIn("factors in double", result.listing)
+                forces, approach = column_answer(**scale)
+                self.near(result.force, forces, 1e-4)
+                self.near(result.approach, [approach]*2, 1e-4)
+
     def test_any_unit(self):
         base = self.valid(punch())
         self.assertTrue(0 < sum(base.touching) < 9)
