@@ -58,6 +58,8 @@ contains
       end do
     end do
     start(model%pairs + 1) = last + 1
+    equation = equation(:last)
+    weight = weight(:last)
   end subroutine body_rows
 
   !> What the border adds: K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'.
