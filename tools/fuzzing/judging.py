@@ -227,7 +227,8 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
         if steps >= 0.75 * most:
             return None
     # Beyond a limit load rounding decides which of two refusals it is.
-    if {one, two} == {"not converged", "singular stiffness"} and all("limit load" in "".join(told) for told in (run.told(name), other.told(twin))):
+    if "not converged" in (one, two) and {one, two} & {"singular stiffness", "not certified"} \
+            and any("limit load" in "".join(told) for told in (run.told(name), other.told(twin))):
         return None
     if WORDS.get(one) != WORDS.get(two):
         return f"twin: {one}, {two}"
@@ -244,8 +245,11 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
     if left > CERTIFIED:
         told = sum(number(summary_of(*answer)["iteration_error_displacement"]) for answer in ((run, name), (other, twin)))
         bound = max(bound, left / 10, 3 * told)
+    listings = [(a.out / f"{b}.lst").read_text(encoding="latin-1") for a, b in ((run, name), (other, twin))]
+    if any("force not unique" in listing for listing in listings):
+        return None
     compared = [("nodes", "node", ("ux", "uy")), ("elements", "element", ("sx", "sy", "sz", "txy"))]
-    if any("its value is a choice" in (a.out / f"{b}.lst").read_text(encoding="latin-1") for a, b in ((run, name), (other, twin))):
+    if any("its value is a choice" in listing for listing in listings):
         compared = compared[1:]   # which end of a free way a body stands at
     for table, key, columns in compared:
         ours, theirs = ({row[key]: row for row in rows_of(a, b, table)} for a, b in ((run, name), (other, twin)))
