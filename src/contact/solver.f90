@@ -40,14 +40,14 @@ contains
     solution%motion_free = rigid%redundant
 
     if (present(by_blocks)) then
-      if (by_blocks) call solve_by_blocks(scaled, rigid%touching, guess, solution)
+      if (by_blocks) call solve_by_blocks(problem, scaled, rigid%touching, guess, solution)
       if (solution%by_blocks) return
     end if
     begun = solution
     call find_contacts(scaled, rigid%touching, guess, solution, state, ray)
     if (solution%state == contact_stalled) then
       ! Ties may have led the path round in a circle: blocks know of no path.
-      call solve_by_blocks(scaled, rigid%touching, guess, begun)
+      call solve_by_blocks(problem, scaled, rigid%touching, guess, begun)
       if (begun%by_blocks) then
         solution = begun
         return
@@ -56,12 +56,13 @@ contains
     if (solution%state == contact_overlap) then
       solution%overlapping = ray > ray_tolerance*maxval(ray)
     else
-      call settle(scaled, state, solution)
+      call settle(problem, scaled, state, solution)
     end if
   end subroutine solve_contact
 
   !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left of it.
-  pure subroutine solve_by_blocks(scaled, first_touching, guess, solution)
+  pure subroutine solve_by_blocks(problem, scaled, first_touching, guess, solution)
+    type(contact_problem), intent(in) :: problem
     type(scaled_problem), intent(in) :: scaled
     logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
     logical, allocatable, intent(in) :: guess(:)        !! of the pairs in contact, if allocated [n]
@@ -74,7 +75,7 @@ contains
     call find_by_blocks(scaled, first_touching, guess, trial, state, trial%by_blocks)
     solution%block_steps = trial%block_steps
     if (.not. trial%by_blocks) return
-    call settle(scaled, state, trial)
+    call settle(problem, scaled, state, trial)
     ! Motions that only touching pairs without force hold back may stand elsewhere too.
     pressed = trial%force > negligible*maxval([trial%force, 0.0_wp])
     if (any(trial%indeterminate) .or. any(find_free_motions(scaled, pressed, pressed))) return
@@ -97,23 +98,43 @@ contains
   end subroutine clear
 
   !> The answer in the deck's units, and what the conditions leave open in it.
-  pure subroutine settle(scaled, state, solution)
+  pure subroutine settle(problem, scaled, state, solution)
+    type(contact_problem), intent(in) :: problem
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
     type(contact_solution), intent(inout) :: solution
     logical, allocatable :: pressed(:)
-    real(wp) :: zero   !! force or gap that rounding leaves of none
+    real(wp), allocatable :: terms(:)   !! what gaps are the sum of [n]
+    real(wp) :: held                    !! the largest of these of the pairs that hold the motions, which have their rounding
+    real(wp) :: zero                    !! force that rounding leaves of none
 
     zero = negligible*maxval([state%force, 1.0_wp])
     state%gap(state%basis%pairs) = 0.0_wp
-    solution%touching = state%gap <= zero
+    ! Where rigid stops take the load, gaps may be far below the size that they are measured in.
+    terms = terms_of_gaps(problem, scaled, state)
+    held = maxval([terms(state%basis%pairs), noise])
+    solution%touching = state%gap <= negligible*max(terms, held)
     where (solution%touching) state%gap = 0.0_wp
     where (state%force <= noise) state%force = 0.0_wp
-    where (abs(state%approach) <= noise) state%approach = 0.0_wp
+    where (abs(state%approach) <= noise*held) state%approach = 0.0_wp
     pressed = state%force > zero
     solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
     call share_equally(scaled, solution%indeterminate, state%force)
     solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)
     call restore_units(scaled, state%force, state%gap, state%approach, solution)
   end subroutine settle
+
+  !> The sum of the magnitudes that each gap is the sum of.
+  pure function terms_of_gaps(problem, scaled, state) result(terms)
+    type(contact_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(in) :: state
+    real(wp), allocatable :: terms(:)
+    integer :: k
+
+    terms = (abs(problem%initial_gap) + abs(problem%load_gap))/scaled%gap_unit + matmul(abs(scaled%motion), abs(state%approach))
+    do k = 1, size(state%force)
+      if (state%force(k) /= 0.0_wp) terms = terms + abs(state%force(k)*scaled%flexibility(:, k))
+    end do
+  end function terms_of_gaps
 end module epcont_contact_solver

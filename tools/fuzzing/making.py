@@ -83,7 +83,7 @@ def means_other_things(card):
     """In another form, or in another place: the deck's end; a name of large fields; a comment up to the line's end; a coordinate without point, which large fields alone may have."""
     if card.name == "ENDDATA" or card.name[:1] in ("", "*", "+") or card.name.endswith("*") or any("$" in text for text in card.data):
         return True
-    return card.name == "GRID" and any(text.lstrip("+-").isdigit() for text in card.data[2:5])
+    return card.name == "GRID" and any(text and "." not in text for text in card.data[2:5])
 
 
 def noise(pick):
