@@ -1,6 +1,7 @@
 !> From a contact problem to its answer: scaling, rigid start, the set of contacts by one rule or the other, units.
 module epcont_contact_solver
   use epcont_base_kinds, only: wp
+  use epcont_contact_basis, only: gaps_under
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, contact_solution, contact_stalled
@@ -109,13 +110,15 @@ contains
     real(wp) :: zero                    !! force that rounding leaves of none
 
     zero = negligible*maxval([state%force, 1.0_wp])
-    state%gap(state%basis%pairs) = 0.0_wp
+    where (state%force <= noise) state%force = 0.0_wp
+    ! Without what rounding had left of a force, which may have been less than none, its pair need not be closed.
+    if (any(state%force(state%basis%pairs) == 0.0_wp)) state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
+    where (state%force > 0.0_wp) state%gap = 0.0_wp
     ! Where rigid stops take the load, gaps may be far below the size that they are measured in.
     terms = terms_of_gaps(problem, scaled, state)
     held = maxval([terms(state%basis%pairs), noise])
     solution%touching = state%gap <= negligible*max(terms, held)
     where (solution%touching) state%gap = 0.0_wp
-    where (state%force <= noise) state%force = 0.0_wp
     where (abs(state%approach) <= noise*held) state%approach = 0.0_wp
     pressed = state%force > zero
     solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
