@@ -104,6 +104,7 @@ contains
       'equilibrium is off by', 'stresses are off their curve by', 'energy is off by', 'contact forces pull, by', &
       'gaps overlap, by', 'pressed gaps are open, by', 'the rounding of gaps and travels is, of what the bodies give way,', &
       'rigid motions strain the bodies; their roundings are']
+    real(wp), parameter :: least = 1.0e-200_wp   ! a limit of no size is none, and no figure over it beyond the largest number
     real(wp) :: exact, figure(8), largest(8)
     integer :: worst
 
@@ -115,7 +116,7 @@ contains
     associate (tolerance => certificate%tolerance)
       largest = [tolerance, certificate%off_curve_limit, tolerance, tolerance, exact, exact, largest_rounding, most_roundings]
     end associate
-    worst = maxloc(figure/largest, dim=1)
+    worst = maxloc(figure/max(largest, least), dim=1)
     text = ''
     if (figure(worst) > largest(worst)) &
       text = trim(what(worst))//' '//short_real(figure(worst))//' (at most '//short_real(largest(worst))//')'
