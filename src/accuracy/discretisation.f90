@@ -87,6 +87,7 @@ contains
         do k = 1, kind(n)%places
           part = sum(kind(n)%v(:last - first + 1, k)*volume(first:last))
           associate (m => material(model%section(e)))
+            ! The strain of a three-node element is the same at all its places.
             if (m%yields .and. (k == 1 .or. n > 3)) response = respond(m, own(:, k))
             energy(e) = energy(e) + part*density(m, response, own(:, k), error(:, k), error2(:, k))
           end associate

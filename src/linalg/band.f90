@@ -16,7 +16,7 @@ module epcont_linalg_band
     real(wp), allocatable :: entries(:, :)  !! [half_bandwidth + 1, order]
   contains
     procedure :: factor
-    procedure :: solve
+    procedure :: solve_upper
     procedure :: trailing_inverse
   end type band_matrix
 
@@ -65,16 +65,17 @@ contains
     smallest_ratio = self%entries(1, at)**2/diagonal(at)
   end subroutine factor
 
-  !> Solve with the factor, in place.
-  pure subroutine solve(self, x)
+  !> Both halves of a solve.
+  pure subroutine solve_upper(self, x, first)
     class(band_matrix), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)  !! right-hand sides, then solutions [order, any]
+    integer, intent(in) :: first                    !! all rows are solved for
     integer :: info
 
     if (size(x) == 0) return
     call dpbtrs('L', self%order, self%half_bandwidth, size(x, 2), self%entries, self%half_bandwidth + 1, &
                 x, self%order, info)
-  end subroutine solve
+  end subroutine solve_upper
 
   !> Trailing block of the inverse, from the factor: with L22 the trailing block of the factor it is
   !! (L22 L22')^-1, since all that stands before has been eliminated from it.

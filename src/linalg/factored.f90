@@ -9,22 +9,32 @@ module epcont_linalg_factored
     integer :: order = 0
     real(wp) :: norm = 0.0_wp   !! 1-norm of the matrix before it was factored
   contains
-    procedure(solve_in_place), deferred :: solve
+    procedure :: solve
     procedure :: solve_lower
-    procedure :: solve_upper
+    procedure(second_half), deferred :: solve_upper
     procedure :: condition
   end type factored_matrix
 
   abstract interface
-    !> Solve with the factor, in place.
-    pure subroutine solve_in_place(self, x)
+    !> The second half of a solve, L'^-1 x. Rows before `first` are not wanted, and may be left unfinished.
+    pure subroutine second_half(self, x, first)
       import :: factored_matrix, wp
       class(factored_matrix), intent(in) :: self
-      real(wp), contiguous, intent(inout) :: x(:, :)  !! right-hand sides, then solutions [order, any]
-    end subroutine solve_in_place
+      real(wp), contiguous, intent(inout) :: x(:, :)  !! [order, any]
+      integer, intent(in) :: first
+    end subroutine second_half
   end interface
 
 contains
+
+  !> Solve with the factor, in place.
+  pure subroutine solve(self, x)
+    class(factored_matrix), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: x(:, :)  !! right-hand sides, then solutions [order, any]
+
+    call self%solve_lower(x)
+    call self%solve_upper(x, 1)
+  end subroutine solve
 
   !> The first half of a solve, L^-1 x: right-hand sides that have it behind them may still be added to each other. Factors that
   !! cannot be used by halves do nothing here, and all in the second.
@@ -32,15 +42,6 @@ contains
     class(factored_matrix), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)  !! [order, any]
   end subroutine solve_lower
-
-  !> The second half, L'^-1 x. Rows before `first` are not wanted, and may be left unfinished.
-  pure subroutine solve_upper(self, x, first)
-    class(factored_matrix), intent(in) :: self
-    real(wp), contiguous, intent(inout) :: x(:, :)  !! [order, any]
-    integer, intent(in) :: first
-
-    call self%solve(x)
-  end subroutine solve_upper
 
   !> Estimate of the condition in the 1-norm, from the factor: a lower bound, seldom under a third of it. Two columns at
   !! a time (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21 (2000) 1185) in two solves, since a factor takes longer to

@@ -28,7 +28,7 @@ module epcont_linalg_sparse
     procedure :: clear
     procedure :: add
     procedure :: factor
-    procedure :: solve
+    procedure :: solve_upper
     procedure :: add_gram
     procedure :: inverse_at
     procedure :: release
@@ -246,14 +246,15 @@ contains
     at = maxloc(abs(x(:, 1)), dim=1)
   end subroutine find_weakest
 
-  !> Solve with the factor, in place.
-  pure subroutine solve(self, x)
+  !> Both halves of a solve.
+  pure subroutine solve_upper(self, x, first)
     class(sparse_matrix), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)  !! right-hand sides, then solutions [order, any]
+    integer, intent(in) :: first                    !! all rows are solved for
 
     if (size(x) == 0 .or. .not. (self%factored .and. self%at_home())) return
     call mumps_solve(self%solver, self%order, size(x, 2), x)
-  end subroutine solve
+  end subroutine solve_upper
 
   pure subroutine add_gram(self, start, equation, weight, gram)
     class(sparse_matrix), intent(in) :: self
