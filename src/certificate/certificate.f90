@@ -28,6 +28,8 @@ module epcont_certificate_certificate
   !> A rigid motion strains an element by so many roundings of its displacements, at most: motions of a chain of 40 hinges, sums
   !! that cancel, were seen to leave 750.
   real(wp), parameter, public :: most_roundings = 1.0e4_wp
+  !> Bodies give way no less than this: no length over it is beyond the largest number.
+  real(wp), parameter :: least_length = 1.0e-200_wp
 
   type :: certificate_type
     real(wp) :: equilibrium = 0.0_wp      !! largest unbalanced nodal force / largest sum of element forces at a node
@@ -83,7 +85,7 @@ contains
     certificate%length_scale = ratio(abs(stored), forces)
     ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there is.
     if (forces == 0.0_wp) certificate%length_scale = maxval(abs(displacement))
-    certificate%length_scale = max(certificate%length_scale, tiny(1.0_wp))
+    certificate%length_scale = max(certificate%length_scale, least_length)
     call check_pairs(model, maxval(abs(load)), displacement, force, residual, certificate)
     call gather_ties(model, residual)
     certificate%equilibrium = ratio(maxval(abs(residual)), max(maxval(element_force), maxval(abs(load)), &

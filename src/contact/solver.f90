@@ -7,7 +7,7 @@ module epcont_contact_solver
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, contact_solution, contact_stalled
   use epcont_contact_scaling, only: drop_motions, negligible, restore_units, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts, ray_tolerance
-  use epcont_contact_state, only: contact_state, noise
+  use epcont_contact_state, only: contact_state, fresh_state, noise
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
   implicit none
   private
@@ -105,27 +105,46 @@ contains
     type(contact_state), intent(inout) :: state
     type(contact_solution), intent(inout) :: solution
     logical, allocatable :: pressed(:)
-    real(wp), allocatable :: terms(:)   !! what gaps are the sum of [n]
-    real(wp) :: held                    !! the largest of these of the pairs that hold the motions, which have their rounding
+    real(wp), allocatable :: terms(:)   !! what gaps are the sum of; the motions have the rounding of those that hold them [n]
     real(wp) :: zero                    !! force that rounding leaves of none
 
     zero = negligible*maxval([state%force, 1.0_wp])
-    where (state%force <= noise) state%force = 0.0_wp
-    ! Without what rounding had left of a force, which may have been less than none, its pair need not be closed.
-    if (any(state%force(state%basis%pairs) == 0.0_wp)) state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
+    call cut_rounding(problem, scaled, state, terms)
     where (state%force > 0.0_wp) state%gap = 0.0_wp
-    ! Where rigid stops take the load, gaps may be far below the size that they are measured in.
-    terms = terms_of_gaps(problem, scaled, state)
-    held = maxval([terms(state%basis%pairs), noise])
-    solution%touching = state%gap <= negligible*max(terms, held)
+    solution%touching = state%gap <= negligible*max(terms, maxval([terms(state%basis%pairs), 0.0_wp]))
     where (solution%touching) state%gap = 0.0_wp
-    where (abs(state%approach) <= noise*held) state%approach = 0.0_wp
     pressed = state%force > zero
     solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
     call share_equally(scaled, solution%indeterminate, state%force)
     solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)
     call restore_units(scaled, state%force, state%gap, state%approach, solution)
   end subroutine settle
+
+  !> Forces and motions without what rounding has left of none. A force that is cut off may have been less than none: its pair need
+  !! not be closed. Where rigid stops take the load, gaps may be far below the size that they are measured in, and that force may
+  !! have held other pairs closed: those are solved for again.
+  pure subroutine cut_rounding(problem, scaled, state, terms)
+    type(contact_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(inout) :: state
+    real(wp), allocatable, intent(out) :: terms(:)   !! what gaps are the sum of [n]
+    type(contact_state) :: fewer
+    logical, allocatable :: moving(:), pressed(:)
+
+    do
+      pressed = state%force > noise
+      where (.not. pressed) state%force = 0.0_wp
+      terms = terms_of_gaps(problem, scaled, state)
+      moving = abs(state%approach) > noise*maxval([terms(state%basis%pairs), noise])
+      if (all(moving) .and. all(pressed(state%basis%pairs))) return
+      where (.not. moving) state%approach = 0.0_wp
+      state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
+      if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. all(pressed(state%basis%pairs))) return
+      fewer = fresh_state(scaled, pressed, pressed)
+      if (.not. fewer%basis%sound) return   ! a motion is held by rounding
+      state = fewer
+    end do
+  end subroutine cut_rounding
 
   !> The sum of the magnitudes that each gap is the sum of.
   pure function terms_of_gaps(problem, scaled, state) result(terms)

@@ -259,7 +259,7 @@ contains
   end subroutine solve_contact_about
 
   !> What single precision has left: the change of displacements, strains and contact forces, of the largest of each, by
-  !! one step of refinement.
+  !! two steps of refinement, of which the second must change less: else the factors do not tell the error either, and it is 1.
   pure subroutine rounding_error(self, model, numbering, law, part, state, error)
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
@@ -270,9 +270,12 @@ contains
     real(wp), intent(out) :: error
     type(scene_state) :: refined
     logical, allocatable :: touching(:)
+    real(wp) :: second
 
     refined = state
     call correct(self, model, numbering, law, part, refined, error)
+    call correct(self, model, numbering, law, part, refined, second)
+    if (second > max(slowest_rate*error, rounding_step)) error = 1.0_wp
     error = max(error, maxval(abs(refined%deformation - state%deformation)) &
                 /max(maxval(abs(state%deformation)), tiny(1.0_wp)))
     if (model%pairs == 0) return
