@@ -102,7 +102,7 @@ contains
         call watch%lap(stage_accuracy)
       end if
       if (.not. converged) exit
-      call find_unloaded(model, loop, strained, run)
+      if (plan%load_steps > 1) call find_unloaded(model, loop, strained, run)
       call watch%lap(stage_yielding)
     end do
     run%converged = converged
