@@ -23,6 +23,7 @@ module epcont_contact_scaling
     real(wp), allocatable :: flexibility(:, :)  !! F [n, n]
     real(wp), allocatable :: motion(:, :)       !! A [n, m]
     real(wp), allocatable :: gap(:)             !! g, gaps under load before contact acts [n]
+    real(wp), allocatable :: gap_terms(:)       !! |g0| + |gl|, what g is the sum of [n]
     real(wp), allocatable :: unloaded_gap(:)    !! g^, gaps of the start, >= 0 [n]
     real(wp), allocatable :: resultant(:)       !! P [m]
     real(wp) :: force_unit = 1.0_wp             !! rho
@@ -44,6 +45,7 @@ contains
     scaled%kept = [(j, j=1, m)]
     scaled%motion_size = maximum_of_columns(problem%motion)
     scaled%gap = problem%initial_gap + problem%load_gap
+    scaled%gap_terms = abs(problem%initial_gap) + abs(problem%load_gap)
     scaled%unloaded_gap = max(problem%initial_gap, 0.0_wp)
     largest = max(maxval(abs(problem%flexibility)), 0.0_wp)   ! maxval of nothing is negative
 
@@ -57,6 +59,7 @@ contains
 
     scaled%flexibility = problem%flexibility*(scaled%force_unit/scaled%gap_unit)
     scaled%gap = scaled%gap/scaled%gap_unit
+    scaled%gap_terms = scaled%gap_terms/scaled%gap_unit
     scaled%unloaded_gap = scaled%unloaded_gap/scaled%gap_unit
     scaled%resultant = problem%resultant/scaled%motion_size/scaled%force_unit
     scaled%motion = problem%motion

@@ -41,14 +41,14 @@ contains
     solution%motion_free = rigid%redundant
 
     if (present(by_blocks)) then
-      if (by_blocks) call solve_by_blocks(problem, scaled, rigid%touching, guess, solution)
+      if (by_blocks) call solve_by_blocks(scaled, rigid%touching, guess, solution)
       if (solution%by_blocks) return
     end if
     begun = solution
     call find_contacts(scaled, rigid%touching, guess, solution, state, ray)
     if (solution%state == contact_stalled) then
       ! Ties may have led the path round in a circle: blocks know of no path.
-      call solve_by_blocks(problem, scaled, rigid%touching, guess, begun)
+      call solve_by_blocks(scaled, rigid%touching, guess, begun)
       if (begun%by_blocks) then
         solution = begun
         return
@@ -57,13 +57,12 @@ contains
     if (solution%state == contact_overlap) then
       solution%overlapping = ray > ray_tolerance*maxval(ray)
     else
-      call settle(problem, scaled, state, solution)
+      call settle(scaled, state, solution)
     end if
   end subroutine solve_contact
 
   !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left of it.
-  pure subroutine solve_by_blocks(problem, scaled, first_touching, guess, solution)
-    type(contact_problem), intent(in) :: problem
+  pure subroutine solve_by_blocks(scaled, first_touching, guess, solution)
     type(scaled_problem), intent(in) :: scaled
     logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
     logical, allocatable, intent(in) :: guess(:)        !! of the pairs in contact, if allocated [n]
@@ -76,7 +75,7 @@ contains
     call find_by_blocks(scaled, first_touching, guess, trial, state, trial%by_blocks)
     solution%block_steps = trial%block_steps
     if (.not. trial%by_blocks) return
-    call settle(problem, scaled, state, trial)
+    call settle(scaled, state, trial)
     ! Motions that only touching pairs without force hold back may stand elsewhere too.
     pressed = trial%force > negligible*maxval([trial%force, 0.0_wp])
     if (any(trial%indeterminate) .or. any(find_free_motions(scaled, pressed, pressed))) return
@@ -99,8 +98,7 @@ contains
   end subroutine clear
 
   !> The answer in the deck's units, and what the conditions leave open in it.
-  pure subroutine settle(problem, scaled, state, solution)
-    type(contact_problem), intent(in) :: problem
+  pure subroutine settle(scaled, state, solution)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
     type(contact_solution), intent(inout) :: solution
@@ -109,7 +107,7 @@ contains
     real(wp) :: zero                    !! force that rounding leaves of none
 
     zero = negligible*maxval([state%force, 1.0_wp])
-    call cut_rounding(problem, scaled, state, terms)
+    call cut_rounding(scaled, state, terms)
     where (state%force > 0.0_wp) state%gap = 0.0_wp
     solution%touching = state%gap <= negligible*max(terms, maxval([terms(state%basis%pairs), 0.0_wp]))
     where (solution%touching) state%gap = 0.0_wp
@@ -123,8 +121,7 @@ contains
   !> Forces and motions without what rounding has left of none. A force that is cut off may have been less than none: its pair need
   !! not be closed. Where rigid stops take the load, gaps may be far below the size that they are measured in, and that force may
   !! have held other pairs closed: those are solved for again.
-  pure subroutine cut_rounding(problem, scaled, state, terms)
-    type(contact_problem), intent(in) :: problem
+  pure subroutine cut_rounding(scaled, state, terms)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
     real(wp), allocatable, intent(out) :: terms(:)   !! what gaps are the sum of [n]
@@ -134,7 +131,7 @@ contains
     do
       pressed = state%force > noise
       where (.not. pressed) state%force = 0.0_wp
-      terms = terms_of_gaps(problem, scaled, state)
+      terms = terms_of_gaps(scaled, state)
       moving = abs(state%approach) > noise*maxval([terms(state%basis%pairs), noise])
       if (all(moving) .and. all(pressed(state%basis%pairs))) return
       where (.not. moving) state%approach = 0.0_wp
@@ -147,14 +144,13 @@ contains
   end subroutine cut_rounding
 
   !> The sum of the magnitudes that each gap is the sum of.
-  pure function terms_of_gaps(problem, scaled, state) result(terms)
-    type(contact_problem), intent(in) :: problem
+  pure function terms_of_gaps(scaled, state) result(terms)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(in) :: state
     real(wp), allocatable :: terms(:)
     integer :: k
 
-    terms = (abs(problem%initial_gap) + abs(problem%load_gap))/scaled%gap_unit + matmul(abs(scaled%motion), abs(state%approach))
+    terms = scaled%gap_terms + matmul(abs(scaled%motion), abs(state%approach))
     do k = 1, size(state%force)
       if (state%force(k) /= 0.0_wp) terms = terms + abs(state%force(k)*scaled%flexibility(:, k))
     end do
