@@ -135,6 +135,7 @@ contains
       moving = abs(state%approach) > noise*maxval([terms(state%basis%pairs), noise])
       if (all(moving) .and. all(pressed(state%basis%pairs))) return
       where (.not. moving) state%approach = 0.0_wp
+      terms = terms_of_gaps(scaled, state)
       state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
       if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. all(pressed(state%basis%pairs))) return
       fewer = fresh_state(scaled, pressed, pressed)

@@ -30,7 +30,7 @@ def lines_of(path, depth=0):
     """Lines without comments, INCLUDE files in place; ENDDATA of an included file ends that file only."""
     if depth > 8:
         raise DeckError(f"INCLUDE too deep at {path}")
-    for line in pathlib.Path(path).read_text(encoding="latin-1").splitlines():
+    for line in pathlib.Path(path).read_bytes().decode("latin-1").split("\n"):
         line = line.split("$")[0].rstrip()
         if not line.strip():
             continue
