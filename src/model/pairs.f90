@@ -46,6 +46,11 @@ contains
           call resolve(deck, card_cgap, i, 2 + k, nodes, 'GRID', faults, model%pair_node(k, i))
         end do
         if (any(model%pair_node(:, i) == 0)) cycle
+        if (model%pair_node(1, i) == model%pair_node(2, i)) then
+          call faults%add_error(deck%place(card_cgap, i, 4), deck%identity(card_cgap, i)//': GA and GB are the same GRID', &
+                                'a node on each side of the gap')
+          cycle
+        end if
         call find_normal(deck, i, systems, axis, edge, model, faults)
         if (property > 0) model%initial_gap(i) = pgap%value(pgap%column('U0'), property)
         if (geometry) model%initial_gap(i) = model%initial_gap(i) + dot_product(model%normal(:, i), &
@@ -100,7 +105,7 @@ contains
     if (.not. allocated(edge)) edge = shortest_edge(model)
     associate (a => model%pair_node(1, i), b => model%pair_node(2, i))
       between = model%x(:, b) - model%x(:, a)
-      if (a == b .or. norm2(between) <= coincident*min(edge(a), edge(b))) then
+      if (norm2(between) <= coincident*min(edge(a), edge(b))) then
         call faults%add_error(deck%place(card_cgap, i, cid), deck%identity(card_cgap, i)// &
                               ': GA and GB are at one place and field 9 (CID) is blank: no direction', &
                               'the id of a CORD2R whose x-axis is the normal')

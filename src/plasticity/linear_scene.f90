@@ -23,6 +23,8 @@ module epcont_plasticity_linear_scene
   !> Refinement is over when a step changes no strain by more than this part of the largest: the next would change it by
   !! much less. Where two steps no longer halve it, rounding is reached, or single precision leaves too little to begin with.
   real(wp), parameter :: small_step = 1.0e-11_wp, rounding_step = 1.0e-10_wp, slowest_rate = 0.5_wp
+  !> Part of what a gap is the sum of from which on it is open, though the flexibility has it touch.
+  real(wp), parameter :: clearly_open = 1.0e-6_wp
 
   type :: linear_scene
     type(strain_operator), allocatable :: operator
@@ -149,6 +151,7 @@ contains
     state%stress = law%stress(state%strain)
     state%displacement = state%deformation
     call add_motions(model, motions, state)
+    call measure_gaps(self, model, state)
     call watch%lap(stage_displacements)
   end subroutine solve
 
@@ -285,6 +288,32 @@ contains
     if (maxval(state%contact%force) > 0.0_wp) &
       error = max(error, maxval(abs(refined%contact%force - state%contact%force))/maxval(state%contact%force))
   end subroutine rounding_error
+
+  !> Gaps of the pairs without force as the displacements have them. Where a rigid stop takes the load, what the flexibility says
+  !! of the others is rounding of two deformations that cancel: a pair that seemed to touch may be open.
+  pure subroutine measure_gaps(self, model, state)
+    class(linear_scene), intent(in) :: self
+    type(model_type), intent(in) :: model
+    type(scene_state), intent(inout) :: state
+    real(wp), allocatable :: opening(:)
+    real(wp) :: gap, terms   !! what the gap is the sum of, added up
+    integer :: i, k
+
+    opening = gap_opening(model, state%deformation)
+    associate (contact => state%contact, g0 => self%problem%initial_gap, motion => self%problem%motion)
+      do k = 1, model%pairs
+        if (contact%force(k) > 0.0_wp) cycle
+        gap = g0(k) + opening(k) - dot_product(motion(k, :), contact%approach)
+        terms = abs(g0(k)) + sum(abs(motion(k, :)*contact%approach))
+        do i = model%row_start(k), model%row_start(k + 1) - 1
+          terms = terms + abs(model%row_weight(i))*maxval(abs(state%deformation(:, model%row_node(i))))
+        end do
+        if (contact%touching(k) .and. gap <= clearly_open*terms) cycle
+        contact%touching(k) = .false.
+        contact%gap(k) = max(gap, 0.0_wp)
+      end do
+    end associate
+  end subroutine measure_gaps
 
   !> Add the rigid motions to the displacements.
   pure subroutine add_motions(model, motions, state)
