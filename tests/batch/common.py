@@ -23,9 +23,10 @@ for deck; do
   case "$deck" in
     *segfault*) kill -SEGV $$ ;;
     *killed*) kill -KILL $$ ;;
+    *ended*) kill -TERM $$ ;;
     *hangs*) [ -e {folder}/calm ] || {{ echo $$ >> {folder}/pids; sleep 60 & wait; }} ;;
     *deaf*) trap '' TERM; echo $$ >> {folder}/pids; while :; do sleep 1; done ;;
-    *half*) printf 'epcont 0.3.0\\n\\nDECK\\n  GRI' > "$out/$(basename "$deck" .dat).lst"; exit 0 ;;
+    *half*) printf 'epcont 0.0.0\\n\\nDECK\\n  GRI' > "$out/$(basename "$deck" .dat).lst"; exit 0 ;;
     *silent*) exit 0 ;;
     *strange*) exit 77 ;;
     *chatter*) i=0; while [ $i -lt 20000 ]; do echo "a line of chatter $i"; i=$((i+1)); done >&2; exit 2 ;;

@@ -172,14 +172,15 @@ class Misbehaving(Case):
             subprocess.run(["umount", small], check=True)
 
     def test_one_that_fails_stops_no_other(self):
-        names = ["segfault.dat", "killed.dat", "hangs.dat", "deaf.dat", "half.dat", "silent.dat", "strange.dat", "chatter.dat", "lies.dat", "cut.dat",
+        names = ["segfault.dat", "killed.dat", "ended.dat", "hangs.dat", "deaf.dat", "half.dat", "silent.dat", "strange.dat", "chatter.dat", "lies.dat", "cut.dat",
                  "a.dat", "b.dat"]
         self.decks(*names)
         run = self.run_it(1, *names, "-o", "out", "-j", "2", "--seconds", "3", "--program", self.fake)
-        self.assertEqual({"segfault.dat": "crashed", "killed.dat": "killed", "hangs.dat": "timed out", "deaf.dat": "timed out",
+        self.assertEqual({"segfault.dat": "crashed", "killed.dat": "killed", "ended.dat": "killed", "hangs.dat": "timed out", "deaf.dat": "timed out",
                           "half.dat": "incomplete", "silent.dat": "incomplete", "strange.dat": "internal error", "chatter.dat": "rejected",
                           "lies.dat": "incomplete", "cut.dat": "incomplete", "a.dat": "valid", "b.dat": "valid"}, self.words())
         self.assertIn("segfault.dat: crashed: by SIGSEGV", run.stdout)
+        self.assertIn("ended.dat: killed: by SIGTERM", run.stdout)
         self.assertIn("hangs.dat: timed out: no end within 3 s", run.stdout)
         self.assertIn("strange.dat: internal error: exit status 77", run.stdout)
         self.assertIn("chatter.dat: rejected: a line of chatter 0\n", run.stdout)
