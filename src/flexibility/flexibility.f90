@@ -10,6 +10,9 @@ module epcont_flexibility_flexibility
   private
   public :: add_body_flexibility, gap_opening, motion_columns, motion_resultants, pair_forces
 
+  !> Part of what a sum is made of that rounding leaves where it should cancel.
+  real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
+
 contains
 
   !> Add one body's part of F = N K^-1 N' [length/force] [pairs, pairs].
@@ -116,7 +119,8 @@ contains
     end do
   end function pair_forces
 
-  !> A = -N Phi, the closing of the gaps by unit rigid motions [pairs, motions].
+  !> A = -N Phi, the closing of the gaps by unit rigid motions [pairs, motions]. There is none of a pair that moves as a whole, or
+  !! along itself, but for rounding: else a large force on it would drive the body.
   pure function motion_columns(model, motions) result(columns)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
@@ -133,6 +137,9 @@ contains
           moved(:, i) = motions%displacement(model, model%row_node(first + i - 1), m)
         end do
         columns(k, m) = -model%opening(k, moved)
+        associate (weight => model%row_weight(first:model%row_start(k + 1) - 1))
+          if (abs(columns(k, m)) <= rounding*sum(abs(weight)*norm2(moved, dim=1))) columns(k, m) = 0.0_wp
+        end associate
         deallocate (moved)
       end do
     end do
@@ -144,7 +151,6 @@ contains
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     real(wp), allocatable :: resultant(:)
-    real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
     real(wp) :: all_loads, load(2), moved(2)
     integer :: c, i, m
 
