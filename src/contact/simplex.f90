@@ -14,7 +14,7 @@ module epcont_contact_simplex
   use epcont_contact_loading, only: follow_load, path_complete, path_ray
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: negligible, scaled_problem
-  use epcont_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, has_right_signs, sign_tolerance
+  use epcont_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, has_right_signs, noise, sign_tolerance
   use epcont_contact_tableau, only: contact_tableau, new_tableau
   implicit none
   private
@@ -153,12 +153,15 @@ contains
     type(scaled_problem), intent(in) :: scaled
     real(wp), intent(in) :: ray(:)
     logical :: overlap
+    real(wp), allocatable :: nothing(:)   !! what of F z may be rounding [n]
     real(wp) :: largest
 
     largest = maxval([abs(ray), 0.0_wp])
     overlap = largest > 0.0_wp .and. all(ray >= -ray_tolerance*largest)
     if (.not. overlap) return
-    overlap = all(abs(matmul(scaled%flexibility, ray)) <= ray_tolerance*largest) &
+    ! A little flexibility is some, too, where it is no rounding.
+    nothing = max(ray_tolerance*matmul(abs(scaled%flexibility), abs(ray)), noise*largest)
+    overlap = all(abs(matmul(scaled%flexibility, ray)) <= nothing) &
               .and. all(abs(matmul(ray, scaled%motion)) <= ray_tolerance*largest) &
               .and. dot_product(scaled%gap, ray) < -negligible*largest
   end function is_overlap

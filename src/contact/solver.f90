@@ -7,7 +7,7 @@ module epcont_contact_solver
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, contact_solution, contact_stalled
   use epcont_contact_scaling, only: drop_motions, negligible, restore_units, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts, ray_tolerance
-  use epcont_contact_state, only: contact_state, fresh_state, noise
+  use epcont_contact_state, only: contact_state, fresh_state, noise, terms_of_gaps
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
   implicit none
   private
@@ -143,17 +143,4 @@ contains
       state = fewer
     end do
   end subroutine cut_rounding
-
-  !> The sum of the magnitudes that each gap is the sum of.
-  pure function terms_of_gaps(scaled, state) result(terms)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_state), intent(in) :: state
-    real(wp), allocatable :: terms(:)
-    integer :: k
-
-    terms = scaled%gap_terms + matmul(abs(scaled%motion), abs(state%approach))
-    do k = 1, size(state%force)
-      if (state%force(k) /= 0.0_wp) terms = terms + abs(state%force(k)*scaled%flexibility(:, k))
-    end do
-  end function terms_of_gaps
 end module epcont_contact_solver

@@ -5,7 +5,7 @@ module epcont_contact_state
   use epcont_contact_scaling, only: scaled_problem
   implicit none
   private
-  public :: contact_state, fresh_state, basic_values, has_right_signs
+  public :: contact_state, fresh_state, basic_values, has_right_signs, terms_of_gaps
 
   !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can be asked where
   !! the flexibility is badly conditioned, and what is asked of a guess, from which better sets may be found.
@@ -59,5 +59,22 @@ contains
     force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
     gap_tolerance = force_tolerance + noise*maxval([abs(scaled%gap), 0.0_wp])
     right = state%basis%sound .and. all(state%force >= -force_tolerance) .and. all(state%gap >= -gap_tolerance)
+    if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
+    ! The largest force, at a stop that hardly gives way, says nothing of gaps that it has no part in.
+    gap_tolerance = gap_tolerance - force_tolerance
+    right = all(state%gap >= -(tolerance*max(terms_of_gaps(scaled, state), 1.0_wp) + gap_tolerance))
   end function has_right_signs
+
+  !> The sum of the magnitudes that each gap is the sum of.
+  pure function terms_of_gaps(scaled, state) result(terms)
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(in) :: state
+    real(wp), allocatable :: terms(:)
+    integer :: k
+
+    terms = scaled%gap_terms + matmul(abs(scaled%motion), abs(state%approach))
+    do k = 1, size(state%force)
+      if (state%force(k) /= 0.0_wp) terms = terms + abs(state%force(k)*scaled%flexibility(:, k))
+    end do
+  end function terms_of_gaps
 end module epcont_contact_state
