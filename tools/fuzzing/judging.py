@@ -23,8 +23,8 @@ RELATIVE = ("equilibrium_residual", "energy_balance")
 CERTIFIED = 1e-9
 #: Beyond it rounding may take more than is certified.
 BAD_CONDITION = CERTIFIED / sys.float_info.epsilon
-#: Part of the largest gap by which one may have the wrong sign in the contact problem.
-SIGNS = 1e-12
+#: Part of what a gap is the sum of up to which it is none: `negligible` in src/contact.
+NEGLIGIBLE = 1e-11
 LEAK = re.compile(r"LeakSanitizer")
 # What tools/verify says of decks that it has no answer to.
 NOT_UNDERSTOOD = (deck_reader.DeckError, OverflowError, ZeroDivisionError)
@@ -211,10 +211,10 @@ def just_beyond(run, name):
 
 
 def lost_on_a_travel(run, name):
-    """Is an answer refused for gaps that overlap by what the contact's signs are told apart to, of a travel?"""
+    """Is an answer refused for gaps that overlap by no more than gaps are told from none, of a travel?"""
     summary = summary_of(run, name)
     travel = max((abs(number(value)) for key, value in summary.items() if key.startswith("approach")), default=0.0)
-    return SIGNS * travel >= -number(summary["smallest_gap"]) > 0.0
+    return NEGLIGIBLE * travel >= -number(summary["smallest_gap"]) > 0.0
 
 
 def far_apart(deck):
