@@ -6,7 +6,7 @@ module epcont_plan_precision_plan
   private
   public :: plan_precision, largest_rounding_error
 
-  !> PARAM ACCURACY from which on single precision, which leaves 1e-6 to 4e-3, need not be refined: scenes take 0.6 to 0.7
+  !> PARAM ACCURACY from which on single precision, which leaves 1e-6 to 4e-3, need not be refined: scenes take 0.6 to 1.0
   !! of the time of double then, and few have to be solved anew.
   real(wp), parameter, public :: loose_accuracy = 0.05_wp
   !> Error of displacements, strains and contact forces, relative, that an answer of single precision may have: this, and no
