@@ -54,15 +54,14 @@ contains
     type(contact_state), intent(in) :: state
     real(wp), intent(in) :: tolerance   !! one of the above
     logical :: right
-    real(wp) :: force_tolerance, gap_tolerance
+    real(wp) :: force_tolerance, gap_noise
 
     force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
-    gap_tolerance = force_tolerance + noise*maxval([abs(scaled%gap), 0.0_wp])
-    right = state%basis%sound .and. all(state%force >= -force_tolerance) .and. all(state%gap >= -gap_tolerance)
+    gap_noise = noise*maxval([abs(scaled%gap), 0.0_wp])
+    right = state%basis%sound .and. all(state%force >= -force_tolerance) .and. all(state%gap >= -(force_tolerance + gap_noise))
     if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
     ! The largest force, at a stop that hardly gives way, says nothing of gaps that it has no part in.
-    gap_tolerance = gap_tolerance - force_tolerance
-    right = all(state%gap >= -(tolerance*max(terms_of_gaps(scaled, state), 1.0_wp) + gap_tolerance))
+    right = all(state%gap >= -(tolerance*max(terms_of_gaps(scaled, state), 1.0_wp) + gap_noise))
   end function has_right_signs
 
   !> The sum of the magnitudes that each gap is the sum of.
