@@ -1,6 +1,6 @@
 !> The factored bodies, and displacements under nodal forces.
 module epcont_assembly_bodies
-  use epcont_assembly_stiffness, only: assemble_body, body_stiffness
+  use epcont_assembly_stiffness, only: assemble_body, body_stiffness, norm_of
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
   use epcont_material_linear_law, only: linear_law
@@ -39,7 +39,7 @@ module epcont_assembly_bodies
     procedure :: displacements
     procedure :: add_forces
     procedure :: finish
-    procedure :: condition
+    procedure :: estimate_condition
     procedure :: weakest
     procedure :: lacks_memory
   end type factored_bodies
@@ -62,7 +62,7 @@ contains
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
-    real(wp), intent(in) :: matrix(:, :, :)   !! of the material at each point [stress] [4, 4, points]
+    real(wp), contiguous, intent(in) :: matrix(:, :, :)   !! of the material at each point [stress] [4, 4, points]
     logical, intent(in) :: changed(:)         !! since the body was factored last [elements]
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
@@ -123,16 +123,26 @@ contains
     end do
   end function lacks_memory
 
-  !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies.
-  pure real(wp) function condition(self)
-    class(factored_bodies), intent(in) :: self
+  !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is not as stiff as it
+  !! was when it was assembled first.
+  pure subroutine estimate_condition(self, model, operator, matrix, numbering, condition)
+    class(factored_bodies), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(strain_operator), intent(in) :: operator
+    real(wp), allocatable, intent(in) :: matrix(:, :, :)   !! that the bodies which may yield were factored with [4, 4, points]
+    type(numbering_type), intent(in) :: numbering
+    real(wp), intent(out) :: condition
     integer :: b
 
     condition = 1.0_wp
     do b = 1, size(self%body)
-      condition = max(condition, self%body(b)%matrix%condition())
+      associate (body => numbering%body(b), stiffness => self%body(b))
+        if (body%can_yield .and. allocated(matrix)) &
+          stiffness%matrix%norm = norm_of(model, operator, matrix, numbering%equation, body, stiffness)
+        condition = max(condition, stiffness%matrix%condition())
+      end associate
     end do
-  end function condition
+  end subroutine estimate_condition
 
   !> The weakest pivot of all bodies.
   pure type(weak_pivot) function weakest(self)

@@ -19,7 +19,7 @@ module epcont_assembly_stiffness
   use epcont_plan_numbering, only: body_numbering, element_numbers
   implicit none
   private
-  public :: body_stiffness, assemble_body
+  public :: body_stiffness, assemble_body, norm_of
 
   type :: body_stiffness
     class(assembled_matrix), allocatable :: matrix   !! K_bb, then its factor
@@ -38,28 +38,32 @@ module epcont_assembly_stiffness
 
 contains
 
-  !> Assemble the elements of a body; `matrix` is that of the material at each point [4, 4, points]. Where only some
-  !! elements have changed since it was factored, nothing is touched that does not depend on them.
+  !> Assemble the elements of a body, and factor what is complete on the way; `matrix` is that of the material at each point
+  !! [4, 4, points]. Where only some elements have changed since it was factored, nothing is touched that does not depend on them.
   subroutine assemble_body(model, operator, matrix, changed, equation, body, stiffness)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
-    real(wp), intent(in) :: matrix(:, :, :)
+    real(wp), contiguous, intent(in) :: matrix(:, :, :)
     logical, intent(in) :: changed(:)        !! [elements]
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
     type(body_stiffness), intent(inout) :: stiffness
-    real(wp) :: k(2*most_nodes, 2*most_nodes)
+    real(wp) :: k((2*most_nodes)**2)
+    real(wp), allocatable :: row_sum(:)
     logical, allocatable :: stale(:)
     integer :: e, i, n, number(2*most_nodes)
+    logical :: first
 
     allocate (stale(body%equations), source=.true.)
-    if (allocated(stiffness%matrix)) then
+    first = .not. allocated(stiffness%matrix)
+    if (.not. first) then
       if (stiffness%is_sound() .and. body%border == 0) stale = changed_equations(model, changed, equation, body)
       call stiffness%matrix%clear(stale)
     else
       call begin(model, equation, body, stiffness%single, stiffness%matrix)
       if (stiffness%single) stiffness%unit = unit_of(model, operator, matrix, body)
     end if
+    allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
     if (allocated(stiffness%coupling)) deallocate (stiffness%coupling, stiffness%schur)
     if (stiffness%matrix%lacks_memory) return
     allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
@@ -70,13 +74,55 @@ contains
           number(2*i - 1:2*i) = equation(:, model%connectivity(i, element))
         end do
         if (body%border == 0 .and. .not. any_of(stale, number(:n))) cycle
-        call operator%element_stiffness(model, element, matrix, k)
-        if (stiffness%single) k(:n, :n) = k(:n, :n)/stiffness%unit
-        call stiffness%matrix%add(k(:n, :n), number(:n))
-        if (body%border > 0) call add_to_border(k(:n, :n), number(:n), stiffness)
+        call operator%element_stiffness(model, element, matrix, n, k)
+        if (stiffness%single) k(:n**2) = k(:n**2)/stiffness%unit
+        call stiffness%matrix%add(n, number, k)
+        if (body%border > 0) call add_to_border(n, number, k, stiffness)
+        if (first) call add_magnitudes(n, number, k, row_sum)
       end associate
     end do
+    if (first) stiffness%matrix%norm = max(0.0_wp, maxval(row_sum))
   end subroutine assemble_body
+
+  !> A bound of the 1-norm of a body's stiffness as it is factored, from its elements.
+  pure real(wp) function norm_of(model, operator, matrix, equation, body, stiffness) result(norm)
+    type(model_type), intent(in) :: model
+    type(strain_operator), intent(in) :: operator
+    real(wp), contiguous, intent(in) :: matrix(:, :, :)   !! as it was assembled with [4, 4, points]
+    integer, intent(in) :: equation(:, :)
+    type(body_numbering), intent(in) :: body
+    type(body_stiffness), intent(in) :: stiffness
+    real(wp) :: k((2*most_nodes)**2), row_sum(body%equations)
+    integer :: e, n
+
+    row_sum = 0.0_wp
+    do e = 1, size(body%element)
+      associate (element => body%element(e))
+        n = 2*model%order(element)
+        call operator%element_stiffness(model, element, matrix, n, k)
+        call add_magnitudes(n, reshape(equation(:, model%connectivity(:n/2, element)), [n]), k, row_sum)
+      end associate
+    end do
+    norm = max(0.0_wp, maxval(row_sum))/stiffness%unit
+  end function norm_of
+
+  !> Add an element's part of the sums of the magnitudes of each row. (A matrix has no larger ones: where elements meet, their
+  !! entries may cancel.)
+  pure subroutine add_magnitudes(n, number, k, row_sum)
+    integer, intent(in) :: n, number(n)
+    real(wp), intent(in) :: k(n, n)
+    real(wp), intent(inout) :: row_sum(:)
+    real(wp) :: sums(n)
+    integer :: j
+
+    sums = 0.0_wp
+    do j = 1, n
+      if (number(j) > 0) sums = sums + abs(k(:, j))
+    end do
+    do j = 1, n
+      if (number(j) > 0) row_sum(number(j)) = row_sum(number(j)) + sums(j)
+    end do
+  end subroutine add_magnitudes
 
   !> A power of four near the largest stiffness of a body's elements [force/length].
   pure real(wp) function unit_of(model, operator, matrix, body)
@@ -161,25 +207,25 @@ contains
       call move_alloc(fronts, matrix)
     else if (single) then
       allocate (single_panels)
-      call single_panels%begin(body%reach, merge(body%contact_equations, 0, body%contact_last))
+      call single_panels%begin(body%reach, .not. body%can_yield, merge(body%contact_equations, 0, body%contact_last))
       call move_alloc(single_panels, matrix)
     else
       allocate (panels)
-      call panels%begin(body%reach, merge(body%contact_equations, 0, body%contact_last))
+      call panels%begin(body%reach, .not. body%can_yield, merge(body%contact_equations, 0, body%contact_last))
       call move_alloc(panels, matrix)
     end if
   end subroutine begin
 
   !> Add an element matrix to the coupling and the border.
-  pure subroutine add_to_border(k, number, stiffness)
-    real(wp), intent(in) :: k(:, :)
-    integer, intent(in) :: number(:)
+  pure subroutine add_to_border(n, number, k, stiffness)
+    integer, intent(in) :: n, number(n)
+    real(wp), intent(in) :: k(n, n)
     type(body_stiffness), intent(inout) :: stiffness
     integer :: i, j
 
-    do j = 1, size(number)
+    do j = 1, n
       if (number(j) >= 0) cycle
-      do i = 1, size(number)
+      do i = 1, n
         if (number(i) > 0) then
           stiffness%coupling(number(i), -number(j)) = stiffness%coupling(number(i), -number(j)) + k(i, j)
         else if (number(i) < 0) then

@@ -88,30 +88,40 @@ contains
     end do
   end function nodal_forces
 
-  !> Stiffness of an element: B'D B times the volume of each point [force/length] [2 order, 2 order].
-  pure subroutine element_stiffness(self, model, element, matrix, k)
+  !> Stiffness of an element: B'D B times the volume of each point [force/length].
+  pure subroutine element_stiffness(self, model, element, matrix, n, k)
     class(strain_operator), intent(in) :: self
     type(model_type), intent(in) :: model
     integer, intent(in) :: element
-    real(wp), intent(in) :: matrix(:, :, :)      !! of the material at each point [stress] [4, 4, points]
-    real(wp), intent(out) :: k(:, :)             !! [2 most_nodes, 2 most_nodes], set as far as the element has nodes
-    real(wp) :: d(4, 4), stress(4)
-    integer :: c, i, j, n, p
+    real(wp), contiguous, intent(in) :: matrix(:, :, :)   !! of the material at each point [stress] [4, 4, points]
+    integer, intent(in) :: n                     !! freedoms of the element
+    real(wp), intent(out) :: k(n, n)
+    integer :: i, j, p
 
-    n = 2*model%order(element)
-    k(:n, :n) = 0.0_wp
+    k = 0.0_wp
     do p = model%first_point(element), model%first_point(element + 1) - 1
-      d = self%volume(p)*matrix(:, :, p)
-      c = self%column(p)
-      do j = 1, n
-        stress = d(:, 1)*self%b(1, c + j) + d(:, 2)*self%b(2, c + j) + d(:, 3)*self%b(3, c + j) + d(:, 4)*self%b(4, c + j)
-        do i = 1, j
-          k(i, j) = k(i, j) + dot_product(self%b(:, c + i), stress)
-        end do
+      call add_point(n, self%b(1, self%column(p) + 1), self%volume(p), matrix(:, :, p), k)
+    end do
+    do j = 1, n
+      do i = j + 1, n
+        k(i, j) = k(j, i)
       end do
     end do
-    do j = 2, n
-      k(j, :j - 1) = k(:j - 1, j)
-    end do
   end subroutine element_stiffness
+
+  !> Add the part of a point, above the diagonal.
+  pure subroutine add_point(n, b, volume, d, k)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: b(4, n), volume, d(4, 4)
+    real(wp), intent(inout) :: k(n, n)
+    real(wp) :: stress(4)
+    integer :: i, j
+
+    do j = 1, n
+      stress = volume*(d(:, 1)*b(1, j) + d(:, 2)*b(2, j) + d(:, 3)*b(3, j) + d(:, 4)*b(4, j))
+      do i = 1, j
+        k(i, j) = k(i, j) + (b(1, i)*stress(1) + b(2, i)*stress(2) + b(3, i)*stress(3) + b(4, i)*stress(4))
+      end do
+    end do
+  end subroutine add_point
 end module epcont_assembly_strain_operator

@@ -1,5 +1,8 @@
 !> What bodies ask of their stiffness matrices, however these are stored: filled element by element, factored, and seen by
 !> the pairs. How one begins, by its band or by its pattern, is the affair of each kind.
+!>
+!> The elements of fronts are added in the order of the first front that they have equations of (`front_layout`): what stands
+!> before is complete then, and is factored while it is at hand. So `add` does most of the work, and `factor` the rest.
 module epcont_linalg_assembled
   use epcont_base_kinds, only: wp
   use epcont_linalg_factored, only: factored_matrix
@@ -18,23 +21,24 @@ module epcont_linalg_assembled
   end type assembled_matrix
 
   abstract interface
-    !> Make ready to be filled anew where only the columns of these equations have changed: entries of the lower triangle in
-    !! stale columns are zero, the others remain as they are, even factored.
+    !> Make ready to be filled anew where only the columns of these equations have changed: stale columns begin with zeros, the
+    !! others remain as they are, even factored.
     pure subroutine clear_entries(self, stale)
       import :: assembled_matrix
       class(assembled_matrix), intent(inout) :: self
       logical, intent(inout) :: stale(:)     !! on return with those that have to be filled anew on their account [order]
     end subroutine clear_entries
 
-    !> Add an element matrix; rows and columns of number 0 and less are left out, and columns that have not been cleared.
-    pure subroutine add_element(self, k, numbers)
+    !> Add the matrix of the next element; rows and columns of number 0 and less are left out, and columns that are not stale.
+    pure subroutine add_element(self, n, number, k)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(inout) :: self
-      real(wp), intent(in) :: k(:, :)        !! both triangles
-      integer, intent(in) :: numbers(:)      !! equations
+      integer, intent(in) :: n
+      integer, intent(in) :: number(n)       !! equations
+      real(wp), intent(in) :: k(n, n)        !! symmetric
     end subroutine add_element
 
-    !> Replace the matrix by its Cholesky factor. Many singular matrices pass for definite, so the ratio of the smallest
+    !> End with the Cholesky factor of the matrix. Many singular matrices pass for definite, so the ratio of the smallest
     !! pivot to its diagonal entry is returned as well.
     pure subroutine factor_in_place(self, smallest_ratio, at)
       import :: assembled_matrix, wp

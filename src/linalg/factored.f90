@@ -3,16 +3,17 @@ module epcont_linalg_factored
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: factored_matrix
+  public :: factored_matrix, probes
 
   type, abstract :: factored_matrix
     integer :: order = 0
-    real(wp) :: norm = 0.0_wp   !! 1-norm of the matrix before it was factored
+    real(wp) :: norm = 0.0_wp   !! 1-norm of the matrix, or a bound of it
   contains
     procedure :: solve
     procedure :: solve_lower
     procedure(second_half), deferred :: solve_upper
     procedure :: condition
+    procedure :: half_solved_probes
   end type factored_matrix
 
   abstract interface
@@ -54,21 +55,35 @@ contains
     real(wp) :: number
     real(wp), allocatable :: x(:, :)
     real(wp) :: inverse_norm
-    integer :: i, n
 
     number = 1.0_wp
-    n = self%order
-    if (n == 0) return
-    ! Equal parts, and the alternating column that finds what they cancel (Higham's), both of 1-norm 1.
-    allocate (x(n, 2))
-    x(:, 1) = 1.0_wp/n
-    x(:, 2) = [(merge(1.0_wp, -1.0_wp, mod(i, 2) == 1)*(1.0_wp + real(i - 1, wp)/max(1, n - 1)), i=1, n)]
-    x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
-    call self%solve(x)
+    if (self%order == 0) return
+    x = self%half_solved_probes()
+    call self%solve_upper(x, 1)
     inverse_norm = maxval(sum(abs(x), dim=1))
     x = sign(1.0_wp, x)
     call self%solve(x)
     ! The inverse is symmetric: a row's sum is a column's.
     number = self%norm*max(inverse_norm, maxval(abs(x)))
   end function condition
+
+  !> What the estimate begins with, of 1-norm 1: equal parts, and the alternating column that finds what they cancel (Higham's).
+  pure function probes(order) result(x)
+    integer, intent(in) :: order
+    real(wp) :: x(order, 2)
+    integer :: i
+
+    x(:, 1) = 1.0_wp/max(1, order)
+    x(:, 2) = [(merge(1.0_wp, -1.0_wp, mod(i, 2) == 1)*(1.0_wp + real(i - 1, wp)/max(1, order - 1)), i=1, order)]
+    x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
+  end function probes
+
+  !> These with the first half of the solve behind them; some factors took them along when they were made.
+  pure function half_solved_probes(self) result(x)
+    class(factored_matrix), intent(in) :: self
+    real(wp), allocatable :: x(:, :)
+
+    x = probes(self%order)
+    call self%solve_lower(x)
+  end function half_solved_probes
 end module epcont_linalg_factored

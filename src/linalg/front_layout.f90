@@ -21,7 +21,7 @@ module epcont_linalg_front_layout
     logical :: in_sequence = .true.        !! all fronts below one stand right before it
     integer, allocatable :: element(:)     !! the elements in the order of the first fronts that they have equations of
   contains
-    procedure :: find
+    procedure :: places
     procedure :: entries
     procedure :: remainder_starts
     procedure :: remainders
@@ -119,35 +119,23 @@ contains
     in_order = number(sorted_order(number))
   end function in_order
 
-  !> Where an equation stands among the rows of a front; it must be among them, or before its first: then this is 0 or less.
-  pure subroutine find(self, front, number, likely, place)
+  !> Where equations, ascending, stand among the rows of a front; they must be there.
+  pure function places(self, number, front) result(place)
     class(front_layout), intent(in) :: self
-    integer, intent(in) :: front, number
-    integer, intent(inout) :: likely     !! where in `row` it is looked for first; on return behind where it was found
-    integer, intent(out) :: place
-    integer :: high, low, middle
+    integer, intent(in) :: number(:), front
+    integer :: place(size(number))
+    integer :: at, i
 
-    place = number - self%first(front) + 1
-    if (place <= self%own(front)) return
-    low = self%row_start(front)
-    high = self%row_start(front + 1) - 1
-    if (likely >= low .and. likely <= high) then
-      if (self%row(likely) == number) then
-        low = likely
-        high = likely
-      end if
-    end if
-    do while (low < high)
-      middle = (low + high)/2
-      if (self%row(middle) < number) then
-        low = middle + 1
-      else
-        high = middle
-      end if
+    at = self%row_start(front)
+    do i = 1, size(number)
+      place(i) = number(i) - self%first(front) + 1
+      if (place(i) <= self%own(front)) cycle
+      do while (self%row(at) < number(i))
+        at = at + 1
+      end do
+      place(i) = self%own(front) + at - self%row_start(front) + 1
     end do
-    place = self%own(front) + low - self%row_start(front) + 1
-    likely = low + 1
-  end subroutine find
+  end function places
 
   !> Entries that the factor takes.
   pure integer(i8) function entries(self)

@@ -6,8 +6,8 @@ module epcont_linalg_lapack
   use epcont_base_kinds, only: sp, wp
   implicit none
   private
-  public :: dasum, dgemm, dgemv, dsyrk, dtrsm
-  public :: sasum, sgemm, sgemv, ssyrk, strsm, spotrf
+  public :: dgemm, dgemv, dsyrk, dtrsm
+  public :: sgemm, sgemv, ssyrk, strsm, spotrf
   public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs
   public :: dgetrf, dgetrs, dgesvd, dsyev
 
@@ -23,13 +23,6 @@ module epcont_linalg_lapack
       real(wp), intent(inout) :: c(ldc, *)
     end subroutine dgemm
 
-    !> Sum of magnitudes
-    pure function dasum(n, x, incx)
-      import :: wp
-      integer, intent(in) :: n, incx
-      real(wp), intent(in) :: x(*)
-      real(wp) :: dasum
-    end function dasum
 
     !> y = alpha op(A) x + beta y
     pure subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
@@ -135,12 +128,6 @@ module epcont_linalg_lapack
 
   ! Those of the above that panels in single precision take
   interface
-    pure function sasum(n, x, incx)
-      import :: sp
-      integer, intent(in) :: n, incx
-      real(sp), intent(in) :: x(*)
-      real(sp) :: sasum
-    end function sasum
 
     pure subroutine sgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
       import :: sp

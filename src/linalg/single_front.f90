@@ -4,12 +4,14 @@ module epcont_linalg_single_front
   use epcont_base_large_pages, only: use_large_pages
   use epcont_linalg_assembled, only: add_seen_through, assembled_matrix
   use epcont_linalg_dense, only: cholesky_inverse
+  use epcont_linalg_factored, only: probes
   use epcont_linalg_front_layout, only: front_layout
-  use epcont_linalg_lapack, only: asum => sasum, gemv => sgemv, potrf => spotrf, syrk => ssyrk, trsm => strsm
+  use epcont_linalg_lapack, only: gemv => sgemv, potrf => spotrf, syrk => ssyrk, trsm => strsm
   implicit none
   private
   public :: front_matrix
 
   include 'front_kernel.inc'
+  include 'front_solve.inc'
   include 'columns.inc'
 end module epcont_linalg_single_front

@@ -126,18 +126,19 @@ contains
     self%entries = 0.0_wp
   end subroutine clear
 
-  pure subroutine add(self, k, numbers)
+  pure subroutine add(self, n, number, k)
     class(sparse_matrix), intent(inout) :: self
-    real(wp), intent(in) :: k(:, :)
-    integer, intent(in) :: numbers(:)      !! as they were when the pattern was found
+    integer, intent(in) :: n
+    integer, intent(in) :: number(n)      !! as they were when the pattern was found
+    real(wp), intent(in) :: k(n, n)
     integer :: at, i, j
 
-    do j = 1, size(numbers)
-      if (numbers(j) <= 0) cycle
+    do j = 1, n
+      if (number(j) <= 0) cycle
       at = 0
-      do i = 1, size(numbers)
-        if (numbers(i) < numbers(j)) cycle
-        at = position(self, numbers(i), numbers(j), at + 1)
+      do i = 1, n
+        if (number(i) < number(j)) cycle
+        at = position(self, number(i), number(j), at + 1)
         self%entries(at) = self%entries(at) + k(i, j)
       end do
     end do
@@ -186,7 +187,6 @@ contains
     smallest_ratio = 1.0_wp
     at = 0
     if (self%order == 0) return
-    self%norm = norm_of(self)
     self%factored = .false.
     smallest_ratio = 0.0_wp
     if (.not. self%at_home()) return
@@ -196,22 +196,6 @@ contains
     self%factored = info == 0
     if (smallest_ratio < suspect_ratio) call find_weakest(self, at)
   end subroutine factor
-
-  !> 1-norm, from the lower triangle.
-  pure real(wp) function norm_of(self)
-    class(sparse_matrix), intent(in) :: self
-    real(wp), allocatable :: row_sum(:)
-    integer :: j, k
-
-    allocate (row_sum(self%order), source=0.0_wp)
-    do j = 1, self%order
-      row_sum(j) = row_sum(j) + sum(abs(self%entries(self%start(j):self%start(j + 1) - 1)))
-      do k = self%start(j) + 1, self%start(j + 1) - 1
-        row_sum(self%row(k)) = row_sum(self%row(k)) + abs(self%entries(k))
-      end do
-    end do
-    norm_of = maxval(row_sum)
-  end function norm_of
 
   !> The equation that moves most in the weakest motion: two steps of inverse iteration on the matrix scaled to a
   !! diagonal of ones, with its diagonal raised a little where it cannot be factored as it is.

@@ -95,7 +95,7 @@ contains
       if (state%contact%state /= contact_solved) return
       if (converged .or. step == 1) then
         run%load_factor = part
-        run%condition = loop%scene%bodies%condition()
+        call loop%scene%estimate_condition(model, numbering, run%condition)
         run%weakest = loop%scene%bodies%weakest()
         if (plan%precision == precision_single) &
           call loop%scene%rounding_error(model, numbering, loop%law, part, state, run%rounding_error)

@@ -11,7 +11,7 @@ module epcont_plasticity_linear_scene
   use epcont_flexibility_flexibility, only: add_body_flexibility, gap_opening, motion_columns, motion_resultants, &
                                             pair_forces
   use epcont_material_linear_law, only: linear_law
-  use epcont_model_controls, only: precision_double, precision_mixed
+  use epcont_model_controls, only: precision_double, precision_mixed, solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
@@ -41,6 +41,7 @@ module epcont_plasticity_linear_scene
     procedure :: set_stiffness
     procedure :: solve
     procedure :: rounding_error
+    procedure :: estimate_condition
     procedure, private :: changed_elements
   end type linear_scene
 
@@ -85,7 +86,7 @@ contains
     do b = 1, model%bodies
       if (.not. (first .or. self%yields(b))) cycle
       call self%bodies%assemble(model, self%operator, law%matrix, changed, numbering, b)
-      call watch%lap(stage_stiffness)
+      call watch%lap(merge(stage_factor, stage_stiffness, numbering%body(b)%solver == solver_frontal))
       call self%bodies%factor_body(numbering, b, sound)
       call watch%lap(stage_factor)
       if (.not. sound .and. singular == 0) singular = b
@@ -314,6 +315,16 @@ contains
       end do
     end associate
   end subroutine measure_gaps
+
+  !> Estimate of the condition of the stiffness in the 1-norm.
+  pure subroutine estimate_condition(self, model, numbering, condition)
+    class(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    real(wp), intent(out) :: condition
+
+    call self%bodies%estimate_condition(model, self%operator, self%matrix, numbering, condition)
+  end subroutine estimate_condition
 
   !> Add the rigid motions to the displacements.
   pure subroutine add_motions(model, motions, state)

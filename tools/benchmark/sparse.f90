@@ -103,7 +103,7 @@ contains
     type(numbering_type) :: numbering
     type(strain_operator) :: operator
     real(wp), allocatable :: matrix(:, :, :)
-    real(wp) :: k(2*most_nodes, 2*most_nodes)
+    real(wp) :: k((2*most_nodes)**2)
     integer :: b, e, n
 
     call read_deck(path, deck, faults, error)
@@ -122,8 +122,8 @@ contains
       allocate (body%stiffness(n, n, size(chosen%element)), source=0.0_wp)
       do e = 1, size(chosen%element)
         n = model%order(chosen%element(e))
-        call operator%element_stiffness(model, chosen%element(e), matrix, k)
-        body%stiffness(:2*n, :2*n, e) = k(:2*n, :2*n)
+        call operator%element_stiffness(model, chosen%element(e), matrix, 2*n, k)
+        body%stiffness(:2*n, :2*n, e) = reshape(k(:(2*n)**2), [2*n, 2*n])
         body%numbers(:2*n, e) = reshape(numbering%equation(:, model%connectivity(:n, chosen%element(e))), [2*n])
       end do
     end associate
@@ -174,13 +174,13 @@ contains
         call move_alloc(by_mumps, matrix)
       else
         allocate (panels)
-        call panels%begin(body%reach, body%contact)
+        call panels%begin(body%reach, .true., body%contact)
         bytes = 8.0_wp*size(panels%entries, kind=8)
         call move_alloc(panels, matrix)
       end if
       begun(2) = now()
       do e = 1, size(body%numbers, 2)
-        call matrix%add(body%stiffness(:, :, e), body%numbers(:, e))
+        call matrix%add(size(body%numbers, 1), body%numbers(:, e), body%stiffness(:, :, e))
       end do
       begun(3) = now()
       call matrix%factor(ratio, at)
