@@ -15,8 +15,8 @@ module epcont_plan_dissection
     integer, allocatable :: first(:)   !! the first of each front in it, and one behind the last [fronts + 1]
   end type dissection
 
-  !> Sets of so few nodes are not halved. From 16 to 64 it matters little: fewer operations against larger matrices.
-  integer, parameter :: few = 16
+  !> Sets of so few nodes are not halved. From 16 to 32 it matters little: fewer operations against larger matrices.
+  integer, parameter :: few = 24
 
   !> Where a node is, seen from the set that is being halved. Nodes that have neighbours across are at the edge of their half.
   integer, parameter :: outside = 0, left = 1, right = 2, both = 3, edge = 4
