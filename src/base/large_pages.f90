@@ -58,8 +58,8 @@ contains
     call advise(first, first + size(array, kind=c_intptr_t)*storage_size(array)/8)
   end subroutine use_under_single
 
-  !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them. Threads have no heaps of their
-  !! own: each would take 128 MB of addresses, and keep what it frees from the others.
+  !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them. Threads have no heaps of
+  !! their own: each would take 128 MB of addresses, and keep what it frees from the others.
   subroutine prepare_heap()
     integer(c_int) :: ignored
     integer(c_intptr_t) :: first

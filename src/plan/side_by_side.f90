@@ -23,10 +23,12 @@ contains
     type(numbering_type), intent(in) :: numbering
     integer(i8), intent(in) :: matrices   !! [bytes]
     integer, intent(in) :: granted
+    real(wp), allocatable :: operations(:)
 
     threads = 1
     if (any(numbering%body%solver == solver_sparse)) return
-    threads = threads_for(numbering%body%operations, granted)
+    operations = numbering%body%operations
+    threads = threads_for(operations, granted)
     if (threads == 1) return
     if (.not. has_memory(memory_of_run(model, matrices) + (threads - 1)*memory_of_thread)) threads = 1
   end function plan_threads

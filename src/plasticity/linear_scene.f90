@@ -111,12 +111,14 @@ contains
     logical, intent(in) :: changed(:)    !! [elements]
     logical, intent(in) :: chosen(:)     !! [bodies]
     integer, intent(out) :: singular
+    real(wp), allocatable :: operations(:)
     integer, allocatable :: body(:)
     integer :: i, threads
 
     body = pack([(i, i=1, size(chosen))], chosen)
-    body = body(heaviest_first(numbering%body(body)%operations))
-    threads = threads_for(numbering%body(body)%operations, self%threads)
+    operations = numbering%body(body)%operations
+    body = body(heaviest_first(operations))
+    threads = threads_for(operations, self%threads)
     !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
     do i = 1, size(body)
       call self%bodies%factor_body(model, self%operator, law%matrix, changed, numbering, body(i))
@@ -135,9 +137,11 @@ contains
     logical, intent(in) :: chosen(:)     !! [bodies]
     real(wp), intent(inout) :: flexibility(:, :)
     type(body_flexibility) :: part
+    real(wp), allocatable :: operations(:)
     integer :: b, threads
 
-    threads = threads_for(pack(numbering%body%operations, chosen), self%threads)
+    operations = merge(numbering%body%operations, 0.0_wp, chosen)
+    threads = threads_for(operations, self%threads)
     !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic) ordered private(part)
     do b = 1, model%bodies
       if (chosen(b)) call find_flexibility(model, numbering, b, self%bodies%body(b), part)
