@@ -10,6 +10,7 @@ module epcont_app_driver
   use epcont_base_kinds, only: wp
   use epcont_base_memory, only: peak_memory
   use epcont_base_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
+  use epcont_base_threads, only: granted_threads
   use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render
   use epcont_model_build, only: build_model
@@ -17,6 +18,7 @@ module epcont_app_driver
   use epcont_plan_free_motion, only: find_free_motions, motion_fault
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
   use epcont_plan_numbering, only: number_equations, numbering_type
+  use epcont_plan_side_by_side, only: plan_threads
   use epcont_report_motions, only: report_motion_faults
   use epcont_report_number, only: column_number
   use epcont_report_outcome, only: judge, outcome_type
@@ -75,6 +77,7 @@ contains
       if (allocated(in_double)) iteration%against_double = in_double%message
       if (allocated(error)) error%message = path//': '//error%message
       if (.not. allocated(error)) then
+        iteration%threads = plan_threads(run%model, numbering, expected%bytes, granted_threads())
         call run%deck%forget_fields()
         call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)
         call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular, watch)

@@ -48,7 +48,10 @@ contains
            '.SH FILES'//newline//paragraph('In the current directory, or in DIR.')//file_list()// &
            '.SH EXAMPLES'//newline//example_list()// &
            '.SH ENVIRONMENT'//newline// &
-           paragraph('The program asks for no variable, and uses one thread whatever they say.')// &
+           paragraph('OMP_NUM_THREADS: threads that may work on bodies side by side, where a scene has several large ones; '// &
+                     'one if it is not set. Results are the same bytes on any number.')// &
+           paragraph('OMP_WAIT_POLICY=passive: threads that wait leave their core to others. On a machine that others use '// &
+                     'too, set it with OMP_NUM_THREADS.')// &
            paragraph('OpenBLAS chooses its kernels by the processor, or by OPENBLAS_CORETYPE: '// &
                      'others change the last of the 17 digits of the tables.')// &
            '.SH COPYRIGHT'//newline//paragraph('The epcont authors; MIT License.')

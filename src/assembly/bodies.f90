@@ -32,7 +32,6 @@ module epcont_assembly_bodies
     integer :: factorizations = 0              !! done so far, of bodies that have equations
     real(wp), allocatable :: settlement(:, :)  !! forces of prescribed displacements on free freedoms [2, nodes]
   contains
-    procedure :: assemble
     procedure :: factor_body
     procedure :: settle
     procedure, nopass :: prescribe
@@ -57,8 +56,8 @@ contains
     allocate (bodies%settlement(2, model%nodes), source=0.0_wp)
   end function new_bodies
 
-  !> Assemble one body; if it was before, as far as elements have changed.
-  subroutine assemble(self, model, operator, matrix, changed, numbering, b)
+  !> Assemble and factor one body; if it was before, as far as elements have changed. Nothing of other bodies is touched.
+  subroutine factor_body(self, model, operator, matrix, changed, numbering, b)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
@@ -68,18 +67,7 @@ contains
     integer, intent(in) :: b
 
     call assemble_body(model, operator, matrix, changed, numbering%equation, numbering%body(b), self%body(b))
-  end subroutine assemble
-
-  !> Factor what was assembled. `sound` is false where the factor failed.
-  subroutine factor_body(self, numbering, b, sound)
-    class(factored_bodies), intent(inout) :: self
-    type(numbering_type), intent(in) :: numbering
-    integer, intent(in) :: b
-    logical, intent(out) :: sound
-
     call self%body(b)%factor()
-    if (numbering%body(b)%equations > 0) self%factorizations = self%factorizations + 1
-    sound = self%body(b)%is_sound()
   end subroutine factor_body
 
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.

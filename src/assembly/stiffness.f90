@@ -92,10 +92,11 @@ contains
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
     type(body_stiffness), intent(in) :: stiffness
-    real(wp) :: k((2*most_nodes)**2), row_sum(body%equations)
+    real(wp) :: k((2*most_nodes)**2)
+    real(wp), allocatable :: row_sum(:)
     integer :: e, n
 
-    row_sum = 0.0_wp
+    allocate (row_sum(body%equations), source=0.0_wp)
     do e = 1, size(body%element)
       associate (element => body%element(e))
         n = 2*model%order(element)

@@ -12,7 +12,7 @@ module epcont_base_large_pages
   integer(c_int), parameter :: advice_large_pages = 14     !! MADV_HUGEPAGE of Linux; others refuse it, to no harm
 
   !> Parameters of glibc's `mallopt`.
-  integer(c_int), parameter :: trim_threshold = -1, top_pad = -2, mmap_threshold = -3
+  integer(c_int), parameter :: trim_threshold = -1, top_pad = -2, mmap_threshold = -3, arena_max = -8
   integer(c_int), parameter :: heap_step = 67108864        !! by which the heap grows; memory is taken when touched [bytes]
   integer(c_int), parameter :: largest_in_heap = 33554432  !! arrays up to here are in the heap: glibc's own limit [bytes]
 
@@ -58,7 +58,8 @@ contains
     call advise(first, first + size(array, kind=c_intptr_t)*storage_size(array)/8)
   end subroutine use_under_single
 
-  !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them.
+  !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them. Threads have no heaps of
+  !! their own: each would take 128 MB of addresses, and keep what it frees from the others.
   subroutine prepare_heap()
     integer(c_int) :: ignored
     integer(c_intptr_t) :: first
@@ -68,6 +69,7 @@ contains
     ignored = mallopt(mmap_threshold, largest_in_heap)
     ignored = mallopt(trim_threshold, huge(ignored))
     ignored = mallopt(top_pad, heap_step)
+    ignored = mallopt(arena_max, 1_c_int)
     first = sbrk(0_c_intptr_t)
     allocate (array(heap_step/32), stat=status)   ! too large for what the heap has: it grows
     if (status == 0) then

@@ -10,8 +10,8 @@ module epcont_base_stopwatch
   integer, parameter, public :: stage_model = 2           !! checked cards, lines in contact
   integer, parameter, public :: stage_plan = 3            !! free motions, methods, memory
   integer, parameter, public :: stage_numbering = 4       !! of the equations
-  integer, parameter, public :: stage_stiffness = 5       !! strain operator, assembly of what is not fronts
-  integer, parameter, public :: stage_factor = 6          !! and assembly of fronts
+  integer, parameter, public :: stage_stiffness = 5       !! strain operator, what has changed
+  integer, parameter, public :: stage_factor = 6          !! of the bodies, with their assembly
   integer, parameter, public :: stage_flexibility = 7
   integer, parameter, public :: stage_contact = 8         !! forces and gaps of the pairs
   integer, parameter, public :: stage_displacements = 9   !! under forces, with their strains

@@ -8,46 +8,68 @@ module epcont_flexibility_flexibility
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: add_body_flexibility, gap_opening, motion_columns, motion_resultants, pair_forces
+  public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, motion_resultants, pair_forces
 
   !> Part of what a sum is made of that rounding leaves where it should cancel.
   real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
 
+  !> One body's part of F, between the pairs that it gives way at.
+  type :: body_flexibility
+    integer, allocatable :: pair(:)         !! ascending
+    real(wp), allocatable :: matrix(:, :)   !! [length/force] [its pairs, its pairs]
+  end type body_flexibility
+
 contains
 
-  !> Add one body's part of F = N K^-1 N' [length/force] [pairs, pairs].
-  pure subroutine add_body_flexibility(model, numbering, b, stiffness, flexibility)
+  !> One body's part of F = N K^-1 N'.
+  pure subroutine find_flexibility(model, numbering, b, stiffness, part)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b                       !! the body
     type(body_stiffness), intent(in) :: stiffness  !! factored
-    real(wp), intent(inout) :: flexibility(:, :)
+    type(body_flexibility), intent(out) :: part
     real(wp), allocatable :: weight(:)
     integer, allocatable :: start(:), equation(:)
 
-    if (numbering%body(b)%contact_equations + numbering%body(b)%border == 0) return
-    call body_rows(model, numbering, b, start, equation, weight)
+    call body_rows(model, numbering, b, part%pair, start, equation, weight)
+    allocate (part%matrix(size(part%pair), size(part%pair)), source=0.0_wp)
+    if (size(part%pair) == 0) return
     weight = weight/sqrt(stiffness%unit)
-    call stiffness%matrix%add_gram(start, equation, weight, flexibility)
-    if (numbering%body(b)%border > 0) call add_border(stiffness, start, equation, weight, flexibility)
-  end subroutine add_body_flexibility
+    call stiffness%matrix%add_gram(start, equation, weight, part%matrix)
+    if (numbering%body(b)%border > 0) call add_border(stiffness, start, equation, weight, part%matrix)
+  end subroutine find_flexibility
 
-  !> Rows of N in one body: the entries start(k) to start(k+1)-1 of pair k are equations, negative ones of the border, and
-  !! their weights in the gap. Freedoms that are held, across the normal or of another body are left out.
-  pure subroutine body_rows(model, numbering, b, start, equation, weight)
+  !> Add a body's part to F.
+  pure subroutine add_flexibility(part, flexibility)
+    type(body_flexibility), intent(in) :: part
+    real(wp), intent(inout) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
+    integer :: k
+
+    do k = 1, size(part%pair)
+      associate (column => flexibility(:, part%pair(k)))
+        column(part%pair) = column(part%pair) + part%matrix(:, k)
+      end associate
+    end do
+  end subroutine add_flexibility
+
+  !> Rows of N in one body, of the pairs that have any entry there: start(k) to start(k+1)-1 of pair(k) are equations, negative ones
+  !! of the border, and their weights in the gap. Freedoms that are held, across the normal or of another body are left out.
+  pure subroutine body_rows(model, numbering, b, pair, start, equation, weight)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
-    integer, allocatable, intent(out) :: start(:)     !! [pairs + 1]
+    integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
+    integer, allocatable, intent(out) :: start(:)     !! [its pairs + 1]
     integer, allocatable, intent(out) :: equation(:)  !! [entries]
     real(wp), allocatable, intent(out) :: weight(:)   !! [entries]
-    integer :: c, i, k, last
+    integer :: c, i, k, last, rows
 
-    allocate (start(model%pairs + 1))
+    allocate (pair(model%pairs), start(model%pairs + 1))
     allocate (equation(2*size(model%row_node)), weight(2*size(model%row_node)))
+    start(1) = 1
     last = 0
+    rows = 0
     do k = 1, model%pairs
-      start(k) = last + 1
       do i = model%row_start(k), model%row_start(k + 1) - 1
         if (model%body(model%row_node(i)) /= b) cycle
         do c = 1, 2
@@ -59,8 +81,13 @@ contains
           end associate
         end do
       end do
+      if (last < start(rows + 1)) cycle
+      rows = rows + 1
+      pair(rows) = k
+      start(rows + 1) = last + 1
     end do
-    start(model%pairs + 1) = last + 1
+    pair = pair(:rows)
+    start = start(:rows + 1)
     equation = equation(:last)
     weight = weight(:last)
   end subroutine body_rows

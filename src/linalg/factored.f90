@@ -70,9 +70,10 @@ contains
   !> What the estimate begins with, of 1-norm 1: equal parts, and the alternating column that finds what they cancel (Higham's).
   pure function probes(order) result(x)
     integer, intent(in) :: order
-    real(wp) :: x(order, 2)
+    real(wp), allocatable :: x(:, :)
     integer :: i
 
+    allocate (x(order, 2))
     x(:, 1) = 1.0_wp/max(1, order)
     x(:, 2) = [(merge(1.0_wp, -1.0_wp, mod(i, 2) == 1)*(1.0_wp + real(i - 1, wp)/max(1, order - 1)), i=1, order)]
     x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))

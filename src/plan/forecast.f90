@@ -11,7 +11,7 @@ module epcont_plan_forecast
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: forecast_type, forecast, check_memory
+  public :: forecast_type, forecast, check_memory, memory_of_run
 
   type :: forecast_type
     integer(i8) :: bytes = 0            !! of the matrices
@@ -29,10 +29,9 @@ contains
     integer(i8), intent(in) :: matrices   !! [bytes]
     real(wp), intent(in) :: limit         !! [GB]
     type(error_type), allocatable, intent(out) :: error
-    integer(i8), parameter :: part = 10000_i8   !! of a node or an element, with all that is kept of it: up to here [bytes]
     integer(i8) :: bytes
 
-    bytes = matrices + part*(model%nodes + model%elements) + memory_of_libraries
+    bytes = memory_of_run(model, matrices)
     if (real(matrices, wp) > giga*limit) then
       call raise(error, status_usage, 'the matrices need '//gigabytes(real(matrices, wp))//', and --memory allows '// &
                  gigabytes(giga*limit))
@@ -41,6 +40,15 @@ contains
                  ' of memory, and the system does not give it (ulimit -v)')
     end if
   end subroutine check_memory
+
+  !> What a run takes in all, at most [bytes].
+  pure integer(i8) function memory_of_run(model, matrices)
+    type(model_type), intent(in) :: model
+    integer(i8), intent(in) :: matrices   !! [bytes]
+    integer(i8), parameter :: part = 10000_i8   !! of a node or an element, with all that is kept of it: up to here [bytes]
+
+    memory_of_run = matrices + part*(model%nodes + model%elements) + memory_of_libraries
+  end function memory_of_run
 
   pure function gigabytes(bytes) result(text)
     real(wp), intent(in) :: bytes

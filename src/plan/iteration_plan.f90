@@ -32,6 +32,7 @@ module epcont_plan_iteration_plan
     integer :: precision = precision_double  !! of the factors
     real(wp) :: rounding_error = 0.0_wp    !! largest that single precision may leave in displacements, strains and forces
     character(len=:), allocatable :: against_double  !! what stands against solving anew in double; not allocated: nothing
+    integer :: threads = 1                 !! that bodies may be worked on by, side by side
     type(contact_plan) :: contact          !! the rule that finds the pairs in contact
     real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
   end type iteration_plan

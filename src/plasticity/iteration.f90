@@ -116,7 +116,7 @@ contains
     type(loop_type), intent(out) :: loop
 
     loop%plan = plan
-    loop%scene = new_linear_scene(model, motions, plan%body, plan%contact%by_blocks, plan%precision)
+    loop%scene = new_linear_scene(model, motions, plan%body, plan%contact%by_blocks, plan%precision, plan%threads)
     loop%material = section_materials(model)
     loop%law = elastic_law(model, loop%material)
     allocate (loop%about%displacement(2, model%nodes), loop%about%strain(4, model%points), source=0.0_wp)

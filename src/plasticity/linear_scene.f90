@@ -8,13 +8,14 @@ module epcont_plasticity_linear_scene
                                    stopwatch
   use epcont_contact_problem, only: contact_problem, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
-  use epcont_flexibility_flexibility, only: add_body_flexibility, gap_opening, motion_columns, motion_resultants, &
-                                            pair_forces
+  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
+                                            motion_resultants, pair_forces
   use epcont_material_linear_law, only: linear_law
-  use epcont_model_controls, only: precision_double, precision_mixed, solver_frontal
+  use epcont_model_controls, only: precision_double, precision_mixed
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_side_by_side, only: heaviest_first, threads_for
   use epcont_plasticity_state, only: scene_state
   implicit none
   private
@@ -35,6 +36,7 @@ module epcont_plasticity_linear_scene
     real(wp), allocatable :: lasting_flexibility(:, :)  !! of the bodies that cannot, factored once [pairs, pairs]
     logical :: by_blocks = .false.                   !! contact by RULE BLOCK, else CONRY
     integer :: precision = precision_double          !! of the factors
+    integer :: threads = 1                           !! that bodies may be worked on by
     type(scene_state), allocatable :: last           !! found by refinement, from which the next begins
     real(wp), allocatable :: resultant(:)            !! of all loads along the free motions [motions]
   contains
@@ -42,23 +44,27 @@ module epcont_plasticity_linear_scene
     procedure :: solve
     procedure :: rounding_error
     procedure :: estimate_condition
+    procedure, private :: factor_bodies
+    procedure, private :: add_flexibilities
     procedure, private :: changed_elements
   end type linear_scene
 
 contains
 
   !> What does not change with the law.
-  pure function new_linear_scene(model, motions, yields, by_blocks, precision) result(scene)
+  pure function new_linear_scene(model, motions, yields, by_blocks, precision, threads) result(scene)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     logical, intent(in) :: yields(:)   !! the body has elements that can yield [bodies]
     logical, intent(in) :: by_blocks   !! contact by RULE BLOCK, else CONRY
     integer, intent(in) :: precision   !! of the factors
+    integer, intent(in) :: threads     !! that bodies may be worked on by
     type(linear_scene) :: scene
 
     scene%operator = new_strain_operator(model)
     scene%bodies = new_bodies(model, precision /= precision_double)
     scene%precision = precision
+    scene%threads = threads
     scene%yields = yields
     scene%by_blocks = by_blocks
     scene%problem%initial_gap = model%initial_gap
@@ -75,45 +81,77 @@ contains
     type(linear_law), intent(in) :: law
     integer, intent(out) :: singular
     class(stopwatch), intent(inout) :: watch
-    logical, allocatable :: changed(:)
-    logical :: first, sound
-    integer :: b
+    logical, allocatable :: changed(:), chosen(:)
+    logical :: first
 
     first = .not. allocated(self%lasting_flexibility)
     changed = self%changed_elements(model, law)
     if (any(self%yields)) self%matrix = law%matrix
-    singular = 0
-    do b = 1, model%bodies
-      if (.not. (first .or. self%yields(b))) cycle
-      call self%bodies%assemble(model, self%operator, law%matrix, changed, numbering, b)
-      call watch%lap(merge(stage_factor, stage_stiffness, numbering%body(b)%solver == solver_frontal))
-      call self%bodies%factor_body(numbering, b, sound)
-      call watch%lap(stage_factor)
-      if (.not. sound .and. singular == 0) singular = b
-    end do
+    chosen = self%yields .or. first
+    call watch%lap(stage_stiffness)
+    call self%factor_bodies(model, numbering, law, changed, chosen, singular)
+    call watch%lap(stage_factor)
     if (singular > 0) return
     call self%bodies%settle(model, self%operator, law)
     call watch%lap(stage_displacements)
     if (first) then
       allocate (self%lasting_flexibility(model%pairs, model%pairs), source=0.0_wp)
-      call add_flexibility(.not. self%yields, self%lasting_flexibility)
+      call self%add_flexibilities(model, numbering, .not. self%yields, self%lasting_flexibility)
     end if
     self%problem%flexibility = self%lasting_flexibility
-    call add_flexibility(self%yields, self%problem%flexibility)
+    call self%add_flexibilities(model, numbering, self%yields, self%problem%flexibility)
     call watch%lap(stage_flexibility)
-
-  contains
-
-    pure subroutine add_flexibility(chosen, flexibility)
-      logical, intent(in) :: chosen(:)
-      real(wp), intent(inout) :: flexibility(:, :)
-      integer :: k
-
-      do k = 1, model%bodies
-        if (chosen(k)) call add_body_flexibility(model, numbering, k, self%bodies%body(k), flexibility)
-      end do
-    end subroutine add_flexibility
   end subroutine set_stiffness
+
+  !> Assemble and factor some bodies, side by side where that pays. `singular` is the first that could not be factored, or 0.
+  subroutine factor_bodies(self, model, numbering, law, changed, chosen, singular)
+    class(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    type(linear_law), intent(in) :: law
+    logical, intent(in) :: changed(:)    !! [elements]
+    logical, intent(in) :: chosen(:)     !! [bodies]
+    integer, intent(out) :: singular
+    real(wp), allocatable :: operations(:)
+    integer, allocatable :: body(:)
+    integer :: i, threads
+
+    body = pack([(i, i=1, size(chosen))], chosen)
+    operations = numbering%body(body)%operations
+    body = body(heaviest_first(operations))
+    threads = threads_for(operations, self%threads)
+    !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
+    do i = 1, size(body)
+      call self%bodies%factor_body(model, self%operator, law%matrix, changed, numbering, body(i))
+    end do
+    !$omp end parallel do
+    self%bodies%factorizations = self%bodies%factorizations + count(chosen .and. numbering%body%equations > 0)
+    singular = findloc([(chosen(i) .and. .not. self%bodies%body(i)%is_sound(), i=1, size(chosen))], .true., dim=1)
+  end subroutine factor_bodies
+
+  !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are the same on any
+  !! number of threads.
+  subroutine add_flexibilities(self, model, numbering, chosen, flexibility)
+    class(linear_scene), intent(in) :: self
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    logical, intent(in) :: chosen(:)     !! [bodies]
+    real(wp), intent(inout) :: flexibility(:, :)
+    type(body_flexibility) :: part
+    real(wp), allocatable :: operations(:)
+    integer :: b, threads
+
+    operations = merge(numbering%body%operations, 0.0_wp, chosen)
+    threads = threads_for(operations, self%threads)
+    !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic) ordered private(part)
+    do b = 1, model%bodies
+      if (chosen(b)) call find_flexibility(model, numbering, b, self%bodies%body(b), part)
+      !$omp ordered
+      if (chosen(b)) call add_flexibility(part, flexibility)
+      !$omp end ordered
+    end do
+    !$omp end parallel do
+  end subroutine add_flexibilities
 
   !> Elements whose law is not that of the factors; all of them the first time [elements].
   pure function changed_elements(self, model, law) result(changed)

@@ -168,14 +168,14 @@ def number(text):
         return text
 
 
-def solve(deck, order=None, threads=None):
+def solve(deck, order=None, threads=None, preexec_fn=None):
     """Run the program on a deck, or on its text."""
-    environment = dict(os.environ, **({"OPENBLAS_NUM_THREADS": str(threads)} if threads else {}))
+    granted = {f"{name}_NUM_THREADS": str(threads) for name in ("OMP", "OPENBLAS")} if threads else {}
     with tempfile.TemporaryDirectory() as directory:
         path = pathlib.Path(directory)/"scene.dat"
         path.write_text(deck if isinstance(deck, str) else deck.text(order))
         run = subprocess.run([PROGRAM, str(path), "-o", directory, "--tables", "all"], capture_output=True, text=True,
-                             timeout=120, env=environment)
+                             timeout=120, env={**os.environ, **granted}, preexec_fn=preexec_fn)
         return Result(run.returncode, run.stderr.replace(directory + "/", ""), directory)
 
 

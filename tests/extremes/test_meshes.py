@@ -1,9 +1,8 @@
-"""Extremes of elements; and of the order of a deck, and of threads, that must not matter."""
+"""Extremes of elements; and of the order of a deck, which must not matter."""
 import random
 import unittest
 
 from scene import STEEL, Deck, Extremes
-from test_contacts import row
 from test_scales import punch
 
 
@@ -134,14 +133,6 @@ class Repeated(Extremes):
         name, *fields = card
         places = {"GRID": [0], "CQUAD4": [2, 3, 4, 5], "SPC1": [2], "SUPORT": [0], "FORCE": [1], "CGAP": [2, 3]}.get(name, [])
         return (name, *[new[field] if k in places else field for k, field in enumerate(fields)])
-
-    def test_threads(self):
-        """The same bytes with any number of threads: with matrices large enough for more than one."""
-        for deck in (punch(), row(150, lambda k: 1e-6*((k - 75)/75.0)**2, rule="CONRY"), row(300, lambda k: 1e-6*(k - 150.0)**2)):
-            one = self.valid(deck, threads=1)
-            self.assertIn("scene.lst", one.files)
-            for threads in (2, 4):
-                self.assertEqual(self.valid(deck, threads=threads).files, one.files)
 
 
 if __name__ == "__main__":

@@ -15,8 +15,8 @@ program bench_ours
   use epcont_contact_solver, only: solve_contact
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_flexibility_flexibility, only: add_body_flexibility, gap_opening, motion_columns, motion_resultants, &
-                                            pair_forces
+  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
+                                            motion_resultants, pair_forces
   use epcont_material_curve, only: section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_model_build, only: build_model
@@ -119,6 +119,7 @@ contains
     logical, allocatable :: start(:)   !! no guess
     logical :: all_changed(model%elements)
     real(wp) :: k((2*most_nodes)**2)
+    type(body_flexibility) :: part
     integer :: b, e
 
     all_changed = .true.
@@ -138,7 +139,8 @@ contains
     spent(factor) = lap() - spent(assembly)
     problem%flexibility = reshape([(0.0_wp, b=1, model%pairs**2)], [model%pairs, model%pairs])
     do b = 1, model%bodies
-      call add_body_flexibility(model, numbering, b, bodies%body(b), problem%flexibility)
+      call find_flexibility(model, numbering, b, bodies%body(b), part)
+      call add_flexibility(part, problem%flexibility)
     end do
     spent(flexibility) = lap()
     problem%load_gap = gap_opening(model, bodies%displacements(model, numbering, model%load, 1.0_wp))

@@ -1,0 +1,57 @@
+!> How many threads work on bodies side by side. Bodies touch only through contact: each is assembled, factored and asked for its
+!> flexibility by itself.
+module epcont_plan_side_by_side
+  use epcont_base_kinds, only: i8, wp
+  use epcont_base_memory, only: has_memory, memory_of_thread
+  use epcont_base_sorting, only: sorted_order
+  use epcont_model_controls, only: solver_sparse
+  use epcont_model_model, only: model_type
+  use epcont_plan_forecast, only: memory_of_run
+  use epcont_plan_numbering, only: numbering_type
+  implicit none
+  private
+  public :: heaviest_first, plan_threads, threads_for
+
+  !> Operations beside the largest body from which on a second thread pays.
+  real(wp), parameter :: least_beside = 2.0e7_wp
+
+contains
+
+  !> Threads for a scene: one where there is no memory for more, and with MUMPS, which does not bear calls side by side.
+  integer function plan_threads(model, numbering, matrices, granted) result(threads)
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering
+    integer(i8), intent(in) :: matrices   !! [bytes]
+    integer, intent(in) :: granted
+    real(wp), allocatable :: operations(:)
+
+    threads = 1
+    if (any(numbering%body%solver == solver_sparse)) return
+    operations = numbering%body%operations
+    threads = threads_for(operations, granted)
+    if (threads == 1) return
+    if (.not. has_memory(memory_of_run(model, matrices) + (threads - 1)*memory_of_thread)) threads = 1
+  end function plan_threads
+
+  !> Threads for some bodies: no more than granted, nor than are over before the largest body alone; one where a second would have
+  !! little to do.
+  pure integer function threads_for(operations, granted) result(threads)
+    real(wp), intent(in) :: operations(:)   !! of each body
+    integer, intent(in) :: granted
+    real(wp) :: all, largest
+
+    threads = 1
+    if (size(operations) < 2) return
+    all = sum(operations)
+    largest = maxval(operations)
+    if (all - largest >= least_beside) threads = min(granted, ceiling(all/largest))
+  end function threads_for
+
+  !> The order in which threads take bodies up: the heaviest first, to a factor of two, so that none of them is left for the end.
+  pure function heaviest_first(operations) result(order)
+    real(wp), intent(in) :: operations(:)
+    integer, allocatable :: order(:)
+
+    order = sorted_order(-exponent(operations))
+  end function heaviest_first
+end module epcont_plan_side_by_side

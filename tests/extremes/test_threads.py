@@ -1,0 +1,142 @@
+"""Threads, which must not matter: the same bytes on any number of them, and as many as are granted and pay."""
+import functools
+import os
+import pathlib
+import resource
+import subprocess
+import tempfile
+import time
+import unittest
+
+from scene import PROGRAM, STEEL, Deck, Extremes, solve
+from test_contacts import row
+from test_scales import punch
+
+COUNTS = (1, 2, 3, 8)
+
+
+def stack(bodies=4, across=28, young=STEEL[0], parameters=(), stress=None):
+    """Blocks one upon the other, each higher than the one below, the load on the left half; `stress`: where they yield."""
+    deck = Deck()
+    for name, value in parameters:
+        deck.parameter(name, value)
+    deck.material(1, young, STEEL[1])
+    if stress:
+        deck.curve(1, [(stress/young, stress), (0.2, 3.0*stress)])
+    top, begin = None, 0.0
+    for k in range(bodies):
+        xs = [i/across for i in range(across + 1)]
+        ys = [begin + j/across for j in range(across + 6*k + 1)]
+        nodes = deck.block(1, xs, ys, first=100000*(k + 1))
+        if top:
+            for i, (below, above) in enumerate(zip(top, nodes[0])):
+                deck.pair(9000000 + 1000*k + i, below, above)
+            deck.hold(1, nodes[0][0])
+            deck.support(nodes[-1][0], 2)
+            deck.support(nodes[-1][-1], 2)
+        else:
+            deck.hold(12, *nodes[0])
+        top, begin = nodes[-1], ys[-1]
+    deck.press(top[:across//2 + 1], 100.0)
+    return deck
+
+
+def brittle(deck, *bodies):
+    """A soft layer below blocks of a stack: their stiffness cannot be factored."""
+    deck.material(2, 1e-20*STEEL[0], STEEL[1])
+    for k, (name, *fields) in enumerate(deck.cards):
+        if name == "CQUAD4" and fields[2] // 100000 in bodies and fields[2] % 100000 < 29*4:
+            deck.cards[k] = (name, fields[0], 2, *fields[2:])
+    return deck
+
+
+class Bytes(Extremes):
+    """The same of scenes with matrices large enough for several threads."""
+
+    def same(self, deck, status=0):
+        one, *others = [solve(deck, threads=count) for count in COUNTS]
+        self.assertEqual(status, one.status, one.message)
+        self.assertIn("scene.lst", one.files)
+        for other in others:
+            self.assertEqual((one.status, one.message), (other.status, other.message))
+            self.assertEqual(one.files, other.files)
+        return one
+
+    def test_of_the_blas(self):
+        for deck in (punch(), row(150, lambda k: 1e-6*((k - 75)/75.0)**2, rule="CONRY"), row(300, lambda k: 1e-6*(k - 150.0)**2)):
+            self.same(deck)
+
+    def test_elastic(self):
+        for solver in ("BAND", "FRONTAL"):
+            for precision in ("DOUBLE", "MIXED", "SINGLE"):
+                with self.subTest(solver=solver, precision=precision):
+                    self.same(stack(parameters=[("SOLVER", solver), ("PRECIS", precision)]))
+
+    def test_yielding(self):
+        for solver in ("BAND", "FRONTAL"):
+            for parameters in ([("PRECIS", "DOUBLE")], [("PRECIS", "MIXED")], [("NLOAD", 2)]):
+                with self.subTest(solver=solver, parameters=parameters):
+                    result = self.same(stack(3, parameters=[("SOLVER", solver), *parameters], stress=120.0))
+                    self.assertGreater(result.summary["plastic_elements"], 100)
+
+    def test_many_bodies(self):
+        self.same(stack(12, 24, parameters=[("SOLVER", "BAND")]))
+
+    def test_the_first_singular_body_is_named(self):
+        result = self.same(brittle(stack(), 2, 4), status=4)
+        self.assertIn("the stiffness of the body of GRID 200000 cannot be factored", result.message)
+
+    def test_little_memory(self):
+        """Where there is no memory for more threads, one does it all."""
+        free = solve(stack(), threads=1)
+        for megabytes in range(720, 2000, 80):
+            with self.subTest(megabytes=megabytes):
+                limit = functools.partial(resource.setrlimit, resource.RLIMIT_AS, (megabytes*1000000,)*2)
+                limited = solve(stack(), threads=4, preexec_fn=limit)
+                self.assertEqual((0, free.files), (limited.status, limited.files), limited.message)
+
+
+class Counts(Extremes):
+    """How many threads there are at most in a run."""
+
+    def most(self, deck, **environment):
+        with tempfile.TemporaryDirectory() as directory:
+            path = pathlib.Path(directory)/"scene.dat"
+            path.write_text(deck.text())
+            kept = {name: value for name, value in os.environ.items() if not name.startswith(("OMP_", "GOMP_", "OPENBLAS_"))}
+            with subprocess.Popen([PROGRAM, path, "-o", directory, "--quiet"], env={**kept, **environment}) as run:
+                most = 0
+                while run.poll() is None:
+                    try:
+                        most = max(most, len(os.listdir(f"/proc/{run.pid}/task")))
+                    except FileNotFoundError:
+                        break
+                    time.sleep(0.001)
+            self.assertEqual(0, run.returncode)
+            return most
+
+    def setUp(self):
+        """With a BLAS that bears threads, where OpenMP is built in: else there is one, always."""
+        if self.most(stack(), OMP_NUM_THREADS="2") == 1:
+            self.skipTest("one thread: built without OpenMP, or a BLAS that does not bear more")
+
+    def test_as_many_as_are_granted(self):
+        for count in (1, 2, 3):
+            self.assertEqual(count, self.most(stack(), OMP_NUM_THREADS=str(count)))
+        self.assertEqual(2, self.most(stack(), OMP_NUM_THREADS="2,4"))
+
+    def test_one_where_nothing_is_said(self):
+        self.assertEqual(1, self.most(stack()))
+        for words in ("", "0", "many", "-2"):
+            self.assertEqual(1, self.most(stack(), OMP_NUM_THREADS=words))
+
+    def test_no_more_than_pay(self):
+        self.assertLessEqual(self.most(stack(), OMP_NUM_THREADS="8"), 4)
+        self.assertEqual(1, self.most(stack(12, 8), OMP_NUM_THREADS="8"))
+
+    def test_one_with_mumps(self):
+        self.assertEqual(1, self.most(stack(parameters=[("SOLVER", "SPARSE")]), OMP_NUM_THREADS="4"))
+
+
+if __name__ == "__main__":
+    unittest.main()
