@@ -3,7 +3,7 @@
 !> The doors have C binding so that either file serves at link time, and so that `epcont_linalg_sparse` can declare them
 !> pure, as the routines of LAPACK are declared: what they change hangs on the handle, and they print nothing.
 !>
-!> The library is loaded when it is wanted: with all that it is linked with, that takes 2 ms, which a small deck would pay for nothing.
+!> The library is loaded when it is wanted: with all that it is linked with that takes a millisecond, and most decks do without it.
 !>
 !> Numbers of the form ICNTL(7) are those of the MUMPS Users' Guide.
 module epcont_linalg_mumps

@@ -5,14 +5,14 @@ module epcont_linalg_mumps_none
   private
   public :: mumps_fault, mumps_analyse, mumps_factor, mumps_solve, mumps_inverse_entries, mumps_release
 
+  character(kind=c_char, len=33), target :: reason = 'this epcont was built without it'//c_null_char
+
 contains
 
   function mumps_fault() result(fault) bind(c, name='epcont_mumps_fault')
     type(c_ptr) :: fault
-    character(kind=c_char, len=*), parameter :: words = 'this epcont was built without it'//c_null_char
-    character(kind=c_char, len=len(words)), target, save :: text = words
 
-    fault = c_loc(text)
+    fault = c_loc(reason)
   end function mumps_fault
 
   subroutine mumps_analyse(solver, order, start, row, blocks, first, megabytes) bind(c, name='epcont_mumps_analyse')
