@@ -170,7 +170,7 @@ def number(text):
 
 def solve(deck, order=None, threads=None):
     """Run the program on a deck, or on its text."""
-    environment = dict(os.environ, **({"OPENBLAS_NUM_THREADS": str(threads), "OMP_NUM_THREADS": str(threads)} if threads else {}))
+    environment = dict(os.environ, **({"OPENBLAS_NUM_THREADS": str(threads)} if threads else {}))
     with tempfile.TemporaryDirectory() as directory:
         path = pathlib.Path(directory)/"scene.dat"
         path.write_text(deck if isinstance(deck, str) else deck.text(order))

@@ -262,6 +262,15 @@ class Mumps(Case):
     def line(self):
         return self.deck.read_text().splitlines().index("PARAM,SOLVER,SPARSE") + 1
 
+    def test_threads(self):
+        """Its BLAS has one thread, whatever the environment says: the same bytes."""
+        self.deck.write_text(LARGE.read_text().replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,SOLVER,SPARSE\n", 1))
+        for threads in "124":
+            self.check(self.run_it(self.deck, "-o", self.directory / threads, *ALL,
+                                   env=dict(os.environ, OMP_NUM_THREADS=threads, OPENBLAS_NUM_THREADS=threads)), 0)
+        one, two, four = (self.files(self.directory / threads) for threads in "124")
+        self.assertEqual([], [name for name in one if not one[name] == two.get(name) == four.get(name)])
+
     def test_address_space(self):
         """Another BLAS comes with it: no limit makes that wait without end."""
         if sanitized():

@@ -14,9 +14,10 @@ if(NOT EPCONT_STATIC STREQUAL "OFF" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU"
   find_library(GOMP_ARCHIVE libgomp.a HINTS ${CMAKE_Fortran_IMPLICIT_LINK_DIRECTORIES})
   mark_as_advanced(GOMP_ARCHIVE)
   set(archives "${folder}/libopenblas.a" $<$<BOOL:${GOMP_ARCHIVE}>:${GOMP_ARCHIVE}> pthread ${CMAKE_DL_LIBS})
-  # `use_one_thread` finds OpenBLAS' procedure by its name, in the program's own table of names.
-  set(options -static-libgfortran -static-libgcc -Wl,--as-needed
-    -Wl,--undefined=openblas_set_num_threads -Wl,--export-dynamic-symbol=openblas_set_num_threads)
+  set(options -static-libgfortran -static-libgcc -Wl,--as-needed)
+  foreach(name openblas_set_num_threads)   # what src/base/one_thread.f90 looks for, in the program's own table of names
+    list(APPEND options "-Wl,--undefined=${name},--export-dynamic-symbol=${name}")
+  endforeach()
 
   include(CheckFortranSourceCompiles)
   set(CMAKE_REQUIRED_LIBRARIES ${archives})
