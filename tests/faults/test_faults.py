@@ -243,7 +243,7 @@ class Memory(Case):
 class Mumps(Case):
     def setUp(self):
         super().setUp()
-        name = re.search(rb"libdmumps_seq[\w.-]*", pathlib.Path(PROGRAM).read_bytes())
+        name = re.search(rb"libdmumps_seq[\w.-]*?\.so[.\d]*", pathlib.Path(PROGRAM).read_bytes())
         if not name:
             self.skipTest("the program is built without MUMPS")
         self.library = name[0].decode()
