@@ -1,4 +1,4 @@
-# OpenBLAS and the runtime of Fortran as parts of the program: to load them as shared libraries takes a millisecond, a small deck three.
+# OpenBLAS and the runtime of Fortran as parts of the program: to load and bind shared ones takes two milliseconds, a small deck three.
 # libquadmath, which that runtime calls, stays shared: its licence (LGPL) asks something of whoever passes it on within a program.
 # Any other BLAS and LAPACK are linked as CMake found them. Sets linear_algebra, for target_link_libraries; what has the property
 # LINKED_SHARED is linked with shared libraries all the same.
