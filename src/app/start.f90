@@ -25,8 +25,8 @@ module epcont_app_start
 
 contains
 
-  !> An OpenBLAS for OpenMP maps 268 MB before the main program begins, and where it cannot have them it waits without end. The
-  !! runtime of Fortran has not begun either: WRITE is not to be had.
+  !> An OpenBLAS for OpenMP maps memory before the main program begins (268 MB on two cores; with more it may be more), and where it
+  !! cannot have it, it waits without end. The runtime of Fortran has not begun either: WRITE is not to be had.
   subroutine check_start() bind(c, name='epcont_check_start')
     integer(i8), parameter :: memory = 300000000_i8   !! [bytes]
     integer(c_int), parameter :: standard_error = 2

@@ -20,7 +20,7 @@ module epcont_linalg_mumps
   include 'dmumps_struc.h'
 
   include 'library_name.inc'   ! written by tools/cmake/mumps.cmake
-  !> What has to be there before it is loaded: OpenBLAS maps 268 MB then, and where it cannot have them it waits without end.
+  !> What has to be there before it is loaded: OpenBLAS maps 268 MB then (on two cores), and waits without end for them.
   integer(i8), parameter :: memory_of_library = 400000000_i8   !! [bytes]
 
   !> Values of JOB.
