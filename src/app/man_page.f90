@@ -50,8 +50,8 @@ contains
            '.SH ENVIRONMENT'//newline// &
            paragraph('OMP_NUM_THREADS: threads that may work on bodies side by side, where a scene has several large ones; '// &
                      'one if it is not set. Results are the same bytes on any number.')// &
-           paragraph('OMP_WAIT_POLICY=passive: threads that wait leave their core to others. On a machine that others use '// &
-                     'too, set it with OMP_NUM_THREADS.')// &
+           paragraph('OMP_WAIT_POLICY: what threads do that wait; PASSIVE, which leaves their core to others, if it is not set '// &
+                     'and OpenBLAS is a part of the program, as the scripts link it.')// &
            paragraph('OpenBLAS chooses its kernels by the processor, or by OPENBLAS_CORETYPE: '// &
                      'others change the last of the 17 digits of the tables.')// &
            '.SH COPYRIGHT'//newline//paragraph('The epcont authors; MIT License.')

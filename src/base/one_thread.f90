@@ -1,7 +1,8 @@
 !> One thread for the BLAS, whatever the environment says: with more, sums are cut differently, and the last digits of the
 !> tables are others. (Decks run side by side use more cores.)
 module epcont_base_one_thread
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, c_null_char, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_f_procpointer, c_funptr, c_int, c_null_ptr, c_ptr
+  use epcont_base_shared_library, only: entry_in
   implicit none
   private
   public :: blas_may_be_shared, use_one_thread
@@ -17,24 +18,15 @@ module epcont_base_one_thread
     end function get_parallel
   end interface
 
-  interface
-    !> Where a name of this process is; without a handle it is looked for everywhere.
-    function c_dlsym(handle, name) bind(c, name='dlsym') result(address)
-      import :: c_char, c_funptr, c_ptr
-      type(c_ptr), value :: handle
-      character(kind=c_char), intent(in) :: name(*)
-      type(c_funptr) :: address
-    end function c_dlsym
-  end interface
-
 contains
 
   !> Tell OpenBLAS; another BLAS has no such procedure.
-  subroutine use_one_thread()
+  subroutine use_one_thread(library)
+    type(c_ptr), intent(in) :: library   !! that calls it; null: the program
     procedure(set_threads), pointer :: set
     type(c_funptr) :: address
 
-    address = c_dlsym(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
+    address = entry_in(library, 'openblas_set_num_threads')
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set)
     call set(1_c_int)
@@ -47,7 +39,7 @@ contains
     type(c_funptr) :: address
 
     blas_may_be_shared = .false.
-    address = c_dlsym(c_null_ptr, 'openblas_get_parallel'//c_null_char)
+    address = entry_in(c_null_ptr, 'openblas_get_parallel')
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, parallel)
     blas_may_be_shared = parallel() /= 0   ! 0 sequential, 1 threads, 2 OpenMP

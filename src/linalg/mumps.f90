@@ -3,21 +3,25 @@
 !> The doors have C binding so that either file serves at link time, and so that `epcont_linalg_sparse` can declare them
 !> pure, as the routines of LAPACK are declared: what they change hangs on the handle, and they print nothing.
 !>
+!> The library is loaded when it is wanted: with all that it is linked with that takes a millisecond, and most decks do without it.
+!>
 !> Numbers of the form ICNTL(7) are those of the MUMPS Users' Guide.
 module epcont_linalg_mumps
-  use, intrinsic :: iso_c_binding, only: c_associated, c_bool, c_double, c_f_pointer, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_f_pointer, c_f_procpointer, c_funptr, c_int, c_int64_t, c_loc, &
+                                         c_null_funptr, c_null_ptr, c_ptr
+  use epcont_base_kinds, only: i8
+  use epcont_base_memory, only: has_memory
+  use epcont_base_one_thread, only: use_one_thread
+  use epcont_base_shared_library, only: entry_in, loading_fault, open_library
   implicit none
   private
-  public :: mumps_available, mumps_analyse, mumps_factor, mumps_solve, mumps_inverse_entries, mumps_release
+  public :: mumps_fault, mumps_analyse, mumps_factor, mumps_solve, mumps_inverse_entries, mumps_release
 
   include 'dmumps_struc.h'
 
-  interface
-    subroutine dmumps(id)
-      import :: dmumps_struc
-      type(dmumps_struc), intent(inout) :: id
-    end subroutine dmumps
-  end interface
+  include 'library_name.inc'   ! written by tools/cmake/mumps.cmake
+  !> What has to be there before it is loaded: OpenBLAS maps 268 MB then (on two cores), and waits without end for them.
+  integer(i8), parameter :: memory_of_library = 400000000_i8   !! [bytes]
 
   !> Values of JOB.
   integer, parameter :: job_begin = -1, job_end = -2, job_analyse = 1, job_factor = 2, job_solve = 3
@@ -34,11 +38,35 @@ module epcont_linalg_mumps
 
 contains
 
-  function mumps_available() result(available) bind(c, name='epcont_mumps_available')
-    logical(c_bool) :: available
+  !> Why there is no MUMPS, as a C string; null: there is.
+  function mumps_fault() result(fault) bind(c, name='epcont_mumps_fault')
+    type(c_ptr) :: fault
 
-    available = .true.
-  end function mumps_available
+    fault = c_null_ptr
+    if (.not. has_memory(memory_of_library)) return   ! the analysis will say so
+    if (.not. c_associated(dmumps_address())) fault = loading_fault()
+  end function mumps_fault
+
+  !> Call MUMPS: once loaded, the library is found again within microseconds.
+  subroutine dmumps(id)
+    type(dmumps_struc), intent(inout) :: id
+    procedure(dmumps), pointer :: loaded
+
+    call c_f_procpointer(dmumps_address(), loaded)
+    call loaded(id)
+  end subroutine dmumps
+
+  !> Load the library, and find its only entry; null: there is none. It may bring a BLAS of its own, which is to
+  !! have one thread like the program's.
+  type(c_funptr) function dmumps_address() result(address)
+    type(c_ptr) :: library
+
+    address = c_null_funptr
+    library = open_library(library_name)
+    if (.not. c_associated(library)) return
+    call use_one_thread(library)
+    address = entry_in(library, 'dmumps_')
+  end function dmumps_address
 
   !> Begin, and choose the order of elimination.
   subroutine mumps_analyse(solver, order, start, row, blocks, first, megabytes) bind(c, name='epcont_mumps_analyse')
@@ -53,6 +81,8 @@ contains
 
     call mumps_release(solver)
     megabytes = 0
+    if (.not. has_memory(memory_of_library)) return
+    if (.not. c_associated(dmumps_address())) return
     allocate (id)
     id%comm = 0
     id%par = 1

@@ -1,17 +1,19 @@
 !> In the place of `mumps.f90` where the program is built without MUMPS: analysis always fails, so nothing after it is called.
 module epcont_linalg_mumps_none
-  use, intrinsic :: iso_c_binding, only: c_bool, c_double, c_int, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_loc, c_null_char, c_ptr
   implicit none
   private
-  public :: mumps_available, mumps_analyse, mumps_factor, mumps_solve, mumps_inverse_entries, mumps_release
+  public :: mumps_fault, mumps_analyse, mumps_factor, mumps_solve, mumps_inverse_entries, mumps_release
+
+  character(kind=c_char, len=33), target :: reason = 'this epcont was built without it'//c_null_char
 
 contains
 
-  function mumps_available() result(available) bind(c, name='epcont_mumps_available')
-    logical(c_bool) :: available
+  function mumps_fault() result(fault) bind(c, name='epcont_mumps_fault')
+    type(c_ptr) :: fault
 
-    available = .false.
-  end function mumps_available
+    fault = c_loc(reason)
+  end function mumps_fault
 
   subroutine mumps_analyse(solver, order, start, row, blocks, first, megabytes) bind(c, name='epcont_mumps_analyse')
     type(c_ptr), intent(inout) :: solver

@@ -2,15 +2,15 @@
 !>
 !> The lower triangle is stored by columns: entries start(j) to start(j + 1) - 1 are those of column j, their rows
 !> ascending, the diagonal first. `begin` finds the pattern and analyses it; then, as often as one likes, `clear`, `add` and
-!> `factor`. Where the program is built without MUMPS (`sparse_available`), `begin` fails.
+!> `factor`. Where there is no MUMPS (`sparse_fault`), `begin` fails.
 module epcont_linalg_sparse
-  use, intrinsic :: iso_c_binding, only: c_associated, c_bool, c_double, c_int, c_loc, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_int, c_loc, c_null_char, c_null_ptr, c_ptr
   use epcont_base_kinds, only: i8, wp
   use epcont_linalg_assembled, only: add_seen_through, assembled_matrix
   use epcont_linalg_sparse_pattern, only: find_blocks, find_pattern
   implicit none
   private
-  public :: sparse_matrix, sparse_available
+  public :: sparse_matrix, sparse_fault
 
   !> What hangs on `solver` belongs to the matrix that was analysed; in a copy of it, which stands elsewhere, it is nothing, so that
   !! it is given back once, and a copy has the entries but cannot be factored. (Defined assignment would do it, but gfortran 12
@@ -43,10 +43,10 @@ module epcont_linalg_sparse
 
   ! mumps.f90 or mumps_none.f90
   interface
-    pure function mumps_available() result(available) bind(c, name='epcont_mumps_available')
-      import :: c_bool
-      logical(c_bool) :: available
-    end function mumps_available
+    function mumps_fault() result(fault) bind(c, name='epcont_mumps_fault')
+      import :: c_ptr
+      type(c_ptr) :: fault
+    end function mumps_fault
 
     pure subroutine mumps_analyse(solver, order, start, row, blocks, first, megabytes) bind(c, name='epcont_mumps_analyse')
       import :: c_int, c_ptr
@@ -90,11 +90,23 @@ module epcont_linalg_sparse
 
 contains
 
-  !> Whether MUMPS is built in.
-  pure logical function sparse_available()
+  !> Why there is no MUMPS; empty: there is.
+  function sparse_fault() result(text)
+    character(len=:), allocatable :: text
+    character(kind=c_char), pointer :: letter(:)
+    type(c_ptr) :: fault
+    integer :: i
 
-    sparse_available = mumps_available()
-  end function sparse_available
+    text = ''
+    fault = mumps_fault()
+    if (.not. c_associated(fault)) return
+    call c_f_pointer(fault, letter, [huge(i)])
+    i = 1
+    do while (letter(i) /= c_null_char)
+      text = text//letter(i)
+      i = i + 1
+    end do
+  end function sparse_fault
 
   !> Begin a matrix of zeros: find its pattern from the equations of each element, and choose the order of elimination for
   !! all factorizations to come.

@@ -1,9 +1,9 @@
-!> A solver that the deck asks for and the program was built without.
+!> A solver that the deck asks for and that is not there.
 module epcont_report_solver
   use epcont_deck_card_kinds, only: card_param
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_linalg_sparse, only: sparse_available
+  use epcont_linalg_sparse, only: sparse_fault
   use epcont_model_controls, only: solver_sparse
   use epcont_model_model, only: model_type
   implicit none
@@ -16,10 +16,13 @@ contains
     type(deck_type), intent(in) :: deck
     type(model_type), intent(in) :: model
     type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: fault
 
-    if (model%controls%solver /= solver_sparse .or. sparse_available()) return
+    if (model%controls%solver /= solver_sparse) return
+    fault = sparse_fault()
+    if (len(fault) == 0) return
     call faults%add_error(deck%place(card_param, deck%parameter_row('SOLVER'), 2), &
-                          'PARAM SOLVER: this epcont was built without MUMPS, so there is no SPARSE', &
-                          'SOLVER AUTO, BAND or FRONTAL, or a build with libmumps-seq-dev installed')
+                          'PARAM SOLVER: there is no MUMPS, which SPARSE takes: '//fault, &
+                          'SOLVER AUTO, BAND or FRONTAL, or an epcont built, and run, where libmumps-seq-dev is installed')
   end subroutine report_solver_fault
 end module epcont_report_solver

@@ -42,8 +42,8 @@ def stack(bodies=4, across=28, young=STEEL[0], parameters=(), stress=None):
 
 
 def brittle(deck, *bodies):
-    """A soft layer below blocks of a stack: their stiffness cannot be factored."""
-    deck.material(2, 1e-20*STEEL[0], STEEL[1])
+    """A soft layer below blocks of a stack: rounding leaves nothing of their stiffness as a whole."""
+    deck.material(2, 1e-14*STEEL[0], STEEL[1])
     for k, (name, *fields) in enumerate(deck.cards):
         if name == "CQUAD4" and fields[2] // 100000 in bodies and fields[2] % 100000 < 29*4:
             deck.cards[k] = (name, fields[0], 2, *fields[2:])
@@ -82,9 +82,10 @@ class Bytes(Extremes):
     def test_many_bodies(self):
         self.same(stack(12, 24, parameters=[("SOLVER", "BAND")]))
 
-    def test_the_first_singular_body_is_named(self):
+    def test_singular_bodies(self):
+        """Whether such a body is factored or not is a matter of rounding: not of which thread comes first."""
         result = self.same(brittle(stack(), 2, 4), status=4)
-        self.assertIn("the stiffness of the body of GRID 200000 cannot be factored", result.message)
+        self.assertRegex(result.message, "the stiffness of the body of GRID [24]00000")
 
     def test_little_memory(self):
         """Where there is no memory for more threads, one does it all."""

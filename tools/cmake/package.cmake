@@ -11,7 +11,14 @@ install(TARGETS epcont RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(FILES "${man_page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES input/README.md input/coming_from.md DESTINATION "${CMAKE_INSTALL_DOCDIR}/input")   # where README.md says that they are
-install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright)   # where Debian looks for it
+# Where Debian looks for it; with the notices of what is linked statically.
+set(copyright LICENSE)
+if(is_static)
+  list(APPEND copyright tools/cmake/openblas.txt)
+endif()
+execute_process(COMMAND "${CMAKE_COMMAND}" -E cat ${copyright} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+  OUTPUT_FILE "${PROJECT_BINARY_DIR}/copyright" COMMAND_ERROR_IS_FATAL ANY)
+install(FILES "${PROJECT_BINARY_DIR}/copyright" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES input/hertz/hertz44.dat DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples")
 
 set(CPACK_GENERATOR DEB)
@@ -26,6 +33,11 @@ set(CPACK_PACKAGE_CONTACT "The epcont authors" CACHE STRING "Whom the package na
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)   # the libraries that it was linked with, by their packages
+if(has_mumps)   # the one that it loads: the program runs without it
+  get_filename_component(file "${MUMPS_LIBRARY}" REALPATH)
+  execute_process(COMMAND dpkg-query -S "${file}" OUTPUT_VARIABLE owner ERROR_QUIET)
+  string(REGEX MATCH "^[^:, ]+" CPACK_DEBIAN_PACKAGE_RECOMMENDS "${owner}")
+endif()
 # Folders that anyone may enter, whatever the umask of whoever packs.
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/tools/cmake/compress.cmake")
