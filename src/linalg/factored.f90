@@ -44,9 +44,9 @@ contains
     real(wp), contiguous, intent(inout) :: x(:, :)  !! [order, any]
   end subroutine solve_lower
 
-  !> Estimate of the condition in the 1-norm, from the factor: of the inverse a lower bound, seldom under a third of it. Two columns at
-  !! a time (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21 (2000) 1185) in two solves, since a factor takes longer to
-  !! read than to use: `dlacn2`, one column in each of five solves, takes two and a half times as long for the same figure; the
+  !> Estimate of the condition in the 1-norm, from the factor: of the inverse's norm a lower bound, seldom under a third of it. Two
+  !! columns at a time (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21 (2000) 1185) in two solves, since a factor takes longer
+  !! to read than to use: `dlacn2`, one column in each of five solves, takes two and a half times as long for the same figure; the
   !! alternating column alone takes three quarters, but its figure depends on the order of the equations (0.6 to 1 of this one).
   !! (Begun with a solution already known it would take one, but where that has ties or zeros the figure would be a matter of
   !! rounding: 0.4 to 1 of this one.)
