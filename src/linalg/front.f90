@@ -16,7 +16,7 @@ module epcont_linalg_front
   use epcont_linalg_dense, only: cholesky_inverse
   use epcont_linalg_factored, only: probes
   use epcont_linalg_front_layout, only: front_layout
-  use epcont_linalg_lapack, only: gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
+  use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
   implicit none
   private
   public :: front_matrix

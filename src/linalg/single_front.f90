@@ -6,7 +6,7 @@ module epcont_linalg_single_front
   use epcont_linalg_dense, only: cholesky_inverse
   use epcont_linalg_factored, only: probes
   use epcont_linalg_front_layout, only: front_layout
-  use epcont_linalg_lapack, only: gemv => sgemv, potrf => spotrf, syrk => ssyrk, trsm => strsm
+  use epcont_linalg_lapack, only: gemm => sgemm, gemv => sgemv, potrf => spotrf, syrk => ssyrk, trsm => strsm
   implicit none
   private
   public :: front_matrix
