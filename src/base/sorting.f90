@@ -22,14 +22,25 @@ contains
     integer, intent(in) :: key(:)
     integer, allocatable :: order(:)
     integer, allocatable :: merged(:)
+    integer, parameter :: run = 8   ! so many are put in order by insertion
     integer :: n, width, left, middle, right, i, j, k
 
     n = size(key)
     order = [(i, i=1, n)]
     if (n < 2) return
     if (all(key(2:) >= key(:n - 1))) return
+    do left = 1, n, run
+      do k = left + 1, min(left + run - 1, n)
+        do j = k, left + 1, -1
+          if (key(order(j - 1)) <= key(k)) exit
+          order(j) = order(j - 1)
+        end do
+        order(j) = k
+      end do
+    end do
+    if (n <= run) return
     allocate (merged(n))
-    width = 1
+    width = run
     do while (width < n)
       do left = 1, n, 2*width
         middle = min(left + width, n + 1)

@@ -9,7 +9,7 @@ module epcont_model_elements
                                     card_psolid
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_model_model, only: axisymmetric, model_type, most_nodes
+  use epcont_model_model, only: axisymmetric, model_type
   use epcont_model_reference, only: index_of_ids, resolve
   implicit none
   private
@@ -40,7 +40,8 @@ contains
 
     model%elements = sum(deck%card(element_cards)%count)
     allocate (model%element_id(model%elements), model%order(model%elements), model%section(model%elements))
-    allocate (model%connectivity(most_nodes, model%elements), source=0)
+    allocate (model%connectivity(maxval([(order_of(c), c=1, size(element_cards))], mask=deck%card(element_cards)%count > 0), &
+                                 model%elements), source=0)
     allocate (model%first_point(model%elements + 1))
     model%first_point(1) = 1
     shells = index_of_ids(deck, card_pshell)

@@ -1,9 +1,10 @@
 !> Nested dissection: an order of a body's nodes in which elimination fills little, and the fronts it falls into.
 !>
-!> A set of nodes is halved at the median of the coordinate along which it spreads most. The nodes of one half that elements
-!> join to the other are its separator: with them out of the way the halves know nothing of each other, so each is
+!> A set of nodes is halved at the median of the coordinate across which the fewest elements lie. The nodes of one half that
+!> elements join to the other are its separator: with them out of the way the halves know nothing of each other, so each is
 !> eliminated by itself, and in the same manner, before the separator (George, SIAM J. Numer. Anal. 10 (1973) 345).
 module epcont_plan_dissection
+  use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: halve
   implicit none
@@ -15,15 +16,26 @@ module epcont_plan_dissection
     integer, allocatable :: first(:)   !! the first of each front in it, and one behind the last [fronts + 1]
   end type dissection
 
-  !> Sets of so few nodes are not halved. From 16 to 32 it matters little: fewer operations against larger matrices.
+  !> Sets of so few nodes are not halved. From 12 to 24 it matters little: fewer operations against larger matrices.
   integer, parameter :: few = 24
+  !> Sets of more are halved where the fewest elements are cut, others along the coordinate of the plane that spreads most: which
+  !! elements are cut takes longer to find, and is soon repaid only where separators are long.
+  integer, parameter :: many = 100
+  !> A half may not have more of its set than this.
+  real(wp), parameter :: largest_half = 0.6_wp
 
-  !> Where a node is, seen from the set that is being halved. Nodes that have neighbours across are at the edge of their half.
+  !> Coordinates along which sets may be halved.
+  integer, parameter :: axes = 3
+
+  !> Where a node is, seen from the set that is being halved. At the edge of their half are nodes that have neighbours across; of
+  !! these, those of the separator then belong to neither half.
   integer, parameter :: outside = 0, left = 1, right = 2, both = 3, edge = 4
+  !> The neighbours that a node has in a half, where it is not one.
+  integer, parameter :: none = 0, several = -1
 
   type :: workspace
     integer, allocatable :: node(:), element(:)   !! those of a set stand together
-    integer, allocatable :: where(:)              !! one of its kind above [all nodes]
+    integer, allocatable :: side(:)               !! one of its kind above, and for none [0:all nodes]
     integer, allocatable :: order(:), first(:)    !! what is found so far
     integer :: ordered = 0, fronts = 0
   end type workspace
@@ -31,129 +43,218 @@ module epcont_plan_dissection
 contains
 
   !> Dissect a body. The nodes that are wanted last are a front of their own, the last.
-  pure function dissect(point, member, nodes, wanted_last) result(found)
-    real(wp), intent(in) :: point(:, :)        !! of all nodes [2, all nodes]
-    integer, intent(in) :: member(:, :)        !! nodes of each of the body's elements, zeros behind [any, elements]
+  pure function dissect(coordinate, member, around, elements, nodes, wanted_last) result(found)
+    real(wp), intent(in) :: coordinate(:, :)   !! x, y and one more, along which nodes are parted [3, all nodes]
+    integer, intent(in) :: member(:, :)        !! nodes of each element, zeros behind [any, all elements]
+    type(incidence), intent(in) :: around      !! elements at each node
+    integer, intent(in) :: elements(:)         !! of the body
     integer, intent(in) :: nodes(:)            !! of the body
     logical, intent(in) :: wanted_last(:)      !! [all nodes]
     type(dissection) :: found
     type(workspace) :: work
-    integer :: e
 
     work%node = pack(nodes, .not. wanted_last(nodes))
-    work%element = [(e, e=1, size(member, 2))]
-    allocate (work%where(size(point, 2)), source=outside)
+    work%element = elements
+    allocate (work%side(0:size(wanted_last)), source=outside)
     allocate (work%order(size(nodes)), work%first(size(nodes) + 1))
-    call dissect_set(point, member, 1, size(work%node), 1, size(work%element), work)
+    call dissect_set(coordinate, member, around, 1, size(work%node), 1, size(work%element), work)
     call add_front(pack(nodes, wanted_last(nodes)), work)
     found%node = work%order
     found%first = [work%first(:work%fronts), size(nodes) + 1]
   end function dissect
 
-  pure recursive subroutine dissect_set(point, member, first, last, first_element, last_element, work)
-    real(wp), intent(in) :: point(:, :)
+  pure recursive subroutine dissect_set(coordinate, member, around, first, last, first_element, last_element, work)
+    real(wp), intent(in) :: coordinate(:, :)
     integer, intent(in) :: member(:, :)
+    type(incidence), intent(in) :: around
     integer, intent(in) :: first, last                   !! the set in the list of nodes
     integer, intent(in) :: first_element, last_element   !! and its elements, all that have a node in it
     type(workspace), intent(inout) :: work
     integer, allocatable :: separator(:)
-    integer :: middle, middle_element, end_element
+    integer :: axis, middle, middle_element, end_element
 
     if (last - first + 1 <= few) then
       call add_front(work%node(first:last), work)
       return
     end if
-    call halve_set(point, first, last, work)
-    call find_separator(member, first, last, work%element(first_element:last_element), work)
+    associate (node => work%node(first:last), element => work%element(first_element:last_element))
+      if (size(node) > many) then
+        call find_least_cut(coordinate, member, node, element, work%side, axis)
+      else
+        axis = maxloc([spread_along(coordinate(1, :), node), spread_along(coordinate(2, :), node)], dim=1)
+      end if
+      call halve(coordinate(axis, node), node)
+      work%side(node(:size(node)/2)) = left
+      work%side(node(size(node)/2 + 1:)) = right
+      call find_separator(member, around, node, element, work%side)
+    end associate
     call part_elements(member, first_element, last_element, middle_element, end_element, work)
     call part_nodes(first, last, middle, separator, work)
-    call dissect_set(point, member, first, middle, first_element, middle_element, work)
-    call dissect_set(point, member, middle + 1, last - size(separator), middle_element + 1, end_element, work)
+    call dissect_set(coordinate, member, around, first, middle, first_element, middle_element, work)
+    call dissect_set(coordinate, member, around, middle + 1, last - size(separator), middle_element + 1, end_element, work)
     call add_front(separator, work)
   end subroutine dissect_set
 
-  !> Halve a set at the median of the coordinate along which it is spread most.
-  pure subroutine halve_set(point, first, last, work)
-    real(wp), intent(in) :: point(:, :)
-    integer, intent(in) :: first, last
-    type(workspace), intent(inout) :: work
-    integer :: axis, middle
-
-    axis = maxloc([spread_along(point(1, :), work%node(first:last)), spread_along(point(2, :), work%node(first:last))], dim=1)
-    call halve(point(axis, work%node(first:last)), work%node(first:last))
-    middle = first - 1 + (last - first + 1)/2
-    work%where(work%node(first:middle)) = left
-    work%where(work%node(middle + 1:last)) = right
-  end subroutine halve_set
-
-  !> Mark the separator: the shorter of the edges that the halves have where elements join them.
-  pure subroutine find_separator(member, first, last, element, work)
+  !> The coordinate across whose median, that of some of the nodes, the fewest elements lie.
+  pure subroutine find_least_cut(coordinate, member, node, element, side, axis)
+    real(wp), intent(in) :: coordinate(:, :)
     integer, intent(in) :: member(:, :)
-    integer, intent(in) :: first, last
-    integer, intent(in) :: element(:)
-    type(workspace), intent(inout) :: work
-    integer :: at_edge(left:right), e, i, longer
+    integer, intent(in) :: node(:), element(:)   !! of the set
+    integer, intent(inout) :: side(0:)            !! two bits for each coordinate: on which side of its median
+    integer, intent(out) :: axis
+    integer, parameter :: sample = 64
+    real(wp) :: at(axes)
+    integer :: cut(axes), e, i, k, sides
+    integer, allocatable :: some(:)
 
-    at_edge = 0
+    do k = 1, axes
+      some = node(::size(node)/sample + 1)
+      call halve(coordinate(k, some), some)
+      at(k) = maxval(coordinate(k, some(:size(some)/2)))
+    end do
+    do i = 1, size(node)
+      sides = outside
+      do k = 1, axes
+        sides = ior(sides, shiftl(merge(left, right, coordinate(k, node(i)) <= at(k)), 2*(k - 1)))
+      end do
+      side(node(i)) = sides
+    end do
+    cut = 0
     do e = 1, size(element)
-      if (halves_of(member(:, element(e)), work%where) /= both) cycle
+      sides = sides_of(member(:, element(e)), side)
+      do k = 1, axes
+        if (ibits(sides, 2*(k - 1), 2) == both) cut(k) = cut(k) + 1
+      end do
+    end do
+    axis = minloc(cut, dim=1)
+  end subroutine find_least_cut
+
+  !> Mark the separator: the shorter of the edges that the halves have where elements join them, moved to where it is shorter.
+  pure subroutine find_separator(member, around, node, element, side)
+    integer, intent(in) :: member(:, :)
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: node(:), element(:)   !! of the set
+    integer, intent(inout) :: side(0:)
+    integer :: at_edge(size(node)), edges(left:right), nodes(left:right)
+    integer :: e, i, n, shorter
+
+    n = 0
+    edges = 0
+    do e = 1, size(element)
+      if (iand(sides_of(member(:, element(e)), side), both) /= both) cycle
       do i = 1, size(member, 1)
         if (member(i, element(e)) == 0) exit
-        associate (where => work%where(member(i, element(e))))
-          if (where /= left .and. where /= right) cycle
-          at_edge(where) = at_edge(where) + 1
-          where = where + edge
+        associate (here => side(member(i, element(e))))
+          if (here /= left .and. here /= right) cycle
+          edges(here) = edges(here) + 1
+          here = here + edge
+        end associate
+        n = n + 1
+        at_edge(n) = member(i, element(e))
+      end do
+    end do
+    shorter = merge(left, right, edges(left) <= edges(right))
+    nodes = [size(node)/2, size(node) - size(node)/2]
+    nodes(shorter) = nodes(shorter) - edges(shorter)
+    do i = 1, n
+      associate (here => side(at_edge(i)))
+        here = merge(edge, here - edge, here == shorter + edge)
+      end associate
+    end do
+    call shift_separator(member, around, pack(at_edge(:n), side(at_edge(:n)) == edge), nodes, side)
+  end subroutine find_separator
+
+  !> Let nodes of the separator go to a half: if they have no neighbours in the other, or only one, which takes their place, and
+  !! the halves become more alike. (Liu, ACM Trans. Math. Softw. 15 (1989) 198, moves several at once.)
+  pure subroutine shift_separator(member, around, separator, nodes, side)
+    integer, intent(in) :: member(:, :)
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: separator(:)
+    integer, intent(inout) :: nodes(left:right)      !! in each half
+    integer, intent(inout) :: side(0:)
+    integer :: beside(left:right), half, i, length, other
+    integer :: list(sum(nodes) + 2*size(separator))
+
+    length = size(separator)
+    list(:length) = separator
+    i = 0
+    do while (i < length)
+      i = i + 1
+      beside = neighbours(member, around, list(i), side)
+      half = merge(left, right, nodes(left) < nodes(right))
+      other = both - half
+      if (beside(other) /= none .and. beside(half) == none .and. nodes(other) < largest_half*sum(nodes)) then
+        half = other
+        other = both - half
+      end if
+      if (beside(other) == several) cycle
+      if (beside(other) /= none) then
+        if (nodes(half) + 1 >= nodes(other)) cycle
+        length = length + 1
+        list(length) = beside(other)
+        side(beside(other)) = edge
+        nodes(other) = nodes(other) - 1
+      end if
+      side(list(i)) = half
+      nodes(half) = nodes(half) + 1
+    end do
+  end subroutine shift_separator
+
+  !> The neighbour of a node in each half; or none, or several.
+  pure function neighbours(member, around, node, side) result(beside)
+    integer, intent(in) :: member(:, :)
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: node
+    integer, intent(in) :: side(0:)
+    integer :: beside(left:right)
+    integer :: i, j
+
+    beside = none
+    do j = around%start(node), around%start(node + 1) - 1
+      do i = 1, size(member, 1)
+        associate (other => member(i, around%group(j)))
+          if (other == 0) exit
+          if (side(other) /= left .and. side(other) /= right) cycle
+          associate (known => beside(side(other)))
+            if (known == none) then
+              known = other
+            else if (known /= other) then
+              known = several
+            end if
+          end associate
         end associate
       end do
     end do
-    longer = merge(right, left, at_edge(left) <= at_edge(right))
-    do i = first, last
-      associate (where => work%where(work%node(i)))
-        if (where == longer + edge) where = longer
-      end associate
-    end do
-  end subroutine find_separator
+  end function neighbours
 
-  !> Which of the halves an element has nodes in.
-  pure integer function halves_of(node, where) result(halves)
-    integer, intent(in) :: node(:), where(:)
+  !> Where an element has nodes, all bits that say so.
+  pure integer function sides_of(node, side) result(sides)
+    integer, intent(in) :: node(:), side(0:)
     integer :: i
 
-    halves = outside
+    sides = outside
     do i = 1, size(node)
-      if (node(i) == 0) exit
-      halves = ior(halves, where(node(i)))
+      sides = ior(sides, side(node(i)))
     end do
-    halves = iand(halves, both)
-  end function halves_of
+  end function sides_of
 
-  !> Put the elements of the left half before those of the right. Those with nodes of both halves have those of one at its edge,
-  !! the separator: they belong to the other.
+  !> Put the elements of the left half before those of the right. What has nodes of the separator alone is done with.
   pure subroutine part_elements(member, first, last, middle, end_of_right, work)
     integer, intent(in) :: member(:, :)
     integer, intent(in) :: first, last               !! in the list of elements
     integer, intent(out) :: middle, end_of_right     !! the last of the left half, and of the right
     type(workspace), intent(inout) :: work
-    integer :: of_right(last - first + 1)
-    integer :: e, i, inside, n
+    integer :: of_right(last - first + 2)
+    integer :: e, n, sides
 
     middle = first - 1
     n = 0
     do e = first, last
-      associate (node => member(:, work%element(e)))
-        inside = outside
-        do i = 1, size(node)
-          if (node(i) == 0) exit
-          if (work%where(node(i)) < edge) inside = ior(inside, work%where(node(i)))
-        end do
-      end associate
-      if (inside == left) then
-        middle = middle + 1
-        work%element(middle) = work%element(e)
-      else if (inside == right) then
-        n = n + 1
-        of_right(n) = work%element(e)
-      end if
+      sides = iand(sides_of(member(:, work%element(e)), work%side), both)
+      of_right(n + 1) = work%element(e)
+      work%element(middle + 1) = work%element(e)
+      middle = middle + merge(1, 0, sides == left)
+      n = n + merge(1, 0, sides == right)
     end do
     end_of_right = middle + n
     work%element(middle + 1:end_of_right) = of_right(:n)
@@ -168,12 +269,12 @@ contains
     integer, allocatable :: of_right(:)
 
     associate (node => work%node(first:last))
-      separator = pack(node, work%where(node) > edge)
-      of_right = pack(node, work%where(node) == right)
+      separator = pack(node, work%side(node) == edge)
+      of_right = pack(node, work%side(node) == right)
       middle = last - size(separator) - size(of_right)
-      node(:middle - first + 1) = pack(node, work%where(node) == left)
+      node(:middle - first + 1) = pack(node, work%side(node) == left)
       node(middle - first + 2:) = [of_right, separator]
-      work%where(node) = outside
+      work%side(node) = outside
     end associate
   end subroutine part_nodes
 

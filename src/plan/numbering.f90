@@ -11,9 +11,9 @@ module epcont_plan_numbering
   private
   public :: body_numbering, element_numbers, numbering_type, number_equations
 
-  !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact bodies (13 000 nodes of two
+  !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact bodies (7 000 nodes of two
   !! cylinders) and on long ones, on elastic ones and on those that yield.
-  real(wp), parameter, public :: many_operations = 6.0e8_wp
+  real(wp), parameter, public :: many_operations = 2.0e8_wp
 
   !> One body's system of equations.
   type :: body_numbering
@@ -31,6 +31,12 @@ module epcont_plan_numbering
     integer :: half_bandwidth = 0
     integer :: border = 0                  !! leaders of ties that nothing holds, kept out of the band
   end type body_numbering
+
+  !> Nodes in levels: each level has the neighbours of the one before.
+  type :: level_order
+    integer, allocatable :: node(:)
+    integer :: levels = 0
+  end type level_order
 
   type :: numbering_type
     !> Equation of each freedom in its body: positive in the band, negative in the border, 0 held. [2, nodes]
@@ -96,18 +102,31 @@ contains
     end if
   end subroutine choose_numbers
 
-  !> Number a body for nested fronts, the contact nodes in the last of them.
+  !> Number a body for nested fronts, the contact nodes in the last of them. It is parted along x, along y and along the distance
+  !! from the contact, in elements: there they are the smallest, mostly, and what lies around it has the shortest edge.
   pure subroutine number_fronts(model, nodes, at_contact, equation, body)
     type(model_type), intent(in) :: model
     integer, intent(in) :: nodes(:)
     logical, intent(in) :: at_contact(:)
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
+    type(level_order) :: outward
     type(dissection) :: found
+    real(wp), allocatable :: coordinate(:, :)
     integer, allocatable :: first(:)
-    integer :: c, p
+    integer :: c, i, p
 
-    found = dissect(model%x, model%connectivity(:, body%element), nodes, at_contact)
+    if (any(at_contact(nodes))) then
+      outward = sweep(model, pack(nodes, at_contact(nodes)), nodes)
+    else
+      outward = sweep(model, nodes(:1), nodes)
+    end if
+    allocate (coordinate(3, model%nodes))
+    do i = 1, size(nodes)
+      coordinate(:2, nodes(i)) = model%x(:, nodes(i))
+      coordinate(3, outward%node(i)) = i
+    end do
+    found = dissect(coordinate, model%connectivity, model%around, body%element, nodes, at_contact)
     call number_nodes(model, at_contact, found%node, equation, body)
     if (body%equations == 0) then
       call find_reach(model, equation, body)
@@ -159,15 +178,20 @@ contains
     integer, intent(inout) :: equation(:, :)
     type(body_numbering), intent(inout) :: body
     type(body_numbering) :: plain
-    integer, allocatable :: numbers(:, :), order(:)
+    type(level_order) :: order
+    integer, allocatable :: numbers(:, :)
 
     order = sweep(model, nodes(:1), nodes)
-    order = sweep(model, order(size(order):), nodes)
-    order = sweep(model, order(size(order):), nodes)
+    if (model%controls%solver == solver_auto .and. least_operations(order) > many_operations) then
+      call number_fronts(model, nodes, at_contact, equation, body)
+      return
+    end if
+    order = sweep(model, order%node(size(nodes):), nodes)
+    order = sweep(model, order%node(size(nodes):), nodes)
     ! The contact comes late in the reversed order, and with it what yields: what stands before is factored once.
-    if (mean_place(order, at_contact) > 0.5_wp) order = sweep(model, order(size(order):), nodes)
+    if (mean_place(order%node, at_contact) > 0.5_wp) order = sweep(model, order%node(size(nodes):), nodes)
     plain = body
-    call number_nodes(model, at_contact, order(size(order):1:-1), equation, plain)
+    call number_nodes(model, at_contact, order%node(size(nodes):1:-1), equation, plain)
     call find_reach(model, equation, plain)
     plain%contact_last = .false.
     plain%operations = panel_operations(plain%reach)
@@ -181,14 +205,21 @@ contains
     plain%operations = plain%operations + gram_operations(plain%reach, begins(equation, pack(plain%node, at_contact(plain%node))))
     numbers = equation(:, nodes)
     ! The roots stand in the order of the sweep from the far end, which runs along the contact.
-    order = sweep(model, pack(order, at_contact(order)), nodes)
-    call number_nodes(model, at_contact, order(size(order):1:-1), equation, body)
+    order = sweep(model, pack(order%node, at_contact(order%node)), nodes)
+    call number_nodes(model, at_contact, order%node(size(nodes):1:-1), equation, body)
     call find_reach(model, equation, body)
     body%operations = panel_operations(body%reach) + real(body%contact_equations, wp)**3
     if (body%operations <= plain%operations) return
     equation(:, nodes) = numbers
     body = plain
   end subroutine number_band
+
+  !> Operations of a band that is as narrow as it can be for a body so deep: all levels of the same width.
+  pure real(wp) function least_operations(order)
+    type(level_order), intent(in) :: order
+
+    least_operations = 2.0_wp*size(order%node)*(2.0_wp*size(order%node)/max(1, order%levels))**2
+  end function least_operations
 
   !> Mean place of the marked nodes in an order, from 0 to 1; 0 where there is none.
   pure real(wp) function mean_place(order, marked)
@@ -212,20 +243,20 @@ contains
 
   !> Breadth-first order from `roots`, at each node its new neighbours by their number of elements. Nodes that
   !! elements do not join to the roots (an RBE2 does) start sweeps of their own.
-  pure function sweep(model, roots, nodes) result(order)
+  pure type(level_order) function sweep(model, roots, nodes) result(order)
     type(model_type), intent(in) :: model
     integer, intent(in) :: roots(:), nodes(:)
-    integer, allocatable :: order(:)
     integer, allocatable :: found(:)
     logical, allocatable :: seen(:)
-    integer :: at, filled, first, k, n, next
+    integer :: at, end_of_level, filled, first, k, n, next
 
-    allocate (order(size(nodes)), found(0))
+    allocate (order%node(size(nodes)), found(0))
     allocate (seen(size(model%body)), source=.false.)
     filled = size(roots)
-    order(:filled) = roots
+    order%node(:filled) = roots
     seen(roots) = .true.
     at = 0
+    end_of_level = 0
     next = 1
     do while (at < size(nodes))
       at = at + 1
@@ -234,22 +265,25 @@ contains
           next = next + 1
         end do
         filled = at
-        order(at) = nodes(next)
+        order%node(at) = nodes(next)
         seen(nodes(next)) = .true.
       end if
-      n = order(at)
+      if (at > end_of_level) then
+        order%levels = order%levels + 1
+        end_of_level = filled
+      end if
+      n = order%node(at)
       first = filled + 1
       do k = model%around%start(n), model%around%start(n + 1) - 1
         associate (e => model%around%group(k))
-          call add_new(model%connectivity(:model%order(e), e), seen, order, filled)
+          call add_new(model%connectivity(:model%order(e), e), seen, order%node, filled)
         end associate
       end do
       if (filled > first) then
-        found = order(first:filled)
-        order(first:filled) = found(sorted_order(model%around%start(found + 1) - model%around%start(found)))
+        found = order%node(first:filled)
+        order%node(first:filled) = found(sorted_order(model%around%start(found + 1) - model%around%start(found)))
       end if
     end do
-
   end function sweep
 
   !> Put the nodes not seen yet at the end of the order.
