@@ -57,16 +57,16 @@ contains
   end function new_bodies
 
   !> Assemble and factor one body; if it was before, as far as elements have changed. Nothing of other bodies is touched.
-  subroutine factor_body(self, model, operator, matrix, changed, numbering, b)
+  subroutine factor_body(self, model, operator, law, changed, numbering, b)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
-    real(wp), contiguous, intent(in) :: matrix(:, :, :)   !! of the material at each point [stress] [4, 4, points]
+    type(linear_law), intent(in) :: law
     logical, intent(in) :: changed(:)         !! since the body was factored last [elements]
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
 
-    call assemble_body(model, operator, matrix, changed, numbering%equation, numbering%body(b), self%body(b))
+    call assemble_body(model, operator, law, changed, numbering%equation, numbering%body(b), self%body(b))
     call self%body(b)%factor()
   end subroutine factor_body
 
@@ -113,11 +113,11 @@ contains
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is not as stiff as it
   !! was when it was assembled first.
-  pure subroutine estimate_condition(self, model, operator, matrix, numbering, condition)
+  pure subroutine estimate_condition(self, model, operator, law, numbering, condition)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
-    real(wp), allocatable, intent(in) :: matrix(:, :, :)   !! that the bodies which may yield were factored with [4, 4, points]
+    type(linear_law), allocatable, intent(in) :: law   !! that the bodies which may yield were factored with
     type(numbering_type), intent(in) :: numbering
     real(wp), intent(out) :: condition
     integer :: b
@@ -125,8 +125,8 @@ contains
     condition = 1.0_wp
     do b = 1, size(self%body)
       associate (body => numbering%body(b), stiffness => self%body(b))
-        if (body%can_yield .and. allocated(matrix)) &
-          stiffness%matrix%norm = norm_of(model, operator, matrix, numbering%equation, body, stiffness)
+        if (body%can_yield .and. allocated(law)) &
+          stiffness%matrix%norm = norm_of(model, operator, law, numbering%equation, body, stiffness)
         condition = max(condition, stiffness%matrix%condition())
       end associate
     end do

@@ -14,6 +14,7 @@ module epcont_assembly_stiffness
   use epcont_linalg_single_front, only: single_front_matrix => front_matrix
   use epcont_linalg_single_panel, only: single_panel_matrix => panel_matrix
   use epcont_linalg_sparse, only: sparse_matrix
+  use epcont_material_linear_law, only: linear_law
   use epcont_model_controls, only: solver_frontal, solver_sparse
   use epcont_model_model, only: model_type, most_nodes
   use epcont_plan_numbering, only: body_numbering, element_numbers
@@ -38,12 +39,12 @@ module epcont_assembly_stiffness
 
 contains
 
-  !> Assemble the elements of a body, and factor what is complete on the way; `matrix` is that of the material at each point
-  !! [4, 4, points]. Where only some elements have changed since it was factored, nothing is touched that does not depend on them.
-  subroutine assemble_body(model, operator, matrix, changed, equation, body, stiffness)
+  !> Assemble the elements of a body, and factor what is complete on the way. Where only some elements have changed since it was
+  !! factored, nothing is touched that does not depend on them.
+  subroutine assemble_body(model, operator, law, changed, equation, body, stiffness)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
-    real(wp), contiguous, intent(in) :: matrix(:, :, :)
+    type(linear_law), intent(in) :: law
     logical, intent(in) :: changed(:)        !! [elements]
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
@@ -61,7 +62,7 @@ contains
       call stiffness%matrix%clear(stale)
     else
       call begin(model, equation, body, stiffness%single, stiffness%matrix)
-      if (stiffness%single) stiffness%unit = unit_of(model, operator, matrix, body)
+      if (stiffness%single) stiffness%unit = unit_of(model, operator, law, body)
     end if
     allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
     if (allocated(stiffness%coupling)) deallocate (stiffness%coupling, stiffness%schur)
@@ -74,7 +75,7 @@ contains
           number(2*i - 1:2*i) = equation(:, model%connectivity(i, element))
         end do
         if (body%border == 0 .and. .not. any_of(stale, number(:n))) cycle
-        call operator%element_stiffness(model, element, matrix, n, k)
+        call operator%element_stiffness(model, element, law, n, k)
         if (stiffness%single) k(:n**2) = k(:n**2)/stiffness%unit
         call stiffness%matrix%add(n, number, k)
         if (body%border > 0) call add_to_border(n, number, k, stiffness)
@@ -85,10 +86,10 @@ contains
   end subroutine assemble_body
 
   !> A bound of the 1-norm of a body's stiffness as it is factored, from its elements.
-  pure real(wp) function norm_of(model, operator, matrix, equation, body, stiffness) result(norm)
+  pure real(wp) function norm_of(model, operator, law, equation, body, stiffness) result(norm)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
-    real(wp), contiguous, intent(in) :: matrix(:, :, :)   !! as it was assembled with [4, 4, points]
+    type(linear_law), intent(in) :: law       !! as it was assembled with
     integer, intent(in) :: equation(:, :)
     type(body_numbering), intent(in) :: body
     type(body_stiffness), intent(in) :: stiffness
@@ -100,7 +101,7 @@ contains
     do e = 1, size(body%element)
       associate (element => body%element(e))
         n = 2*model%order(element)
-        call operator%element_stiffness(model, element, matrix, n, k)
+        call operator%element_stiffness(model, element, law, n, k)
         call add_magnitudes(n, reshape(equation(:, model%connectivity(:n/2, element)), [n]), k, row_sum)
       end associate
     end do
@@ -126,10 +127,10 @@ contains
   end subroutine add_magnitudes
 
   !> A power of four near the largest stiffness of a body's elements [force/length].
-  pure real(wp) function unit_of(model, operator, matrix, body)
+  pure real(wp) function unit_of(model, operator, law, body)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
-    real(wp), intent(in) :: matrix(:, :, :)   !! [4, 4, points]
+    type(linear_law), intent(in) :: law
     type(body_numbering), intent(in) :: body
     real(wp) :: largest
     integer :: e, p
@@ -138,7 +139,7 @@ contains
     do e = 1, size(body%element)
       do p = model%first_point(body%element(e)), model%first_point(body%element(e) + 1) - 1
         associate (b => operator%b(:, operator%column(p) + 1:operator%column(p) + 2*model%order(body%element(e))))
-          largest = max(largest, operator%volume(p)*maxval(abs(matrix(:, :, p)))*maxval(abs(b))**2)
+          largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p))))*maxval(abs(b))**2)
         end associate
       end do
     end do

@@ -3,6 +3,7 @@
 module epcont_assembly_strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_element, only: element_point, evaluate_points, most_points
+  use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type, most_nodes
   implicit none
   private
@@ -89,18 +90,18 @@ contains
   end function nodal_forces
 
   !> Stiffness of an element: B'D B times the volume of each point [force/length].
-  pure subroutine element_stiffness(self, model, element, matrix, n, k)
+  pure subroutine element_stiffness(self, model, element, law, n, k)
     class(strain_operator), intent(in) :: self
     type(model_type), intent(in) :: model
     integer, intent(in) :: element
-    real(wp), contiguous, intent(in) :: matrix(:, :, :)   !! of the material at each point [stress] [4, 4, points]
+    type(linear_law), intent(in) :: law
     integer, intent(in) :: n                     !! freedoms of the element
     real(wp), intent(out) :: k(n, n)
     integer :: i, j, p
 
     k = 0.0_wp
     do p = model%first_point(element), model%first_point(element + 1) - 1
-      call add_point(n, self%b(1, self%column(p) + 1), self%volume(p), matrix(:, :, p), k)
+      call add_point(n, self%b(1, self%column(p) + 1), self%volume(p), law%matrix(1, 1, law%matrix_of(p)), k)
     end do
     do j = 1, n
       do i = j + 1, n

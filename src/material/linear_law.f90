@@ -1,4 +1,4 @@
-!> Stress as a linear function of strain, one for each integration point: what a stiffness matrix can be made of.
+!> Stress as a linear function of strain at each integration point: what a stiffness matrix can be made of.
 module epcont_material_linear_law
   use epcont_base_kinds, only: wp
   use epcont_material_curve, only: material_type
@@ -10,7 +10,8 @@ module epcont_material_linear_law
 
   !> stress = matrix strain + initial_stress; components xx, yy, zz, xy (engineering shear strain).
   type :: linear_law
-    real(wp), allocatable :: matrix(:, :, :)        !! [stress] [4, 4, points]
+    real(wp), allocatable :: matrix(:, :, :)        !! [stress] [4, 4, any]
+    integer, allocatable :: matrix_of(:)            !! each point: its own where the material yields, else that of its section [points]
     real(wp), allocatable :: initial_stress(:, :)   !! [stress] [4, points]
   contains
     procedure :: stress
@@ -24,14 +25,21 @@ contains
     type(model_type), intent(in) :: model
     type(material_type), intent(in) :: material(:)   !! of each section
     type(linear_law) :: law
-    integer :: p
+    integer :: last, p, s
 
-    allocate (law%matrix(4, 4, model%points))
     allocate (law%initial_stress(4, model%points), source=0.0_wp)
+    law%matrix_of = model%section(model%point_element)
+    allocate (law%matrix(4, 4, size(material) + count(material(law%matrix_of)%yields)))
+    do s = 1, size(material)
+      law%matrix(:, :, s) = isotropic_matrix(material(s)%bulk, material(s)%shear, material(s)%sheet)
+    end do
+    last = size(material)
     do p = 1, model%points
-      associate (m => material(model%section(model%point_element(p))))
-        law%matrix(:, :, p) = isotropic_matrix(m%bulk, m%shear, m%sheet)
-      end associate
+      s = law%matrix_of(p)
+      if (.not. material(s)%yields) cycle
+      last = last + 1
+      law%matrix(:, :, last) = law%matrix(:, :, s)
+      law%matrix_of(p) = last
     end do
   end function elastic_law
 
@@ -53,7 +61,7 @@ contains
 
     allocate (increment, mold=strain)
     do p = 1, size(strain, 2)
-      increment(:, p) = matmul(self%matrix(:, :, p), strain(:, p))
+      increment(:, p) = matmul(self%matrix(:, :, self%matrix_of(p)), strain(:, p))
     end do
   end function increment
 end module epcont_material_linear_law

@@ -17,7 +17,7 @@ module epcont_plan_dissection
   end type dissection
 
   !> Sets of so few nodes are not halved. From 12 to 24 it matters little: fewer operations against larger matrices.
-  integer, parameter :: few = 24
+  integer, parameter :: few = 16
   !> Sets of more are halved where the fewest elements are cut, others along the coordinate of the plane that spreads most: which
   !! elements are cut takes longer to find, and is soon repaid only where separators are long.
   integer, parameter :: many = 100

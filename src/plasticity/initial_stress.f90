@@ -34,7 +34,7 @@ contains
         response = respond(m, strain(:, p))
         law%initial_stress(:, p) = 0.0_wp
         if (response%curve%yielded) &
-          law%initial_stress(:, p) = response%stress - matmul(law%matrix(:, :, p), strain(:, p))
+          law%initial_stress(:, p) = response%stress - matmul(law%matrix(:, :, law%matrix_of(p)), strain(:, p))
       end associate
     end do
   end subroutine linearise

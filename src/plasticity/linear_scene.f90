@@ -30,7 +30,7 @@ module epcont_plasticity_linear_scene
   type :: linear_scene
     type(strain_operator), allocatable :: operator
     type(factored_bodies) :: bodies
-    real(wp), allocatable :: matrix(:, :, :)         !! that the bodies were factored with, where any yields [4, 4, points]
+    type(linear_law), allocatable :: law             !! that the bodies were factored with, where any yields
     type(contact_problem) :: problem
     logical, allocatable :: yields(:)                !! the body has elements that can yield [bodies]
     real(wp), allocatable :: lasting_flexibility(:, :)  !! of the bodies that cannot, factored once [pairs, pairs]
@@ -86,7 +86,7 @@ contains
 
     first = .not. allocated(self%lasting_flexibility)
     changed = self%changed_elements(model, law)
-    if (any(self%yields)) self%matrix = law%matrix
+    if (any(self%yields)) self%law = law
     chosen = self%yields .or. first
     call watch%lap(stage_stiffness)
     call self%factor_bodies(model, numbering, law, changed, chosen, singular)
@@ -122,7 +122,7 @@ contains
     threads = threads_for(operations, self%threads)
     !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
     do i = 1, size(body)
-      call self%bodies%factor_body(model, self%operator, law%matrix, changed, numbering, body(i))
+      call self%bodies%factor_body(model, self%operator, law, changed, numbering, body(i))
     end do
     !$omp end parallel do
     self%bodies%factorizations = self%bodies%factorizations + count(chosen .and. numbering%body%equations > 0)
@@ -161,10 +161,12 @@ contains
     logical, allocatable :: changed(:)
     integer :: p
 
-    allocate (changed(model%elements), source=.not. allocated(self%matrix))
-    if (.not. allocated(self%matrix)) return
+    allocate (changed(model%elements), source=.not. allocated(self%law))
+    if (.not. allocated(self%law)) return
     do p = 1, model%points
-      if (any(law%matrix(:, :, p) /= self%matrix(:, :, p))) changed(model%point_element(p)) = .true.
+      associate (i => law%matrix_of(p))
+        if (any(law%matrix(:, :, i) /= self%law%matrix(:, :, i))) changed(model%point_element(p)) = .true.
+      end associate
     end do
   end function changed_elements
 
@@ -361,7 +363,7 @@ contains
     type(numbering_type), intent(in) :: numbering
     real(wp), intent(out) :: condition
 
-    call self%bodies%estimate_condition(model, self%operator, self%matrix, numbering, condition)
+    call self%bodies%estimate_condition(model, self%operator, self%law, numbering, condition)
   end subroutine estimate_condition
 
   !> Add the rigid motions to the displacements.

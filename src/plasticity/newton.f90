@@ -81,14 +81,14 @@ contains
     integer :: p
 
     do p = 1, model%points
-      associate (m => material(model%section(model%point_element(p))))
+      associate (m => material(model%section(model%point_element(p))), matrix => law%matrix(:, :, law%matrix_of(p)))
         if (.not. m%yields) cycle
         response = respond(m, strain(:, p))
         law%initial_stress(:, p) = 0.0_wp
-        law%matrix(:, :, p) = secant_matrix(m, response)
+        matrix = secant_matrix(m, response)
         if (.not. response%curve%yielded) cycle
-        law%matrix(:, :, p) = blend*law%matrix(:, :, p) + (1.0_wp - blend)*tangent_matrix(m, response)
-        law%initial_stress(:, p) = response%stress - matmul(law%matrix(:, :, p), strain(:, p))
+        matrix = blend*matrix + (1.0_wp - blend)*tangent_matrix(m, response)
+        law%initial_stress(:, p) = response%stress - matmul(matrix, strain(:, p))
       end associate
     end do
   end subroutine set_law

@@ -39,7 +39,7 @@ contains
 
     do p = 1, model%points
       associate (m => material(model%section(model%point_element(p))))
-        if (m%yields) law%matrix(:, :, p) = secant_matrix(m, respond(m, strain(:, p)))
+        if (m%yields) law%matrix(:, :, law%matrix_of(p)) = secant_matrix(m, respond(m, strain(:, p)))
       end associate
     end do
   end subroutine set_secant_law

@@ -44,7 +44,7 @@ program bench_ours
   type(contact_problem) :: problem
   type(contact_solution) :: solution
   type(contact_plan) :: plan
-  real(wp), allocatable :: elastic(:, :, :)   !! not there: nothing yields
+  type(linear_law), allocatable :: elastic   !! not there: nothing yields
   real(wp), allocatable, save :: displacement(:, :)   ! said, since gfortran 12 puts it where no leak detector looks at the end
   real(wp) :: seconds(times, most_runs), condition, spent
   real(wp) :: begun = 0.0_wp   !! of what `lap` measures
@@ -136,9 +136,9 @@ contains
         alone = lap()
         spent(assembly) = spent(assembly) + alone
         spent(factor) = spent(factor) - alone
-        call assemble_body(model, operator, law%matrix, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
+        call assemble_body(model, operator, law, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
       else
-        call assemble_body(model, operator, law%matrix, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
+        call assemble_body(model, operator, law, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
         spent(assembly) = spent(assembly) + lap()
       end if
       call bodies%body(b)%factor()
@@ -166,7 +166,7 @@ contains
     integer :: e
 
     do e = 1, size(element)
-      call operator%element_stiffness(model, element(e), law%matrix, 2*model%order(element(e)), k)
+      call operator%element_stiffness(model, element(e), law, 2*model%order(element(e)), k)
     end do
   end subroutine make_elements
 
@@ -236,7 +236,7 @@ contains
     last = 0
     do e = 1, model%elements
       n = model%order(e)
-      call operator%element_stiffness(model, e, law%matrix, 2*n, k)
+      call operator%element_stiffness(model, e, law, 2*n, k)
       number = reshape(equation(:, model%connectivity(:n, e)), [2*n])
       do j = 1, 2*n
         do i = 1, 2*n

@@ -15,6 +15,7 @@ program bench_sparse
   use epcont_linalg_panel, only: panel_matrix
   use epcont_linalg_sparse, only: sparse_fault, sparse_matrix
   use epcont_material_elasticity, only: isotropic_matrix
+  use epcont_material_linear_law, only: linear_law
   use epcont_model_build, only: build_model
   use epcont_model_model, only: model_type, most_nodes
   use epcont_plan_numbering, only: number_equations, numbering_type
@@ -102,7 +103,7 @@ contains
     type(error_type), allocatable :: error
     type(numbering_type) :: numbering
     type(strain_operator) :: operator
-    real(wp), allocatable :: matrix(:, :, :)
+    type(linear_law) :: law
     real(wp) :: k((2*most_nodes)**2)
     integer :: b, e, n
 
@@ -112,7 +113,8 @@ contains
     if (faults%error_count() > 0) error stop 'this deck has faults'
     numbering = number_equations(model)
     operator = new_strain_operator(model)
-    allocate (matrix(4, 4, model%points), source=spread(elastic_matrix(), 3, model%points))
+    allocate (law%matrix(4, 4, 1), source=spread(elastic_matrix(), 3, 1))
+    allocate (law%matrix_of(model%points), source=1)
     b = maxloc(numbering%body%equations, dim=1)
     associate (chosen => numbering%body(b))
       body%order = chosen%equations
@@ -122,7 +124,7 @@ contains
       allocate (body%stiffness(n, n, size(chosen%element)), source=0.0_wp)
       do e = 1, size(chosen%element)
         n = model%order(chosen%element(e))
-        call operator%element_stiffness(model, chosen%element(e), matrix, 2*n, k)
+        call operator%element_stiffness(model, chosen%element(e), law, 2*n, k)
         body%stiffness(:2*n, :2*n, e) = reshape(k(:(2*n)**2), [2*n, 2*n])
         body%numbers(:2*n, e) = reshape(numbering%equation(:, model%connectivity(:n, chosen%element(e))), [2*n])
       end do
