@@ -16,7 +16,7 @@ module epcont_plan_dissection
     integer, allocatable :: first(:)   !! the first of each front in it, and one behind the last [fronts + 1]
   end type dissection
 
-  !> Sets of so few nodes are not halved. From 12 to 24 it matters little: fewer operations against larger matrices.
+  !> Sets of so few nodes are not halved. From 12 to 24 it matters little: fewer operations against more and smaller matrices.
   integer, parameter :: few = 16
   !> Sets of more are halved where the fewest elements are cut, others along the coordinate of the plane that spreads most: which
   !! elements are cut takes longer to find, and is soon repaid only where separators are long.
@@ -45,7 +45,7 @@ contains
   !> Dissect a body. The nodes that are wanted last are a front of their own, the last.
   pure function dissect(coordinate, member, around, elements, nodes, wanted_last) result(found)
     real(wp), intent(in) :: coordinate(:, :)   !! x, y and one more, along which nodes are parted [3, all nodes]
-    integer, intent(in) :: member(:, :)        !! nodes of each element, zeros behind [any, all elements]
+    integer, contiguous, intent(in) :: member(:, :)   !! nodes of each element, zeros behind [any, all elements]
     type(incidence), intent(in) :: around      !! elements at each node
     integer, intent(in) :: elements(:)         !! of the body
     integer, intent(in) :: nodes(:)            !! of the body
@@ -65,28 +65,23 @@ contains
 
   pure recursive subroutine dissect_set(coordinate, member, around, first, last, first_element, last_element, work)
     real(wp), intent(in) :: coordinate(:, :)
-    integer, intent(in) :: member(:, :)
+    integer, contiguous, intent(in) :: member(:, :)
     type(incidence), intent(in) :: around
     integer, intent(in) :: first, last                   !! the set in the list of nodes
     integer, intent(in) :: first_element, last_element   !! and its elements, all that have a node in it
     type(workspace), intent(inout) :: work
     integer, allocatable :: separator(:)
-    integer :: axis, middle, middle_element, end_element
+    integer :: nodes(left:right), middle, middle_element, end_element
 
     if (last - first + 1 <= few) then
       call add_front(work%node(first:last), work)
       return
     end if
     associate (node => work%node(first:last), element => work%element(first_element:last_element))
-      if (size(node) > many) then
-        call find_least_cut(coordinate, member, node, element, work%side, axis)
-      else
-        axis = maxloc([spread_along(coordinate(1, :), node), spread_along(coordinate(2, :), node)], dim=1)
-      end if
-      call halve(coordinate(axis, node), node)
-      work%side(node(:size(node)/2)) = left
-      work%side(node(size(node)/2 + 1:)) = right
-      call find_separator(member, around, node, element, work%side)
+      nodes = 0
+      if (size(node) > many) call cut_least(coordinate, member, node, element, work%side, nodes)
+      if (any(nodes == 0)) call cut_midway(coordinate, node, work%side, nodes)
+      call find_separator(member, around, node, element, nodes, work%side)
     end associate
     call part_elements(member, first_element, last_element, middle_element, end_element, work)
     call part_nodes(first, last, middle, separator, work)
@@ -95,16 +90,17 @@ contains
     call add_front(separator, work)
   end subroutine dissect_set
 
-  !> The coordinate across whose median, that of some of the nodes, the fewest elements lie.
-  pure subroutine find_least_cut(coordinate, member, node, element, side, axis)
+  !> Halve a set where the fewest elements lie across: at the median of one of the coordinates. Those of some of the nodes serve;
+  !! where many nodes have the same coordinate, they may part the set too unevenly, and none is taken.
+  pure subroutine cut_least(coordinate, member, node, element, side, nodes)
     real(wp), intent(in) :: coordinate(:, :)
-    integer, intent(in) :: member(:, :)
-    integer, intent(in) :: node(:), element(:)   !! of the set
-    integer, intent(inout) :: side(0:)            !! two bits for each coordinate: on which side of its median
-    integer, intent(out) :: axis
-    integer, parameter :: sample = 64
+    integer, contiguous, intent(in) :: member(:, :)
+    integer, intent(in) :: node(:), element(:)     !! of the set
+    integer, contiguous, intent(inout) :: side(0:)             !! on the way two bits for each coordinate
+    integer, intent(inout) :: nodes(left:right)    !! in each half
+    integer, parameter :: sample = 128
     real(wp) :: at(axes)
-    integer :: cut(axes), e, i, k, sides
+    integer :: below(axes), cut(axes), axis, e, i, k, sides
     integer, allocatable :: some(:)
 
     do k = 1, axes
@@ -112,36 +108,61 @@ contains
       call halve(coordinate(k, some), some)
       at(k) = maxval(coordinate(k, some(:size(some)/2)))
     end do
+    below = 0
     do i = 1, size(node)
       sides = outside
       do k = 1, axes
-        sides = ior(sides, shiftl(merge(left, right, coordinate(k, node(i)) <= at(k)), 2*(k - 1)))
+        if (coordinate(k, node(i)) <= at(k)) then
+          below(k) = below(k) + 1
+          sides = ior(sides, shiftl(left, 2*(k - 1)))
+        else
+          sides = ior(sides, shiftl(right, 2*(k - 1)))
+        end if
       end do
       side(node(i)) = sides
     end do
     cut = 0
     do e = 1, size(element)
-      sides = sides_of(member(:, element(e)), side)
+      sides = sides_of(member, element(e), side)
       do k = 1, axes
         if (ibits(sides, 2*(k - 1), 2) == both) cut(k) = cut(k) + 1
       end do
     end do
-    axis = minloc(cut, dim=1)
-  end subroutine find_least_cut
+    axis = minloc(cut, dim=1, mask=max(below, size(node) - below) <= largest_half*size(node))
+    if (axis == 0) return
+    nodes = [below(axis), size(node) - below(axis)]
+    side(node) = ibits(side(node), 2*(axis - 1), 2)
+  end subroutine cut_least
+
+  !> Halve a set at the median of that coordinate of the plane along which it spreads most.
+  pure subroutine cut_midway(coordinate, node, side, nodes)
+    real(wp), intent(in) :: coordinate(:, :)
+    integer, intent(inout) :: node(:)              !! of the set
+    integer, contiguous, intent(inout) :: side(0:)
+    integer, intent(out) :: nodes(left:right)      !! in each half
+    integer :: axis
+
+    axis = maxloc([spread_along(coordinate(1, :), node), spread_along(coordinate(2, :), node)], dim=1)
+    call halve(coordinate(axis, node), node)
+    nodes = [size(node)/2, size(node) - size(node)/2]
+    side(node(:nodes(left))) = left
+    side(node(nodes(left) + 1:)) = right
+  end subroutine cut_midway
 
   !> Mark the separator: the shorter of the edges that the halves have where elements join them, moved to where it is shorter.
-  pure subroutine find_separator(member, around, node, element, side)
-    integer, intent(in) :: member(:, :)
+  pure subroutine find_separator(member, around, node, element, nodes, side)
+    integer, contiguous, intent(in) :: member(:, :)
     type(incidence), intent(in) :: around
-    integer, intent(in) :: node(:), element(:)   !! of the set
-    integer, intent(inout) :: side(0:)
-    integer :: at_edge(size(node)), edges(left:right), nodes(left:right)
+    integer, intent(in) :: node(:), element(:)     !! of the set
+    integer, intent(inout) :: nodes(left:right)    !! in each half
+    integer, contiguous, intent(inout) :: side(0:)
+    integer :: at_edge(size(node)), edges(left:right)
     integer :: e, i, n, shorter
 
     n = 0
     edges = 0
     do e = 1, size(element)
-      if (iand(sides_of(member(:, element(e)), side), both) /= both) cycle
+      if (iand(sides_of(member, element(e), side), both) /= both) cycle
       do i = 1, size(member, 1)
         if (member(i, element(e)) == 0) exit
         associate (here => side(member(i, element(e))))
@@ -154,7 +175,6 @@ contains
       end do
     end do
     shorter = merge(left, right, edges(left) <= edges(right))
-    nodes = [size(node)/2, size(node) - size(node)/2]
     nodes(shorter) = nodes(shorter) - edges(shorter)
     do i = 1, n
       associate (here => side(at_edge(i)))
@@ -167,11 +187,11 @@ contains
   !> Let nodes of the separator go to a half: if they have no neighbours in the other, or only one, which takes their place, and
   !! the halves become more alike. (Liu, ACM Trans. Math. Softw. 15 (1989) 198, moves several at once.)
   pure subroutine shift_separator(member, around, separator, nodes, side)
-    integer, intent(in) :: member(:, :)
+    integer, contiguous, intent(in) :: member(:, :)
     type(incidence), intent(in) :: around
     integer, intent(in) :: separator(:)
     integer, intent(inout) :: nodes(left:right)      !! in each half
-    integer, intent(inout) :: side(0:)
+    integer, contiguous, intent(inout) :: side(0:)
     integer :: beside(left:right), half, i, length, other
     integer :: list(sum(nodes) + 2*size(separator))
 
@@ -202,10 +222,10 @@ contains
 
   !> The neighbour of a node in each half; or none, or several.
   pure function neighbours(member, around, node, side) result(beside)
-    integer, intent(in) :: member(:, :)
+    integer, contiguous, intent(in) :: member(:, :)
     type(incidence), intent(in) :: around
     integer, intent(in) :: node
-    integer, intent(in) :: side(0:)
+    integer, contiguous, intent(in) :: side(0:)
     integer :: beside(left:right)
     integer :: i, j
 
@@ -228,19 +248,21 @@ contains
   end function neighbours
 
   !> Where an element has nodes, all bits that say so.
-  pure integer function sides_of(node, side) result(sides)
-    integer, intent(in) :: node(:), side(0:)
+  pure integer function sides_of(member, element, side) result(sides)
+    integer, contiguous, intent(in) :: member(:, :)
+    integer, intent(in) :: element
+    integer, contiguous, intent(in) :: side(0:)
     integer :: i
 
-    sides = outside
-    do i = 1, size(node)
-      sides = ior(sides, side(node(i)))
+    sides = ior(ior(side(member(1, element)), side(member(2, element))), side(member(3, element)))
+    do i = 4, size(member, 1)
+      sides = ior(sides, side(member(i, element)))
     end do
   end function sides_of
 
   !> Put the elements of the left half before those of the right. What has nodes of the separator alone is done with.
   pure subroutine part_elements(member, first, last, middle, end_of_right, work)
-    integer, intent(in) :: member(:, :)
+    integer, contiguous, intent(in) :: member(:, :)
     integer, intent(in) :: first, last               !! in the list of elements
     integer, intent(out) :: middle, end_of_right     !! the last of the left half, and of the right
     type(workspace), intent(inout) :: work
@@ -250,7 +272,7 @@ contains
     middle = first - 1
     n = 0
     do e = first, last
-      sides = iand(sides_of(member(:, work%element(e)), work%side), both)
+      sides = iand(sides_of(member, work%element(e), work%side), both)
       of_right(n + 1) = work%element(e)
       work%element(middle + 1) = work%element(e)
       middle = middle + merge(1, 0, sides == left)
@@ -266,16 +288,22 @@ contains
     integer, intent(out) :: middle                      !! the last of the left half
     integer, allocatable, intent(out) :: separator(:)
     type(workspace), intent(inout) :: work
-    integer, allocatable :: of_right(:)
+    integer :: list(last - first + 2, right:edge)
+    integer :: length(left:edge), i
 
-    associate (node => work%node(first:last))
-      separator = pack(node, work%side(node) == edge)
-      of_right = pack(node, work%side(node) == right)
-      middle = last - size(separator) - size(of_right)
-      node(:middle - first + 1) = pack(node, work%side(node) == left)
-      node(middle - first + 2:) = [of_right, separator]
-      work%side(node) = outside
-    end associate
+    length = 0
+    do i = first, last
+      associate (node => work%node(i), side => work%side(work%node(i)))
+        list(length(right) + 1, right) = node
+        list(length(edge) + 1, edge) = node
+        work%node(first + length(left)) = node
+        length(side) = length(side) + 1
+        side = outside
+      end associate
+    end do
+    middle = first - 1 + length(left)
+    work%node(middle + 1:last) = [list(:length(right), right), list(:length(edge), edge)]
+    separator = list(:length(edge), edge)
   end subroutine part_nodes
 
   !> How far nodes are spread: the variance of a coordinate.
