@@ -11,7 +11,7 @@ module epcont_material_linear_law
   !> stress = matrix strain + initial_stress; components xx, yy, zz, xy (engineering shear strain).
   type :: linear_law
     real(wp), allocatable :: matrix(:, :, :)        !! [stress] [4, 4, any]
-    integer, allocatable :: matrix_of(:)            !! each point: its own where the material yields, else that of its section [points]
+    integer, allocatable :: matrix_of(:)            !! each point: its own where the material yields, else its section's [points]
     real(wp), allocatable :: initial_stress(:, :)   !! [stress] [4, points]
   contains
     procedure :: stress
