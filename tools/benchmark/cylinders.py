@@ -8,6 +8,7 @@ import sys
 import calculix
 import tables
 from process import peak, settled, timed
+from report import PROGRAMS, SCIKIT_FEM
 from scenes import cylinders
 
 B, P, E, NU, R = 0.0239, 10.0, 20400.0, 0.29, 1.0
@@ -22,8 +23,9 @@ SHORT, LONG = 5.0, 60.0
 #: Beyond so many nodes elastoplastic runs of CalculiX take minutes: those settings alone that are the fastest below.
 LARGE = 20000
 
-#: Factorizations for scikit-fem; CHOLMOD where it could be installed.
-KINDS = ("cholmod", "splu") if importlib.util.find_spec("sksparse") else ("splu",)
+#: Ways with scikit-fem: as contact is written with it, and the fastest that we could make of its parts, by other factorizations;
+#: CHOLMOD where it could be installed.
+KINDS = ("condense", "splu", "cholmod") if importlib.util.find_spec("sksparse") else ("condense", "splu")
 
 
 def mesh_of(wanted):
@@ -94,7 +96,7 @@ def scikit_fem(top, mesh, touch, kind):
         found = json.loads((place / "stdout").read_text().splitlines()[-1])
         return max(pressures(mesh, touch, found["force"])), -found["approach"]
 
-    return Program("scikit-fem", kind, [sys.executable, str(top / "tools/benchmark/scikit_fem.py"), "mesh.npz", kind], answer)
+    return Program(SCIKIT_FEM[kind != "condense"], kind, [sys.executable, str(top / "tools/benchmark/scikit_fem.py"), "mesh.npz", kind], answer)
 
 
 def sound(program, reference, plastic):
@@ -139,7 +141,7 @@ def one(top, place, wanted, plastic, repeats, say):
         sys.exit(f"epcont: {ours.out}")
     # One run may mislead: those near the fastest take their turns too. So does CalculiX's default, the direct solver.
     chosen = [ours]
-    for name, among, near in (("CalculiX", "", 2.0), ("CalculiX", "SPOOLES", 1.0), ("scikit-fem", "", 2.0)):
+    for name, among, near in (("CalculiX", "", 2.0), ("CalculiX", "SPOOLES", 1.0), *((name, "", 2.0) for name in SCIKIT_FEM)):
         found = [p for p in others if p.name == name and among in p.setting and sound(p, ours, plastic)]
         limit = near * min((p.first for p in found), default=0.0)
         chosen += [p for p in found if p.first <= limit and p not in chosen]
@@ -147,10 +149,10 @@ def one(top, place, wanted, plastic, repeats, say):
     for _ in range(3 * repeats if longest < SHORT else repeats if longest < LONG else 1):
         for program in chosen:
             program.run(place)
-            if program.name == "scikit-fem":
+            if program.name in SCIKIT_FEM:
                 program.rest.append(json.loads(program.out.splitlines()[-1])["rest"])
     best = {name: min((p for p in chosen if p.name == name), key=lambda p: statistics.median(p.cpu))
-            for name in ("epcont", "CalculiX", "scikit-fem") if any(p.name == name for p in chosen)}
+            for name in PROGRAMS if any(p.name == name for p in chosen)}
     return [row(program, ours, mesh, plastic, program in best.values()) for program in (ours, *others)]
 
 
