@@ -31,7 +31,7 @@ module epcont_plasticity_iteration
 
   !> What came of the loads, and how.
   type :: plastic_run
-    type(scene_state) :: state             !! the answer, or what came nearest to one
+    type(scene_state), allocatable :: state    !! the answer, or what came nearest to one
     type(linear_scene), allocatable :: scene   !! as the last solve left it, if there is an answer
     real(wp) :: load_factor = 0.0_wp       !! part of the loads that `state` carries
     logical :: converged = .false.         !! all loads, to the tolerance
@@ -73,7 +73,7 @@ contains
     type(plastic_run), intent(out) :: run
     class(onlooker), intent(inout) :: watch
     type(loop_type) :: loop
-    type(scene_state) :: state
+    type(scene_state), allocatable :: state
     real(wp), allocatable :: strained(:)
     real(wp) :: part
     logical :: converged
@@ -91,14 +91,14 @@ contains
       run%lacks_memory = loop%scene%bodies%lacks_memory()
       if (run%singular > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
-      if (converged .or. step == 1 .or. state%contact%state /= contact_solved) run%state = state
-      if (state%contact%state /= contact_solved) return
+      if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call move_alloc(state, run%state)
+      if (run%state%contact%state /= contact_solved) return
       if (converged .or. step == 1) then
         run%load_factor = part
         call loop%scene%estimate_condition(model, numbering, run%condition)
         run%weakest = loop%scene%bodies%weakest()
         if (plan%precision == precision_single) &
-          call loop%scene%rounding_error(model, numbering, loop%law, part, state, run%rounding_error)
+          call loop%scene%rounding_error(model, numbering, loop%law, part, run%state, run%rounding_error)
         call watch%lap(stage_accuracy)
       end if
       if (.not. converged) exit
@@ -132,16 +132,17 @@ contains
     real(wp), intent(in) :: part
     type(loop_type), intent(inout) :: loop
     type(plastic_run), intent(inout) :: run
-    type(scene_state), intent(out) :: state
+    type(scene_state), allocatable, intent(out) :: state
     logical, intent(out) :: converged
     class(onlooker), intent(inout) :: watch
-    type(scene_state) :: found
+    type(scene_state), allocatable :: found
     type(iteration_record) :: now
     real(wp) :: farthest, least_residual
     integer :: iteration
 
     converged = .false.
     least_residual = huge(1.0_wp)
+    allocate (state, found)
     call method%restart()
     do iteration = 1, model%controls%most_iterations
       call set_law(model, numbering, method, loop, run%singular, watch)
@@ -149,7 +150,7 @@ contains
       call loop%scene%solve(model, motions, numbering, loop%law, part, loop%touching, found, watch)
       if (found%contact%state /= contact_solved) then
         ! Not found about a later state, such as one beyond the limit load: what was found before is not converged.
-        if (iteration == 1 .or. found%contact%state /= contact_stalled) state = found
+        if (iteration == 1 .or. found%contact%state /= contact_stalled) call move_alloc(found, state)
         return
       end if
       now%load_factor = part
@@ -161,7 +162,7 @@ contains
       ! A state far away is none to show: its numbers may be at the end of their range.
       run%runs_away = .not. converged .and. model%has_flat_curve() .and. maxval(abs(found%displacement)) > farthest
       if (run%runs_away) return
-      if (now%residual <= least_residual .or. converged) state = found
+      if (now%residual <= least_residual .and. .not. converged) state = found
       least_residual = min(least_residual, now%residual)
       loop%touching = found%contact%touching
       loop%force = found%contact%force
@@ -169,7 +170,10 @@ contains
       call method%advance(model, loop%material, part, found, loop%about)
       call watch%lap(stage_yielding)
       call watch%solved(now, converged)
-      if (converged) return
+      if (converged) then
+        call move_alloc(found, state)
+        return
+      end if
     end do
   end subroutine iterate
 
