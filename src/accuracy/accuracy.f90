@@ -2,7 +2,7 @@
 !> and the half-width of each zone; what rounding may have done to the contact forces; pairs that may as well be open.
 module epcont_accuracy_accuracy
   use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
-  use epcont_accuracy_discretisation, only: error_energy, error_product, stored_energy
+  use epcont_accuracy_discretisation, only: error_products, stored_energy
   use epcont_accuracy_patches, only: new_patch_table, patch_table
   use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
@@ -66,17 +66,38 @@ contains
     type(accuracy_type), intent(out) :: accuracy
     type(patch_table) :: table
     type(material_type), allocatable :: material(:)
-    real(wp), allocatable :: smooth(:, :)
+    real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)   !! of the answer, then of each unit load [4, any, 1 + moved]
+    real(wp), allocatable :: product(:, :)                      !! [energy] [elements, 1 + moved]
+    real(wp), allocatable :: unit_force(:, :)                   !! contact forces under unit loads [pairs, motions]
+    integer, allocatable :: moved(:)                            !! motions that unit loads say something of
     type(scaled_problem) :: problem
     type(contact_basis) :: basis
+    logical :: carried, pressed
+    integer :: j
+
+    pressed = any(answer%contact%force > 0.0_wp)
+    carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
+    allocate (moved(0))
+    if (carried) then
+      problem = scale_problem(run%scene%problem)
+      basis = new_basis(problem, answer%contact%force > 0.0_wp)
+      unit_force = unit_forces(problem, basis, motions%count)
+      moved = pack([(j, j=1, motions%count)], any(unit_force /= 0.0_wp, dim=1) .and. .not. answer%contact%motion_free)
+    end if
+    allocate (strain(4, model%points, 1 + size(moved)))
+    strain(:, :, 1) = run%state%strain
+    do j = 1, size(moved)
+      strain(:, :, 1 + j) = unit_strains(model, numbering, run%scene, unit_force(:, moved(j)))
+    end do
 
     table = new_patch_table(model)
     material = section_materials(model)
-    associate (volume => run%scene%operator%volume, strain => run%state%strain)
+    associate (volume => run%scene%operator%volume)
       smooth = recover_strains(model, table, volume, strain)
-      accuracy%element = error_energy(model, table, material, volume, strain, smooth)
+      product = error_products(model, table, material, volume, strain, smooth)
+      accuracy%element = product(:, 1)
       accuracy%energy_norm = sqrt(part(sum(accuracy%element), &
-                                       sum(accuracy%element) + abs(stored_energy(volume, strain, run%state%stress))))
+                                       sum(accuracy%element) + abs(stored_energy(volume, run%state%strain, run%state%stress))))
     end associate
     allocate (accuracy%worst(0))
     if (accuracy%energy_norm > no_error) then
@@ -90,16 +111,15 @@ contains
     accuracy%approach_grows = .false.
     accuracy%weak = .false.
     allocate (accuracy%zone(0))
-    if (.not. any(answer%contact%force > 0.0_wp)) return
+    if (.not. pressed) return
 
-    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, smooth), accuracy)
-    if (.not. answer%converged) return   ! the scene is that of a load that was not carried
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, smooth(:, :, 1)), accuracy)
+    if (.not. carried) return
 
-    problem = scale_problem(run%scene%problem)
-    basis = new_basis(problem, answer%contact%force > 0.0_wp)
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
-    if (motions%count > 0) call assess_approach(model, motions, numbering, run, answer, table, material, smooth, &
-                                                unit_forces(problem, basis, motions%count), accuracy)
+    do j = 1, size(moved)
+      call assess_approach(model, motions, answer, table, moved(j), unit_force(:, moved(j)), sum(product(:, 1 + j)), accuracy)
+    end do
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
   end subroutine assess
 
@@ -167,46 +187,33 @@ contains
     end function order_at
   end subroutine assess_zones
 
-  !> Approaches: the product of the errors of the scene and of its answer to a unit load along the motion, signed, with what contact
-  !! at nodes alone lets the bodies come too near.
-  pure subroutine assess_approach(model, motions, numbering, run, answer, table, material, smooth, unit_force, accuracy)
+  !> An approach: the product of the errors of the scene and of its answer to a unit load along the motion, signed, with what
+  !! contact at nodes alone lets the bodies come too near.
+  pure subroutine assess_approach(model, motions, answer, table, motion, unit_force, product, accuracy)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
-    type(plastic_run), intent(in) :: run
     type(answer_type), intent(in) :: answer
     type(patch_table), intent(in) :: table
-    type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: smooth(:, :)
-    real(wp), intent(in) :: unit_force(:, :)   !! contact forces under unit loads [pairs, motions]
+    integer, intent(in) :: motion
+    real(wp), intent(in) :: unit_force(:)   !! contact forces under the unit load [pairs]
+    real(wp), intent(in) :: product
     type(accuracy_type), intent(inout) :: accuracy
-    real(wp), allocatable :: strain(:, :)
     real(wp) :: between, end_error, short
-    integer :: j, z
+    integer :: z
 
-    do j = 1, motions%count
-      if (answer%contact%motion_free(j) .or. all(unit_force(:, j) == 0.0_wp)) cycle
-      accuracy%approach_grows(j) = is_point_load(model, motions, table, j)
-      short = 0.0_wp
-      if (accuracy%energy_norm > 0.0_wp) then
-        strain = unit_strains(model, numbering, run%scene, unit_force(:, j))
-        associate (volume => run%scene%operator%volume)
-          short = error_product(model, table, material, volume, run%state%strain, smooth, &
-                                strain, recover_strains(model, table, volume, strain))
-        end associate
-      end if
-      end_error = 0.0_wp
-      do z = 1, size(accuracy%zone)
-        associate (zone => accuracy%zone(z))
-          if (zone%peak == 0) cycle
-          between = sum(unit_force(answer%zones(z)%pairs, j))*answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length* &
-                    surface_compliance(model, table, zone%peak)
-          if (zone%order == 4) short = short - between_pairs*between
-          end_error = end_error + abs(between)*merge(4.0_wp, 1.0_wp, zone%order == 6)   ! two spacings a side
-        end associate
-      end do
-      accuracy%approach(j) = of_product*abs(short) + merge(of_end_yielded, of_end, any(answer%plastic))*end_error
+    accuracy%approach_grows(motion) = is_point_load(model, motions, table, motion)
+    short = merge(product, 0.0_wp, accuracy%energy_norm > 0.0_wp)
+    end_error = 0.0_wp
+    do z = 1, size(accuracy%zone)
+      associate (zone => accuracy%zone(z))
+        if (zone%peak == 0) cycle
+        between = sum(unit_force(answer%zones(z)%pairs))*answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length* &
+                  surface_compliance(model, table, zone%peak)
+        if (zone%order == 4) short = short - between_pairs*between
+        end_error = end_error + abs(between)*merge(4.0_wp, 1.0_wp, zone%order == 6)   ! two spacings a side
+      end associate
     end do
+    accuracy%approach(motion) = of_product*abs(short) + merge(of_end_yielded, of_end, any(answer%plastic))*end_error
   end subroutine assess_approach
 
   !> Is a SUPORT freedom the one node of its body's mesh that bears a load?

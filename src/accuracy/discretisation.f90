@@ -8,11 +8,12 @@ module epcont_accuracy_discretisation
   use epcont_base_kinds, only: wp
   use epcont_element_element, only: local_points, most_points, shape_values
   use epcont_material_curve, only: material_type
+  use epcont_material_elasticity, only: cross_modulus
   use epcont_material_total_theory, only: respond, response_type
   use epcont_model_model, only: model_type, most_nodes
   implicit none
   private
-  public :: error_energy, error_product, stored_energy
+  public :: error_products, stored_energy
 
   !> Places of an element where strains are compared, at most: those of six-node elements. Their integration points would flatter,
   !! the error there is least; these are exact for polynomials of the fourth degree (Dunavant 1985).
@@ -35,74 +36,59 @@ module epcont_accuracy_discretisation
 
 contains
 
-  !> Square of the error of each element [energy] [elements].
-  pure function error_energy(model, table, material, volume, strain, smooth) result(energy)
+  !> Integrals of error times error: what the stress of the first field, on the material's curve, is off by, times what the strain
+  !! of each field is off by. Of the first field that is the square of its error [energy] [elements, fields].
+  pure function error_products(model, table, material, volume, strain, smooth) result(product)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
     type(material_type), intent(in) :: material(:)   !! of each section
     real(wp), intent(in) :: volume(:)                !! of the integration points [points]
-    real(wp), intent(in) :: strain(:, :)             !! [4, points]
-    real(wp), intent(in) :: smooth(:, :)             !! [4, places]
-    real(wp), allocatable :: energy(:)
-
-    energy = integrals(model, table, material, volume, strain, smooth, strain, smooth, .true.)
-  end function error_energy
-
-  !> Of two fields the integral of error times error: what the stress of the first, on the material's curve, is off by, times the
-  !! strain that the second is [energy].
-  pure real(wp) function error_product(model, table, material, volume, strain, smooth, strain2, smooth2) result(product)
-    type(model_type), intent(in) :: model
-    type(patch_table), intent(in) :: table
-    type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: volume(:), strain(:, :), smooth(:, :), strain2(:, :), smooth2(:, :)
-
-    product = sum(integrals(model, table, material, volume, strain, smooth, strain2, smooth2, .false.))
-  end function error_product
-
-  pure function integrals(model, table, material, volume, strain, smooth, strain2, smooth2, same) result(energy)
-    type(model_type), intent(in) :: model
-    type(patch_table), intent(in) :: table
-    type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: volume(:), strain(:, :), smooth(:, :), strain2(:, :), smooth2(:, :)
-    logical, intent(in) :: same   !! the two fields are one
-    real(wp), allocatable :: energy(:)
+    real(wp), contiguous, intent(in) :: strain(:, :, :)   !! [4, points, fields]
+    real(wp), contiguous, intent(in) :: smooth(:, :, :)   !! [4, places, fields]
+    real(wp), allocatable :: product(:, :)
     type(kind_type) :: kind(most_nodes)
-    type(response_type) :: response
-    real(wp), dimension(4, most_places) :: error, error2, own, own2
-    real(wp) :: part
-    integer :: e, k, n
+    type(response_type) :: before, after
+    real(wp) :: own(4, most_places), error(4, most_places, size(strain, 3)), cross, part
+    logical :: yielded
+    integer :: e, f, k, n
 
     kind([3, 4, 6]) = [kind_of(3), kind_of(4), kind_of(6)]
-    allocate (energy(model%elements))
+    allocate (product(model%elements, size(strain, 3)), source=0.0_wp)
     do e = 1, model%elements
-      energy(e) = 0.0_wp
       n = model%order(e)
-      associate (first => model%first_point(e), last => model%first_point(e + 1) - 1)
-        call compare(kind(n), table%place(:n, e), strain(:, first:last), smooth, own, error)
-        if (same) then
-          error2(:, :kind(n)%places) = error(:, :kind(n)%places)
-        else
-          call compare(kind(n), table%place(:n, e), strain2(:, first:last), smooth2, own2, error2)
-        end if
+      associate (first => model%first_point(e), last => model%first_point(e + 1) - 1, m => material(model%section(e)))
+        do f = size(strain, 3), 1, -1   ! last the first, whose own strain is wanted
+          call compare(kind(n), table%place(:n, e), strain(:, first:last, f), smooth(:, :, f), own, error(:, :, f))
+        end do
+        cross = cross_modulus(m%bulk, m%shear, m%sheet)
+        yielded = .false.
         do k = 1, kind(n)%places
           part = sum(kind(n)%v(:last - first + 1, k)*volume(first:last))
-          associate (m => material(model%section(e)))
+          if (m%yields) then
             ! The strain of a three-node element is the same at all its places.
-            if (m%yields .and. (k == 1 .or. n > 3)) response = respond(m, own(:, k))
-            energy(e) = energy(e) + part*density(m, response, own(:, k), error(:, k), error2(:, k))
-          end associate
+            if (k == 1 .or. n > 3) before = respond(m, own(:, k))
+            after = respond(m, own(:, k) + error(:, k, 1))
+            yielded = before%curve%yielded .or. after%curve%yielded
+          end if
+          do f = 1, size(strain, 3)
+            if (yielded) then
+              product(e, f) = product(e, f) + part*dot_product(after%stress - before%stress, error(:, k, f))
+            else
+              product(e, f) = product(e, f) + part*elastic_product(cross, m%shear, error(:, k, 1), error(:, k, f))
+            end if
+          end do
         end do
       end associate
     end do
-  end function integrals
+  end function error_products
 
   !> An element's own strain at its places, and what the smooth one is beyond it.
   pure subroutine compare(kind, place, strain, smooth, own, error)
     type(kind_type), intent(in) :: kind
-    integer, intent(in) :: place(:)
-    real(wp), intent(in) :: strain(:, :)      !! [4, its points]
-    real(wp), intent(in) :: smooth(:, :)      !! [4, places of all]
-    real(wp), intent(inout) :: own(:, :), error(:, :)
+    integer, contiguous, intent(in) :: place(:)
+    real(wp), contiguous, intent(in) :: strain(:, :)      !! [4, its points]
+    real(wp), contiguous, intent(in) :: smooth(:, :)      !! [4, places of all]
+    real(wp), intent(inout) :: own(4, most_places), error(4, most_places)
     real(wp) :: middle(4)
     integer :: i, k
 
@@ -160,31 +146,16 @@ contains
     end select
   end function kind_of
 
-  !> Stress error times strain error.
-  pure real(wp) function density(material, response, own, error, error2)
-    type(material_type), intent(in) :: material
-    type(response_type), intent(in) :: response    !! at the strain of the element, where the material yields
-    real(wp), intent(in) :: own(4)                 !! that strain
-    real(wp), intent(in) :: error(4), error2(4)    !! smooth less own
-    type(response_type) :: after
-    real(wp) :: cross
+  !> The stress of one strain, elastic, times another strain; in a sheet their components zz are none.
+  pure real(wp) function elastic_product(cross, shear, one, other) result(product)
+    real(wp), intent(in) :: cross, shear
+    real(wp), intent(in) :: one(4), other(4)
 
-    if (material%yields) then
-      after = respond(material, own + error)
-      if (response%curve%yielded .or. after%curve%yielded) then
-        density = dot_product(after%stress - response%stress, error2)
-        return
-      end if
-    end if
-    associate (shear => material%shear)
-      cross = material%bulk - 2.0_wp*shear/3.0_wp
-      if (material%sheet) cross = 2.0_wp*shear*cross/(cross + 2.0_wp*shear)   ! and the strain zz counts as none
-      density = cross*(error(1) + error(2) + error(3))*(error2(1) + error2(2) + error2(3)) &
-                + shear*(2.0_wp*(error(1)*error2(1) + error(2)*error2(2) + error(3)*error2(3)) + error(4)*error2(4))
-    end associate
-  end function density
+    product = cross*(one(1) + one(2) + one(3))*(other(1) + other(2) + other(3)) &
+              + shear*(2.0_wp*(one(1)*other(1) + one(2)*other(2) + one(3)*other(3)) + one(4)*other(4))
+  end function elastic_product
 
-  !> Work of the stresses on the strains, as `error_energy` measures it [energy].
+  !> Work of the stresses on the strains, as `error_products` measures it [energy].
   pure real(wp) function stored_energy(volume, strain, stress) result(energy)
     real(wp), intent(in) :: volume(:), strain(:, :), stress(:, :)
     integer :: p

@@ -11,6 +11,7 @@ module epcont_accuracy_patches
 
   type :: patch_table
     integer :: places = 0
+    integer, allocatable :: node(:)        !! of each place [places]
     integer, allocatable :: place(:, :)    !! of each node of an element, 0 where it has no more [most_nodes, elements]
     type(incidence) :: around              !! elements at each place
     logical, allocatable :: inside(:)      !! elements go all around the place [places]
@@ -26,6 +27,7 @@ contains
 
     table%place = model%connectivity
     table%places = model%nodes
+    table%node = [(k, k=1, model%nodes)]
     call split_places(model, table)
     table%around = new_incidence(table%place, table%places)
     ! Around a place inside, the corner after it in one element is the corner before it in another.
@@ -45,12 +47,14 @@ contains
   pure subroutine split_places(model, table)
     type(model_type), intent(in) :: model
     type(patch_table), intent(inout) :: table
-    integer, allocatable :: first(:), next(:), section(:)   !! section of a place, and the next place of its node
+    integer, allocatable :: next(:), node(:), section(:)   !! of each place the next place of its node, its node, its section
     integer :: at, e, k
 
     if (all(model%section == model%section(1))) return
-    allocate (first(6*model%elements + model%nodes), next(6*model%elements + model%nodes), source=0)
-    section = first
+    allocate (next(6*model%elements + model%nodes), source=0)
+    node = next
+    section = next
+    node(:model%nodes) = table%node
     do e = 1, model%elements
       do k = 1, model%order(e)
         at = table%place(k, e)
@@ -60,12 +64,14 @@ contains
             table%places = table%places + 1
             next(at) = table%places
             section(next(at)) = model%section(e)
+            node(next(at)) = model%connectivity(k, e)
           end if
           at = next(at)
         end do
         table%place(k, e) = at
       end do
     end do
+    table%node = node(:table%places)
   end subroutine split_places
 
   !> The elements around a place and around the corners of these; `seen` is the last place that each was taken for.

@@ -19,38 +19,26 @@ module epcont_accuracy_recovery
   !> Part of a pivot that must be left for its term to be told from those before.
   real(wp), parameter :: dependent = 1.0e-8_wp
 
-  !> Strains to fit to: one an element, or three of a six-node one.
-  type :: sample_table
-    integer, allocatable :: first(:)       !! of each element [elements + 1]
-    real(wp), allocatable :: x(:, :)       !! [length] [2, samples]
-    real(wp), allocatable :: strain(:, :)  !! [4, samples]
-  end type sample_table
-
 contains
 
-  !> Strains at the places of a table [4, places].
+  !> Strains at the places of a table, of several fields at once [4, places, fields].
   pure function recover_strains(model, table, volume, strain) result(smooth)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
-    real(wp), intent(in) :: volume(:)      !! of the integration points [points]
-    real(wp), intent(in) :: strain(:, :)   !! xx, yy, zz, xy [4, points]
-    real(wp), allocatable :: smooth(:, :)
-    type(sample_table) :: sample
+    real(wp), intent(in) :: volume(:)        !! of the integration points [points]
+    real(wp), intent(in) :: strain(:, :, :)  !! xx, yy, zz, xy [4, points, fields]
+    real(wp), allocatable :: smooth(:, :, :)
+    real(wp), allocatable :: x(:, :), sample(:, :, :)
     integer, allocatable :: seen(:), patch(:)
-    integer, allocatable :: fitted(:)      !! polynomials that a node between corners has had [places]
-    real(wp), allocatable :: node(:, :)    !! coordinates of the places [2, places]
-    integer :: count, e, k, p
+    integer, allocatable :: fitted(:)        !! of a node between corners: -1, less one for each polynomial; else 0 [places]
+    integer :: count, e, p
     logical :: curved
 
-    sample = take_samples(model, volume, strain)
-    allocate (smooth(4, table%places), node(2, table%places), fitted(table%places))
-    smooth = 0.0_wp
-    fitted = 0
+    call take_samples(model, volume, strain, x, sample)
+    allocate (smooth(4, table%places, size(strain, 3)), source=0.0_wp)
+    allocate (fitted(table%places), source=0)
     do e = 1, model%elements
-      do k = 1, model%order(e)
-        node(:, table%place(k, e)) = model%x(:, model%connectivity(k, e))
-        if (k > model%corners(e)) fitted(table%place(k, e)) = -1
-      end do
+      if (model%order(e) == 6) fitted(table%place(4:, e)) = -1
     end do
     allocate (seen(model%elements), source=0)
     allocate (patch(64))
@@ -65,137 +53,141 @@ contains
         call wide_patch(model, table, p, seen, patch, count)
       end if
       if (curved) then
-        call fit_quadratic(model, table, sample, patch(:count), p, node, smooth, fitted)
+        call fit_quadratic(model, table, x, sample, patch(:count), p, smooth, fitted)
       else
-        call fit_linear(sample, patch(:count), node(:, p), smooth(:, p))
+        call fit_linear(model, x, sample, patch(:count), model%x(:, table%node(p)), smooth(:, p, :))
       end if
     end do
     do p = 1, table%places
-      if (fitted(p) < -1) smooth(:, p) = smooth(:, p)/(-1 - fitted(p))
+      if (fitted(p) < -1) smooth(:, p, :) = smooth(:, p, :)/(-1 - fitted(p))
     end do
   end function recover_strains
 
-  !> Where the strains of the elements are best.
-  pure function take_samples(model, volume, strain) result(sample)
+  !> Where the strains of the elements are best, and what they are there: at all points of six-node elements, in others in the
+  !! middle, which has the number of the element's first point.
+  pure subroutine take_samples(model, volume, strain, x, sample)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: volume(:), strain(:, :)
-    type(sample_table) :: sample
+    real(wp), intent(in) :: volume(:), strain(:, :, :)
+    real(wp), allocatable, intent(out) :: x(:, :)           !! [length] [2, points]
+    real(wp), allocatable, intent(out) :: sample(:, :, :)   !! [4, points, fields]
     real(wp) :: place(2, most_points), weight(most_points), shape(6, most_points)
-    integer :: e, k, p, s
+    integer :: e, f, k, p
 
     call local_points(6, place, weight)
     do k = 1, 3
       shape(:, k) = shape_values(6, place(:, k))
     end do
-    allocate (sample%first(model%elements + 1))
-    allocate (sample%x(2, model%points), sample%strain(4, model%points))
-    s = 1
+    allocate (x(2, model%points))
+    allocate (sample, source=strain)
     do e = 1, model%elements
-      sample%first(e) = s
       associate (node => model%connectivity(:, e), first => model%first_point(e), last => model%first_point(e + 1) - 1)
         select case (model%order(e))
         case (3)
-          sample%x(:, s) = (model%x(:, node(1)) + model%x(:, node(2)) + model%x(:, node(3)))/3.0_wp
-          sample%strain(:, s) = strain(:, first)
-          s = s + 1
+          x(:, first) = (model%x(:, node(1)) + model%x(:, node(2)) + model%x(:, node(3)))/3.0_wp
         case (4)
-          sample%x(:, s) = 0.25_wp*(model%x(:, node(1)) + model%x(:, node(2)) + model%x(:, node(3)) + model%x(:, node(4)))
-          sample%strain(:, s) = 0.0_wp
-          do p = first, last
-            sample%strain(:, s) = sample%strain(:, s) + strain(:, p)*(volume(p)/sum(volume(first:last)))
+          x(:, first) = 0.25_wp*(model%x(:, node(1)) + model%x(:, node(2)) + model%x(:, node(3)) + model%x(:, node(4)))
+          sample(:, first, :) = 0.0_wp
+          do f = 1, size(strain, 3)
+            do p = first, last
+              sample(:, first, f) = sample(:, first, f) + strain(:, p, f)*(volume(p)/sum(volume(first:last)))
+            end do
           end do
-          s = s + 1
         case default
           do k = 1, 3
-            sample%x(:, s) = matmul(model%x(:, node), shape(:, k))
-            sample%strain(:, s) = strain(:, first + k - 1)
-            s = s + 1
+            x(:, first + k - 1) = matmul(model%x(:, node), shape(:, k))
           end do
         end select
       end associate
     end do
-    sample%first(model%elements + 1) = s
-  end function take_samples
+  end subroutine take_samples
 
-  !> The linear polynomial of one sample an element, at a place. A direction in which the samples do not spread is constant.
-  pure subroutine fit_linear(sample, patch, at, value)
-    type(sample_table), intent(in) :: sample
-    integer, intent(in) :: patch(:)
+  !> The linear polynomials of one sample an element, at a place. A direction in which the samples do not spread is constant.
+  pure subroutine fit_linear(model, x, sample, patch, at, value)
+    type(model_type), intent(in) :: model
+    real(wp), contiguous, intent(in) :: x(:, :), sample(:, :, :)
+    integer, intent(in) :: patch(:)          !! elements
     real(wp), intent(in) :: at(2)
-    real(wp), intent(out) :: value(4)
-    real(wp) :: mean(4), along(4), across(4), x, y, mx, my, xx, xy, yy, determinant
-    integer :: i, s
+    real(wp), intent(out) :: value(:, :)     !! [4, fields]
+    real(wp) :: mean(4), along(4), across(4), d(2), m(2), xx, xy, yy, determinant
+    integer :: f, i, s
 
-    mx = 0.0_wp
-    my = 0.0_wp
+    m = 0.0_wp
     xx = 0.0_wp
     xy = 0.0_wp
     yy = 0.0_wp
-    mean = 0.0_wp
-    along = 0.0_wp
-    across = 0.0_wp
     do i = 1, size(patch)
-      s = sample%first(patch(i))
-      x = sample%x(1, s) - at(1)
-      y = sample%x(2, s) - at(2)
-      mx = mx + x
-      my = my + y
-      xx = xx + x*x
-      xy = xy + x*y
-      yy = yy + y*y
-      mean = mean + sample%strain(:, s)
-      along = along + x*sample%strain(:, s)
-      across = across + y*sample%strain(:, s)
+      d = x(:, model%first_point(patch(i))) - at
+      m = m + d
+      xx = xx + d(1)*d(1)
+      xy = xy + d(1)*d(2)
+      yy = yy + d(2)*d(2)
     end do
-    mean = mean/size(patch)
-    along = along - mx*mean
-    across = across - my*mean
-    xx = xx - mx*mx/size(patch)
-    xy = xy - mx*my/size(patch)
-    yy = yy - my*my/size(patch)
+    xx = xx - m(1)*m(1)/size(patch)
+    xy = xy - m(1)*m(2)/size(patch)
+    yy = yy - m(2)*m(2)/size(patch)
     determinant = xx*yy - xy*xy
-    value = mean
-    if (determinant > dependent*(xx + yy)**2) &
-      value = mean - (mx*(yy*along - xy*across) + my*(xx*across - xy*along))/(determinant*size(patch))
+    do f = 1, size(sample, 3)
+      mean = 0.0_wp
+      along = 0.0_wp
+      across = 0.0_wp
+      do i = 1, size(patch)
+        s = model%first_point(patch(i))
+        d = x(:, s) - at
+        mean = mean + sample(:, s, f)
+        along = along + d(1)*sample(:, s, f)
+        across = across + d(2)*sample(:, s, f)
+      end do
+      mean = mean/size(patch)
+      along = along - m(1)*mean
+      across = across - m(2)*mean
+      if (determinant > dependent*(xx + yy)**2) &
+        mean = mean - (m(1)*(yy*along - xy*across) + m(2)*(xx*across - xy*along))/(determinant*size(patch))
+      value(:, f) = mean
+    end do
   end subroutine fit_linear
 
-  !> The quadratic polynomial about a corner: its value there, and added at the nodes on the sides that meet there.
-  pure subroutine fit_quadratic(model, table, sample, patch, p, node, smooth, fitted)
+  !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that meet there.
+  pure subroutine fit_quadratic(model, table, x, sample, patch, p, smooth, fitted)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
-    type(sample_table), intent(in) :: sample
-    integer, intent(in) :: patch(:), p
-    real(wp), intent(in) :: node(:, :)
-    real(wp), intent(inout) :: smooth(:, :)
-    integer, intent(inout) :: fitted(:)   !! of a node between: -1, less one for each polynomial
-    real(wp) :: matrix(quadratic, quadratic), coefficient(4, quadratic), term(quadratic), reach, weight
-    integer :: e, i, j, k, s
+    real(wp), intent(in) :: x(:, :), sample(:, :, :)
+    integer, intent(in) :: patch(:), p    !! elements; the place
+    real(wp), intent(inout) :: smooth(:, :, :)
+    integer, intent(inout) :: fitted(:)
+    real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic), at(2), reach, weight
+    integer :: e, f, i, j, k, s
 
+    at = model%x(:, table%node(p))
     reach = 0.0_wp
     do i = 1, size(patch)
-      reach = max(reach, maxval(abs(sample%x(:, sample%first(patch(i))) - node(:, p))))
+      reach = max(reach, maxval(abs(x(:, model%first_point(patch(i))) - at)))
     end do
     matrix = 0.0_wp
     coefficient = 0.0_wp
     do i = 1, size(patch)
-      do s = sample%first(patch(i)), sample%first(patch(i) + 1) - 1
-        term = terms((sample%x(:, s) - node(:, p))/reach)
-        weight = 1.0_wp/(0.1_wp + sum(term(2:3)**2))**2
-        do j = 1, quadratic
-          matrix(:, j) = matrix(:, j) + term*term(j)*weight
-          coefficient(:, j) = coefficient(:, j) + sample%strain(:, s)*term(j)*weight
+      associate (first => model%first_point(patch(i)), last => model%first_point(patch(i) + 1) - 1)
+        do s = first, merge(last, first, model%order(patch(i)) == 6)
+          term = terms((x(:, s) - at)/reach)
+          weight = 1.0_wp/(0.1_wp + sum(term(2:3)**2))**2
+          do j = 1, quadratic
+            matrix(:, j) = matrix(:, j) + term*term(j)*weight
+            coefficient(:, :, j) = coefficient(:, :, j) + sample(:, s, :)*term(j)*weight
+          end do
         end do
-      end do
+      end associate
     end do
-    call solve(matrix, coefficient)
-    smooth(:, p) = coefficient(:, 1)
+    call solve(matrix, size(coefficient, 1)*size(coefficient, 2), coefficient)
+    smooth(:, p, :) = coefficient(:, :, 1)
     do i = table%around%start(p), table%around%start(p + 1) - 1
       e = table%around%group(i)
       if (model%order(e) /= 6) cycle
       do k = 1, 3
         if (table%place(k, e) /= p .and. table%place(mod(k, 3) + 1, e) /= p) cycle
         associate (middle => table%place(3 + k, e))
-          smooth(:, middle) = smooth(:, middle) + matmul(coefficient, terms((node(:, middle) - node(:, p))/reach))
+          term = terms((model%x(:, table%node(middle)) - at)/reach)
+          do f = 1, size(sample, 3)
+            smooth(:, middle, f) = smooth(:, middle, f) + matmul(coefficient(:, f, :), term)
+          end do
           fitted(middle) = fitted(middle) - 1
         end associate
       end do
@@ -210,9 +202,10 @@ contains
   end function terms
 
   !> Solve the normal equations; a term that depends on those before is left out.
-  pure subroutine solve(matrix, unknown)
-    real(wp), intent(inout) :: matrix(:, :)    !! symmetric
-    real(wp), intent(inout) :: unknown(:, :)   !! right-hand sides, then solutions [any, terms]
+  pure subroutine solve(matrix, sides, unknown)
+    real(wp), intent(inout) :: matrix(:, :)                        !! symmetric
+    integer, intent(in) :: sides
+    real(wp), intent(inout) :: unknown(sides, size(matrix, 1))     !! right-hand sides, then solutions
     real(wp) :: diagonal(size(matrix, 1))
     integer :: i, j, n
 
