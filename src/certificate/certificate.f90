@@ -5,7 +5,7 @@
 !> nodal forces from the work of the stresses on unit displacements.
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
-  use epcont_certificate_gradient, only: most_places, unit_strains
+  use epcont_certificate_gradient, only: kind_of, kind_type, most_places, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve
   use epcont_model_model, only: axisymmetric, model_type, most_nodes
   implicit none
@@ -57,13 +57,13 @@ contains
   pure subroutine certify(model, load, curve_tolerance, deformation, displacement, reaction, stress, force, certificate, &
                           rounding_error)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: load(:, :)          !! [force] [2, nodes]
+    real(wp), intent(in) :: load(2, model%nodes)          !! [force]
     real(wp), intent(in) :: curve_tolerance
-    real(wp), intent(in) :: deformation(:, :)   !! displacements without rigid motions [2, nodes]
-    real(wp), intent(in) :: displacement(:, :)  !! with them [2, nodes]
-    real(wp), intent(in) :: reaction(:, :)      !! [2, nodes]
-    real(wp), intent(in) :: stress(:, :)        !! xx, yy, zz, xy [4, points]
-    real(wp), intent(in) :: force(:)            !! contact forces [pairs]
+    real(wp), intent(in) :: deformation(2, model%nodes)   !! displacements without rigid motions
+    real(wp), intent(in) :: displacement(2, model%nodes)  !! with them
+    real(wp), intent(in) :: reaction(2, model%nodes)
+    real(wp), intent(in) :: stress(4, model%points)       !! xx, yy, zz, xy
+    real(wp), intent(in) :: force(:)                      !! contact forces [pairs]
     type(certificate_type), intent(out) :: certificate
     real(wp), intent(in), optional :: rounding_error  !! of strains and contact forces; not given: that of double precision
     real(wp), allocatable :: residual(:, :), element_force(:)
@@ -73,9 +73,8 @@ contains
     tolerance = certificate%tolerance
     allocate (residual(2, model%nodes), element_force(model%nodes), source=0.0_wp)
     stored = 0.0_wp
-    largest_stress = 0.0_wp
-    call sum_elements(model, deformation, displacement - deformation, stress, residual, element_force, stored, largest_stress, &
-                      certificate)
+    call sum_elements(model, deformation, displacement - deformation, stress, residual, element_force, stored, certificate)
+    largest_stress = maxval(abs(stress))
     certificate%off_curve = ratio(certificate%off_curve, largest_stress)
     certificate%lost_stress = ratio(certificate%lost_stress, largest_stress)
     residual = residual - load - reaction
@@ -115,55 +114,69 @@ contains
     if (a > 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
   end function ratio
 
-  !> Internal forces at the nodes, work of the stresses on the strains, largest stress; its largest distance from the curve
+  !> Internal forces at the nodes, work of the stresses on the strains; the stresses' largest distance from the curve
   !! and what roundings and rigid motions strain go into the certificate.
-  pure subroutine sum_elements(model, deformation, motion, stress, internal, magnitude, stored, largest, certificate)
+  pure subroutine sum_elements(model, deformation, motion, stress, internal, magnitude, stored, certificate)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: deformation(:, :), motion(:, :), stress(:, :)
-    real(wp), intent(inout) :: internal(:, :), magnitude(:)
-    real(wp), intent(inout) :: stored, largest
+    real(wp), dimension(2, model%nodes), intent(in) :: deformation, motion
+    real(wp), intent(in) :: stress(4, model%points)
+    real(wp), intent(inout) :: internal(2, model%nodes), magnitude(model%nodes)
+    real(wp), intent(inout) :: stored
     type(certificate_type), intent(inout) :: certificate
+    type(kind_type) :: kind(most_nodes)
     logical :: moves, ring
     real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), u(2, most_nodes), travel(2, most_nodes)
-    real(wp) :: strain(4), force(2), rounding
-    integer :: c, e, k, n, p, places, section
+    real(wp) :: strain(4), steepest(4), force(2), rounding
+    integer :: c, e, k, n, p, point, section
 
+    kind([3, 4, 6]) = [kind_of(3), kind_of(4), kind_of(6)]
     moves = any(motion /= 0.0_wp)
     do e = 1, model%elements
       n = model%order(e)
       section = model%section(e)
       ring = model%kinematics(section) == axisymmetric
-      call unit_strains(model, e, places, unit, volume)
-      associate (node => model%connectivity(:, e), s => stress(:, model%first_point(e):model%first_point(e + 1) - 1))
+      call unit_strains(model, e, kind(n), unit, volume)
+      associate (node => model%connectivity(:, e), first => model%first_point(e))
         do k = 1, n
           u(:, k) = deformation(:, node(k))
           travel(:, k) = motion(:, node(k))
         end do
-        do p = 1, places
+        do p = 1, kind(n)%places
+          point = first + p - 1
           strain = strain_at(n, ring, u, unit(:, :, :, p))
-          certificate%off_curve = max(certificate%off_curve, maxval(abs(s(:, p) - stress_on_curve(model, section, strain))))
-          largest = max(largest, maxval(abs(s(:, p))))
-          stored = stored + volume(p)*dot_product(s(:, p), strain)
-          rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :n, p)))   ! of a strain by unit displacements
+          certificate%off_curve = max(certificate%off_curve, largest(stress(:, point) - stress_on_curve(model, section, strain)))
+          stored = stored + volume(p)*dot_product(stress(:, point), strain)
+          steepest = 0.0_wp
+          do k = 1, n
+            steepest = max(steepest, abs(unit(:, 1, k, p)), abs(unit(:, 2, k, p)))
+          end do
+          rounding = epsilon(1.0_wp)*largest(steepest)   ! of a strain by unit displacements
           certificate%lost_stress = max(certificate%lost_stress, model%young(section)*rounding*maxval(abs(u(:, :n))))
           if (.not. moves) cycle
           strain = strain_at(n, ring, travel, unit(:, :, :, p))
           rounding = rounding*maxval(abs(travel(:, :n)) + abs(u(:, :n)))
-          certificate%motion_strain = max(certificate%motion_strain, ratio(maxval(abs(strain)), rounding))
+          certificate%motion_strain = max(certificate%motion_strain, ratio(largest(strain), rounding))
         end do
         do k = 1, n
           force = 0.0_wp
-          do p = 1, places
+          do p = 1, kind(n)%places
             do c = 1, 2
-              force(c) = force(c) + volume(p)*dot_product(s(:, p), unit(:, c, k, p))
+              force(c) = force(c) + volume(p)*dot_product(stress(:, first + p - 1), unit(:, c, k, p))
             end do
           end do
           internal(:, node(k)) = internal(:, node(k)) + force
-          magnitude(node(k)) = magnitude(node(k)) + maxval(abs(force))
+          magnitude(node(k)) = magnitude(node(k)) + max(abs(force(1)), abs(force(2)))
         end do
       end associate
     end do
   end subroutine sum_elements
+
+  !> Largest component, whatever its sign.
+  pure real(wp) function largest(vector)
+    real(wp), intent(in) :: vector(4)
+
+    largest = max(abs(vector(1)), abs(vector(2)), abs(vector(3)), abs(vector(4)))
+  end function largest
 
   !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel without strain,
   !! and comes off first so that it leaves no rounding.
@@ -187,8 +200,8 @@ contains
   pure subroutine check_pairs(model, largest_load, displacement, force, residual, certificate)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: largest_load
-    real(wp), intent(in) :: displacement(:, :), force(:)
-    real(wp), intent(inout) :: residual(:, :)
+    real(wp), intent(in) :: displacement(2, model%nodes), force(:)
+    real(wp), intent(inout) :: residual(2, model%nodes)
     type(certificate_type), intent(inout) :: certificate
     real(wp) :: gap, apart(2), rounding, travel
     integer :: i, k
@@ -219,7 +232,7 @@ contains
   !> Work of the contact forces on the displacements.
   pure subroutine add_pair_work(model, displacement, force, work, terms)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: displacement(:, :), force(:)
+    real(wp), intent(in) :: displacement(2, model%nodes), force(:)
     real(wp), intent(inout) :: work, terms
     real(wp) :: apart(2), done
     integer :: i, k
@@ -238,7 +251,7 @@ contains
   !> A tied freedom hands its forces to its leader.
   pure subroutine gather_ties(model, residual)
     type(model_type), intent(in) :: model
-    real(wp), intent(inout) :: residual(:, :)
+    real(wp), intent(inout) :: residual(2, model%nodes)
     integer :: c, node
 
     do node = 1, model%nodes

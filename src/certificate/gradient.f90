@@ -5,7 +5,7 @@ module epcont_certificate_gradient
   use epcont_model_model, only: axisymmetric, model_type, most_nodes, plane_stress
   implicit none
   private
-  public :: unit_strains
+  public :: kind_type, kind_of, unit_strains
 
   !> Integration places of an element, at most.
   integer, parameter, public :: most_places = 4
@@ -13,7 +13,27 @@ module epcont_certificate_gradient
   !> Half the step of the differences: exact for quadratics whatever its size.
   real(wp), parameter :: half_step = 0.5_wp
 
+  !> What is the same in all elements of so many nodes.
+  type :: kind_type
+    integer :: places = 0                                           !! integration places
+    real(wp) :: weight(most_places) = 0.0_wp                        !! their parts of the reference area
+    real(wp) :: share(most_nodes, most_places) = 0.0_wp             !! of each node in what is there
+    real(wp) :: change(2, most_nodes, most_places) = 0.0_wp         !! its derivatives by the two local coordinates
+  end type kind_type
+
 contains
+
+  pure type(kind_type) function kind_of(nodes) result(kind)
+    integer, intent(in) :: nodes
+    real(wp) :: place(2, most_places)
+    integer :: p
+
+    call places_of(nodes, kind%places, place, kind%weight)
+    do p = 1, kind%places
+      kind%share(:, p) = shares(nodes, place(:, p))
+      kind%change(:, :, p) = differences(nodes, place(:, p))
+    end do
+  end function kind_of
 
   !> Integration places of an element of so many nodes, in barycentric coordinates (3 and 6 nodes) or from -1 to 1
   !! (4), and their parts of the reference area.
@@ -42,46 +62,42 @@ contains
 
   !> Strains xx, yy, zz, xy (engineering) that a unit displacement of each freedom gives at the integration places of an
   !! element, and the volumes that belong to them.
-  pure subroutine unit_strains(model, element, places, strain, volume)
+  pure subroutine unit_strains(model, element, kind, strain, volume)
     type(model_type), intent(in) :: model
     integer, intent(in) :: element
-    integer, intent(out) :: places
+    type(kind_type), intent(in) :: kind
     real(wp), intent(out) :: strain(4, 2, most_nodes, most_places)   !! [-, directions, nodes, places] [1/length]
     real(wp), intent(out) :: volume(most_places)                     !! [length**3]
-    real(wp) :: place(2, most_places), weight(most_places), at(most_nodes), change(2, most_nodes)
-    real(wp) :: x(2, most_nodes), side(2, 2), gradient(2), determinant, radius
-    integer :: c, k, n, p
+    real(wp) :: x(2, most_nodes), side(2, 2), away(2), gradient(2), determinant, radius
+    integer :: k, n, p
 
     n = model%order(element)
     do k = 1, n
       x(:, k) = model%x(:, model%connectivity(k, element))
     end do
-    call places_of(n, places, place, weight)
-    associate (s => model%section(element))
-      do p = 1, places
-        change = differences(n, place(:, p))
+    associate (s => model%section(element), change => kind%change, at => kind%share)
+      do p = 1, kind%places
         ! d x/d local, one column each; from the first node, so that a place far from the origin takes no digits.
         side = 0.0_wp
         do k = 2, n
-          do c = 1, 2
-            side(:, c) = side(:, c) + (x(:, k) - x(:, 1))*change(c, k)
-          end do
+          away = x(:, k) - x(:, 1)
+          side(:, 1) = side(:, 1) + away*change(1, k, p)
+          side(:, 2) = side(:, 2) + away*change(2, k, p)
         end do
         determinant = side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1)
-        volume(p) = weight(p)*determinant*model%thickness(s)
+        volume(p) = kind%weight(p)*determinant*model%thickness(s)
         strain(:, :, :n, p) = 0.0_wp
         do k = 1, n
-          gradient = [change(1, k)*side(2, 2) - change(2, k)*side(2, 1), change(2, k)*side(1, 1) - change(1, k)*side(1, 2)] &
-                     /determinant
+          gradient(1) = (change(1, k, p)*side(2, 2) - change(2, k, p)*side(2, 1))/determinant
+          gradient(2) = (change(2, k, p)*side(1, 1) - change(1, k, p)*side(1, 2))/determinant
           strain(1, 1, k, p) = gradient(1)
           strain(2, 2, k, p) = gradient(2)
           strain(4, :, k, p) = gradient([2, 1])
         end do
         if (model%kinematics(s) /= axisymmetric) cycle
-        at = shares(n, place(:, p))
-        radius = dot_product(at(:n), x(1, :n))
-        strain(3, 1, :n, p) = at(:n)/radius
-        volume(p) = weight(p)*determinant*2.0_wp*acos(-1.0_wp)*radius
+        radius = dot_product(at(:n, p), x(1, :n))
+        strain(3, 1, :n, p) = at(:n, p)/radius
+        volume(p) = kind%weight(p)*determinant*2.0_wp*acos(-1.0_wp)*radius
       end do
       if (n == 4 .and. model%kinematics(s) /= plane_stress) call average_dilatation(strain, volume)
     end associate
