@@ -48,8 +48,12 @@ contains
     class(linear_law), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [4, points]
     real(wp), allocatable :: stress(:, :)
+    integer :: p
 
-    stress = self%increment(strain) + self%initial_stress
+    stress = self%increment(strain)
+    do p = 1, size(strain, 2)
+      stress(:, p) = stress(:, p) + self%initial_stress(:, p)
+    end do
   end function stress
 
   !> What a strain adds to the stress of each point [4, points].
@@ -59,9 +63,11 @@ contains
     real(wp), allocatable :: increment(:, :)
     integer :: p
 
-    allocate (increment, mold=strain)
+    allocate (increment(4, size(strain, 2)))
     do p = 1, size(strain, 2)
-      increment(:, p) = matmul(self%matrix(:, :, self%matrix_of(p)), strain(:, p))
+      associate (d => self%matrix(:, :, self%matrix_of(p)))
+        increment(:, p) = d(:, 1)*strain(1, p) + d(:, 2)*strain(2, p) + d(:, 3)*strain(3, p) + d(:, 4)*strain(4, p)
+      end associate
     end do
   end function increment
 end module epcont_material_linear_law

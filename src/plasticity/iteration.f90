@@ -137,7 +137,7 @@ contains
     class(onlooker), intent(inout) :: watch
     type(scene_state), allocatable :: found
     type(iteration_record) :: now
-    real(wp) :: farthest, least_residual
+    real(wp) :: farthest, least_residual, travel
     integer :: iteration
 
     converged = .false.
@@ -158,9 +158,10 @@ contains
       call measure(model, loop, found, now)
       run%history = [run%history, now]
       converged = is_over(loop, run%history)
-      if (iteration == 1) farthest = far_away*maxval(abs(found%displacement))
+      travel = maxval(abs(found%displacement))
+      if (iteration == 1) farthest = far_away*travel
       ! A state far away is none to show: its numbers may be at the end of their range.
-      run%runs_away = .not. converged .and. model%has_flat_curve() .and. maxval(abs(found%displacement)) > farthest
+      run%runs_away = .not. converged .and. model%has_flat_curve() .and. travel > farthest
       if (run%runs_away) return
       if (now%residual <= least_residual .and. .not. converged) state = found
       least_residual = min(least_residual, now%residual)

@@ -23,26 +23,26 @@ contains
     type(answer_type), intent(inout) :: answer
     type(material_type), allocatable :: material(:)
     type(response_type) :: response
-    real(wp) :: modulus
+    real(wp) :: modulus, share, whole
     integer :: e, p
 
     material = section_materials(model)
-    answer%point_stress = state%stress
+    allocate (answer%point_stress, source=state%stress)
     allocate (answer%stress(4, model%elements), answer%equivalent_stress(model%elements), source=0.0_wp)
     allocate (answer%equivalent_strain(model%elements), answer%secant_modulus(model%elements), source=0.0_wp)
     allocate (answer%plastic(model%elements), answer%beyond(model%elements), source=.false.)
     do e = 1, model%elements
       associate (m => material(model%section(e)), first => model%first_point(e), last => model%first_point(e + 1) - 1)
+        whole = sum(operator%volume(first:last))
         do p = first, last
           response = respond(m, state%strain(:, p))
           modulus = m%young
           if (response%curve%yielded) modulus = 1.0_wp/(1.0_wp/response%curve%modulus + m%shift)
-          associate (share => operator%volume(p)/sum(operator%volume(first:last)))
-            answer%stress(:, e) = answer%stress(:, e) + share*state%stress(:, p)
-            answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*equivalent_stress(state%stress(:, p))
-            answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*response%curve%total
-            answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
-          end associate
+          share = operator%volume(p)/whole
+          answer%stress(:, e) = answer%stress(:, e) + share*state%stress(:, p)
+          answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*equivalent_stress(state%stress(:, p))
+          answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*response%curve%total
+          answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
           answer%plastic(e) = answer%plastic(e) .or. response%curve%yielded
           answer%beyond(e) = answer%beyond(e) .or. response%curve%beyond
         end do
