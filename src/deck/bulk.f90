@@ -75,13 +75,18 @@ contains
     type(card_table), intent(inout) :: table(:)
     character(len=8) :: text, before, name
     integer :: cards(size(entry))
-    integer :: line, k, cut
+    integer :: line, k, at, cut
 
     cards = 0
     k = 0
     before = ''
     do line = first, lines%count
-      text = lines%text(lines%first(line):min(lines%last(line), lines%first(line) + 7))
+      at = lines%first(line)
+      if (lines%last(line) - at >= 7) then
+        text = lines%text(at:at + 7)   ! of known length: no call
+      else
+        text = lines%text(at:lines%last(line))
+      end if
       if (text(1:1) < 'A') cycle
       if (text /= before) then
         cut = scan(text//',', ',*')
@@ -203,7 +208,9 @@ contains
     integer :: outcome
 
     call read_value(lines%text(card%first(slot):card%last(slot)), entry, value, word, outcome)
-    if (outcome == scan_no_point .and. entry%point_optional .and. card%is_large(slot)) outcome = scan_sound
+    if (outcome == scan_no_point) then
+      if (entry%point_optional .and. card%is_large(lines, slot)) outcome = scan_sound
+    end if
     if (outcome == scan_sound) then
       table%value(column, table%count) = value
       if (entry%kind == kind_word) table%word(column, table%count) = word

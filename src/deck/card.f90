@@ -20,6 +20,14 @@ module epcont_deck_card
   integer, parameter :: longest_fixed = 80   !! columns of a fixed line
   integer, parameter :: longest_free = 256   !! columns of a free line
 
+  !> One line of a card. From it the columns of its slots follow, for which only faults ask.
+  type :: card_line
+    integer :: line = 0    !! which it is
+    integer :: slot = 0    !! the first of its slots
+    integer :: fields = 0  !! slots on it, 8 or 4
+    integer :: comma = 0   !! its first comma, in the buffer; 0: a line of fields of fixed width
+  end type card_line
+
   !> The fields of one card. A slot is a data field: slots 1 to 8 are the fields 2 to 9, slots 9 to 16 the
   !> fields 12 to 19, and so on.
   type :: card_fields
@@ -28,10 +36,13 @@ module epcont_deck_card
     integer :: name_first = 1, name_last = 0     !! the name in the buffer, without `*`
     character(len=8) :: name = ''                !! the name in capitals, cut at eight characters
     integer :: count = 0                         !! slots: eight for each row
-    type(place_type), allocatable :: field(:)    !! [slots or more] the columns of the whole field
     integer, allocatable :: first(:), last(:)    !! [slots or more] the value in the buffer; last < first: blank
     logical :: sound = .true.                    !! the lines can be cut into fields
     logical, private :: half_open = .false.      !! the last line was the first half of a large-field row
+    logical, private :: large_name = .false.     !! there is a `*` behind the name
+    integer, private :: name_field = 0           !! where the eight columns of the name begin; 0: it has not as many
+    integer, private :: lines = 0                !! of the card
+    type(card_line), allocatable, private :: at(:)  !! [lines or more]
   contains
     procedure :: filled
     procedure :: is_large
@@ -42,11 +53,14 @@ module epcont_deck_card
 contains
 
   !> Whether a slot is a large field of a fixed line: sixteen columns.
-  pure logical function is_large(self, slot)
+  pure logical function is_large(self, lines, slot)
     class(card_fields), intent(in) :: self
+    type(source), intent(in) :: lines
     integer, intent(in) :: slot
+    type(place_type) :: place
 
-    is_large = self%field(slot)%last - self%field(slot)%first == 15
+    place = self%place(lines, slot)
+    is_large = place%last - place%first == 15
   end function is_large
 
   !> Collect the card that begins at `line`, which is not blank, with its continuations.
@@ -56,8 +70,9 @@ contains
     type(card_fields), intent(inout) :: card  !! its arrays are used again
     type(diagnostics), intent(inout) :: faults
 
-    if (.not. allocated(card%field)) call extend(card, 64)
+    if (.not. allocated(card%first)) call extend(card, 64)
     card%line = line
+    card%lines = 0
     card%count = 0
     card%sound = .true.
     card%half_open = .false.
@@ -77,13 +92,13 @@ contains
     character(len=*), intent(in) :: text
     integer :: at
 
-    continues = .true.
+    continues = text(1:1) == '+' .or. text(1:1) == '*'
+    if (continues) return
     do at = 1, min(width, len(text))
-      if (at == 1 .and. (text(1:1) == '+' .or. text(1:1) == '*')) return
-      if (text(at:at) == ',') return
-      if (text(at:at) /= ' ') exit
+      if (iachar(text(at:at)) /= iachar(' ')) exit
     end do
     continues = at > width
+    if (.not. continues) continues = text(at:at) == ','
   end function continues
 
   !> Add the fields of one line.
@@ -93,7 +108,7 @@ contains
     logical, intent(in) :: starts  !! the line holds the card's name
     type(card_fields), intent(inout) :: card
     type(diagnostics), intent(inout) :: faults
-    integer :: comma, name_end, slot
+    integer :: comma, name_end
     logical :: large
 
     call inspect(lines, line, comma, card%sound, faults)
@@ -101,16 +116,17 @@ contains
     if (comma > 0) name_end = comma - 1
     name_end = min(name_end, lines%last(line))
     if (starts) then
-      call take_name(lines%text, lines%first(line), name_end, card, large)
+      call take_name(lines%text, lines%first(line), name_end, card)
+      large = card%large_name
     else
       large = lines%text(lines%first(line):lines%first(line)) == '*'
     end if
     if (.not. card%sound) return
-    call open_slots(large, card, slot)
+    call open_slots(line, large, comma, card)
     if (comma > 0) then
-      call cut_free(lines, line, comma, merge(4, 8, large), slot, card, faults)
+      call cut_free(lines, card%at(card%lines), card, faults)
     else
-      call cut_fixed(lines, line, merge(4, 8, large), slot, card)
+      call cut_fixed(lines, card%at(card%lines), card)
     end if
   end subroutine add_line
 
@@ -124,7 +140,8 @@ contains
     integer :: at, code, longest
 
     comma = 0
-    do at = lines%special(line), lines%last(line)
+    at = lines%special(line)
+    do while (at <= lines%last(line))
       code = iachar(lines%text(at:at))
       if (code < 32 .or. code > 126) then
         call add_character_fault(lines%columns(line, at, at), code, faults)
@@ -132,6 +149,7 @@ contains
         return
       end if
       if (comma == 0 .and. lines%text(at:at) == ',') comma = at
+      at = at + 1
     end do
     longest = merge(longest_free, longest_fixed, comma > 0)
     if (lines%last(line) - lines%first(line) < longest) return
@@ -153,31 +171,41 @@ contains
     end if
   end subroutine add_character_fault
 
-  !> The name in `text(from:to)`; a `*` behind it means large fields.
-  subroutine take_name(text, from, to, card, large)
+  !> The name in `text(from:to)`; a `*` behind it means large fields. Most cards have the name of the one before.
+  subroutine take_name(text, from, to, card)
     character(len=*), intent(in) :: text
     integer, intent(in) :: from, to
     type(card_fields), intent(inout) :: card
-    logical, intent(out) :: large
+    integer :: before
 
+    before = card%name_field
+    card%name_field = merge(from, 0, to - from == width - 1)
+    if (before > 0 .and. card%name_field > 0) then
+      if (text(from:from + (width - 1)) == text(before:before + (width - 1))) then   ! of known length: no call
+        card%name_first = card%name_first + from - before
+        card%name_last = card%name_last + from - before
+        return
+      end if
+    end if
     card%name_first = from
     card%name_last = to
     call trim_blanks(text, card%name_first, card%name_last)
-    large = .false.
-    if (card%name_last > card%name_first) large = text(card%name_last:card%name_last) == '*'
-    if (large) then
+    card%large_name = .false.
+    if (card%name_last > card%name_first) card%large_name = text(card%name_last:card%name_last) == '*'
+    if (card%large_name) then
       card%name_last = card%name_last - 1
       call trim_blanks(text, card%name_first, card%name_last)
     end if
-    card%name = text(card%name_first:min(card%name_last, card%name_first + 7))
-    card%name = upper(card%name)
+    card%name = upper(text(card%name_first:min(card%name_last, card%name_first + 7)))
   end subroutine take_name
 
-  !> The slot where the fields of a line begin: a new row of eight, or the second half of a large-field row.
-  subroutine open_slots(large, card, slot)
+  !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are blank.
+  subroutine open_slots(line, large, comma, card)
+    integer, intent(in) :: line
     logical, intent(in) :: large
+    integer, intent(in) :: comma  !! the first comma, in the buffer; 0: none
     type(card_fields), intent(inout) :: card
-    integer, intent(out) :: slot
+    integer :: slot
 
     if (large .and. card%half_open) then
       slot = card%count - 3
@@ -186,94 +214,90 @@ contains
       slot = card%count + 1
       card%half_open = large
       card%count = card%count + 8
-      if (card%count > size(card%field)) call extend(card, 2*card%count)
+      if (card%count > size(card%first)) call extend(card, 2*card%count)
+      card%last(slot:slot + 7) = 0
     end if
+    card%lines = card%lines + 1
+    card%at(card%lines) = card_line(line, slot, merge(4, 8, large), comma)
   end subroutine open_slots
 
-  !> Blank slots to the end of the row, of which the line says nothing: they are behind its end.
-  subroutine add_blanks(lines, line, slot, card)
-    type(source), intent(in) :: lines
-    integer, intent(in) :: line
-    integer, intent(in) :: slot  !! the first of them
-    type(card_fields), intent(inout) :: card
-    integer :: i, behind
-
-    behind = lines%last(line) - lines%first(line) + 2
-    do i = slot, card%count
-      card%field(i) = place_type(line, behind, behind)
-      card%first(i) = 1
-      card%last(i) = 0
-    end do
-  end subroutine add_blanks
-
   !> Cut a line of fields of fixed width.
-  subroutine cut_fixed(lines, line, fields, slot, card)
+  subroutine cut_fixed(lines, at, card)
     type(source), intent(in) :: lines
-    integer, intent(in) :: line
-    integer, intent(in) :: fields  !! on the line, 8 or 4
-    integer, intent(in) :: slot    !! the first of them
+    type(card_line), intent(in) :: at
     type(card_fields), intent(inout) :: card
-    integer :: i, step, column, from, to
+    integer :: slot, step, left, from, to, last
 
-    step = (last_data - width)/fields
-    column = width + 1
-    do i = slot, slot + fields - 1
-      card%field(i) = place_type(line, column, column + step - 1)
-      from = lines%first(line) + column - 1
-      to = min(from + step - 1, lines%last(line))
+    step = field_width(at)
+    last = lines%last(at%line)
+    left = lines%first(at%line) + width
+    do slot = at%slot, at%slot + at%fields - 1
+      if (left > last) exit
+      from = left
+      to = min(left + step - 1, last)
       call trim_blanks(lines%text, from, to)
-      card%first(i) = from
-      card%last(i) = to
-      column = column + step
+      card%first(slot) = from
+      card%last(slot) = to
+      left = left + step
     end do
-    call add_blanks(lines, line, slot + fields, card)
   end subroutine cut_fixed
 
+  !> Columns of each field on a line without commas.
+  pure integer function field_width(at)
+    type(card_line), intent(in) :: at
+
+    field_width = (last_data - width)/at%fields
+  end function field_width
+
   !> Cut a line at its commas. Behind the data fields only a continuation mark may stand.
-  subroutine cut_free(lines, line, comma, fields, slot, card, faults)
+  subroutine cut_free(lines, at, card, faults)
     type(source), intent(in) :: lines
-    integer, intent(in) :: line
-    integer, intent(in) :: comma   !! the first comma, in the buffer
-    integer, intent(in) :: fields  !! that the line may hold
-    integer, intent(in) :: slot    !! the first of them
+    type(card_line), intent(in) :: at
     type(card_fields), intent(inout) :: card
     type(diagnostics), intent(inout) :: faults
-    integer :: i, from, to, left, right
+    integer :: slot, from, to, left, right
 
-    call add_blanks(lines, line, slot, card)
-    left = comma + 1
-    i = slot
-    do while (left <= lines%last(line))
-      right = index(lines%text(left:lines%last(line)), ',') + left - 2
-      if (right < left - 1) right = lines%last(line)
+    left = at%comma + 1
+    slot = at%slot
+    do while (left <= lines%last(at%line))
+      right = field_end(lines, at%line, left)
       from = left
       to = right
       call trim_blanks(lines%text, from, to)
-      if (i < slot + fields) then
-        card%field(i) = lines%columns(line, left, max(right, left))
-        card%first(i) = from
-        card%last(i) = to
-      else if (from <= to .and. (i > slot + fields .or. scan(lines%text(from:max(from, to)), '+*') /= 1)) then
+      if (slot < at%slot + at%fields) then
+        card%first(slot) = from
+        card%last(slot) = to
+      else if (from <= to .and. (slot > at%slot + at%fields .or. scan(lines%text(from:max(from, to)), '+*') /= 1)) then
         card%sound = .false.
-        call faults%add_error(lines%columns(line, from, lines%last(line)), &
-                              'more than '//text_of(fields)//' data fields on a line', 'a continuation line for the rest')
+        call faults%add_error(lines%columns(at%line, from, lines%last(at%line)), &
+                              'more than '//text_of(at%fields)//' data fields on a line', 'a continuation line for the rest')
         return
       end if
-      i = i + 1
+      slot = slot + 1
       left = right + 2
     end do
   end subroutine cut_free
 
+  !> The last character of the field that begins at `left`: before the next comma, or at the end of the line.
+  pure integer function field_end(lines, line, left)
+    type(source), intent(in) :: lines
+    integer, intent(in) :: line, left
+
+    field_end = left + index(lines%text(left:lines%last(line)), ',') - 2
+    if (field_end < left - 1) field_end = lines%last(line)
+  end function field_end
+
   !> Move `from` and `to` inwards over blanks. These are compared by their codes: a character compared with a blank becomes
-  !! a call of len_trim, which for so few characters costs more than the loop.
+  !! a call of len_trim, which for so few characters costs more than the loop; so does an unrolled loop.
   pure subroutine trim_blanks(text, from, to)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to
 
-    do while (from <= to)
+    !GCC$ unroll 1
+    do to = to, from, -1
       if (iachar(text(to:to)) /= iachar(' ')) exit
-      to = to - 1
     end do
+    if (iachar(text(from:from)) /= iachar(' ')) return   ! mostly so
     do while (from < to)
       if (iachar(text(from:from)) /= iachar(' ')) exit
       from = from + 1
@@ -284,11 +308,11 @@ contains
   subroutine extend(card, slots)
     type(card_fields), intent(inout) :: card
     integer, intent(in) :: slots
-    type(place_type), allocatable :: longer(:)
+    type(card_line), allocatable :: longer(:)
 
-    allocate (longer(slots))
-    if (allocated(card%field)) longer(:size(card%field)) = card%field
-    call move_alloc(longer, card%field)
+    allocate (longer(slots/4))   ! no line has less slots
+    if (allocated(card%at)) longer(:size(card%at)) = card%at
+    call move_alloc(longer, card%at)
     call lengthen(card%first, slots)
     call lengthen(card%last, slots)
   end subroutine extend
@@ -298,7 +322,7 @@ contains
     integer, intent(in) :: length
     integer, allocatable :: longer(:)
 
-    allocate (longer(length), source=0)
+    allocate (longer(length), source=1)
     if (allocated(list)) longer(:size(list)) = list
     call move_alloc(longer, list)
   end subroutine lengthen
@@ -312,18 +336,37 @@ contains
     if (slot <= self%count) filled = self%last(slot) >= self%first(slot)
   end function filled
 
-  !> The columns of a slot; those of the name where the card has no such line.
+  !> The columns of a slot: those of the whole field, of the name where the card has no such line, and behind the line's end
+  !! where it does not say anything of the slot.
   pure function place(self, lines, slot)
     class(card_fields), intent(in) :: self
     type(source), intent(in) :: lines
     integer, intent(in) :: slot
     type(place_type) :: place
+    integer :: k, i, left, before
 
-    if (slot > self%count) then
-      place = self%name_place(lines)
-    else
-      place = self%field(slot)
-    end if
+    place = self%name_place(lines)
+    if (slot > self%count) return
+    k = self%lines
+    do while (self%at(k)%slot > slot)
+      k = k - 1
+    end do
+    associate (at => self%at(k))
+      before = slot - at%slot
+      left = lines%last(at%line) + 1
+      if (before < at%fields .and. at%comma == 0) then
+        left = width + before*field_width(at)
+        place = place_type(at%line, left + 1, left + field_width(at))
+        return
+      else if (before < at%fields) then
+        left = at%comma + 1
+        do i = 1, before
+          if (left <= lines%last(at%line)) left = field_end(lines, at%line, left) + 2
+        end do
+      end if
+      left = min(left, lines%last(at%line) + 1)
+      place = lines%columns(at%line, left, max(left, field_end(lines, at%line, left)))
+    end associate
   end function place
 
   !> The columns of the name.

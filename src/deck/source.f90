@@ -200,7 +200,9 @@ contains
       if (text(last:last) == achar(13)) last = last - 1
     end if
     last = min(last, comment - 1)
-    last = first - 1 + len_trim(text(first:last))
+    do last = last, first, -1   ! codes: a character compared with a blank becomes a call
+      if (iachar(text(last:last)) /= iachar(' ')) exit
+    end do
   end subroutine find_end
 
   !> INCLUDE or ENDDATA if the line is that statement, else blank.

@@ -13,6 +13,7 @@ module epcont_deck_table
     integer :: count = 0                               !! cards
     character(len=8), allocatable :: name(:)           !! of each field [columns]
     real(wp), allocatable :: default(:)                !! value of a blank field [columns]
+    integer, allocatable :: defaulted(:)               !! the columns where that is not zero
     integer, allocatable :: same_as(:)                 !! column whose value a blank takes, or 0 [columns]
     real(wp), allocatable :: value(:, :)               !! numbers; integers are exact [columns, count]
     logical, allocatable :: given(:, :)                !! the field is not blank [columns, count]
@@ -52,6 +53,7 @@ contains
       table%default(i) = entry%field(i)%default
       table%same_as(i) = column_at(entry%field, entry%field(i)%same_as)
     end do
+    table%defaulted = pack([(i, i=1, columns)], table%default /= 0.0_wp)
     allocate (table%noted(columns), table%noted_card(columns), source=0)
     allocate (table%list_start(1), source=1)
     allocate (table%value(columns, 0), table%given(columns, 0), table%sound(0), table%line(0))
@@ -93,12 +95,13 @@ contains
   subroutine add_card(self, line)
     class(card_table), intent(inout) :: self
     integer, intent(in) :: line
+    integer :: k
 
     if (self%count == size(self%line)) call resize(self, max(first_room, 2*self%count))
     self%count = self%count + 1
-    self%value(:, self%count) = self%default
-    self%given(:, self%count) = .false.
-    if (allocated(self%word)) self%word(:, self%count) = ''
+    do k = 1, size(self%defaulted)
+      self%value(self%defaulted(k), self%count) = self%default(self%defaulted(k))
+    end do
     self%sound(self%count) = .true.
     self%line(self%count) = line
     self%list_start(self%count + 1) = self%items + 1
@@ -158,7 +161,7 @@ contains
     if (allocated(self%word)) deallocate (self%word)
   end subroutine forget_fields
 
-  !> Room for `room` cards, the cards so far kept.
+  !> Room for `room` cards, the cards so far kept; all fields of the others are blank, and zero.
   subroutine resize(self, room)
     type(card_table), intent(inout) :: self
     integer, intent(in) :: room
@@ -171,6 +174,8 @@ contains
     kept = self%count
     if (room == size(self%line)) return
     allocate (value(columns, room), given(columns, room))
+    value = 0.0_wp
+    given = .false.
     value(:, :kept) = self%value(:, :kept)
     given(:, :kept) = self%given(:, :kept)
     call move_alloc(value, self%value)
@@ -180,6 +185,7 @@ contains
     call resize_integers(self%list_start, room + 1)
     if (.not. allocated(self%word)) return
     allocate (word(columns, room))
+    word = ''
     word(:, :kept) = self%word(:, :kept)
     call move_alloc(word, self%word)
   end subroutine resize

@@ -47,8 +47,8 @@ contains
     if (outcome /= scan_sound) return
     if (.not. within(value, entry)) then
       outcome = out_of_range
-    else if (entry%used .and. .not. within_reach(value, entry)) then
-      outcome = out_of_reach
+    else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
+      if (.not. within_reach(value, entry)) outcome = out_of_reach
     end if
   end subroutine read_value
 

@@ -50,7 +50,7 @@ contains
     do c = 1, size(element_cards)
       do i = 1, deck%card(element_cards(c))%count
         e = e + 1
-        model%element_id(e) = nint(deck%card(element_cards(c))%value(1, i))
+        model%element_id(e) = int(deck%card(element_cards(c))%value(1, i))
         model%order(e) = order_of(c)
         model%first_point(e + 1) = model%first_point(e) + points_of(order_of(c))
         if (is_ring(c)) then

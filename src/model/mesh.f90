@@ -25,7 +25,7 @@ contains
     call check_unique(deck, [card_grid], faults)
     associate (grid => deck%card(card_grid))
       model%nodes = grid%count
-      model%node_id = nint(grid%value(1, :))
+      model%node_id = int(grid%value(1, :))
       allocate (model%x(2, grid%count))
       model%x(1, :) = grid%value(grid%column('X1'), :)
       model%x(2, :) = grid%value(grid%column('X2'), :)

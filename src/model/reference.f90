@@ -16,7 +16,7 @@ contains
     integer, intent(in) :: card  !! which table
     type(id_index) :: index
 
-    index = new_id_index(nint(deck%card(card)%value(1, :)))
+    index = new_id_index(int(deck%card(card)%value(1, :)))
   end function index_of_ids
 
   !> Each id stands once in the first fields of these tables, which share one id space.
@@ -33,7 +33,7 @@ contains
     do c = 1, size(cards)
       do i = 1, deck%card(cards(c))%count
         k = k + 1
-        id(k) = nint(deck%card(cards(c))%value(1, i))
+        id(k) = int(deck%card(cards(c))%value(1, i))
         table(k) = cards(c)
         row(k) = i
       end do
