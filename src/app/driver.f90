@@ -12,7 +12,7 @@ module epcont_app_driver
   use epcont_base_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
   use epcont_base_threads, only: granted_threads
   use epcont_deck_deck, only: read_deck
-  use epcont_deck_render, only: render
+  use epcont_deck_render, only: render, render_notes
   use epcont_model_build, only: build_model
   use epcont_plan_forecast, only: check_memory, forecast, forecast_type
   use epcont_plan_free_motion, only: find_free_motions, motion_fault
@@ -78,7 +78,8 @@ contains
       if (allocated(error)) error%message = path//': '//error%message
       if (.not. allocated(error)) then
         iteration%threads = plan_threads(run%model, numbering, expected%bytes, granted_threads())
-        call run%deck%forget_fields()
+        run%notes = render_notes(run%faults, run%deck%source)
+        call run%deck%forget_text()
         call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)
         call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular, watch)
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)

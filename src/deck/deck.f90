@@ -28,7 +28,7 @@ module epcont_deck_deck
     procedure :: parameter_row
     procedure :: parameter_word
     procedure :: parameter_value
-    procedure :: forget_fields
+    procedure :: forget_text
   end type deck_type
 
 contains
@@ -48,16 +48,17 @@ contains
     call read_bulk(deck%source, bulk, deck%card, faults)
   end subroutine read_deck
 
-  !> The fields of all cards but the parameters are done with: their memory is free for what follows. How many cards there are
-  !! remains known.
-  pure subroutine forget_fields(self)
+  !> The text, and the fields of all cards but the parameters, are done with: their memory is free for what follows. How many cards
+  !! there are remains known.
+  pure subroutine forget_text(self)
     class(deck_type), intent(inout) :: self
     integer :: k
 
+    self%source = source()
     do k = 1, size(self%card)
       if (k /= card_param) call self%card(k)%forget_fields()
     end do
-  end subroutine forget_fields
+  end subroutine forget_text
 
   !> Where a field of a card stands; the card is cut into fields once more to find out.
   function place(self, card, i, field)

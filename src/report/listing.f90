@@ -7,8 +7,7 @@ module epcont_report_listing
   use epcont_certificate_certificate, only: certificate_type
   use epcont_contact_problem, only: contact_solution
   use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostics
-  use epcont_deck_render, only: printable, render_notes
+  use epcont_deck_render, only: printable
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
@@ -25,10 +24,10 @@ module epcont_report_listing
 contains
 
   !> Title, what the deck holds, and what of it has no effect.
-  subroutine list_deck(file, deck, faults)
+  subroutine list_deck(file, deck, notes)
     type(text_file), intent(in) :: file
     type(deck_type), intent(in) :: deck
-    type(diagnostics), intent(in) :: faults
+    character(len=*), intent(in) :: notes   !! of what in it has no effect, in lines
     integer :: k
 
     call file%line(program_name//' '//program_version//'   elastoplastic contact of plane bodies and rings')
@@ -46,7 +45,7 @@ contains
       if (deck%card(k)%count > 0) &
         call file%line('  '//deck%entry(k)%name//'  '//right(text_of(deck%card(k)%count), 9))
     end do
-    call lines(file, render_notes(faults, deck%source))
+    call lines(file, notes)
   end subroutine list_deck
 
   !> What came of the run, where the answer is not valid.

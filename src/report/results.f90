@@ -42,6 +42,7 @@ module epcont_report_results
   type :: run_results
     type(deck_type) :: deck
     type(diagnostics) :: faults
+    character(len=:), allocatable :: notes   !! of what in the deck has no effect, in lines
     type(model_type) :: model
     type(free_motions) :: motions
     character(len=:), allocatable :: plan   !! in words
@@ -100,7 +101,7 @@ contains
 
     call new_text_file(stem//'.lst', file, error)
     if (allocated(error)) return
-    call list_deck(file, run%deck, run%faults)
+    call list_deck(file, run%deck, run%notes)
     call file%line(run%plan(:len(run%plan) - 1))
     call list_outcome(file, run%outcome)
     if (run%outcome%has_answer) then
