@@ -96,7 +96,7 @@ contains
     real(wp), intent(in) :: coordinate(:, :)
     integer, contiguous, intent(in) :: member(:, :)
     integer, intent(in) :: node(:), element(:)     !! of the set
-    integer, contiguous, intent(inout) :: side(0:)             !! on the way two bits for each coordinate
+    integer, contiguous, intent(inout) :: side(0:) !! on the way two bits for each coordinate
     integer, intent(inout) :: nodes(left:right)    !! in each half
     integer, parameter :: sample = 128
     real(wp) :: at(axes)
