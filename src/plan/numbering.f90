@@ -113,14 +113,12 @@ contains
     type(level_order) :: outward
     type(dissection) :: found
     real(wp), allocatable :: coordinate(:, :)
-    integer, allocatable :: first(:)
+    integer, allocatable :: first(:), roots(:)
     integer :: c, i, p
 
-    if (any(at_contact(nodes))) then
-      outward = sweep(model, pack(nodes, at_contact(nodes)), nodes)
-    else
-      outward = sweep(model, nodes(:1), nodes)
-    end if
+    roots = pack(nodes, at_contact(nodes))
+    if (size(roots) == 0) roots = nodes(:1)
+    outward = sweep(model, roots, nodes)
     allocate (coordinate(3, model%nodes))
     do i = 1, size(nodes)
       coordinate(:2, nodes(i)) = model%x(:, nodes(i))

@@ -154,8 +154,7 @@ def draw(rows, path):
         for program in PROGRAMS:
             found = best(rows[1], kind, program)
             if found:
-                axes.loglog([r["nodes"] for r in found], [r[what] for r in found], "o-", ms=4, lw=1.3, color=COLOURS[program],
-                            label=program)
+                axes.loglog([r["nodes"] for r in found], [r[what] for r in found], "o-", ms=4, lw=1.3, color=COLOURS[program], label=program)
         axes.set(title=title, xlabel="nodes", ylabel="processor time, s" if what == "cpu" else "peak memory, MB")
     axes = panels[1][1]
     for program in ("quadprog", "HiGHS", "DAQP", "PIQP", "OSQP", "epcont"):

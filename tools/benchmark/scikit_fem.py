@@ -78,8 +78,8 @@ def by_condensing(stiffness, dof, data):
         given[0, top] = -1.0
         given[1, pairs[active]] = -gap[active]
         held = np.concatenate([axis, top, pairs[active]])
-        matrix, right, field, free = condense(stiffness, x=given[0], D=held)
-        other = condense(stiffness, x=given[1], D=held)[1]
+        matrix, right, _, free = condense(stiffness, x=given[0], D=held)
+        other = -(stiffness @ given[1])[free]
         given[:, free] = splu(matrix.tocsc()).solve(np.column_stack([right, other])).T
         reaction = (stiffness @ given.T)[pairs]
         q = (LOAD - reaction[:, 1].sum()) / reaction[:, 0].sum()
