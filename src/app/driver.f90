@@ -14,6 +14,7 @@ module epcont_app_driver
   use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render, render_notes
   use epcont_model_build, only: build_model
+  use epcont_model_nearness, only: enter_nodes_that_came_near
   use epcont_plan_forecast, only: check_memory, forecast, forecast_type
   use epcont_plan_free_motion, only: find_free_motions, motion_fault
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
@@ -30,6 +31,9 @@ module epcont_app_driver
   implicit none
   private
   public :: run_deck
+
+  !> A scene is solved again while nodes come near that had no pair, but not more often.
+  integer, parameter :: most_solves = 8
 
 contains
 
@@ -56,7 +60,8 @@ contains
     type(numbering_type) :: numbering
     type(iteration_plan) :: iteration
     type(forecast_type) :: expected
-    integer :: singular
+    integer :: singular, solve
+    logical :: entered
 
     status = status_valid
     call prepare(path, run, watch, error)
@@ -72,16 +77,24 @@ contains
         call print_text(stem_of(path)//run%plan, status)
         return
       end if
-      call check_memory(run%model, expected%bytes, arguments%memory, error)
-      call check_memory(run%model, expected%double_bytes, arguments%memory, in_double)
-      if (allocated(in_double)) iteration%against_double = in_double%message
-      if (allocated(error)) error%message = path//': '//error%message
-      if (.not. allocated(error)) then
+      run%notes = render_notes(run%faults, run%deck%source)
+      call run%deck%forget_text()
+      do solve = 1, most_solves
+        call check_memory(run%model, expected%bytes, arguments%memory, error)
+        call check_memory(run%model, expected%double_bytes, arguments%memory, in_double)
+        if (allocated(in_double)) iteration%against_double = in_double%message
+        if (allocated(error)) exit
         iteration%threads = plan_threads(run%model, numbering, expected%bytes, granted_threads())
-        run%notes = render_notes(run%faults, run%deck%source)
-        call run%deck%forget_text()
         call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)
         call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular, watch)
+        if (singular > 0 .or. solve == most_solves) exit
+        call enter_nodes_that_came_near(run%model, run%answer%displacement, entered)
+        if (.not. entered) exit
+        call make_plan(run, numbering, iteration, expected, watch)
+      end do
+      if (allocated(error)) then
+        error%message = path//': '//error%message
+      else
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
         status = run%outcome%status
         call write_results(run, output_stem(path, arguments), arguments%all_tables, arguments%vtk, error)

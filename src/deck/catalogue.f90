@@ -331,7 +331,7 @@ contains
 
   !> All PARAMs: the field VALUE for each NAME.
   function parameters() result(field)
-    type(field_entry) :: field(13)
+    type(field_entry) :: field(14)
 
     field(1) = word_field(3, 'PLANE', 'every PSHELL with blank MID2', choices='STRAIN STRESS')
     field(2) = word_field(3, 'RULE', 'contact entry rule; default AUTO', choices='AUTO CONRY BLOCK')
@@ -356,6 +356,9 @@ contains
                                     ' where they are left out', ''))
     field(13)%highest = 1.0_wp
     field(13)%below_highest = .true.
+    field(14) = positive(real_field(3, 'CORNER', 'sides of a boundary line that turn by more than this meet at a corner;'// &
+                                    ' default: decided from the turns beside it', 'degree'))
+    field(14)%highest = 180.0_wp
     field%required = .true.
   end function parameters
 

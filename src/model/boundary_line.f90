@@ -1,19 +1,17 @@
-!> A line of element sides along the boundary of a body, and where a point faces it.
+!> Sides of elements along the boundary of a body, and where a point faces them.
 !>
-!> The line is walked with the body to the left, so that outward is to the right. Normals at the nodes come from the two
-!> sides that meet there, exact on a circle; along a side they turn from one to the other, so that none is met twice and
-!> none left out. Where sides are chords, the boundary that is meant is the smooth curve through their ends: the gap is
-!> measured to it (a cubic over each chord) and not to the chord, whose facets would show in the pressures. Force and
-!> counterforce still lie on one line, through the chord.
+!> Sides are walked with the body to the left, so that outward is to the right. Normals at the nodes come from the two
+!> sides that meet there, exact on a circle (epcont_model_corners); along a side they turn from one to the other, so that none
+!> is met twice and none left out. Where sides are chords, the boundary that is meant is the smooth curve through their ends:
+!> the gap is measured to it (a cubic over each chord) and not to the chord, whose facets would show in the pressures. Force
+!> and counterforce still lie on one line, through the chord.
 module epcont_model_boundary_line
   use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: boundary_line, facing_place, find_normals
+  public :: boundary_line, facing_place, unit
 
-  !> Sides that turn by more than this meet at a corner: beyond the 30 degrees of a circle of 12 sides, or of a chamfer.
-  real(wp), parameter :: corner_angle = 35.0_wp*acos(-1.0_wp)/180.0_wp
   !> Part of a side by which a point may stand beyond its end: rounding of coordinates in eight columns.
   real(wp), parameter :: beyond = 1.0e-6_wp
   !> A point so near to a node, as a part of the side, faces the node.
@@ -23,18 +21,21 @@ module epcont_model_boundary_line
   real(wp), parameter :: converged = 1.0e-14_wp
 
   type :: boundary_line
-    integer :: id = 0
-    logical :: closed = .false.
-    integer, allocatable :: segment(:, :)      !! nodes of each side: start, end, and middle or 0 [3, segments]
-    integer, allocatable :: element(:)         !! whose sides they are [segments]
-    real(wp), allocatable :: x(:, :, :)        !! their coordinates [length] [2, 3, segments]
-    real(wp), allocatable :: normal(:, :, :)   !! outward, at start and end of each side [2, 2, segments]
-    !> At the first and the last node, on a line of symmetry: within that line, though it be a corner there [2, 2]
-    real(wp) :: end_normal(2, 2) = 0.0_wp
-    logical :: mirrored(2) = .false.           !! it is one
+    integer, allocatable :: segment(:, :)      !! nodes of each side: start, end, and middle or 0 [3, sides]
+    integer, allocatable :: element(:)         !! whose sides they are [sides]
+    integer, allocatable :: neighbour(:, :)    !! the sides before and after each, 0: there is none [2, sides]
+    real(wp), allocatable :: x(:, :, :)        !! coordinates of the nodes [length] [2, 3, sides]
+    real(wp), allocatable :: normal(:, :, :)   !! outward, at start and end of each side [2, 2, sides]
+    logical, allocatable :: corner(:, :)       !! its start, its end is a corner of the boundary [2, sides]
+    logical, allocatable :: tip(:, :)          !! and a convex one [2, sides]
+    !> Its start, its end lies on a line of symmetry, and the normal there: within that line, though it be a corner.
+    logical, allocatable :: mirrored(:, :)     !! [2, sides]
+    real(wp), allocatable :: end_normal(:, :, :)   !! [2, 2, sides]
   contains
+    procedure :: pick
     procedure :: longest
     procedure :: chord_length
+    procedure :: own_normal
     procedure :: outward
     procedure :: face
     procedure :: foot
@@ -47,79 +48,39 @@ module epcont_model_boundary_line
     real(wp) :: share(3) = 0.0_wp    !! of start, end and middle of the side in the place [-]
     real(wp) :: normal(2) = 0.0_wp   !! outward
     real(wp) :: gap = 0.0_wp         !! from the curve to the point, along the normal [length]
+    logical :: at_corner = .false.   !! the place is a corner of the boundary
   end type facing_place
 
 contains
 
-  !> Normals at the ends of the sides. `mirror` is the direction held at the first and the last node, if the line ends
-  !! there on a line of symmetry, else 0.
-  pure subroutine find_normals(line, mirror)
-    type(boundary_line), intent(inout) :: line
-    integer, intent(in) :: mirror(2)
-    logical :: known(2, size(line%element))
-    real(wp) :: chord(2), here(2), there(2)
-    integer :: i, next, n
+  !> Some of the sides, in the order given; what lies beyond the ends is forgotten, but for the normals.
+  pure function pick(self, sides) result(part)
+    class(boundary_line), intent(in) :: self
+    integer, intent(in) :: sides(:)
+    type(boundary_line) :: part
+    integer :: k, number(0:size(self%element))
 
-    n = size(line%element)
-    allocate (line%normal(2, 2, n))
-    known = .false.
-    do i = 1, n
-      next = i + 1
-      if (next > n .and. .not. line%closed) exit
-      if (next > n) next = 1
-      here = own_normal(line, i, 1.0_wp)
-      there = own_normal(line, next, 0.0_wp)
-      if (dot_product(here, there) < cos(corner_angle)) cycle
-      here = unit(chord_length(line, next)*here + chord_length(line, i)*there)
-      line%normal(:, 2, i) = here
-      line%normal(:, 1, next) = here
-      known(2, i) = .true.
-      known(1, next) = .true.
-    end do
-    if (.not. line%closed) then
-      call reflect(line, 1, mirror(1), 1, known(1, 1))
-      call reflect(line, n, mirror(2), 2, known(2, n))
-    end if
-    do i = 1, n
-      chord = own_normal(line, i, 0.5_wp)
-      do next = 1, 2
-        if (known(next, i)) cycle
-        line%normal(:, next, i) = own_normal(line, i, real(next - 1, wp))
-        if (line%segment(3, i) > 0 .or. .not. known(3 - next, i)) cycle
-        ! Of a circle through both ends the one normal mirrors the other.
-        associate (other => line%normal(:, 3 - next, i))
-          line%normal(:, next, i) = 2.0_wp*dot_product(other, chord)*chord - other
-        end associate
-      end do
-    end do
-  end subroutine find_normals
-
-  !> On a line of symmetry the normal lies in it; the side that mirrors the last one joins it smoothly or at a corner.
-  pure subroutine reflect(line, segment, direction, end, smooth)
-    type(boundary_line), intent(inout) :: line
-    integer, intent(in) :: segment
-    integer, intent(in) :: direction       !! across the line of symmetry; 0: there is none
-    integer, intent(in) :: end             !! of the side: 1 or 2
-    logical, intent(inout) :: smooth
-    real(wp) :: own(2)
-
-    if (direction == 0) return
-    own = own_normal(line, segment, real(end - 1, wp))
-    if (abs(own(3 - direction)) < abs(own(direction))) return
-    line%mirrored(end) = .true.
-    line%end_normal(3 - direction, end) = sign(1.0_wp, own(3 - direction))
-    smooth = abs(own(direction)) <= sin(0.5_wp*corner_angle)
-    if (smooth) line%normal(:, end, segment) = line%end_normal(:, end)
-  end subroutine reflect
+    number = 0
+    number(sides) = [(k, k=1, size(sides))]
+    part%segment = self%segment(:, sides)
+    part%element = self%element(sides)
+    part%neighbour = reshape(number([self%neighbour(:, sides)]), [2, size(sides)])
+    part%x = self%x(:, :, sides)
+    part%normal = self%normal(:, :, sides)
+    part%corner = self%corner(:, sides)
+    part%tip = self%tip(:, sides)
+    part%mirrored = self%mirrored(:, sides)
+    part%end_normal = self%end_normal(:, :, sides)
+  end function pick
 
   !> Outward normal of a side itself, at a place from 0 to 1.
-  pure function own_normal(line, segment, s) result(normal)
-    class(boundary_line), intent(in) :: line
+  pure function own_normal(self, segment, s) result(normal)
+    class(boundary_line), intent(in) :: self
     integer, intent(in) :: segment
     real(wp), intent(in) :: s
     real(wp) :: normal(2), tangent(2)
 
-    tangent = matmul(local(line, segment), slopes(line%segment(3, segment) > 0, s))
+    tangent = matmul(local(self, segment), slopes(self%segment(3, segment) > 0, s))
     normal = unit([tangent(2), -tangent(1)])
   end function own_normal
 
@@ -149,7 +110,7 @@ contains
     real(wp) :: normal(2)
 
     if (which == 3) then
-      normal = own_normal(self, segment, 0.5_wp)
+      normal = self%own_normal(segment, 0.5_wp)
     else
       normal = self%normal(:, which, segment)
     end if
@@ -169,15 +130,9 @@ contains
     if (.not. found .or. s < -beyond .or. s > 1.0_wp + beyond) return
     place%found = .true.
     if (s <= at_node) then
-      place%share = [1.0_wp, 0.0_wp, 0.0_wp]
-      place%normal = self%normal(:, 1, segment)
-      if (segment == 1 .and. self%mirrored(1)) place%normal = self%end_normal(:, 1)
-      place%gap = dot_product(place%normal, point - self%x(:, 1, segment))
+      call face_end(self, segment, 1, point, place)
     else if (s >= 1.0_wp - at_node) then
-      place%share = [0.0_wp, 1.0_wp, 0.0_wp]
-      place%normal = self%normal(:, 2, segment)
-      if (segment == size(self%element) .and. self%mirrored(2)) place%normal = self%end_normal(:, 2)
-      place%gap = dot_product(place%normal, point - self%x(:, 2, segment))
+      call face_end(self, segment, 2, point, place)
     else
       place%share = values(curved, s)
       place%normal = unit(scaled_normal(self, segment, s))
@@ -186,13 +141,29 @@ contains
     end if
   end function face
 
-  !> The place of a side, from 0 to 1, that a point within a distance faces.
+  !> A point faces the start (1) or the end (2) of a side.
+  pure subroutine face_end(line, segment, which, point, place)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: segment, which
+    real(wp), intent(in) :: point(2)
+    type(facing_place), intent(inout) :: place
+
+    place%share(which) = 1.0_wp
+    place%normal = line%normal(:, which, segment)
+    if (line%mirrored(which, segment)) place%normal = line%end_normal(:, which, segment)
+    place%gap = dot_product(place%normal, point - line%x(:, which, segment))
+    place%at_corner = line%corner(which, segment) .and. .not. line%mirrored(which, segment)
+  end subroutine face_end
+
+  !> The place of a side, from 0 to 1, that a point within a distance of it faces.
   pure subroutine foot(self, segment, point, distance, s, found)
     class(boundary_line), intent(in) :: self
     integer, intent(in) :: segment
     real(wp), intent(in) :: point(2), distance
     real(wp), intent(out) :: s
     logical, intent(out) :: found
+
+    real(wp) :: share(3), tangent(2), x(2)
 
     found = .false.
     s = 0.0_wp
@@ -201,6 +172,10 @@ contains
     end associate
     call find_foot(self, segment, point, s, found)
     found = found .and. s >= 0.0_wp .and. s <= 1.0_wp
+    if (.not. found) return
+    ! Not by boxes: how a scene is turned must not decide.
+    call self%at(segment, s, share, x, tangent)
+    found = norm2(point - x) <= distance
   end subroutine foot
 
   !> Shape functions, place on the smooth curve and tangent at a place of a side.
@@ -215,7 +190,7 @@ contains
     share = values(curved, s)
     x = matmul(self%x(:, :, segment), share)
     tangent = matmul(local(self, segment), slopes(curved, s))
-    if (.not. curved) x = x + rise(self, segment, s)*own_normal(self, segment, s)
+    if (.not. curved) x = x + rise(self, segment, s)*self%own_normal(segment, s)
   end subroutine at
 
   !> The place of a side whose normal leads to a point.
@@ -285,7 +260,7 @@ contains
     real(wp) :: across(2), along(2), slope(2)
     integer :: k
 
-    across = own_normal(line, segment, s)
+    across = line%own_normal(segment, s)
     along = [-across(2), across(1)]
     do k = 1, 2
       slope(k) = -dot_product(line%normal(:, k, segment), along)/dot_product(line%normal(:, k, segment), across)

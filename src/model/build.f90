@@ -9,7 +9,7 @@ module epcont_model_build
   use epcont_deck_entry, only: least_cause
   use epcont_model_choices, only: build_controls
   use epcont_model_elements, only: build_elements, check_axis, element_cards
-  use epcont_model_line_pairs, only: build_line_pairs
+  use epcont_model_line_contacts, only: build_line_contacts
   use epcont_model_lines, only: build_lines
   use epcont_model_loads, only: build_loads
   use epcont_model_mesh, only: build_nodes, build_sections
@@ -45,7 +45,7 @@ contains
     where (abs(model%x) < least_cause) model%x = 0.0_wp
     call build_pairs(deck, nodes, model, faults)
     call build_lines(deck, nodes, model, faults)
-    call build_line_pairs(deck, model, faults)
+    call build_line_contacts(deck, model, faults)
     call build_controls(deck, model, faults)
     if (model%elements == 0 .and. faults%error_count() == 0) &
       call faults%add_error(place_type(), 'the deck has no elements', 'CTRIA3 cards')

@@ -1,12 +1,21 @@
-!> What a point near a boundary line faces of it.
+!> What a point of one boundary faces of another.
+!>
+!> A side is faced where its normal leads to the point, the two boundaries look against each other, and no body stands
+!> between. The nearest counts; in a concave corner, where a second face is about as near, that one too.
 module epcont_model_facing
+  use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
   use epcont_model_boundary_line, only: boundary_line, facing_place
-  use epcont_model_side_boxes, only: side_boxes
+  use epcont_model_side_boxes, only: boxed_line
   implicit none
   private
-  public :: facing_type, find_nearest
+  public :: facing_type, looking_point, node_of, find_nearest, find_facing
 
+  !> Boundaries face each other whose normals' cosine is below this: a wall at a right angle to a floor does not face it,
+  !> however rounding has turned the scene. (93 degrees: no angle that people draw.)
+  real(wp), parameter :: against = -0.05_wp
+  !> Normals that differ by less (cosine) are those of one face.
+  real(wp), parameter, public :: same_face = 0.816_wp
   !> Gaps that differ by less than this part of the search are equal: at a corner the better normal decides.
   real(wp), parameter :: equal = 1.0e-9_wp
   !> A gap below so many roundings of the coordinates is none.
@@ -14,6 +23,21 @@ module epcont_model_facing
   !> Most points have the line before their eyes: it is looked for within search/widening**rounds first.
   real(wp), parameter :: widening = 8.0_wp
   integer, parameter :: rounds = 3
+  !> Bodies are not thinner than this part of their sides: where the gap is smaller nothing stands between. Nor do the
+  !> sides themselves stand between, whose curves rise above their chords by less than the second.
+  real(wp), parameter :: thin = 0.25_wp, rise = 0.1_wp
+  !> What stands between is looked for this part of the side away from a node, towards the middle of its side: flush faces
+  !> do not count.
+  real(wp), parameter :: aside = 1.0e-3_wp
+
+  !> Who looks.
+  type :: looking_point
+    real(wp) :: x(2) = 0.0_wp         !! [length]
+    real(wp) :: outward(2) = 0.0_wp   !! normal of its own boundary
+    real(wp) :: along(2) = 0.0_wp     !! from there to the middle of its own side [length]
+    integer :: node = 0               !! sides that end at this node do not count; 0: it is none
+    logical :: at_corner = .false.    !! of its own boundary
+  end type looking_point
 
   type :: facing_type
     type(facing_place) :: place
@@ -23,70 +47,203 @@ module epcont_model_facing
 
 contains
 
-  !> The side of a line that a point faces nearest by, not farther than `search`; `outward` is the normal of the boundary
-  !! to which the point belongs. Sides that end at node `except` do not count.
-  pure function find_nearest(line, boxes, x, outward, search, except) result(best)
-    type(boundary_line), intent(in) :: line
-    type(side_boxes), intent(in) :: boxes   !! of the line
-    real(wp), intent(in) :: x(2), outward(2), search
-    integer, intent(in) :: except
-    type(facing_type) :: best
-    real(wp) :: within
-    integer :: round
+  !> A node of a side: 1 its start, 2 its end, 3 its middle.
+  pure function node_of(line, side, which) result(from)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side, which
+    type(looking_point) :: from
 
-    do round = rounds, 0, -1
-      within = search/widening**round
-      best = nearest_of(line, boxes%near(x, within), x, outward, search, except)
-      ! Sides that were left out are farther than `within`.
-      if (best%place%found .and. abs(best%place%gap) < within - 2.0_wp*equal*search) exit
-    end do
-    if (abs(best%place%gap) <= roundings*maxval(abs(x))) best%place%gap = 0.0_wp
-    best%same_way = best%same_way .and. .not. best%place%found
+    from%x = line%x(:, which, side)
+    from%outward = line%outward(side, which)
+    from%along = 0.5_wp*(line%x(:, 1, side) + line%x(:, 2, side)) - from%x
+    if (which == 3) from%along = 0.5_wp*(line%x(:, 2, side) - from%x)
+    from%node = line%segment(which, side)
+    if (which < 3) from%at_corner = line%corner(which, side) .and. .not. line%mirrored(which, side)
+  end function node_of
+
+  !> The side of a line that a point faces nearest by, not farther than `search`.
+  pure function find_nearest(line, obstacles, from, search) result(best)
+    type(boxed_line), intent(in) :: line
+    type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
+    type(looking_point), intent(in) :: from
+    real(wp), intent(in) :: search              !! [length]
+    type(facing_type) :: best
+    type(facing_type) :: second
+
+    call find_facing(line, obstacles, from, search, best, second)
   end function find_nearest
 
+  !> The same, and a second face that is farther by less than the point's own side is long.
+  pure subroutine find_facing(line, obstacles, from, search, best, second)
+    type(boxed_line), intent(in) :: line
+    type(boxed_line), intent(in) :: obstacles
+    type(looking_point), intent(in) :: from
+    real(wp), intent(in) :: search
+    type(facing_type), intent(out) :: best, second
+    real(wp) :: more, within
+    integer :: round
+
+    more = min(search, 2.0_wp*norm2(from%along))
+    do round = rounds, 0, -1
+      within = search/widening**round
+      call look_at(line, line%near(from%x, within), obstacles, from, search, best, second)
+      ! Sides that were left out are farther than `within`.
+      if (best%place%found .and. abs(best%place%gap) + more < within - 2.0_wp*equal*search) exit
+    end do
+    if (second%place%found) then
+      if (abs(second%place%gap) > abs(best%place%gap) + more) second = facing_type()
+    end if
+    if (abs(best%place%gap) <= roundings*maxval(abs(from%x))) best%place%gap = 0.0_wp
+    if (abs(second%place%gap) <= roundings*maxval(abs(from%x))) second%place%gap = 0.0_wp
+    best%same_way = best%same_way .and. .not. best%place%found
+  end subroutine find_facing
+
   !> The same among a few sides of the line.
-  pure function nearest_of(line, sides, x, outward, search, except) result(best)
-    type(boundary_line), intent(in) :: line
+  pure subroutine look_at(line, sides, obstacles, from, search, best, second)
+    type(boxed_line), intent(in) :: line
     integer, intent(in) :: sides(:)
-    real(wp), intent(in) :: x(2), outward(2), search
-    integer, intent(in) :: except
-    type(facing_type) :: best
-    type(facing_place) :: place
-    real(wp) :: better
-    integer :: i, k
+    type(boxed_line), intent(in) :: obstacles
+    type(looking_point), intent(in) :: from
+    real(wp), intent(in) :: search
+    type(facing_type), intent(out) :: best, second
+    type(facing_type) :: found
+    integer :: k
 
     do k = 1, size(sides)
-      i = sides(k)
-      if (any(line%segment(:, i) == except) .and. except > 0) cycle
-      place = line%face(i, x)
-      if (.not. place%found .or. abs(place%gap) > search) cycle
-      if (dot_product(place%normal, outward) >= 0.0_wp) then
-        best%same_way = .true.
+      if (any(line%segment(:, sides(k)) == from%node) .and. from%node > 0) cycle
+      found%segment = sides(k)
+      found%place = line%face(sides(k), from%x)
+      if (.not. found%place%found .or. abs(found%place%gap) > search) cycle
+      if (dot_product(found%place%normal, from%outward) >= against) then
+        best%same_way = best%same_way .or. dot_product(found%place%normal, from%outward) > -against
         cycle
       end if
-      if (best%place%found) then
-        better = abs(best%place%gap) - abs(place%gap)
-        if (better < -equal*search) cycle
-        if (better <= equal*search) then
-          better = dot_product(best%place%normal, outward) - dot_product(place%normal, outward)
-          if (abs(better) <= equal) call take_mean(place, best%place)
-          if (better <= equal) cycle
-        end if
-      end if
-      best%place = place
-      best%segment = i
+      if (found%place%at_corner .and. .not. from%at_corner) call press_corner(from, found%place)
+      if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)))) cycle
+      call rank(line, from, search, found, best, second)
     end do
-  end function nearest_of
+  end subroutine look_at
 
-  !> Of two sides that are faced equally well at their corner none is the better one: between their normals.
+  !> A corner is pressed along the normal of the smooth boundary that it touches.
+  pure subroutine press_corner(from, place)
+    type(looking_point), intent(in) :: from
+    type(facing_place), intent(inout) :: place
+    real(wp) :: away(2)
+
+    away = place%gap*place%normal
+    place%normal = -from%outward
+    place%gap = dot_product(place%normal, away)
+  end subroutine press_corner
+
+  !> Put a face where it belongs: best, second or nowhere.
+  pure subroutine rank(line, from, search, found, best, second)
+    type(boxed_line), intent(in) :: line
+    type(looking_point), intent(in) :: from
+    real(wp), intent(in) :: search
+    type(facing_type), intent(in) :: found
+    type(facing_type), intent(inout) :: best, second
+    type(facing_type) :: other
+    logical :: same_way
+
+    if (.not. best%place%found) then
+      same_way = best%same_way
+      best = found
+      best%same_way = same_way
+      return
+    end if
+    other = found
+    if (is_better(line, from, search, other, best)) then
+      other = best
+      other%same_way = .false.
+      same_way = best%same_way
+      best = found
+      best%same_way = same_way
+      if (second%place%found) then   ! of the same face as the one that is best now?
+        if (dot_product(second%place%normal, best%place%normal) > same_face) second = facing_type()
+      end if
+    else if (abs(found%place%gap) <= abs(best%place%gap) + equal*search .and. from%at_corner) then
+      call take_mean(found%place, best%place)
+    end if
+    if (dot_product(other%place%normal, best%place%normal) > same_face) return
+    if (second%place%found) then
+      if (abs(second%place%gap) <= abs(other%place%gap)) return
+    end if
+    second = other
+  end subroutine rank
+
+  !> Is a face better than another? It is nearer; or as near, and looks more against the point's own boundary; or lies more
+  !! before the middle of the point's own side.
+  pure logical function is_better(line, from, search, one, other)
+    type(boxed_line), intent(in) :: line
+    type(looking_point), intent(in) :: from
+    real(wp), intent(in) :: search
+    type(facing_type), intent(in) :: one, other
+    real(wp) :: by
+
+    by = abs(other%place%gap) - abs(one%place%gap)
+    is_better = by > 0.0_wp
+    if (abs(by) > equal*search) return
+    by = dot_product(other%place%normal, from%outward) - dot_product(one%place%normal, from%outward)
+    is_better = by > 0.0_wp
+    if (abs(by) > equal) return
+    is_better = away(one) < away(other)*(1.0_wp - equal)
+
+  contains
+
+    pure real(wp) function away(face)
+      type(facing_type), intent(in) :: face
+
+      away = norm2(matmul(line%x(:, :, face%segment), face%place%share) - from%x - from%along)
+    end function away
+  end function is_better
+
+  !> Of two sides that a corner faces equally well at their corner none is the better one: between their normals.
   pure subroutine take_mean(other, place)
     type(facing_place), intent(in) :: other
     type(facing_place), intent(inout) :: place
     real(wp) :: both(2)
 
-    if (maxval(other%share) < 1.0_wp .or. maxval(place%share) < 1.0_wp) return
+    if (.not. (place%at_corner .and. other%at_corner)) return
     both = place%normal + other%normal
     place%normal = both/norm2(both)
     place%gap = (place%gap + other%gap)/norm2(both)
   end subroutine take_mean
+
+  !> Does a body stand between a point and what it faces?
+  pure logical function is_blocked(obstacles, from, place, side)
+    type(boxed_line), intent(in) :: obstacles
+    type(looking_point), intent(in) :: from
+    type(facing_place), intent(in) :: place
+    real(wp), intent(in) :: side               !! length of the side that is faced
+    real(wp) :: a(2), b(2), near(2), own
+    integer, allocatable :: sides(:)
+    integer :: k
+
+    is_blocked = .false.
+    own = 2.0_wp*norm2(from%along)
+    if (abs(place%gap) <= thin*min(side, own)) return
+    near = rise*[own, side]/abs(place%gap)
+    if (sum(near) >= 1.0_wp) return
+    a = from%x + aside*from%along
+    b = a - place%gap*place%normal
+    sides = obstacles%in_box(min(a, b), max(a, b))
+    do k = 1, size(sides)
+      is_blocked = crosses(a, b, near, obstacles%x(:, 1, sides(k)), obstacles%x(:, 2, sides(k)))
+      if (is_blocked) return
+    end do
+  end function is_blocked
+
+  !> Does the side from c to d cross the way from a to b, not near its ends?
+  pure logical function crosses(a, b, near, c, d)
+    real(wp), intent(in) :: a(2), b(2), c(2), d(2)
+    real(wp), intent(in) :: near(2)   !! part of the way that does not count at a, at b
+    real(wp) :: area, s, t
+
+    area = cross_product(b - a, d - c)
+    crosses = .false.
+    if (area == 0.0_wp) return
+    t = cross_product(c - a, d - c)/area
+    s = cross_product(c - a, b - a)/area
+    crosses = s >= 0.0_wp .and. s <= 1.0_wp .and. t > near(1) .and. t < 1.0_wp - near(2)
+  end function crosses
 end module epcont_model_facing

@@ -1,4 +1,4 @@
-!> Boundary lines from BLSEG: sides of elements, end to end.
+!> Boundary lines from BLSEG: sides of the outline, end to end.
 module epcont_model_lines
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
@@ -6,10 +6,11 @@ module epcont_model_lines
   use epcont_deck_card_kinds, only: card_blseg
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_model_boundary_line, only: boundary_line, find_normals
   use epcont_model_elements, only: element_name
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: model_type, named_line
+  use epcont_model_outline, only: find_outline
   use epcont_model_reference, only: check_unique
+  use epcont_model_side_boxes, only: new_boxed_line
   implicit none
   private
   public :: build_lines
@@ -34,19 +35,31 @@ contains
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
     type(walk_type) :: walk
+    integer, allocatable :: starting(:)
     integer :: i
+    logical :: sound
 
     call check_unique(deck, [card_blseg], faults)
     associate (blseg => deck%card(card_blseg))
       allocate (model%line(blseg%count))
       if (blseg%count == 0) return
+      ! Without sound elements there is no boundary to look at.
+      sound = faults%error_count() == 0
+      if (sound) then
+        model%outline = new_boxed_line(find_outline(model, deck%parameter_value('CORNER', 0.0_wp)))
+        allocate (starting(model%nodes), source=0)
+        starting(model%outline%segment(1, :)) = [(i, i=1, size(model%outline%element))]
+      end if
       do i = 1, blseg%count
         model%line(i)%id = nint(blseg%value(1, i))
-        allocate (model%line(i)%segment(3, 0), model%line(i)%element(0))
         call read_nodes(deck, i, nodes, walk, faults)
         if (walk%sound) call check_repeated(deck, i, model, walk, faults)
         if (walk%sound) call find_sides(deck, i, model, walk, faults)
-        if (walk%sound) call set_line(model, walk, model%line(i))
+        if (walk%sound .and. sound) then
+          call set_line(model, walk, starting, model%line(i))
+        else
+          allocate (model%line(i)%side(0))
+        end if
       end do
     end associate
   end subroutine build_lines
@@ -194,37 +207,23 @@ contains
     end do
   end subroutine side_between
 
-  !> The line from its sides, walked with the body to the left.
-  subroutine set_line(model, walk, line)
+  !> Its sides of the outline, walked with the body to the left.
+  pure subroutine set_line(model, walk, starting, line)
     type(model_type), intent(in) :: model
     type(walk_type), intent(in) :: walk
-    type(boundary_line), intent(inout) :: line
-    integer :: i, k, n
+    integer, intent(in) :: starting(:)       !! the last side of the outline that starts at each node
+    type(named_line), intent(inout) :: line
+    integer :: i, k
 
-    n = size(walk%element)
-    line%segment = walk%side
-    line%element = walk%element
-    if (walk%side(1, 1) /= walk%node(1)) then
-      line%segment = walk%side(:, n:1:-1)
-      line%element = walk%element(n:1:-1)
-    end if
-    line%closed = n > 1 .and. walk%node(1) == walk%node(size(walk%node))
-    allocate (line%x(2, 3, n), source=0.0_wp)
-    do i = 1, n
-      do k = 1, 3
-        if (line%segment(k, i) > 0) line%x(:, k, i) = model%x(:, line%segment(k, i))
+    allocate (line%side(size(walk%element)))
+    do i = 1, size(walk%element)
+      k = starting(walk%side(1, i))
+      do while (model%outline%element(k) /= walk%element(i) .or. any(model%outline%segment(:, k) /= walk%side(:, i)))
+        k = k - 1   ! the only one, but where boundaries meet in a node
       end do
+      line%side(i) = k
     end do
-    call find_normals(line, [held_direction(line%segment(1, 1)), held_direction(line%segment(2, n))])
-
-  contains
-
-    !> The one direction in which a node is held without moving: across a line of symmetry.
-    pure integer function held_direction(node)
-      integer, intent(in) :: node
-
-      held_direction = 0
-      if (count(model%held(:, node)) == 1) held_direction = findloc(model%held(:, node), .true., dim=1)
-    end function held_direction
+    if (walk%side(1, 1) /= walk%node(1)) line%side = line%side(size(line%side):1:-1)
+    line%box = reshape([minval(model%x(:, walk%node), dim=2), maxval(model%x(:, walk%node), dim=2)], [2, 2])
   end subroutine set_line
 end module epcont_model_lines

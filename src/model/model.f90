@@ -5,25 +5,37 @@
 module epcont_model_model
   use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
-  use epcont_model_boundary_line, only: boundary_line
   use epcont_model_controls, only: controls_type, uniaxial_curve
+  use epcont_model_side_boxes, only: boxed_line
   implicit none
   private
-  public :: line_contact, model_type
+  public :: line_contact, model_type, named_line
 
   !> Nodes of an element, at most.
   integer, parameter, public :: most_nodes = 6
   !> What a section's elements do across the plane: nothing; give way; or they are rings, x their radius.
   integer, parameter, public :: plane_strain = 1, plane_stress = 2, axisymmetric = 3
 
-  !> Contact of two boundary lines (BCONP), and the pairs that came of it.
-  type :: line_contact
+  !> A boundary line (BLSEG).
+  type :: named_line
     integer :: id = 0
-    integer :: slave = 0, master = 0     !! which lines
-    integer :: first = 1, last = 0       !! its pairs
-    integer :: left_out = 0              !! nodes of the slave line that face no side of the other
-    real(wp) :: search = 0.0_wp          !! how far away a side may be [length]
-    integer, allocatable :: border(:)    !! pairs next to a node that is left out for this alone
+    integer, allocatable :: side(:)      !! of the outline, with the body to the left
+    real(wp) :: box(2, 2) = 0.0_wp       !! least and largest coordinates of their ends [length] [2, 2]
+  end type named_line
+
+  !> Contact of boundary lines, and the pairs that came of it. Lines that go on in each other, of one BCONP or of several, are
+  !! one contact: all their sides on the one hand are slaves, on the other masters.
+  type :: line_contact
+    integer, allocatable :: bconp(:), slave_id(:), master_id(:)   !! ids of the cards
+    type(boxed_line) :: slave, master
+    real(wp) :: search = 0.0_wp           !! how far away a side may be [length]
+    integer :: first = 1, last = 0        !! its pairs: of the slave's nodes, and from the next one on
+    integer :: first_of_master = 1        !! those of the master's nodes, most of them corners
+    integer, allocatable :: stands_on(:, :)   !! the side of the slave at each of the latter: its nodes [3, pairs of the master]
+    integer, allocatable :: left_out(:, :)    !! sides of the slave that face nothing at a node: which, which node [2, any]
+    integer :: nodes_left_out = 0             !! nodes of the slave without a pair
+    integer, allocatable :: came_near(:)      !! nodes of the master that have a pair since they came near as loads moved them
+    logical :: is_wider = .false.             !! `search` has grown since nodes came near
   end type line_contact
 
   type :: model_type
@@ -61,7 +73,8 @@ module epcont_model_model
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
-    type(boundary_line), allocatable :: line(:)
+    type(boxed_line) :: outline                 !! sides of all boundaries, where lines are in contact
+    type(named_line), allocatable :: line(:)
     type(line_contact), allocatable :: line_contact(:)
     integer, allocatable :: body(:)             !! of each node [nodes]
   contains

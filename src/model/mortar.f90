@@ -9,9 +9,9 @@
 module epcont_model_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_model_boundary_line, only: boundary_line
-  use epcont_model_facing, only: facing_type, find_nearest
-  use epcont_model_side_boxes, only: side_boxes
+  use epcont_model_facing, only: facing_type, find_nearest, looking_point, same_face
+  use epcont_model_model, only: line_contact
+  use epcont_model_side_boxes, only: boxed_line
   implicit none
   private
   public :: mortar_rows
@@ -49,13 +49,12 @@ module epcont_model_mortar
 contains
 
   !> Rows of master nodes and weights, one for each slave node that has a pair; the weights of a row sum to 1. Row k is the
-  !! entries start(k) to start(k+1)-1.
-  pure subroutine mortar_rows(slave, master, boxes, row_of, facing, search, ring, start, node, weight)
-    type(boundary_line), intent(in) :: slave, master
-    type(side_boxes), intent(in) :: boxes          !! of the master line
+  !! entries start(k) to start(k+1)-1. Rows of no side count at their own places.
+  pure subroutine mortar_rows(contact, obstacles, row_of, facing, ring, start, node, weight)
+    type(line_contact), intent(in) :: contact
+    type(boxed_line), intent(in) :: obstacles      !! the outlines of all bodies
     integer, intent(in) :: row_of(:, :)            !! of each side's nodes; 0: they face nothing [3, sides]
     type(facing_type), intent(in) :: facing(:)     !! what the nodes face [rows]
-    real(wp), intent(in) :: search
     logical, intent(in) :: ring                    !! x is a radius
     integer, allocatable, intent(out) :: start(:), node(:)
     real(wp), allocatable, intent(out) :: weight(:)
@@ -65,52 +64,75 @@ contains
 
     allocate (list%row(0), list%node(0), list%weight(0))
     allocate (list%area(size(facing)), source=0.0_wp)
-    do s = 1, size(slave%element)
-      call cut_side(slave, s, master, boxes, search, reach_of(slave, s, row_of(:, s), facing, search), ring, points)
-      if (points%covered .and. all(row_of(:, s) > 0 .or. slave%segment(:, s) == 0)) then
-        call add_dual(master, points, row_of(:, s), list)
-        cycle
-      end if
-      do k = 1, 3
-        row = row_of(k, s)
-        if (row > 0) call list%add_own_place(row, master, facing(row), sum(points%weight(:points%count)* &
-                                                                         points%share(k, :points%count)))
+    associate (slave => contact%slave, master => contact%master)
+      do s = 1, size(slave%element)
+        call cut_side(contact, obstacles, s, reach_of(contact, s, row_of(:, s), facing), ring, points)
+        if (is_covered(points, facing, row_of(:, s), slave%segment(:, s))) then
+          call add_dual(master, points, row_of(:, s), list)
+          cycle
+        end if
+        do k = 1, 3
+          row = row_of(k, s)
+          if (row > 0) call list%add_own_place(row, master, facing(row), sum(points%weight(:points%count)* &
+                                                                           points%share(k, :points%count)))
+        end do
       end do
-    end do
+      do row = 1, size(facing)
+        if (.not. list%area(row) > 0.0_wp) call list%add_own_place(row, master, facing(row), 1.0_wp)
+      end do
+    end associate
     call collect(list, start, node, weight)
   end subroutine mortar_rows
 
+  !> Do all nodes and integration points of a side face the other line, and one face of it?
+  pure logical function is_covered(points, facing, row, segment)
+    type(side_points), intent(in) :: points
+    type(facing_type), intent(in) :: facing(:)
+    integer, intent(in) :: row(3), segment(3)
+    integer :: k, p
+
+    is_covered = points%covered .and. all(row > 0 .or. segment == 0)
+    if (.not. is_covered) return
+    do p = 1, points%count
+      do k = 1, 3
+        if (row(k) == 0) cycle
+        is_covered = dot_product(points%facing(p)%place%normal, facing(row(k))%place%normal) > same_face
+        if (.not. is_covered) return
+      end do
+    end do
+  end function is_covered
+
   !> How far from a side the part of the other line lies that it faces, at most: twice as far as its nodes say, or its length.
-  pure real(wp) function reach_of(slave, side, row, facing, search)
-    type(boundary_line), intent(in) :: slave
+  pure real(wp) function reach_of(contact, side, row, facing)
+    type(line_contact), intent(in) :: contact
     integer, intent(in) :: side
     integer, intent(in) :: row(3)                  !! of its nodes; 0: they face nothing, or there is none
     type(facing_type), intent(in) :: facing(:)     !! what the nodes face [rows]
-    real(wp), intent(in) :: search
     integer :: k
 
-    reach_of = search
-    if (any(row == 0 .and. slave%segment(:, side) > 0)) return
-    reach_of = 2.0_wp*slave%chord_length(side)
+    reach_of = contact%search
+    if (any(row == 0 .and. contact%slave%segment(:, side) > 0)) return
+    reach_of = 2.0_wp*contact%slave%chord_length(side)
     do k = 1, 3
       if (row(k) > 0) reach_of = max(reach_of, 2.0_wp*abs(facing(row(k))%place%gap))
     end do
-    reach_of = min(reach_of, search)
+    reach_of = min(reach_of, contact%search)
   end function reach_of
 
   !> Integration points of a side, cut where nodes of the other line face it.
-  pure subroutine cut_side(slave, side, master, boxes, search, reach, ring, points)
-    type(boundary_line), intent(in) :: slave, master
-    type(side_boxes), intent(in) :: boxes
+  pure subroutine cut_side(contact, obstacles, side, reach, ring, points)
+    type(line_contact), intent(in) :: contact
+    type(boxed_line), intent(in) :: obstacles
     integer, intent(in) :: side
-    real(wp), intent(in) :: search, reach     !! what it faces, and the part of the other line that may cut it, lie within
+    real(wp), intent(in) :: reach             !! the part of the other line that may cut it lies within
     logical, intent(in) :: ring
     type(side_points), intent(out) :: points
+    type(looking_point) :: from
     real(wp), allocatable :: cut(:)
-    real(wp) :: s, x(2), tangent(2)
+    real(wp) :: s, tangent(2)
     integer :: i, k
 
-    cut = cuts_of(slave, side, master, boxes, reach)
+    cut = cuts_of(contact%slave, side, contact%master, reach)
     allocate (points%share(3, gauss_points*size(cut)), points%weight(gauss_points*size(cut)))
     allocate (points%facing(gauss_points*size(cut)))
     do i = 2, size(cut)
@@ -118,11 +140,13 @@ contains
       do k = 1, gauss_points
         s = cut(i - 1) + (cut(i) - cut(i - 1))*gauss_place(k)
         points%count = points%count + 1
-        associate (p => points%count)
-          call slave%at(side, s, points%share(:, p), x, tangent)
+        associate (p => points%count, slave => contact%slave)
+          call slave%at(side, s, points%share(:, p), from%x, tangent)
           points%weight(p) = gauss_weight(k)*(cut(i) - cut(i - 1))*norm2(tangent)
           if (ring) points%weight(p) = points%weight(p)*dot_product(points%share(:, p), slave%x(1, :, side))
-          points%facing(p) = find_nearest(master, boxes, x, [tangent(2), -tangent(1)], search, 0)
+          from%outward = [tangent(2), -tangent(1)]/norm2(tangent)
+          from%along = 0.5_wp*tangent
+          points%facing(p) = find_nearest(contact%master, obstacles, from, contact%search)
           points%covered = points%covered .and. points%facing(p)%place%found
         end associate
       end do
@@ -130,9 +154,8 @@ contains
   end subroutine cut_side
 
   !> Places along a side, from 0 to 1, at which the ends of the other line's sides, within `reach`, face it.
-  pure function cuts_of(slave, side, master, boxes, reach) result(cut)
-    type(boundary_line), intent(in) :: slave, master
-    type(side_boxes), intent(in) :: boxes
+  pure function cuts_of(slave, side, master, reach) result(cut)
+    type(boxed_line), intent(in) :: slave, master
     integer, intent(in) :: side
     real(wp), intent(in) :: reach
     real(wp), allocatable :: cut(:)
@@ -141,14 +164,14 @@ contains
     integer :: i, k, n
     logical :: found
 
-    near = boxes%near(0.5_wp*(slave%x(:, 1, side) + slave%x(:, 2, side)), reach + slave%chord_length(side))
+    near = master%near(0.5_wp*(slave%x(:, 1, side) + slave%x(:, 2, side)), reach + slave%chord_length(side))
     allocate (cut(2*size(near) + 2))
     cut(:2) = [1.0_wp, 0.0_wp]
     n = 2
     do i = 1, size(near)
       do k = 1, 2
         if (k == 2 .and. i < size(near)) then
-          if (near(i + 1) == near(i) + 1) cycle   ! the start of the next
+          if (near(i + 1) == master%neighbour(2, near(i))) cycle   ! the start of the next
         end if
         call slave%foot(side, master%x(:, k, near(i)), reach, s, found)
         if (found) call insert(s, n, cut)
@@ -175,7 +198,7 @@ contains
 
   !> Add the weights of a side that faces the other line all along.
   pure subroutine add_dual(master, points, row, list)
-    type(boundary_line), intent(in) :: master
+    type(boxed_line), intent(in) :: master
     type(side_points), intent(in) :: points
     integer, intent(in) :: row(3)
     type(weight_list), intent(inout) :: list
@@ -253,7 +276,7 @@ contains
   pure subroutine add_own_place(self, row, master, facing, integral)
     class(weight_list), intent(inout) :: self
     integer, intent(in) :: row
-    type(boundary_line), intent(in) :: master
+    type(boxed_line), intent(in) :: master
     type(facing_type), intent(in) :: facing
     real(wp), intent(in) :: integral   !! of the node's shape function, as far as this counts for
 

@@ -25,7 +25,7 @@ contains
     type(model_type), intent(in) :: model
     type(diagnostics), intent(inout) :: faults
     real(wp) :: a(2), b(2)
-    integer :: c, k, last
+    integer :: c, i, k, last
 
     if (model%pairs == 0) return
     last = deck%card(card_cgap)%count
@@ -42,7 +42,10 @@ contains
     end do
     call warn_of_held(deck, model, card_cgap, 1, 1, last, faults)
     do c = 1, size(model%line_contact)
-      call warn_of_held(deck, model, card_bconp, c, model%line_contact(c)%first, model%line_contact(c)%last, faults)
+      associate (contact => model%line_contact(c))
+        i = findloc(nint(deck%card(card_bconp)%value(1, :)), contact%bconp(1), dim=1)
+        call warn_of_held(deck, model, card_bconp, i, contact%first, contact%last, faults)
+      end associate
     end do
   end subroutine check_pairs
 

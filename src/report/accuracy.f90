@@ -55,7 +55,6 @@ contains
     call list_discretisation(file, model, motions, answer, accuracy)
     if (any(accuracy%weak)) call list_weak(file, model, answer, accuracy%weak)
     if (answer%locking%elements > 0) call list_locking(file, answer%locking)
-    call list_border(file, model, answer%contact%touching)
     if (answer%gradient%part > 0.0_wp) call list_gradient(file, model, answer%gradient)
     if (model%controls%accuracy > 0.0_wp) call list_wanted(file, model, answer, accuracy)
   end subroutine list_accuracy
@@ -203,24 +202,6 @@ contains
     call file%line('    (Poisson''s ratio '//short_real(high_poisson)// &
                    ' or more, as yielding has made it: they are too stiff there; six-node elements and CQUAD4 are not)')
   end subroutine list_locking
-
-  !> Contacts of lines that reach the last of their pairs, where others were left out only for being too far off.
-  subroutine list_border(file, model, touching)
-    type(text_file), intent(in) :: file
-    type(model_type), intent(in) :: model
-    logical, intent(in) :: touching(:)
-    integer, allocatable :: pairs(:)
-    integer :: c
-
-    if (.not. allocated(model%line_contact)) return
-    do c = 1, size(model%line_contact)
-      associate (contact => model%line_contact(c))
-        pairs = pack(contact%border, touching(contact%border))
-        if (size(pairs) > 0) call file%line('  BCONP '//text_of(contact%id)//': pair '//text_of(model%pair_id(pairs(1)))// &
-          ' touches beside nodes that were left out: the contact may go on there; PARAM SEARCH above '//short_real(contact%search))
-      end associate
-    end do
-  end subroutine list_border
 
   !> Displacements that are not small.
   subroutine list_gradient(file, model, gradient)

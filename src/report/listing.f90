@@ -194,15 +194,23 @@ contains
     call file%line('     BCONP    slave   master    pairs left out touching        force     on slave    on master   difference')
     do c = 1, size(line)
       associate (contact => model%line_contact(c))
-        call file%line(right(text_of(contact%id), 10)//right(text_of(model%line(contact%slave)%id), 9)// &
-                       right(text_of(model%line(contact%master)%id), 9)// &
-                       right(text_of(contact%last - contact%first + 1), 9)//right(text_of(contact%left_out), 9)// &
+        call file%line(right(first_of(contact%bconp), 10)//right(first_of(contact%slave_id), 9)// &
+                       right(first_of(contact%master_id), 9)// &
+                       right(text_of(contact%last - contact%first + 1), 9)//right(text_of(contact%nodes_left_out), 9)// &
                        right(text_of(line(c)%touching), 9)//column_number(line(c)%force, 0.0_wp)// &
                        column_number(line(c)%on_slave, 0.0_wp)//column_number(line(c)%on_master, 0.0_wp)// &
                        column_number(line(c)%difference, 1.0_wp))
       end associate
     end do
   end subroutine list_lines
+
+  !> The first of some ids, and a mark where there are more: the plan has them all.
+  pure function first_of(id) result(text)
+    integer, intent(in) :: id(:)
+    character(len=:), allocatable :: text
+
+    text = text_of(id(1))//trim(merge('+', ' ', size(id) > 1))
+  end function first_of
 
   !> Displacements and reactions.
   subroutine list_nodes(file, model, answer)

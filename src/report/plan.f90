@@ -5,13 +5,14 @@ module epcont_report_plan
   use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, precision_double, &
                                    precision_name, precision_open, solver_auto, solver_band, solver_frontal, &
                                    solver_name, solver_sparse
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_model, only: model_type
   use epcont_plan_contact_plan, only: contact_plan, many_pairs
   use epcont_plan_forecast, only: forecast_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: body_numbering, many_operations, numbering_type
   use epcont_report_layout, only: newline, right
+  use epcont_report_line_plan, only: lines_text
   use epcont_report_precision, only: precision_text
   implicit none
   private
@@ -40,11 +41,7 @@ contains
     else
       text = text//'  contact by '//rule_text(iteration%contact)//newline
     end if
-    do k = 1, min(most, size(model%line_contact))
-      text = text//line_text(model, model%line_contact(k))
-    end do
-    if (size(model%line_contact) > most) &
-      text = text//'  and '//plural(size(model%line_contact) - most, 'further contact')//' of lines'//newline
+    text = text//lines_text(model)
     do k = 1, min(most, motions%count)
       text = text//'  free motion: GRID '//text_of(model%node_id(motions%node(k)))//' direction '// &
              text_of(motions%component(k))//newline
@@ -99,22 +96,6 @@ contains
     text = 'block pivoting of the contacts (BLOCK)'
     if (plan%chosen_here) text = text//newline//'    chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on'
   end function rule_text
-
-  !> What came of two lines.
-  pure function line_text(model, contact) result(text)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    character(len=:), allocatable :: text
-
-    text = '  BCONP '//text_of(contact%id)//': nodes of BLSEG '//text_of(model%line(contact%slave)%id)// &
-           ' against sides of BLSEG '//text_of(model%line(contact%master)%id)//': '// &
-           plural(contact%last - contact%first + 1, 'pair')//', initial gaps '// &
-           short_real(minval(model%initial_gap(contact%first:contact%last)))//' to '// &
-           short_real(maxval(model%initial_gap(contact%first:contact%last)))
-    if (contact%left_out > 0) text = text//'; left out, since they face nothing within '//short_real(contact%search)// &
-                                     ': '//plural(contact%left_out, 'node')
-    text = text//newline
-  end function line_text
 
   !> How bodies are factored, where it is not in panels of their bands alone.
   pure function solver_text(model, numbering) result(text)

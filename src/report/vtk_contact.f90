@@ -103,7 +103,7 @@ contains
     id = 0
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
-        where (pair >= contact%first .and. pair <= contact%last) id = contact%id
+        where (pair >= contact%first .and. pair <= contact%last) id = contact%bconp(1)
       end associate
     end do
   end function contact_ids

@@ -4,7 +4,7 @@ module epcont_result_contact_line
   use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: line_contact, model_type
   implicit none
   private
   public :: contact_line, find_contact_line, contact_zone, find_zones
@@ -60,9 +60,140 @@ contains
     if (size(model%line_contact) > 0) last = model%line_contact(1)%first - 1
     call find_edges(model, 1, last, line)
     do c = 1, size(model%line_contact)
-      call find_edges(model, model%line_contact(c)%first, model%line_contact(c)%last, line)
+      call find_edges(model, model%line_contact(c)%first, model%line_contact(c)%first_of_master - 1, line)
+      call insert_masters(model, model%line_contact(c), line)
     end do
   end function find_contact_line
+
+  !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with them.
+  pure subroutine insert_masters(model, contact, line)
+    type(model_type), intent(in) :: model
+    type(line_contact), intent(in) :: contact
+    type(contact_line), intent(inout) :: line
+    integer, allocatable :: chain(:)
+    logical :: done(contact%last - contact%first_of_master + 1)
+    integer :: k, part(2), side(3)
+
+    done = .false.
+    do k = 1, size(done)
+      if (done(k)) cycle
+      side = contact%stands_on(:, k)
+      call part_of_side(model, side, model%pair_node(2, contact%first_of_master - 1 + k), part)
+      call chain_on(model, contact, k, part, done, chain)
+      call link(model, contact, side, part, chain, line)
+    end do
+  end subroutine insert_masters
+
+  !> The two neighbouring nodes of a side between which a node stands.
+  pure subroutine part_of_side(model, side, node, part)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side(3), node
+    integer, intent(out) :: part(2)
+
+    part = side(:2)
+    if (side(3) == 0) return
+    associate (along => model%x(:, side(2)) - model%x(:, side(1)))
+      if (dot_product(model%x(:, node) - model%x(:, side(3)), along) < 0.0_wp) then
+        part = side([1, 3])
+      else
+        part = side([3, 2])
+      end if
+    end associate
+  end subroutine part_of_side
+
+  !> The pairs that stand between the same two nodes as pair k of the master, in their order.
+  pure subroutine chain_on(model, contact, k, part, done, chain)
+    type(model_type), intent(in) :: model
+    type(line_contact), intent(in) :: contact
+    integer, intent(in) :: k, part(2)
+    logical, intent(inout) :: done(:)
+    integer, allocatable, intent(out) :: chain(:)
+    integer :: i, j, other(2), pair
+
+    allocate (chain(0))
+    do i = k, size(done)
+      if (any(contact%stands_on(:, i) /= contact%stands_on(:, k))) cycle
+      pair = contact%first_of_master - 1 + i
+      call part_of_side(model, contact%stands_on(:, i), model%pair_node(2, pair), other)
+      if (any(other /= part)) cycle
+      done(i) = .true.
+      do j = 1, size(chain)
+        if (away(chain(j)) > away(pair)) exit
+      end do
+      chain = [chain(:j - 1), pair, chain(j:)]
+    end do
+
+  contains
+
+    !> From the first of the two nodes.
+    pure real(wp) function away(pair)
+      integer, intent(in) :: pair
+
+      away = norm2(model%x(:, model%pair_node(2, pair)) - model%x(:, part(1)))
+    end function away
+  end subroutine chain_on
+
+  !> Neighbours and areas of the pairs from one node of the slave to the next, with those that stand between.
+  pure subroutine link(model, contact, side, part, chain, line)
+    type(model_type), intent(in) :: model
+    type(line_contact), intent(in) :: contact
+    integer, intent(in) :: side(3), part(2), chain(:)
+    type(contact_line), intent(inout) :: line
+    integer, allocatable :: run(:)
+    real(wp) :: half, width
+    integer :: element, i, k
+
+    run = [pair_at(part(1)), chain, pair_at(part(2))]
+    element = contact%slave%element(findloc(contact%slave%segment(1, :), side(1), dim=1))
+    width = area(model, element, side, model%normal(:, chain(1)))/norm2(model%x(:, side(2)) - model%x(:, side(1)))
+    do i = 1, 2
+      associate (pair => run(merge(1, size(run), i == 1)), beyond => run(merge(size(run), 1, i == 1)), &
+                 next => chain(merge(1, size(chain), i == 1)))
+        if (pair == 0) cycle
+        line%tributary(pair) = line%tributary(pair) - share(model, element, side, part(i), model%normal(:, pair))
+        k = slot_of(line%neighbour(:, pair), beyond)
+        line%neighbour(k, pair) = next
+        line%part(k, pair) = 0.0_wp
+      end associate
+    end do
+    do i = 1, size(run) - 1
+      if (any(run([i, i + 1]) == 0)) cycle
+      half = 0.5_wp*width*norm2(model%x(:, line%node(run(i + 1))) - model%x(:, line%node(run(i))))
+      call add_piece(run(i), run(i + 1), half, line)
+      call add_piece(run(i + 1), run(i), half, line)
+    end do
+
+  contains
+
+    pure integer function pair_at(node)
+      integer, intent(in) :: node
+
+      pair_at = findloc(line%node(contact%first:contact%first_of_master - 1), node, dim=1)
+      if (pair_at > 0) pair_at = contact%first - 1 + pair_at
+    end function pair_at
+  end subroutine link
+
+  !> Where a pair stands among another's neighbours, or an empty place.
+  pure integer function slot_of(neighbour, pair) result(slot)
+    integer, intent(in) :: neighbour(2), pair
+
+    slot = findloc(neighbour, pair, dim=1)
+    if (slot == 0) slot = findloc(neighbour, 0, dim=1)
+    if (slot == 0) slot = 2
+  end function slot_of
+
+  !> A piece of the boundary between two pairs belongs to one of them.
+  pure subroutine add_piece(pair, towards, piece, line)
+    integer, intent(in) :: pair, towards
+    real(wp), intent(in) :: piece
+    type(contact_line), intent(inout) :: line
+    integer :: k
+
+    k = slot_of(line%neighbour(:, pair), towards)
+    line%neighbour(k, pair) = towards
+    line%part(k, pair) = line%part(k, pair) + piece
+    line%tributary(pair) = line%tributary(pair) + piece
+  end subroutine add_piece
 
   !> Edges at a range of pairs, and the neighbours among them.
   pure subroutine find_edges(model, first, last, line)

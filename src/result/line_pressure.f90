@@ -45,12 +45,15 @@ contains
     real(wp) :: there
     integer :: i, k
 
-    area = node_areas(model, model%line(contact%master))
+    area = node_areas(model, contact%master)
     allocate (received(model%nodes), source=0.0_wp)
-    do k = contact%first, contact%last
+    do k = contact%first, contact%first_of_master - 1
       do i = model%row_start(k) + 1, model%row_start(k + 1) - 1
         received(model%row_node(i)) = received(model%row_node(i)) - model%row_weight(i)*force(k)
       end do
+    end do
+    do k = contact%first_of_master, contact%last
+      received(model%pair_node(2, k)) = received(model%pair_node(2, k)) + force(k)
     end do
     where (area > 0.0_wp) received = received/area
     found%touching = count(touching(contact%first:contact%last))
@@ -58,7 +61,7 @@ contains
     found%on_slave = max(0.0_wp, maxval(pressure(contact%first:contact%last)))
     found%on_master = max(0.0_wp, maxval(received, mask=area > 0.0_wp))
     if (found%on_slave == 0.0_wp) return
-    do k = contact%first, contact%last
+    do k = contact%first, contact%first_of_master - 1
       if (.not. touching(k)) cycle
       there = 0.0_wp
       do i = model%row_start(k) + 1, model%row_start(k + 1) - 1
@@ -71,7 +74,7 @@ contains
   !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it [length**2] [nodes].
   pure function node_areas(model, line) result(area)
     type(model_type), intent(in) :: model
-    type(boundary_line), intent(in) :: line
+    class(boundary_line), intent(in) :: line
     real(wp), allocatable :: area(:)
     type(edge_point) :: point(edge_point_count)
     real(wp) :: depth

@@ -1,0 +1,166 @@
+!> Nodes of lines in contact that have no pair, but came so near as loads moved them that they pass through the other line.
+!>
+!> Gaps are those of the undeformed shape, opened by displacements, as those of pairs are: small displacements.
+module epcont_model_nearness
+  use epcont_base_kinds, only: wp
+  use epcont_model_boundary_line, only: boundary_line
+  use epcont_model_facing, only: facing_type, find_facing, find_nearest, node_of
+  use epcont_model_line_pairs, only: add_pairs, faces_type, find_faces, forget_pairs
+  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_side_boxes, only: boxed_line
+  implicit none
+  private
+  public :: enter_nodes_that_came_near
+
+  !> A gap below this part of the scene is none.
+  real(wp), parameter :: least = 1.0e-8_wp
+  !> A node between those of the other line may pass through by so many times what chords of curves and of bent sides make.
+  real(wp), parameter :: allowance = 3.0_wp
+  !> Search beyond what came near.
+  real(wp), parameter :: further = 1.5_wp
+
+contains
+
+  !> Give pairs to the nodes that came near; `entered`: there are some, and the scene wants to be solved again. Without
+  !! displacements (what moves was held by nothing) all that may be faced, however far, has its pair.
+  subroutine enter_nodes_that_came_near(model, displacement, entered)
+    type(model_type), intent(inout) :: model
+    real(wp), allocatable, intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    logical, intent(out) :: entered
+    real(wp) :: size_of_scene
+    integer :: before, c
+    type(faces_type) :: faces
+
+    entered = .false.
+    if (.not. allocated(model%line_contact)) return
+    if (size(model%line_contact) == 0) return
+    size_of_scene = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
+    do c = 1, size(model%line_contact)
+      associate (contact => model%line_contact(c))
+        if (allocated(displacement)) then
+          call widen(contact, model%outline, displacement, size_of_scene, entered)
+          call look_from_master(contact, model%outline, displacement, size_of_scene, entered)
+        else if (size(contact%left_out) > 0 .and. contact%search < size_of_scene) then
+          contact%search = size_of_scene
+          contact%is_wider = .true.
+          entered = .true.
+        end if
+      end associate
+    end do
+    if (.not. entered) return
+    before = model%pairs
+    call forget_pairs(model)
+    do c = 1, size(model%line_contact)
+      call find_faces(model%line_contact(c), model%outline, faces)
+      call add_pairs(faces, model, model%line_contact(c))
+    end do
+    entered = model%pairs > before
+  end subroutine enter_nodes_that_came_near
+
+  !> Search farther where nodes of the slave, left out so far, pass through the master.
+  subroutine widen(contact, obstacles, displacement, size_of_scene, entered)
+    type(line_contact), intent(inout) :: contact
+    type(boxed_line), intent(in) :: obstacles
+    real(wp), intent(in) :: displacement(:, :), size_of_scene
+    logical, intent(inout) :: entered
+    type(facing_type) :: face
+    real(wp) :: search
+    integer :: i
+
+    search = contact%search
+    do i = 1, size(contact%left_out, 2)
+      associate (side => contact%left_out(1, i), which => contact%left_out(2, i))
+        face = find_nearest(contact%master, obstacles, node_of(contact%slave, side, which), size_of_scene)
+        if (.not. face%place%found) cycle
+        if (gap_of(contact%slave%segment(which, side), contact%master, face, displacement) >= -least*size_of_scene) cycle
+        search = max(search, further*abs(face%place%gap))
+      end associate
+    end do
+    if (search <= contact%search) return
+    contact%search = search
+    contact%is_wider = .true.
+    entered = .true.
+  end subroutine widen
+
+  !> Nodes of the master that pass through sides of the slave by more than what these leave open between their nodes.
+  subroutine look_from_master(contact, obstacles, displacement, size_of_scene, entered)
+    type(line_contact), intent(inout) :: contact
+    type(boxed_line), intent(in) :: obstacles
+    real(wp), intent(in) :: displacement(:, :), size_of_scene
+    logical, intent(inout) :: entered
+    type(facing_type) :: face(2)
+    real(wp) :: allowed
+    integer :: i, k, which
+
+    associate (slave => contact%slave, master => contact%master)
+      do i = 1, size(master%element)
+        do which = 1, 3
+          associate (node => master%segment(which, i))
+            if (node == 0) cycle
+            if (which == 1 .and. master%neighbour(1, i) > 0 .and. .not. master%corner(1, i)) cycle
+            if (any(contact%came_near == node)) cycle
+            call find_facing(slave, obstacles, node_of(master, i, which), size_of_scene, face(1), face(2))
+            do k = 1, 2
+              if (.not. face(k)%place%found) cycle
+              allowed = least*size_of_scene
+              if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
+                cycle   ! it has a pair
+              else if (.not. master%corner(min(which, 2), i) .or. which == 3) then
+                allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement) + openness(master, i, displacement))
+              end if
+              if (gap_of(node, slave, face(k), displacement) >= -allowed) cycle
+              contact%came_near = [contact%came_near, node]
+              contact%search = max(contact%search, further*abs(face(k)%place%gap))
+              entered = .true.
+              exit
+            end do
+          end associate
+        end do
+      end do
+    end associate
+  end subroutine look_from_master
+
+  !> Gap of a node against what it faces of a line, as displacements have opened it [length].
+  pure real(wp) function gap_of(node, line, face, displacement)
+    integer, intent(in) :: node
+    class(boundary_line), intent(in) :: line
+    type(facing_type), intent(in) :: face
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp) :: apart(2)
+    integer :: k
+
+    apart = displacement(:, node)
+    do k = 1, 3
+      if (face%place%share(k) /= 0.0_wp) &
+        apart = apart - face%place%share(k)*displacement(:, line%segment(k, face%segment))
+    end do
+    gap_of = face%place%gap + dot_product(face%place%normal, apart)
+  end function gap_of
+
+  !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as it bends [length].
+  pure real(wp) function openness(line, side, displacement)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp) :: turn
+    integer :: end
+
+    turn = norm2(line%normal(:, 2, side) - line%normal(:, 1, side))
+    do end = 1, 2
+      if (line%neighbour(end, side) == 0 .or. line%corner(end, side)) cycle
+      turn = turn + abs(rotation(line, side, displacement) - rotation(line, line%neighbour(end, side), displacement))
+    end do
+    openness = line%chord_length(side)*turn/8.0_wp
+  end function openness
+
+  !> By how much displacements turn a side.
+  pure real(wp) function rotation(line, side, displacement)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side
+    real(wp), intent(in) :: displacement(:, :)
+
+    associate (moved => displacement(:, line%segment(2, side)) - displacement(:, line%segment(1, side)))
+      rotation = -dot_product(line%own_normal(side, 0.5_wp), moved)/line%chord_length(side)
+    end associate
+  end function rotation
+end module epcont_model_nearness
