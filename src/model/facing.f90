@@ -9,7 +9,7 @@ module epcont_model_facing
   use epcont_model_side_boxes, only: boxed_line
   implicit none
   private
-  public :: facing_type, looking_point, node_of, find_nearest, find_facing
+  public :: facing_type, looking_point, node_of, rise_of, find_nearest, find_facing
 
   !> Boundaries face each other whose normals' cosine is below this: a wall at a right angle to a floor does not face it,
   !> however rounding has turned the scene. (93 degrees: no angle that people draw.)
@@ -23,9 +23,11 @@ module epcont_model_facing
   !> Most points have the line before their eyes: it is looked for within search/widening**rounds first.
   real(wp), parameter :: widening = 8.0_wp
   integer, parameter :: rounds = 3
-  !> Bodies are not thinner than this part of their sides: where the gap is smaller nothing stands between. Nor do the
-  !> sides themselves stand between, whose curves rise above their chords by less than the second.
-  real(wp), parameter :: thin = 0.25_wp, rise = 0.1_wp
+  !> Bodies are not thinner than this part of their sides: where the gap is smaller nothing stands between.
+  real(wp), parameter :: thin = 1.0e-3_wp
+  !> Curves rise above the chords of their sides by an eighth of chord times turn; nearer to a side than this much of it, and
+  !> than this part of the way, is the side itself.
+  real(wp), parameter :: rise = 0.2_wp, at_end = 0.01_wp
   !> What stands between is looked for this part of the side away from a node, towards the middle of its side: flush faces
   !> do not count.
   real(wp), parameter :: aside = 1.0e-3_wp
@@ -35,6 +37,7 @@ module epcont_model_facing
     real(wp) :: x(2) = 0.0_wp         !! [length]
     real(wp) :: outward(2) = 0.0_wp   !! normal of its own boundary
     real(wp) :: along(2) = 0.0_wp     !! from there to the middle of its own side [length]
+    real(wp) :: rise = 0.0_wp         !! how far its own curve may be from the sides there [length]
     integer :: node = 0               !! sides that end at this node do not count; 0: it is none
     logical :: at_corner = .false.    !! of its own boundary
   end type looking_point
@@ -57,6 +60,7 @@ contains
     from%outward = line%outward(side, which)
     from%along = 0.5_wp*(line%x(:, 1, side) + line%x(:, 2, side)) - from%x
     if (which == 3) from%along = 0.5_wp*(line%x(:, 2, side) - from%x)
+    from%rise = rise_of(line, side)
     from%node = line%segment(which, side)
     if (which < 3) from%at_corner = line%corner(which, side) .and. .not. line%mirrored(which, side)
   end function node_of
@@ -119,7 +123,10 @@ contains
         cycle
       end if
       if (found%place%at_corner .and. .not. from%at_corner) call press_corner(from, found%place)
-      if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)))) cycle
+      if (found%place%gap < 0.0_wp) then
+        if (.not. goes_on(line, sides(k), from, search)) cycle
+      end if
+      if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) cycle
       call rank(line, from, search, found, best, second)
     end do
   end subroutine look_at
@@ -209,20 +216,47 @@ contains
     place%gap = (place%gap + other%gap)/norm2(both)
   end subroutine take_mean
 
+  !> How far the curve that a side means may be from it [length].
+  pure real(wp) function rise_of(line, side)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side
+
+    rise_of = rise*line%chord_length(side)*norm2(line%normal(:, 2, side) - line%normal(:, 1, side))
+  end function rise_of
+
+  !> Does an overlap go on along the point's own side? (The corner of a block that stands on another is no overlap with the
+  !> other's flank, however far it lies behind that.)
+  pure logical function goes_on(line, side, from, search)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side
+    type(looking_point), intent(in) :: from
+    real(wp), intent(in) :: search
+    type(facing_place) :: place
+    integer :: end
+
+    place = line%face(side, from%x + aside*from%along)
+    goes_on = place%found
+    do end = 1, 2
+      if (goes_on .or. line%neighbour(end, side) == 0) cycle
+      place = line%face(line%neighbour(end, side), from%x + aside*from%along)
+      goes_on = place%found .and. place%gap < search .and. &
+                dot_product(place%normal, line%own_normal(side, 0.5_wp)) > same_face
+    end do
+  end function goes_on
+
   !> Does a body stand between a point and what it faces?
-  pure logical function is_blocked(obstacles, from, place, side)
+  pure logical function is_blocked(obstacles, from, place, side, side_rise)
     type(boxed_line), intent(in) :: obstacles
     type(looking_point), intent(in) :: from
     type(facing_place), intent(in) :: place
-    real(wp), intent(in) :: side               !! length of the side that is faced
-    real(wp) :: a(2), b(2), near(2), own
+    real(wp), intent(in) :: side, side_rise    !! length of the side that is faced, how far its curve may be from it
+    real(wp) :: a(2), b(2), near(2)
     integer, allocatable :: sides(:)
     integer :: k
 
     is_blocked = .false.
-    own = 2.0_wp*norm2(from%along)
-    if (abs(place%gap) <= thin*min(side, own)) return
-    near = rise*[own, side]/abs(place%gap)
+    if (abs(place%gap) <= thin*min(side, 2.0_wp*norm2(from%along))) return
+    near = max([from%rise, side_rise]/abs(place%gap), at_end)
     if (sum(near) >= 1.0_wp) return
     a = from%x + aside*from%along
     b = a - place%gap*place%normal

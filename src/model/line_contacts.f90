@@ -237,14 +237,14 @@ contains
     most = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
     do
       call find_faces(contact, model%outline, faces)
-      if (size(faces%node) + size(faces%tip) > 0 .or. contact%search > most) exit
+      call add_pairs(faces, model, contact)
+      if (contact%last >= contact%first) exit
+      if (contact%search > most) then
+        call add_nothing_faced(deck, i, contact, faces%same_way, faults)
+        return
+      end if
       contact%search = widening*contact%search
     end do
-    if (size(faces%node) + size(faces%tip) == 0) then
-      call add_nothing_faced(deck, i, contact, faces%same_way, faults)
-      return
-    end if
-    call add_pairs(faces, model, contact)
     call warn_of_overlap(deck, i, model, contact, faults)
     call warn_of_finer_slave(deck, i, model, contact, faces, faults)
   end subroutine find_pairs

@@ -27,7 +27,7 @@ module epcont_model_line_pairs
 
 contains
 
-  !> What the nodes of the slave face of the master, in their order along its sides, and what the master's corners face.
+  !> What the nodes of the slave face of the master, in their order along its sides.
   pure subroutine find_faces(contact, obstacles, faces)
     type(line_contact), intent(in) :: contact
     type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
@@ -79,7 +79,6 @@ contains
     end associate
     faces%left_out = faces%left_out(:, :left)
     call take_seconds(second_node(:seconds), second_face(:seconds), n, faces)
-    call find_tips(contact, obstacles, faces)
 
   contains
 
@@ -142,13 +141,16 @@ contains
     faces%facing = faces%facing(:rows)
   end subroutine take_seconds
 
-  !> Corners of the master, and nodes that came near, that stand on a side of the slave.
-  pure subroutine find_tips(contact, obstacles, faces)
+  !> Corners of the master that stand on a side of the slave which does not face the master all along (where two masters
+  !> lie flush, the side's own nodes hold both), and nodes that came near.
+  pure subroutine find_tips(contact, obstacles, covered, faces)
     type(line_contact), intent(in) :: contact
     type(boxed_line), intent(in) :: obstacles
+    logical, intent(in) :: covered(:)           !! sides of the slave
     type(faces_type), intent(inout) :: faces
     type(facing_type) :: second, there
     integer :: i, which
+    logical :: near
 
     allocate (faces%tip(0), faces%on(0))
     associate (master => contact%master)
@@ -156,13 +158,14 @@ contains
         do which = 1, 3
           associate (node => master%segment(which, i))
             if (node == 0) cycle
-            if (.not. any(contact%came_near == node)) then
+            near = any(contact%came_near == node)
+            if (.not. near) then
               if (which == 3) cycle
               if (.not. master%tip(which, i)) cycle
             end if
             call find_facing(contact%slave, obstacles, node_of(master, i, which), contact%search, there, second)
-            call take_place(contact, node, there, faces)
-            call take_place(contact, node, second, faces)
+            if (near .or. .not. covered(max(there%segment, 1))) call take_place(contact, node, there, faces)
+            if (near .or. .not. covered(max(second%segment, 1))) call take_place(contact, node, second, faces)
           end associate
         end do
       end do
@@ -220,18 +223,21 @@ contains
 
   !> Append pairs, with their rows of N. The node that stands on a side is B, the nodes of that side are A.
   pure subroutine add_pairs(faces, model, contact)
-    type(faces_type), intent(in) :: faces
+    type(faces_type), intent(inout) :: faces
     type(model_type), intent(inout) :: model
     type(line_contact), intent(inout) :: contact
+    logical, allocatable :: covered(:)
     integer, allocatable :: b(:), most(:), node(:), nodes(:), row_end(:), start(:)
     real(wp), allocatable :: weight(:), weights(:)
     type(facing_type), allocatable :: facing(:)
     integer :: i, k, n, tips
 
     n = size(faces%node)
-    tips = size(faces%tip)
+    allocate (covered(size(contact%slave%element)))
     call mortar_rows(contact, model%outline, faces%row_of, faces%facing, &
-                     model%kinematics(model%section(contact%slave%element(1))) == axisymmetric, start, node, weight)
+                     model%kinematics(model%section(contact%slave%element(1))) == axisymmetric, start, node, weight, covered)
+    call find_tips(contact, model%outline, covered, faces)
+    tips = size(faces%tip)
     contact%stands_on = contact%slave%segment(:, faces%on%segment)
     do i = 1, tips
       do k = 1, 3

@@ -9,7 +9,7 @@
 module epcont_model_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_model_facing, only: facing_type, find_nearest, looking_point, same_face
+  use epcont_model_facing, only: facing_type, find_nearest, looking_point, rise_of, same_face
   use epcont_model_model, only: line_contact
   use epcont_model_side_boxes, only: boxed_line
   implicit none
@@ -23,6 +23,8 @@ module epcont_model_mortar
   !> Pieces shorter than this part of a side, and weights below it, are rounding.
   real(wp), parameter :: rounding = 1.0e-12_wp
 
+  !> Where gaps jump by more than this part of a side there is a step in the other line.
+  real(wp), parameter :: step = 0.01_wp
   !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not need one.
   real(wp), parameter :: no_area = 1.0e-3_wp
 
@@ -41,6 +43,7 @@ module epcont_model_mortar
   type :: side_points
     integer :: count = 0
     logical :: covered = .true.               !! all of them face the other line
+    real(wp), allocatable :: along(:)         !! place on the side, from 0 to 1 [points]
     real(wp), allocatable :: share(:, :)      !! shape functions of the side's nodes [3, points]
     real(wp), allocatable :: weight(:)        !! length, in rings times radius
     type(facing_type), allocatable :: facing(:)
@@ -50,7 +53,7 @@ contains
 
   !> Rows of master nodes and weights, one for each slave node that has a pair; the weights of a row sum to 1. Row k is the
   !! entries start(k) to start(k+1)-1. Rows of no side count at their own places.
-  pure subroutine mortar_rows(contact, obstacles, row_of, facing, ring, start, node, weight)
+  pure subroutine mortar_rows(contact, obstacles, row_of, facing, ring, start, node, weight, covered)
     type(line_contact), intent(in) :: contact
     type(boxed_line), intent(in) :: obstacles      !! the outlines of all bodies
     integer, intent(in) :: row_of(:, :)            !! of each side's nodes; 0: they face nothing [3, sides]
@@ -58,6 +61,7 @@ contains
     logical, intent(in) :: ring                    !! x is a radius
     integer, allocatable, intent(out) :: start(:), node(:)
     real(wp), allocatable, intent(out) :: weight(:)
+    logical, intent(out) :: covered(:)             !! sides that face the master all along [sides]
     type(weight_list) :: list
     type(side_points) :: points
     integer :: k, row, s
@@ -67,7 +71,8 @@ contains
     associate (slave => contact%slave, master => contact%master)
       do s = 1, size(slave%element)
         call cut_side(contact, obstacles, s, reach_of(contact, s, row_of(:, s), facing), ring, points)
-        if (is_covered(points, facing, row_of(:, s), slave%segment(:, s))) then
+        covered(s) = is_covered(points, facing, row_of(:, s), slave%segment(:, s), slave%chord_length(s))
+        if (covered(s)) then
           call add_dual(master, points, row_of(:, s), list)
           cycle
         end if
@@ -84,11 +89,13 @@ contains
     call collect(list, start, node, weight)
   end subroutine mortar_rows
 
-  !> Do all nodes and integration points of a side face the other line, and one face of it?
-  pure logical function is_covered(points, facing, row, segment)
+  !> Do all nodes and integration points of a side face the other line, and one face of it, without a step?
+  pure logical function is_covered(points, facing, row, segment, length)
     type(side_points), intent(in) :: points
     type(facing_type), intent(in) :: facing(:)
     integer, intent(in) :: row(3), segment(3)
+    real(wp), intent(in) :: length             !! of the side
+    real(wp) :: before, behind, cut
     integer :: k, p
 
     is_covered = points%covered .and. all(row > 0 .or. segment == 0)
@@ -100,7 +107,28 @@ contains
         if (.not. is_covered) return
       end do
     end do
+    before = facing(row(1))%place%gap
+    do p = gauss_points, points%count, gauss_points   ! piece by piece
+      associate (gap => points%facing(p - gauss_points + 1:p)%place%gap, s => points%along(p - gauss_points + 1:p))
+        cut = s(1) - (s(gauss_points) - s(1))*gauss_place(1)/(gauss_place(gauss_points) - gauss_place(1))
+        is_covered = abs(continued(s, gap, cut) - before) <= step*length
+        cut = s(gauss_points) + (s(1) - cut)
+        behind = continued(s, gap, cut)
+      end associate
+      if (.not. is_covered) return
+      before = behind
+    end do
+    is_covered = abs(facing(row(2))%place%gap - before) <= step*length
   end function is_covered
+
+  !> The value at s of the parabola through three points.
+  pure real(wp) function continued(at, value, s)
+    real(wp), intent(in) :: at(3), value(3), s
+
+    continued = value(1)*(s - at(2))*(s - at(3))/((at(1) - at(2))*(at(1) - at(3))) + &
+                value(2)*(s - at(1))*(s - at(3))/((at(2) - at(1))*(at(2) - at(3))) + &
+                value(3)*(s - at(1))*(s - at(2))/((at(3) - at(1))*(at(3) - at(2)))
+  end function continued
 
   !> How far from a side the part of the other line lies that it faces, at most: twice as far as its nodes say, or its length.
   pure real(wp) function reach_of(contact, side, row, facing)
@@ -134,18 +162,20 @@ contains
 
     cut = cuts_of(contact%slave, side, contact%master, reach)
     allocate (points%share(3, gauss_points*size(cut)), points%weight(gauss_points*size(cut)))
-    allocate (points%facing(gauss_points*size(cut)))
+    allocate (points%facing(gauss_points*size(cut)), points%along(gauss_points*size(cut)))
     do i = 2, size(cut)
       if (cut(i) - cut(i - 1) <= rounding) cycle
       do k = 1, gauss_points
         s = cut(i - 1) + (cut(i) - cut(i - 1))*gauss_place(k)
         points%count = points%count + 1
+        points%along(points%count) = s
         associate (p => points%count, slave => contact%slave)
           call slave%at(side, s, points%share(:, p), from%x, tangent)
           points%weight(p) = gauss_weight(k)*(cut(i) - cut(i - 1))*norm2(tangent)
           if (ring) points%weight(p) = points%weight(p)*dot_product(points%share(:, p), slave%x(1, :, side))
           from%outward = [tangent(2), -tangent(1)]/norm2(tangent)
           from%along = 0.5_wp*tangent
+          from%rise = rise_of(slave, side)
           points%facing(p) = find_nearest(contact%master, obstacles, from, contact%search)
           points%covered = points%covered .and. points%facing(p)%place%found
         end associate
