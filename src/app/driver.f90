@@ -88,7 +88,7 @@ contains
         call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)
         call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular, watch)
         if (singular > 0 .or. solve == most_solves) exit
-        call enter_nodes_that_came_near(run%model, run%answer%displacement, entered)
+        call enter_nodes_that_came_near(run%model, run%answer%displacement, run%answer%contact%touching, entered)
         if (.not. entered) exit
         call make_plan(run, numbering, iteration, expected, watch)
       end do

@@ -128,7 +128,8 @@ contains
     logical, allocatable :: on(:)
 
     overlap = a == b
-    if (overlap .or. are_apart(model, a, b)) return
+    if (overlap .or. .not. allocated(model%outline%element)) return
+    if (are_apart(model, a, b)) return
     allocate (on(size(model%outline%element)), source=.false.)
     on(model%line(a)%side) = .true.
     overlap = any(on(model%line(b)%side))

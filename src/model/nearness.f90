@@ -23,23 +23,27 @@ contains
 
   !> Give pairs to the nodes that came near; `entered`: there are some, and the scene wants to be solved again. Without
   !! displacements (what moves was held by nothing) all that may be faced, however far, has its pair.
-  subroutine enter_nodes_that_came_near(model, displacement, entered)
+  subroutine enter_nodes_that_came_near(model, displacement, touching, entered)
     type(model_type), intent(inout) :: model
     real(wp), allocatable, intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    logical, allocatable, intent(in) :: touching(:)           !! [pairs]
     logical, intent(out) :: entered
     real(wp) :: size_of_scene
-    integer :: before, c
+    integer :: before, c, k
     type(faces_type) :: faces
+    logical, allocatable :: holds(:)   !! nodes that stand on the other line [nodes]
 
     entered = .false.
     if (.not. allocated(model%line_contact)) return
     if (size(model%line_contact) == 0) return
     size_of_scene = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
+    allocate (holds(model%nodes), source=.false.)
+    if (allocated(displacement)) holds(model%pair_node(2, pack([(k, k=1, model%pairs)], touching))) = .true.
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
         if (allocated(displacement)) then
           call widen(contact, model%outline, displacement, size_of_scene, entered)
-          call look_from_master(contact, model%outline, displacement, size_of_scene, entered)
+          call look_from_master(contact, model%outline, displacement, holds, size_of_scene, entered)
         else if (size(contact%left_out) > 0 .and. contact%search < size_of_scene) then
           contact%search = size_of_scene
           contact%is_wider = .true.
@@ -83,10 +87,11 @@ contains
   end subroutine widen
 
   !> Nodes of the master that pass through sides of the slave by more than what these leave open between their nodes.
-  subroutine look_from_master(contact, obstacles, displacement, size_of_scene, entered)
+  subroutine look_from_master(contact, obstacles, displacement, holds, size_of_scene, entered)
     type(line_contact), intent(inout) :: contact
     type(boxed_line), intent(in) :: obstacles
     real(wp), intent(in) :: displacement(:, :), size_of_scene
+    logical, intent(in) :: holds(:)
     logical, intent(inout) :: entered
     type(facing_type) :: face(2)
     real(wp) :: allowed
@@ -105,8 +110,10 @@ contains
               allowed = least*size_of_scene
               if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
                 cycle   ! it has a pair
-              else if (.not. master%corner(min(which, 2), i) .or. which == 3) then
+              else if (any(holds(pack(slave%segment(:, face(k)%segment), slave%segment(:, face(k)%segment) > 0)))) then
                 allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement) + openness(master, i, displacement))
+              else   ! no node of the side holds it off
+                allowed = allowed + bend(slave, face(k)%segment, displacement)
               end if
               if (gap_of(node, slave, face(k), displacement) >= -allowed) cycle
               contact%came_near = [contact%came_near, node]
@@ -142,16 +149,26 @@ contains
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
     real(wp), intent(in) :: displacement(:, :)
+
+    openness = line%chord_length(side)*norm2(line%normal(:, 2, side) - line%normal(:, 1, side))/8.0_wp + &
+               bend(line, side, displacement)
+  end function openness
+
+  !> How far a straight side is from the curve into which the boundary bends [length].
+  pure real(wp) function bend(line, side, displacement)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side
+    real(wp), intent(in) :: displacement(:, :)
     real(wp) :: turn
     integer :: end
 
-    turn = norm2(line%normal(:, 2, side) - line%normal(:, 1, side))
+    turn = 0.0_wp
     do end = 1, 2
       if (line%neighbour(end, side) == 0 .or. line%corner(end, side)) cycle
       turn = turn + abs(rotation(line, side, displacement) - rotation(line, line%neighbour(end, side), displacement))
     end do
-    openness = line%chord_length(side)*turn/8.0_wp
-  end function openness
+    bend = line%chord_length(side)*turn/8.0_wp
+  end function bend
 
   !> By how much displacements turn a side.
   pure real(wp) function rotation(line, side, displacement)

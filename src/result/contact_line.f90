@@ -49,7 +49,8 @@ contains
     allocate (line%neighbour(2, model%pairs), source=0)
     allocate (line%part(2, model%pairs), source=0.0_wp)
     allocate (line%middle(model%pairs), source=.false.)
-    allocate (line%node(model%pairs), line%mirrored(model%pairs))
+    allocate (line%node(model%pairs))
+    allocate (line%mirrored(model%pairs), source=.false.)
     do pair = 1, model%pairs
       associate (a => model%pair_node(1, pair), b => model%pair_node(2, pair))
         line%node(pair) = merge(b, a, model%around%start(b + 1) > model%around%start(b))
