@@ -110,9 +110,9 @@ contains
               allowed = least*size_of_scene
               if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
                 cycle   ! it has a pair
-              else if (any(holds(pack(slave%segment(:, face(k)%segment), slave%segment(:, face(k)%segment) > 0)))) then
+              else if (is_held_off(slave, face(k)%segment, holds)) then
                 allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement) + openness(master, i, displacement))
-              else   ! no node of the side holds it off
+              else
                 allowed = allowed + bend(slave, face(k)%segment, displacement)
               end if
               if (gap_of(node, slave, face(k), displacement) >= -allowed) cycle
@@ -126,6 +126,26 @@ contains
       end do
     end associate
   end subroutine look_from_master
+
+  !> Does a node of a side, or of those beside it, stand on the other line? Then contact ends near by, between nodes.
+  pure logical function is_held_off(line, side, holds)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side
+    logical, intent(in) :: holds(:)   !! [nodes]
+    integer :: i, k, near(3)
+
+    is_held_off = .false.
+    near = [side, line%neighbour(:, side)]
+    do i = 1, 3
+      if (near(i) == 0) cycle
+      do k = 1, 3
+        associate (node => line%segment(k, near(i)))
+          if (node == 0) cycle
+          is_held_off = is_held_off .or. holds(node)
+        end associate
+      end do
+    end do
+  end function is_held_off
 
   !> Gap of a node against what it faces of a line, as displacements have opened it [length].
   pure real(wp) function gap_of(node, line, face, displacement)
