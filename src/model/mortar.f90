@@ -25,6 +25,8 @@ module epcont_model_mortar
 
   !> Where gaps jump by more than this part of a side there is a step in the other line.
   real(wp), parameter :: step = 0.01_wp
+  !> Normals whose cosine is less, on either side of a node, meet at a corner there: more than 9 degrees.
+  real(wp), parameter :: smooth = 0.988_wp
   !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not need one.
   real(wp), parameter :: no_area = 1.0e-3_wp
 
@@ -89,7 +91,7 @@ contains
     call collect(list, start, node, weight)
   end subroutine mortar_rows
 
-  !> Do all nodes and integration points of a side face the other line, and one face of it, without a step?
+  !> Do all nodes and integration points of a side face the other line, and one face of it, without a step or a corner?
   pure logical function is_covered(points, facing, row, segment, length)
     type(side_points), intent(in) :: points
     type(facing_type), intent(in) :: facing(:)
@@ -106,6 +108,10 @@ contains
         is_covered = dot_product(points%facing(p)%place%normal, facing(row(k))%place%normal) > same_face
         if (.not. is_covered) return
       end do
+    end do
+    do p = gauss_points, points%count - 1, gauss_points
+      is_covered = dot_product(points%facing(p)%place%normal, points%facing(p + 1)%place%normal) > smooth
+      if (.not. is_covered) return
     end do
     before = facing(row(1))%place%gap
     do p = gauss_points, points%count, gauss_points   ! piece by piece
