@@ -256,7 +256,7 @@ contains
 
     is_blocked = .false.
     if (abs(place%gap) <= thin*min(side, 2.0_wp*norm2(from%along))) return
-    near = max([from%rise, side_rise]/abs(place%gap), at_end)
+    near = max([from%rise, side_rise + aside*norm2(from%along)]/abs(place%gap), at_end)
     if (sum(near) >= 1.0_wp) return
     a = from%x + aside*from%along
     b = a - place%gap*place%normal
