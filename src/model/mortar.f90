@@ -25,6 +25,8 @@ module epcont_model_mortar
 
   !> Where gaps jump by more than this part of a side there is a step in the other line.
   real(wp), parameter :: step = 0.01_wp
+  !> Only sides that are nearly parallel, by this cosine, can touch all along: 20 degrees.
+  real(wp), parameter :: parallel = 0.94_wp
   !> Normals whose cosine is less, on either side of a node, meet at a corner there: more than 9 degrees.
   real(wp), parameter :: smooth = 0.988_wp
   !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not need one.
@@ -44,7 +46,7 @@ module epcont_model_mortar
   !> The integration points of one side.
   type :: side_points
     integer :: count = 0
-    logical :: covered = .true.               !! all of them face the other line
+    logical :: covered = .true.               !! all of them face the other line, nearly parallel
     real(wp), allocatable :: along(:)         !! place on the side, from 0 to 1 [points]
     real(wp), allocatable :: share(:, :)      !! shape functions of the side's nodes [3, points]
     real(wp), allocatable :: weight(:)        !! length, in rings times radius
@@ -183,7 +185,8 @@ contains
           from%along = 0.5_wp*tangent
           from%rise = rise_of(slave, side)
           points%facing(p) = find_nearest(contact%master, obstacles, from, contact%search)
-          points%covered = points%covered .and. points%facing(p)%place%found
+          points%covered = points%covered .and. points%facing(p)%place%found .and. &
+                           dot_product(points%facing(p)%place%normal, from%outward) < -parallel
         end associate
       end do
     end do

@@ -79,22 +79,33 @@ contains
     do k = 1, size(done)
       if (done(k)) cycle
       side = contact%stands_on(:, k)
-      call part_of_side(model, side, model%pair_node(2, contact%first_of_master - 1 + k), part)
+      call part_of_side(model, side, contact%first_of_master - 1 + k, part)
       call chain_on(model, contact, k, part, done, chain)
       call link(model, contact, side, part, chain, line)
     end do
   end subroutine insert_masters
 
-  !> The two neighbouring nodes of a side between which a node stands.
-  pure subroutine part_of_side(model, side, node, part)
+  !> Where the node of a pair of the master stands on the slave [length].
+  pure function foot_of(model, pair) result(x)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: side(3), node
+    integer, intent(in) :: pair
+    real(wp) :: x(2)
+
+    associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)   ! behind the node itself
+      x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
+    end associate
+  end function foot_of
+
+  !> The two neighbouring nodes of a side between which the node of a pair of the master stands.
+  pure subroutine part_of_side(model, side, pair, part)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side(3), pair
     integer, intent(out) :: part(2)
 
     part = side(:2)
     if (side(3) == 0) return
     associate (along => model%x(:, side(2)) - model%x(:, side(1)))
-      if (dot_product(model%x(:, node) - model%x(:, side(3)), along) < 0.0_wp) then
+      if (dot_product(foot_of(model, pair) - model%x(:, side(3)), along) < 0.0_wp) then
         part = side([1, 3])
       else
         part = side([3, 2])
@@ -115,7 +126,7 @@ contains
     do i = k, size(done)
       if (any(contact%stands_on(:, i) /= contact%stands_on(:, k))) cycle
       pair = contact%first_of_master - 1 + i
-      call part_of_side(model, contact%stands_on(:, i), model%pair_node(2, pair), other)
+      call part_of_side(model, contact%stands_on(:, i), pair, other)
       if (any(other /= part)) cycle
       done(i) = .true.
       do j = 1, size(chain)
@@ -130,7 +141,7 @@ contains
     pure real(wp) function away(pair)
       integer, intent(in) :: pair
 
-      away = norm2(model%x(:, model%pair_node(2, pair)) - model%x(:, part(1)))
+      away = norm2(foot_of(model, pair) - model%x(:, part(1)))
     end function away
   end subroutine chain_on
 
@@ -151,7 +162,8 @@ contains
       associate (pair => run(merge(1, size(run), i == 1)), beyond => run(merge(size(run), 1, i == 1)), &
                  next => chain(merge(1, size(chain), i == 1)))
         if (pair == 0) cycle
-        line%tributary(pair) = line%tributary(pair) - share(model, element, side, part(i), model%normal(:, pair))
+        if (is_along(model, side, model%normal(:, pair))) &
+          line%tributary(pair) = line%tributary(pair) - share(model, element, side, part(i), model%normal(:, pair))
         k = slot_of(line%neighbour(:, pair), beyond)
         line%neighbour(k, pair) = next
         line%part(k, pair) = 0.0_wp
@@ -159,7 +171,7 @@ contains
     end do
     do i = 1, size(run) - 1
       if (any(run([i, i + 1]) == 0)) cycle
-      half = 0.5_wp*width*norm2(model%x(:, line%node(run(i + 1))) - model%x(:, line%node(run(i))))
+      half = 0.5_wp*width*norm2(place(i + 1) - place(i))
       call add_piece(run(i), run(i + 1), half, line)
       call add_piece(run(i + 1), run(i), half, line)
     end do
@@ -172,6 +184,15 @@ contains
       pair_at = findloc(line%node(contact%first:contact%first_of_master - 1), node, dim=1)
       if (pair_at > 0) pair_at = contact%first - 1 + pair_at
     end function pair_at
+
+    !> On the slave.
+    pure function place(i) result(x)
+      integer, intent(in) :: i
+      real(wp) :: x(2)
+
+      x = model%x(:, line%node(run(i)))
+      if (i > 1 .and. i < size(run)) x = foot_of(model, run(i))
+    end function place
   end subroutine link
 
   !> Where a pair stands among another's neighbours, or an empty place.
@@ -202,7 +223,7 @@ contains
     integer, intent(in) :: first, last
     type(contact_line), intent(inout) :: line
     integer, allocatable :: pair_at(:)
-    real(wp) :: edge(2), own
+    real(wp) :: own
     integer :: e, i, k, pair, side(3)
 
     allocate (pair_at(model%nodes), source=0)
@@ -217,8 +238,7 @@ contains
           do k = 1, model%corners(e)
             side = model%edge(e, k)
             if (.not. any(side == node) .or. shared(model, side(1), side(2))) cycle
-            edge = model%x(:, side(2)) - model%x(:, side(1))
-            if (abs(dot_product(edge, n)) > along_tangent*norm2(edge)) cycle
+            if (.not. is_along(model, side, n)) cycle
             own = share(model, e, side, node, n)
             if (abs(own) <= no_area*area(model, e, side, n)) own = 0.0_wp
             line%tributary(pair) = line%tributary(pair) + own
@@ -229,6 +249,17 @@ contains
       end associate
     end do
   end subroutine find_edges
+
+  !> Does a side lie along the tangent?
+  pure logical function is_along(model, side, n)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side(3)
+    real(wp), intent(in) :: n(2)   !! normal of the contact
+
+    associate (edge => model%x(:, side(2)) - model%x(:, side(1)))
+      is_along = abs(dot_product(edge, n)) <= along_tangent*norm2(edge)
+    end associate
+  end function is_along
 
   !> What a uniform pressure on a side gives to one of its nodes along the normal, over that pressure [length**2].
   pure real(wp) function share(model, element, side, node, n)
