@@ -2,6 +2,7 @@
 !>
 !> Gaps are those of the undeformed shape, opened by displacements, as those of pairs are: small displacements.
 module epcont_model_nearness
+  use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
   use epcont_model_boundary_line, only: boundary_line
   use epcont_model_facing, only: facing_type, find_facing, find_nearest, node_of
@@ -15,9 +16,10 @@ module epcont_model_nearness
   !> A gap below this part of the scene is none.
   real(wp), parameter :: least = 1.0e-8_wp
   !> A node between those of the other line that stand on its own may pass through by so many times what chords of curves and
-  !> of bent sides make. (At the end of a contact 3.5 times were seen on a sound mesh; a node that is held off by nothing
-  !> passes through by 20 times and more.)
-  real(wp), parameter :: allowance = 8.0_wp
+  !> of bent sides make.
+  real(wp), parameter :: allowance = 3.0_wp
+  !> The two lines, not quite parallel, tell gaps by normals of their own: those of nodes that slide differ, by this much at most.
+  real(wp), parameter :: slide = 1.5_wp
   !> Search beyond what came near.
   real(wp), parameter :: further = 1.5_wp
 
@@ -104,7 +106,6 @@ contains
         do which = 1, 3
           associate (node => master%segment(which, i))
             if (node == 0) cycle
-            if (which == 1 .and. master%neighbour(1, i) > 0 .and. .not. master%corner(1, i)) cycle
             if (any(contact%came_near == node)) cycle
             call find_facing(slave, obstacles, node_of(master, i, which), size_of_scene, face(1), face(2))
             do k = 1, 2
@@ -113,10 +114,14 @@ contains
               if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
                 cycle   ! it has a pair
               else if (is_held_off(slave, face(k)%segment, holds)) then
-                allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement) + openness(master, i, displacement))
+                allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement) + &
+                                               openness_at(master, i, which, displacement))
               else
                 allowed = allowed + bend(slave, face(k)%segment, displacement)
               end if
+              if (.not. master%corner(min(which, 2), i) .or. which == 3) &
+                allowed = allowed + slide*slip_of(node, slave, face(k), displacement)* &
+                          norm2(face(k)%place%normal + master%outward(i, which))
               if (gap_of(node, slave, face(k), displacement) >= -allowed) cycle
               contact%came_near = [contact%came_near, node]
               contact%search = max(contact%search, further*abs(face(k)%place%gap))
@@ -155,6 +160,26 @@ contains
     class(boundary_line), intent(in) :: line
     type(facing_type), intent(in) :: face
     real(wp), intent(in) :: displacement(:, :)
+
+    gap_of = face%place%gap + dot_product(face%place%normal, apart_of(node, line, face, displacement))
+  end function gap_of
+
+  !> How far the node has slid along it [length].
+  pure real(wp) function slip_of(node, line, face, displacement)
+    integer, intent(in) :: node
+    class(boundary_line), intent(in) :: line
+    type(facing_type), intent(in) :: face
+    real(wp), intent(in) :: displacement(:, :)
+
+    slip_of = abs(cross_product(face%place%normal, apart_of(node, line, face, displacement)))
+  end function slip_of
+
+  !> Displacement of the node against that of what it faces [length].
+  pure function apart_of(node, line, face, displacement) result(apart)
+    integer, intent(in) :: node
+    class(boundary_line), intent(in) :: line
+    type(facing_type), intent(in) :: face
+    real(wp), intent(in) :: displacement(:, :)
     real(wp) :: apart(2)
     integer :: k
 
@@ -163,8 +188,7 @@ contains
       if (face%place%share(k) /= 0.0_wp) &
         apart = apart - face%place%share(k)*displacement(:, line%segment(k, face%segment))
     end do
-    gap_of = face%place%gap + dot_product(face%place%normal, apart)
-  end function gap_of
+  end function apart_of
 
   !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as it bends [length].
   pure real(wp) function openness(line, side, displacement)
@@ -175,6 +199,17 @@ contains
     openness = line%chord_length(side)*norm2(line%normal(:, 2, side) - line%normal(:, 1, side))/8.0_wp + &
                bend(line, side, displacement)
   end function openness
+
+  !> The larger one of the sides that meet in a node.
+  pure real(wp) function openness_at(line, side, which, displacement)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side, which
+    real(wp), intent(in) :: displacement(:, :)
+
+    openness_at = openness(line, side, displacement)
+    if (which == 3) return
+    if (line%neighbour(which, side) > 0) openness_at = max(openness_at, openness(line, line%neighbour(which, side), displacement))
+  end function openness_at
 
   !> How far a straight side is from the curve into which the boundary bends [length].
   pure real(wp) function bend(line, side, displacement)
