@@ -7,13 +7,18 @@ module epcont_result_contact_line
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
-  public :: contact_line, find_contact_line, contact_zone, find_zones
+  public :: contact_line, find_contact_line, in_contact, contact_zone, find_zones
 
   !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's corner's too.
   real(wp), parameter :: along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp)
 
   !> A corner of a curved ring on the axis has no area but for rounding and curvature: less than this part of its side's.
-  real(wp), parameter :: no_area = 1.0e-3_wp
+  real(wp), parameter, public :: no_area = 1.0e-3_wp
+
+  !> A normal is across a line of symmetry where this part of it, or more, is along the line.
+  real(wp), parameter :: along_line = 0.9_wp
+  !> A node of the other body is on the same line of symmetry within this part of a side.
+  real(wp), parameter :: beside = 1.0e-3_wp
 
   !> The pairs as a line along the boundary.
   type :: contact_line
@@ -202,7 +207,7 @@ contains
     integer, intent(in) :: first, last
     type(contact_line), intent(inout) :: line
     integer, allocatable :: pair_at(:)
-    real(wp) :: edge(2), own
+    real(wp) :: edge(2), longest, own
     integer :: e, i, k, pair, side(3)
 
     allocate (pair_at(model%nodes), source=0)
@@ -211,13 +216,14 @@ contains
     end do
     do pair = first, last
       associate (node => line%node(pair), n => model%normal(:, pair))
-        line%mirrored(pair) = (model%held(1, node) .and. abs(n(2)) > 0.9_wp) .or. (model%held(2, node) .and. abs(n(1)) > 0.9_wp)
+        longest = 0.0_wp
         do i = model%around%start(node), model%around%start(node + 1) - 1
           e = model%around%group(i)
           do k = 1, model%corners(e)
             side = model%edge(e, k)
             if (.not. any(side == node) .or. shared(model, side(1), side(2))) cycle
             edge = model%x(:, side(2)) - model%x(:, side(1))
+            longest = max(longest, norm2(edge))
             if (abs(dot_product(edge, n)) > along_tangent*norm2(edge)) cycle
             own = share(model, e, side, node, n)
             if (abs(own) <= no_area*area(model, e, side, n)) own = 0.0_wp
@@ -226,9 +232,41 @@ contains
             call add_neighbours(side, node, pair_at, own, line%neighbour(:, pair), line%part(:, pair))
           end do
         end do
+        line%mirrored(pair) = is_mirrored(model, pair, node, beside*longest)
       end associate
     end do
   end subroutine find_edges
+
+  !> Is a pair on a line of symmetry? Its node is held along the boundary there; where that is so all over a rigid body, held or tied by
+  !! RBE2, the node of the other body tells that lies on the same line.
+  pure logical function is_mirrored(model, pair, node, tolerance)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: pair, node
+    real(wp), intent(in) :: tolerance   !! [length]
+    integer :: along, i
+
+    is_mirrored = .false.
+    associate (n => model%normal(:, pair))
+      along = merge(1, 2, abs(n(2)) > abs(n(1)))
+      if (abs(n(3 - along)) <= along_line) return
+    end associate
+    if (.not. model%held(along, model%leader(along, node))) return
+    is_mirrored = is_guided(model, node, along)
+    do i = model%row_start(pair), model%row_start(pair + 1) - 1
+      if (is_mirrored) return
+      associate (other => model%row_node(i))
+        is_mirrored = is_guided(model, other, along) .and. abs(model%x(along, other) - model%x(along, node)) <= tolerance
+      end associate
+    end do
+  end function is_mirrored
+
+  !> Is a node held by itself in one direction, and free in the other?
+  pure logical function is_guided(model, node, direction)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: node, direction
+
+    is_guided = model%held(direction, node) .and. .not. model%held(3 - direction, model%leader(3 - direction, node))
+  end function is_guided
 
   !> What a uniform pressure on a side gives to one of its nodes along the normal, over that pressure [length**2].
   pure real(wp) function share(model, element, side, node, n)
@@ -293,7 +331,24 @@ contains
     shared = found > 1
   end function shared
 
-  !> The zones, in the order of their first pairs.
+  !> Pairs that touch, and those without an area beside them: a corner on the axis of rings, which bears nothing that would tell whether it
+  !! touches. [pairs]
+  pure function in_contact(line, touching) result(within)
+    type(contact_line), intent(in) :: line
+    logical, intent(in) :: touching(:)
+    logical, allocatable :: within(:)
+    integer :: k, pair
+
+    within = touching
+    do pair = 1, size(touching)
+      if (line%tributary(pair) > 0.0_wp) cycle
+      do k = 1, 2
+        if (line%neighbour(k, pair) > 0) within(pair) = within(pair) .or. touching(line%neighbour(k, pair))
+      end do
+    end do
+  end function in_contact
+
+  !> The zones, in the order of their first pairs. `touching` are the pairs `in_contact`.
   pure function find_zones(model, line, touching, force, pressure) result(zones)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
