@@ -53,7 +53,7 @@ contains
     if (model%has_rings()) then
       shift(1) = 0.0_wp
     else if (sum(arm**2, mask=known) > nearness**2*maxval(arm**2) .and. .not. is_tied(model, node)) then
-      turn = sum(arm*u, mask=known)/sum(arm**2, mask=known)
+      turn = sum(arm*(u - spread(shift, 2, size(node))), mask=known)/sum(arm**2, mask=known)
     end if
     travel = spread(shift, 2, size(node)) + turn*arm
     if (maxval(abs(u - travel), mask=known) > follows*maxval(abs(u), mask=known)) return

@@ -59,7 +59,7 @@ contains
   pure real(wp) function largest_pressure(self)
     class(answer_type), intent(in) :: self
 
-    largest_pressure = maxval(self%pressure)
-    if (.not. any(self%contact%touching)) largest_pressure = 0.0_wp
+    largest_pressure = 0.0_wp
+    if (any(self%contact%touching)) largest_pressure = maxval(self%pressure, mask=self%contact%touching)
   end function largest_pressure
 end module epcont_result_answer
