@@ -161,7 +161,7 @@ contains
     type(contact_zone), intent(in) :: zones(:)
     integer :: z
 
-    call heading(file, 'ZONES')
+    call heading(file, 'ZONES  (half-widths of whole zones, mirrored at lines of symmetry; forces of the pairs listed alone)')
     call file%line('    zone first pair  last pair        force max pressure  to last pair   half-width')
     do z = 1, size(zones)
       associate (zone => zones(z))

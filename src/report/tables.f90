@@ -155,7 +155,7 @@ contains
 
     call new_text_file(stem//'.zones.csv', file, error)
     if (allocated(error)) return
-    call file%line('zone,first_pair,last_pair,force,max_pressure,width_last_pair,half_width')
+    call file%line('zone,first_pair,last_pair,force,max_pressure,half_width_last_pair,half_width')
     do z = 1, size(zones)
       call file%line(text_of(z)//','//text_of(model%pair_id(zones(z)%first))//','// &
                      text_of(model%pair_id(zones(z)%last))//','// &

@@ -5,6 +5,7 @@ module epcont_result_contact_line
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_model_model, only: line_contact, model_type
+  use epcont_result_symmetry, only: is_on_symmetry
   implicit none
   private
   public :: contact_line, find_contact_line, in_contact, contact_zone, find_zones
@@ -15,11 +16,6 @@ module epcont_result_contact_line
   !> A corner of a curved ring on the axis has no area but for rounding and curvature: less than this part of its side's.
   real(wp), parameter, public :: no_area = 1.0e-3_wp
 
-  !> A normal is across a line of symmetry where this part of it, or more, is along the line.
-  real(wp), parameter :: along_line = 0.9_wp
-  !> A node of the other body is on the same line of symmetry within this part of a side.
-  real(wp), parameter :: beside = 1.0e-3_wp
-
   !> The pairs as a line along the boundary.
   type :: contact_line
     !> Area of each pair: half of its edges, as seen along the normal, times thickness; 0: no edges. A pressure on
@@ -29,7 +25,7 @@ module epcont_result_contact_line
     real(wp), allocatable :: part(:, :)     !! of the area, towards each neighbour; of a middle node not set [2, pairs]
     logical, allocatable :: middle(:)       !! the middle node of an edge [pairs]
     integer, allocatable :: node(:)         !! of the boundary at each pair: B, or A where B has no elements [pairs]
-    logical, allocatable :: mirrored(:)     !! the pair is on a line of symmetry [pairs]
+    logical, allocatable :: mirrored(:)     !! the line ends at the pair, on a line of symmetry [pairs]
   end type contact_line
 
   !> A run of neighbouring pairs that touch.
@@ -232,41 +228,10 @@ contains
             call add_neighbours(side, node, pair_at, own, line%neighbour(:, pair), line%part(:, pair))
           end do
         end do
-        line%mirrored(pair) = is_mirrored(model, pair, node, beside*longest)
+        if (any(line%neighbour(:, pair) == 0)) line%mirrored(pair) = is_on_symmetry(model, pair, node, longest)
       end associate
     end do
   end subroutine find_edges
-
-  !> Is a pair on a line of symmetry? Its node is held along the boundary there; where that is so all over a rigid body, held or tied by
-  !! RBE2, the node of the other body tells that lies on the same line.
-  pure logical function is_mirrored(model, pair, node, tolerance)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: pair, node
-    real(wp), intent(in) :: tolerance   !! [length]
-    integer :: along, i
-
-    is_mirrored = .false.
-    associate (n => model%normal(:, pair))
-      along = merge(1, 2, abs(n(2)) > abs(n(1)))
-      if (abs(n(3 - along)) <= along_line) return
-    end associate
-    if (.not. model%held(along, model%leader(along, node))) return
-    is_mirrored = is_guided(model, node, along)
-    do i = model%row_start(pair), model%row_start(pair + 1) - 1
-      if (is_mirrored) return
-      associate (other => model%row_node(i))
-        is_mirrored = is_guided(model, other, along) .and. abs(model%x(along, other) - model%x(along, node)) <= tolerance
-      end associate
-    end do
-  end function is_mirrored
-
-  !> Is a node held by itself in one direction, and free in the other?
-  pure logical function is_guided(model, node, direction)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node, direction
-
-    is_guided = model%held(direction, node) .and. .not. model%held(3 - direction, model%leader(3 - direction, node))
-  end function is_guided
 
   !> What a uniform pressure on a side gives to one of its nodes along the normal, over that pressure [length**2].
   pure real(wp) function share(model, element, side, node, n)
@@ -331,8 +296,8 @@ contains
     shared = found > 1
   end function shared
 
-  !> Pairs that touch, and those without an area beside them: a corner on the axis of rings, which bears nothing that would tell whether it
-  !! touches. [pairs]
+  !> Pairs that touch, and those without an area beside them: a corner on the axis of rings, which bears nothing that would tell
+  !! whether it touches. [pairs]
   pure function in_contact(line, touching) result(within)
     type(contact_line), intent(in) :: line
     logical, intent(in) :: touching(:)

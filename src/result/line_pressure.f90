@@ -57,7 +57,7 @@ contains
       received(model%pair_node(2, k)) = received(model%pair_node(2, k)) + force(k)
     end do
     where (area > 0.0_wp) received = received/area
-    call complete(model%line(contact%master), area, received)
+    call complete(contact%master, area, received)
     found%touching = count(touching(contact%first:contact%last))
     found%force = sum(force(contact%first:contact%last))
     found%on_slave = max(0.0_wp, maxval(pressure(contact%first:contact%last)))
@@ -75,7 +75,7 @@ contains
 
   !> Corners on the axis of rings, which no boundary belongs to, have the pressure of the middle beside them.
   pure subroutine complete(line, area, received)
-    type(boundary_line), intent(in) :: line
+    class(boundary_line), intent(in) :: line
     real(wp), intent(in) :: area(:)
     real(wp), intent(inout) :: received(:)
     integer :: i, k

@@ -55,8 +55,8 @@ contains
     end do
   end function pair_pressures
 
-  !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is at most where the corner has
-  !! opened, which it does where pressures rise away from the axis.
+  !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is at most where the
+  !! corner has opened, which it does where pressures rise away from the axis.
   pure subroutine complete(line, touching, force, pair, pressure)
     type(contact_line), intent(in) :: line
     logical, intent(in) :: touching(:)

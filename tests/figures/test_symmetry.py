@@ -22,7 +22,7 @@ class Symmetry(unittest.TestCase):
         self.assertEqual(result.status, 0, result.message)
         zones = result.table("zones")
         self.assertEqual(len(zones), 1)
-        found = {key: zones[0][key] for key in ("force", "max_pressure", "width_last_pair", "half_width")}
+        found = {key: zones[0][key] for key in ("force", "max_pressure", "half_width_last_pair", "half_width")}
         found["error_half_width"] = result.summary["mesh_error_half_width_zone_1"]
         found["error_pressure"] = result.summary["mesh_error_pressure_zone_1"]
         found["error_energy"] = result.summary["mesh_error_energy_norm"]
@@ -56,6 +56,14 @@ class Symmetry(unittest.TestCase):
             with self.subTest(kind=kind):
                 self.same(half, whole, {"force": 2.0}, but=("error_pressure", "error_energy"))
 
+    def test_rigid_by_ties_and_by_supports(self):
+        """A punch that an RBE2 makes rigid, and the same punch held all over, where the other came to lie: neither bears stresses."""
+        for kind in PLANE + RINGS:
+            tied = self.figures(Punch(kind, True, ROUND, "rigid").deck())
+            held = self.figures(Punch(kind, True, ROUND, "held", travel=tied["approach"]).deck())
+            with self.subTest(kind=kind):
+                self.same(tied, held, but=("approach",))
+
     def test_images(self):
         for kind in PLANE + RINGS:
             for how, slave, pairs in (("elastic", "punch", False), ("rigid", "punch", False), ("elastic", "block", True)):
@@ -88,7 +96,7 @@ class Axis(unittest.TestCase):
                 self.assertEqual(result.status, 0, result.message)
                 corner = min(result.pairs.values(), key=lambda pair: pair["x"])
                 self.assertEqual((corner["x"], corner["status"], corner["pressure"]), (0.0, "open", ""))
-                self.assertEqual([round(zone["width_last_pair"], 12) for zone in result.table("zones")], [2.0])
+                self.assertEqual([round(zone["half_width_last_pair"], 12) for zone in result.table("zones")], [2.0])
 
     def test_largest_pressure_on_few_sides(self):
         """Hertz, a ball on a block: the pressure on the axis is told from three corners on, and is the largest."""

@@ -157,10 +157,11 @@ def pressures(sides, x, held, leader, pairs, groups, forces, touching):
     said, others, pairs = touching, [nodes for *_, nodes in pairs], [(node, n) for node, n, _ in pairs]
     own = areas(sides, x, pairs)
     touching = list(said)
-    beside = {}
+    beside, ends_here = {}, [False] * len(pairs)
     for group in groups:
         at = {pairs[k][0]: k for k in reversed(group)}
         for k in group:
+            ends_here[k] = sum(any(node in at for node in (sides[ends].nodes[2:] or sides[ends].nodes) if node != pairs[k][0]) for ends in own[k]) < 2
             if own[k] and not any(own[k].values()):
                 near = [at.get(node) for ends in own[k] for node in (sides[ends].nodes[2:] or sides[ends].nodes) if node != pairs[k][0]]
                 beside[k] = next((other for other in near if other is not None and said[other]), None)
@@ -169,7 +170,7 @@ def pressures(sides, x, held, leader, pairs, groups, forces, touching):
     ring = any(side.thickness is None for side in sides.values())
     place = [x[node] for node, _ in pairs]
     chord = [max((hypot(x[b][0] - x[a][0], x[b][1] - x[a][1]) for a, b in (sides[ends].nodes[:2] for ends in area)), default=0.0) for area in own]
-    mirrored = [on_symmetry(node, n, others[k], x, held, leader, BESIDE * chord[k]) for k, (node, n) in enumerate(pairs)]
+    mirrored = [ends_here[k] and on_symmetry(node, n, others[k], x, held, leader, BESIDE * chord[k]) for k, (node, n) in enumerate(pairs)]
     axis = [ring and p[0] == 0.0 for p in place]
     for group in groups:
         at = {pairs[k][0]: k for k in reversed(group)}
