@@ -16,12 +16,13 @@ module epcont_analysis
   use epcont_plasticity_methods, only: choose_method
   use epcont_plasticity_onlooker, only: onlooker
   use epcont_result_answer, only: answer_type
-  use epcont_result_contact_line, only: contact_line, find_contact_line, find_zones, in_contact
+  use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
   use epcont_result_line_pressure, only: compare_sides
   use epcont_result_gradient, only: find_gradients
   use epcont_result_locking, only: find_locking
   use epcont_result_pressures, only: pair_pressures
   use epcont_result_stresses, only: recover_stresses
+  use epcont_result_zones, only: find_zones
   implicit none
   private
   public :: analyse

@@ -6,7 +6,8 @@
 module epcont_accuracy_zone_error
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
-  use epcont_result_contact_line, only: contact_line, contact_zone
+  use epcont_result_contact_line, only: contact_line
+  use epcont_result_zones, only: contact_zone
   implicit none
   private
   public :: zone_error, estimate_zone

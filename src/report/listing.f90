@@ -15,7 +15,7 @@ module epcont_report_listing
   use epcont_report_number, only: column_number, known_column, rounding_number
   use epcont_report_outcome, only: outcome_type
   use epcont_result_answer, only: answer_type
-  use epcont_result_contact_line, only: contact_zone
+  use epcont_result_zones, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none

@@ -11,7 +11,7 @@ module epcont_report_tables
   use epcont_report_number, only: full_number, known_number
   use epcont_report_outcome, only: outcome_type
   use epcont_result_answer, only: answer_type
-  use epcont_result_contact_line, only: contact_zone
+  use epcont_result_zones, only: contact_zone
   use epcont_result_iteration_error, only: estimate_iteration_error, iteration_error
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none

@@ -5,7 +5,7 @@ module epcont_result_answer
   use epcont_contact_problem, only: contact_solution
   use epcont_model_controls, only: precision_double
   use epcont_plasticity_onlooker, only: iteration_record
-  use epcont_result_contact_line, only: contact_zone
+  use epcont_result_zones, only: contact_zone
   use epcont_result_gradient, only: gradient_type
   use epcont_result_line_pressure, only: line_pressure
   use epcont_result_locking, only: locking_type

@@ -13,8 +13,8 @@ module epcont_result_symmetry
 
 contains
 
-  !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there; where that is so all over a rigid body, held or
-  !! tied by RBE2, the node of the other body tells that lies on the same line.
+  !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there; where that is so all
+  !! over a rigid body, held or tied by RBE2, the node of the other body tells that lies on the same line.
   pure logical function is_on_symmetry(model, pair, node, side)
     type(model_type), intent(in) :: model
     integer, intent(in) :: pair, node
