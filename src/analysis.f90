@@ -16,12 +16,13 @@ module epcont_analysis
   use epcont_plasticity_methods, only: choose_method
   use epcont_plasticity_onlooker, only: onlooker
   use epcont_result_answer, only: answer_type
-  use epcont_result_contact_line, only: contact_line, find_contact_line, find_zones
+  use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
   use epcont_result_line_pressure, only: compare_sides
   use epcont_result_gradient, only: find_gradients
   use epcont_result_locking, only: find_locking
   use epcont_result_pressures, only: pair_pressures
   use epcont_result_stresses, only: recover_stresses
+  use epcont_result_zones, only: find_zones
   implicit none
   private
   public :: analyse
@@ -43,6 +44,7 @@ contains
     type(plastic_run) :: run
     type(contact_line) :: line
     real(wp), allocatable :: load(:, :)
+    logical, allocatable :: touching(:)
 
     call solve(model, motions, numbering, plan, run, answer, watch)
     singular = run%singular
@@ -57,14 +59,16 @@ contains
     answer%locking = find_locking(model, run%scene%operator%volume, answer%stress, answer%equivalent_stress, answer%secant_modulus)
     answer%gradient = find_gradients(model, run%scene%operator%volume, answer%displacement)
     line = find_contact_line(model)
-    answer%pressure = pair_pressures(model, line, answer%contact%touching, answer%contact%force)
-    answer%zones = find_zones(model, line, answer%contact%touching, answer%contact%force, answer%pressure)
+    touching = in_contact(line, answer%contact%touching)
+    answer%pressure = pair_pressures(model, line, touching, answer%contact%force)
+    answer%zones = find_zones(model, line, touching, answer%contact%force, answer%pressure)
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
     call watch%lap(stage_stresses)
     call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
                  answer%contact%force, certificate, answer%rounding_error)
     call watch%lap(stage_certificate)
     call assess(model, motions, numbering, run, line, answer, accuracy)
+    where (touching .and. .not. answer%contact%touching) answer%pressure = -1.0_wp   ! an open pair is not said to press
     call watch%lap(stage_accuracy)
   end subroutine analyse
 

@@ -43,15 +43,33 @@ contains
     end do
   end function smooth_pressures
 
-  !> Is a node one of elements, and not held all over?
+  !> Is a node one of elements that can be strained, and not held all over?
   pure logical function gives_way(model, table, node)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
     integer, intent(in) :: node
+    integer :: i
 
-    gives_way = table%around%start(node) < table%around%start(node + 1) .and. &
-                .not. (model%held(1, model%leader(1, node)) .and. model%held(2, model%leader(2, node)))
+    gives_way = .false.
+    if (model%held(1, model%leader(1, node)) .and. model%held(2, model%leader(2, node))) return
+    do i = table%around%start(node), table%around%start(node + 1) - 1
+      gives_way = gives_way .or. .not. is_rigid(model, table%around%group(i))
+    end do
   end function gives_way
+
+  !> Do supports and RBE2 leave an element no strain? In each direction its nodes are all held, or all tied to one.
+  pure logical function is_rigid(model, element)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element
+    integer :: c
+
+    is_rigid = .true.
+    do c = 1, 2
+      associate (leader => model%leader(c, model%connectivity(:model%order(element), element)))
+        is_rigid = is_rigid .and. (all(leader == leader(1)) .or. all(model%held(c, leader)))
+      end associate
+    end do
+  end function is_rigid
 
   !> Normal stress of a smooth strain at a node, as a pressure.
   pure real(wp) function normal_pressure(model, table, material, strain, node, n)

@@ -160,7 +160,7 @@ contains
     at = model%x(:, table%node(p))
     reach = 0.0_wp
     do i = 1, size(patch)
-      reach = max(reach, maxval(abs(x(:, model%first_point(patch(i))) - at)))
+      reach = max(reach, norm2(x(:, model%first_point(patch(i))) - at))   ! in any direction: a scene may be turned
     end do
     matrix = 0.0_wp
     coefficient = 0.0_wp

@@ -6,7 +6,8 @@
 module epcont_accuracy_zone_error
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
-  use epcont_result_contact_line, only: contact_line, contact_zone
+  use epcont_result_contact_line, only: contact_line
+  use epcont_result_zones, only: contact_zone
   implicit none
   private
   public :: zone_error, estimate_zone
@@ -52,12 +53,13 @@ contains
     type(zone_error) :: error
     real(wp), allocatable :: s(:)    !! place of each of its pairs, from the first on [length]
     integer, allocatable :: inward(:)   !! its pairs from one end on
+    real(wp), allocatable :: d(:), p(:)   !! distance from that end and pressure of each, and of the next beyond a line of symmetry
     real(wp) :: off(2), open, step(2), uncertain(2), beyond(2), spacing, largest
     logical :: even, mirrored(2), sharp(2)
     integer :: e, kind, n, peak
 
     n = size(zone%pairs)
-    peak = maxloc(pressure(zone%pairs), dim=1)
+    peak = peak_of(pressure(zone%pairs), line%tributary(zone%pairs))
     error%peak = zone%pairs(peak)
     largest = pressure(error%peak)
     if (largest <= 0.0_wp) return
@@ -74,13 +76,17 @@ contains
       if (mirrored(e)) cycle
       if (e == 1) inward = zone%pairs
       if (e == 2) inward = zone%pairs(n:1:-1)
-      associate (p => pressure(inward), d => abs(s(merge(1, n, e == 1)) - s(merge(1, n, e == 1):merge(n, 1, e == 1):3 - 2*e)))
-        open = to_first_open(model, line, touching, inward(1))
-        step(e) = max(open, d(min(n, 2)))
-        beyond(e) = vanishes(p, d, 2, open)
-        uncertain(e) = min(end_most*step(e), abs(beyond(e) - vanishes(p, d, 3, open)) + of_end(kind)*step(e))
-        sharp(e) = open == 0.0_wp .and. p(1) >= falls*largest .or. n > 3 .and. inward(1) == error%peak
-      end associate
+      p = pressure(inward)
+      d = abs(s(merge(1, n, e == 1)) - s(merge(1, n, e == 1):merge(n, 1, e == 1):3 - 2*e))
+      if (mirrored(3 - e) .and. n > 1) then
+        p = [p, p(n - 1)]
+        d = [d, 2.0_wp*d(n) - d(n - 1)]
+      end if
+      open = to_first_open(model, line, touching, inward(1))
+      step(e) = max(open, d(min(n, 2)))
+      beyond(e) = vanishes(p, d, 2, open)
+      uncertain(e) = min(end_most*step(e), abs(beyond(e) - vanishes(p, d, 3, open)) + of_end(kind)*step(e))
+      sharp(e) = open == 0.0_wp .and. p(1) >= falls*largest .or. n > 3 .and. inward(1) == error%peak
     end do
     error%half_length = 0.5_wp*(s(n) + sum(beyond))
     if (mirrored(1) .neqv. mirrored(2)) error%half_length = 2.0_wp*error%half_length
@@ -100,6 +106,13 @@ contains
                      + of_spacing(kind)*largest*error%resolution
     if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
+
+  !> The largest pressure; of equal ones, but for rounding, that on the largest area: a corner on the axis may have its neighbour's.
+  pure integer function peak_of(pressure, area) result(peak)
+    real(wp), intent(in) :: pressure(:), area(:)
+
+    peak = maxloc(area, mask=pressure >= maxval(pressure)*(1.0_wp - rounding), dim=1)
+  end function peak_of
 
   !> Place of each pair along the zone.
   pure function places(model, line, pairs) result(s)

@@ -21,7 +21,7 @@ module epcont_app_driver
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_report_motions, only: report_motion_faults
-  use epcont_report_number, only: column_number
+  use epcont_report_number, only: column_number, known_column
   use epcont_report_outcome, only: judge, outcome_type
   use epcont_report_plan, only: plan_text
   use epcont_report_results, only: run_results, write_results
@@ -167,7 +167,7 @@ contains
     text = stem//'  '//outcome%word
     if (.not. outcome%has_answer) return
     if (size(answer%pressure) > 0) &
-      text = text//'  p_max'//column_number(max(0.0_wp, maxval(answer%pressure)), 0.0_wp)
+      text = text//'  p_max'//known_column(answer%largest_pressure(), 0.0_wp)
     if (size(answer%contact%approach) > 0) &
       text = text//'  approach'//column_number(answer%contact%approach(1), 0.0_wp)
   end function one_line

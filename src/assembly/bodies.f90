@@ -78,7 +78,7 @@ contains
     type(linear_law), intent(in) :: law
     real(wp), allocatable :: prescribed(:, :)
 
-    if (all(model%prescribed == 0.0_wp)) return
+    if (all(model%beyond_travel == 0.0_wp)) return
     allocate (prescribed(2, model%nodes), source=0.0_wp)
     call prescribe(model, 1.0_wp, prescribed)
     self%settlement = -operator%nodal_forces(model, law%increment(operator%strains(model, prescribed)))
@@ -94,7 +94,7 @@ contains
     do node = 1, model%nodes
       do c = 1, 2
         associate (leader => model%leader(c, node))
-          if (model%held(c, leader)) displacement(c, node) = part*model%prescribed(c, leader)
+          if (model%held(c, leader)) displacement(c, node) = part*model%beyond_travel(c, leader)
         end associate
       end do
     end do
@@ -221,7 +221,7 @@ contains
             else if (number < 0) then
               u(c, node) = border(-number, 1)
             else
-              u(c, node) = part*model%prescribed(c, model%leader(c, node))
+              u(c, node) = part*model%beyond_travel(c, model%leader(c, node))
             end if
           end do
         end do

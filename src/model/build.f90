@@ -18,6 +18,7 @@ module epcont_model_build
   use epcont_model_pairs, only: build_pairs
   use epcont_model_reference, only: check_unique, index_of_ids
   use epcont_model_supports, only: build_references, build_supports, build_ties
+  use epcont_model_travel, only: find_travels
   implicit none
   private
   public :: build_model
@@ -52,6 +53,7 @@ contains
     if (faults%error_count() > 0) return
     call check_pairs(deck, model, faults)
     call find_bodies(model)
+    call find_travels(model)
   end subroutine build_model
 
   !> Bodies: nodes joined by elements or RBE2.

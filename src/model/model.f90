@@ -62,6 +62,8 @@ module epcont_model_model
     type(controls_type) :: controls             !! of the plastic iteration
     logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
     real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
+    !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it [length] [2, nodes].
+    real(wp), allocatable :: travel(:, :), beyond_travel(:, :)
     integer, allocatable :: leader(:, :)        !! node whose displacement the freedom shares: itself if not tied [2, nodes]
     logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
     real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]

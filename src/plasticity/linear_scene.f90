@@ -38,6 +38,7 @@ module epcont_plasticity_linear_scene
     integer :: precision = precision_double          !! of the factors
     integer :: threads = 1                           !! that bodies may be worked on by
     type(scene_state), allocatable :: last           !! found by refinement, from which the next begins
+    real(wp), allocatable :: travel_gap(:)           !! opening of the gaps by what supports travel [length] [pairs]
     real(wp), allocatable :: resultant(:)            !! of all loads along the free motions [motions]
   contains
     procedure :: set_stiffness
@@ -68,6 +69,7 @@ contains
     scene%yields = yields
     scene%by_blocks = by_blocks
     scene%problem%initial_gap = model%initial_gap
+    scene%travel_gap = gap_opening(model, model%travel)
     scene%problem%motion = motion_columns(model, motions)
     scene%resultant = motion_resultants(model, motions)
   end function new_linear_scene
@@ -190,9 +192,9 @@ contains
     end if
     if (state%contact%state /= contact_solved) return
     state%stress = law%stress(state%strain)
-    state%displacement = state%deformation
+    state%displacement = state%deformation + part*model%travel
     call add_motions(model, motions, state)
-    call measure_gaps(self, model, state)
+    call measure_gaps(self, model, part, state)
     call watch%lap(stage_displacements)
   end subroutine solve
 
@@ -212,7 +214,8 @@ contains
     force = part*model%load
     if (any(law%initial_stress /= 0.0_wp)) force = force - self%operator%nodal_forces(model, law%initial_stress)
     call self%bodies%add_forces(numbering, force, part, half)
-    self%problem%load_gap = gap_opening(model, self%bodies%finish(model, numbering, half, part, .true.))
+    self%problem%load_gap = gap_opening(model, self%bodies%finish(model, numbering, half, part, .true.)) + &
+                            part*self%travel_gap
     self%problem%resultant = part*self%resultant
     call watch%lap(stage_displacements)
     call solve_contact(self%problem, state%contact, start, self%by_blocks)   ! without a guess `start` is not there
@@ -297,7 +300,8 @@ contains
     logical, allocatable, intent(in) :: touching(:)   !! guess of the pairs in contact, if allocated [pairs]
     type(scene_state), intent(inout) :: state
 
-    self%problem%load_gap = gap_opening(model, state%deformation) - matmul(self%problem%flexibility, state%contact%force)
+    self%problem%load_gap = gap_opening(model, state%deformation) + part*self%travel_gap - &
+                            matmul(self%problem%flexibility, state%contact%force)
     self%problem%resultant = part*self%resultant
     call solve_contact(self%problem, state%contact, touching, self%by_blocks)
   end subroutine solve_contact_about
@@ -332,20 +336,21 @@ contains
 
   !> Gaps of the pairs without force as the displacements have them. Where a rigid stop takes the load, what the flexibility says
   !! of the others is rounding of two deformations that cancel: a pair that seemed to touch may be open.
-  pure subroutine measure_gaps(self, model, state)
+  pure subroutine measure_gaps(self, model, part, state)
     class(linear_scene), intent(in) :: self
     type(model_type), intent(in) :: model
+    real(wp), intent(in) :: part
     type(scene_state), intent(inout) :: state
     real(wp), allocatable :: opening(:)
     real(wp) :: gap, terms   !! what the gap is the sum of, added up
     integer :: i, k
 
-    opening = gap_opening(model, state%deformation)
+    opening = gap_opening(model, state%deformation) + part*self%travel_gap
     associate (contact => state%contact, g0 => self%problem%initial_gap, motion => self%problem%motion)
       do k = 1, model%pairs
         if (contact%force(k) > 0.0_wp) cycle
         gap = g0(k) + opening(k) - dot_product(motion(k, :), contact%approach)
-        terms = abs(g0(k)) + sum(abs(motion(k, :)*contact%approach))
+        terms = abs(g0(k)) + abs(part*self%travel_gap(k)) + sum(abs(motion(k, :)*contact%approach))
         do i = model%row_start(k), model%row_start(k + 1) - 1
           terms = terms + abs(model%row_weight(i))*maxval(abs(state%deformation(:, model%row_node(i))))
         end do

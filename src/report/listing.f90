@@ -12,11 +12,12 @@ module epcont_report_listing
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: figure, heading, lines, right
-  use epcont_report_number, only: column_number, rounding_number
+  use epcont_report_number, only: column_number, known_column, rounding_number
   use epcont_report_outcome, only: outcome_type
   use epcont_result_answer, only: answer_type
-  use epcont_result_contact_line, only: contact_zone
+  use epcont_result_zones, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
+  use epcont_result_stresses, only: first_largest, place_of_point
   implicit none
   private
   public :: list_deck, list_outcome, list_contact, list_zones, list_lines, list_nodes, list_elements, list_summary
@@ -81,7 +82,6 @@ contains
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
-    character(len=13) :: pressure
     real(wp) :: force_scale, gap_scale, pressure_scale
     integer :: k
 
@@ -91,13 +91,11 @@ contains
     gap_scale = max(maxval(abs(answer%contact%gap)), maxval(abs(answer%displacement)))
     pressure_scale = maxval(answer%pressure)
     do k = 1, model%pairs
-      pressure = '            -'
-      if (answer%pressure(k) >= 0.0_wp) pressure = column_number(answer%pressure(k), pressure_scale)
       associate (b => model%pair_node(2, k))
         call file%line(right(text_of(model%pair_id(k)), 10)//right(text_of(model%node_id(model%pair_node(1, k))), 9)// &
                        right(text_of(model%node_id(b)), 9)//column_number(model%x(1, b), 0.0_wp)// &
                        column_number(model%x(2, b), 0.0_wp)//column_number(answer%contact%force(k), force_scale)// &
-                       pressure//column_number(answer%contact%gap(k), gap_scale)// &
+                       known_column(answer%pressure(k), pressure_scale)//column_number(answer%contact%gap(k), gap_scale)// &
                        merge('  touching', '  open    ', answer%contact%touching(k))// &
                        merge(', force not unique', '                  ', answer%contact%indeterminate(k)))
       end associate
@@ -163,25 +161,17 @@ contains
     type(contact_zone), intent(in) :: zones(:)
     integer :: z
 
-    call heading(file, 'ZONES')
+    call heading(file, 'ZONES  (half-widths of whole zones, mirrored at lines of symmetry; forces of the pairs listed alone)')
     call file%line('    zone first pair  last pair        force max pressure  to last pair   half-width')
     do z = 1, size(zones)
       associate (zone => zones(z))
         call file%line(right(text_of(z), 8)//right(text_of(model%pair_id(zone%first)), 11)// &
                        right(text_of(model%pair_id(zone%last)), 11)//column_number(zone%force, 0.0_wp)// &
-                       column_number(zone%max_pressure, 0.0_wp)//' '//column_number(zone%half_width_pairs, 0.0_wp)// &
-                       half_width_text(zone%half_width))
+                       known_column(zone%max_pressure, 0.0_wp)//' '//column_number(zone%half_width_pairs, 0.0_wp)// &
+                       known_column(zone%half_width, 0.0_wp))
       end associate
     end do
   end subroutine list_zones
-
-  pure function half_width_text(half_width) result(text)
-    real(wp), intent(in) :: half_width
-    character(len=13) :: text
-
-    text = '            -'
-    if (half_width >= 0.0_wp) text = column_number(half_width, 0.0_wp)
-  end function half_width_text
 
   !> Contact of lines, seen from both sides.
   subroutine list_lines(file, model, line)
@@ -240,18 +230,37 @@ contains
     real(wp) :: s, strain
     integer :: e
 
-    call heading(file, 'STRESSES')
-    call file%line('   element           sx           sy           sz          txy   equivalent       strain       secant  state')
+    call heading(file, 'STRESSES  (means over the element; largest: von Mises at the integration point nearest to that GRID of it)')
+    call file%line('   element           sx           sy           sz          txy   equivalent      largest  at GRID'// &
+                   '       strain       secant  state')
     s = maxval(abs(answer%stress))
     strain = maxval(answer%equivalent_strain)
     do e = 1, model%elements
       call file%line(right(text_of(model%element_id(e)), 10)//column_number(answer%stress(1, e), s)// &
                      column_number(answer%stress(2, e), s)//column_number(answer%stress(3, e), s)// &
                      column_number(answer%stress(4, e), s)//column_number(answer%equivalent_stress(e), s)// &
+                     column_number(answer%largest_stress(e), s)//right(nearest_grid(model, answer%largest_at(e)), 9)// &
                      column_number(answer%equivalent_strain(e), strain)// &
                      column_number(answer%secant_modulus(e), 0.0_wp)//merge('  plastic', '  elastic', answer%plastic(e)))
     end do
   end subroutine list_elements
+
+  !> Id of the corner of an element that an integration point is nearest to; of one in the middle: none.
+  pure function nearest_grid(model, point) result(id)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: point
+    character(len=:), allocatable :: id
+    real(wp) :: x(2)
+
+    associate (e => model%point_element(point))
+      id = '-'
+      if (model%first_point(e + 1) - model%first_point(e) == 1) return
+      x = place_of_point(model, point)
+      associate (corner => model%connectivity(:model%corners(e), e))
+        id = text_of(model%node_id(corner(minloc((model%x(1, corner) - x(1))**2 + (model%x(2, corner) - x(2))**2, dim=1))))
+      end associate
+    end associate
+  end function nearest_grid
 
   !> Summary and certificate.
   subroutine list_summary(file, model, motions, answer, certificate, outcome)
@@ -261,11 +270,12 @@ contains
     type(answer_type), intent(in) :: answer
     type(certificate_type), intent(in) :: certificate
     type(outcome_type), intent(in) :: outcome
+    real(wp) :: place(2)
     integer :: k
 
     call heading(file, 'SUMMARY')
     if (model%pairs > 0) then
-      call figure(file, 'largest pressure', column_number(max(0.0_wp, maxval(answer%pressure)), 0.0_wp))
+      call figure(file, 'largest pressure', known_column(answer%largest_pressure(), 0.0_wp))
       call figure(file, 'total contact force', column_number(sum(answer%contact%force), 0.0_wp))
       call figure(file, 'pairs in contact', right(text_of(count(answer%contact%touching)), 13))
     end if
@@ -275,7 +285,11 @@ contains
       if (answer%contact%motion_free(k)) call file%line('    nothing resists or drives this motion: its value is a choice')
     end do
     if (any(answer%plastic)) call figure(file, 'elements beyond the yield point', right(text_of(count(answer%plastic)), 13))
-    call figure(file, 'largest equivalent stress', column_number(maxval(answer%equivalent_stress), 0.0_wp))
+    associate (e => first_largest(answer%largest_stress))
+      place = place_of_point(model, answer%largest_at(e))
+      call figure(file, 'largest equivalent stress', column_number(answer%largest_stress(e), 0.0_wp)//'   in element '// &
+                  text_of(model%element_id(e))//' at '//short_real(place(1))//' '//short_real(place(2)))
+    end associate
     call figure(file, 'largest displacement', column_number(maxval(norm2(answer%displacement, dim=1)), 0.0_wp))
     call figure(file, 'status', right(outcome%word, 13))
     call heading(file, 'CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &

@@ -3,7 +3,7 @@ module epcont_report_number
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: column_number, estimate_number, rounding_number, full_number
+  public :: column_number, known_column, estimate_number, rounding_number, full_number, known_number
 
   !> A value below this part of its column's scale is rounding and prints as 0.0.
   real(wp), parameter :: noise = 1.0e-12_wp
@@ -24,6 +24,15 @@ contains
       write (text, '(es13.5e2)') value
     end if
   end function column_number
+
+  !> The same of a figure that is never below zero; one that is not known is.
+  pure function known_column(value, scale) result(text)
+    real(wp), intent(in) :: value, scale
+    character(len=13) :: text
+
+    text = '            -'
+    if (value >= 0.0_wp) text = column_number(value, scale)
+  end function known_column
 
   !> A figure that is rounding in a valid answer, as the power of ten it is below, since rounding differs
   !! between builds: `< 1E-12` at the least. What is no rounding has two digits.
@@ -61,4 +70,13 @@ contains
     write (buffer, '(es25.16e3)') merge(0.0_wp, value, value == 0.0_wp)  ! no negative zero
     text = trim(adjustl(buffer))
   end function full_number
+
+  !> The same of a figure that is never below zero; empty where it is, since it is not known.
+  pure function known_number(value) result(text)
+    real(wp), intent(in) :: value
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (value >= 0.0_wp) text = full_number(value)
+  end function known_number
 end module epcont_report_number

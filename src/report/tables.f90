@@ -8,11 +8,12 @@ module epcont_report_tables
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: new_text_file, text_file
-  use epcont_report_number, only: full_number
+  use epcont_report_number, only: full_number, known_number
   use epcont_report_outcome, only: outcome_type
   use epcont_result_answer, only: answer_type
-  use epcont_result_contact_line, only: contact_zone
+  use epcont_result_zones, only: contact_zone
   use epcont_result_iteration_error, only: estimate_iteration_error, iteration_error
+  use epcont_result_stresses, only: first_largest, place_of_point
   implicit none
   private
   public :: write_summary, write_contact, write_zones, write_nodes, write_elements, write_history
@@ -31,6 +32,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     type(text_file) :: file
     type(iteration_error) :: error_left
+    real(wp) :: place(2)
     integer :: k
 
     call new_text_file(stem//'.summary.csv', file, error)
@@ -38,7 +40,8 @@ contains
     call file%line('key,value,unit')
     call file%line('status,'//outcome%word//',')
     if (outcome%has_answer) then
-      if (model%pairs > 0) call put('max_pressure', max(0.0_wp, maxval(answer%pressure)), 'force/length2')
+      if (model%pairs > 0) &
+        call file%line('max_pressure,'//known_number(answer%largest_pressure())//',force/length2')
       do k = 1, motions%count
         call put('approach_'//text_of(model%node_id(motions%node(k)))//'_'//text_of(motions%component(k)), &
                  answer%contact%approach(k), 'length')
@@ -49,7 +52,13 @@ contains
       call file%line('iterations,'//text_of(size(answer%history))//',')
       call file%line('factorizations,'//text_of(answer%factorizations)//',')
       call file%line('pivots,'//text_of(sum(answer%history%pivots))//',')
-      call put('max_equivalent_stress', maxval(answer%equivalent_stress), 'force/length2')
+      associate (e => first_largest(answer%largest_stress))
+        call put('max_equivalent_stress', answer%largest_stress(e), 'force/length2')
+        call file%line('max_equivalent_stress_element,'//text_of(model%element_id(e))//',')
+        place = place_of_point(model, answer%largest_at(e))
+        call put('max_equivalent_stress_x', place(1), 'length')
+        call put('max_equivalent_stress_y', place(2), 'length')
+      end associate
       call put('max_displacement', maxval(norm2(answer%displacement, dim=1)), 'length')
       call put('equilibrium_residual', certificate%equilibrium, '')
       call put('smallest_force', certificate%smallest_force, 'force')
@@ -108,11 +117,7 @@ contains
       character(len=*), intent(in) :: key, unit
       real(wp), intent(in) :: value
 
-      if (value >= 0.0_wp) then
-        call file%line(key//','//full_number(value)//','//unit)
-      else
-        call file%line(key//',,'//unit)
-      end if
+      call file%line(key//','//known_number(value)//','//unit)
     end subroutine put
   end subroutine write_accuracy
 
@@ -123,7 +128,6 @@ contains
     type(answer_type), intent(in) :: answer
     type(error_type), allocatable, intent(out) :: error
     type(text_file) :: file
-    character(len=:), allocatable :: pressure
     integer :: k
 
     call new_text_file(stem//'.contact.csv', file, error)
@@ -131,11 +135,9 @@ contains
     call file%line('pair,ga,gb,x,y,nx,ny,initial_gap,force,pressure,gap,status')
     do k = 1, model%pairs
       associate (a => model%pair_node(1, k), b => model%pair_node(2, k))
-        pressure = ''
-        if (answer%pressure(k) >= 0.0_wp) pressure = full_number(answer%pressure(k))
         call file%line(text_of(model%pair_id(k))//','//text_of(model%node_id(a))//','//text_of(model%node_id(b))//','// &
                        row([model%x(:, b), model%normal(:, k), model%initial_gap(k), answer%contact%force(k)])//','// &
-                       pressure//','//full_number(answer%contact%gap(k))//','// &
+                       known_number(answer%pressure(k))//','//full_number(answer%contact%gap(k))//','// &
                        trim(merge('touching', 'open    ', answer%contact%touching(k))))
       end associate
     end do
@@ -149,18 +151,16 @@ contains
     type(contact_zone), intent(in) :: zones(:)
     type(error_type), allocatable, intent(out) :: error
     type(text_file) :: file
-    character(len=:), allocatable :: half_width
     integer :: z
 
     call new_text_file(stem//'.zones.csv', file, error)
     if (allocated(error)) return
-    call file%line('zone,first_pair,last_pair,force,max_pressure,width_last_pair,half_width')
+    call file%line('zone,first_pair,last_pair,force,max_pressure,half_width_last_pair,half_width')
     do z = 1, size(zones)
-      half_width = ''
-      if (zones(z)%half_width >= 0.0_wp) half_width = full_number(zones(z)%half_width)
       call file%line(text_of(z)//','//text_of(model%pair_id(zones(z)%first))//','// &
                      text_of(model%pair_id(zones(z)%last))//','// &
-                     row([zones(z)%force, zones(z)%max_pressure, zones(z)%half_width_pairs])//','//half_width)
+                     full_number(zones(z)%force)//','//known_number(zones(z)%max_pressure)//','// &
+                     full_number(zones(z)%half_width_pairs)//','//known_number(zones(z)%half_width))
     end do
     call file%finish(error)
   end subroutine write_zones
@@ -184,7 +184,7 @@ contains
     call file%finish(error)
   end subroutine write_nodes
 
-  !> One row an element; x and y are its centre.
+  !> One row an element; x and y are its centre, max_x and max_y the integration point where the von Mises stress is largest.
   subroutine write_elements(stem, model, answer, error)
     character(len=*), intent(in) :: stem
     type(model_type), intent(in) :: model
@@ -195,10 +195,12 @@ contains
 
     call new_text_file(stem//'.elements.csv', file, error)
     if (allocated(error)) return
-    call file%line('element,x,y,sx,sy,sz,txy,equivalent_stress,equivalent_strain,secant_modulus,state')
+    call file%line('element,x,y,sx,sy,sz,txy,equivalent_stress,max_equivalent_stress,max_x,max_y,equivalent_strain,'// &
+                   'secant_modulus,state')
     do e = 1, model%elements
       call file%line(text_of(model%element_id(e))//','// &
                      row([sum(model%coordinates(e), dim=2)/model%order(e), answer%stress(:, e), answer%equivalent_stress(e), &
+                          answer%largest_stress(e), place_of_point(model, answer%largest_at(e)), &
                           answer%equivalent_strain(e), answer%secant_modulus(e)])//','// &
                      trim(merge('plastic', 'elastic', answer%plastic(e))))
     end do

@@ -58,6 +58,7 @@ contains
     call grid%integers('material_id', model%material_id(model%section))
     call grid%tensors('stress', answer%stress)
     call grid%reals('equivalent_stress', answer%equivalent_stress)
+    call grid%reals('max_equivalent_stress', answer%largest_stress)
     call grid%reals('equivalent_strain', answer%equivalent_strain)
     call grid%reals('secant_modulus', answer%secant_modulus)
     call grid%integers('yielded', merge(1, 0, answer%plastic))

@@ -5,7 +5,7 @@ module epcont_result_answer
   use epcont_contact_problem, only: contact_solution
   use epcont_model_controls, only: precision_double
   use epcont_plasticity_onlooker, only: iteration_record
-  use epcont_result_contact_line, only: contact_zone
+  use epcont_result_zones, only: contact_zone
   use epcont_result_gradient, only: gradient_type
   use epcont_result_line_pressure, only: line_pressure
   use epcont_result_locking, only: locking_type
@@ -23,6 +23,9 @@ module epcont_result_answer
     real(wp), allocatable :: equivalent_stress(:)    !! von Mises [stress] [elements]
     real(wp), allocatable :: equivalent_strain(:)    !! (2-2) [elements]
     real(wp), allocatable :: secant_modulus(:)       !! E' of the curve at that strain [stress] [elements]
+    ! At the integration point of each element where it is largest.
+    real(wp), allocatable :: largest_stress(:)       !! von Mises [stress] [elements]
+    integer, allocatable :: largest_at(:)            !! that point [elements]
     logical, allocatable :: plastic(:)               !! beyond the yield point, at any of its points [elements]
     logical, allocatable :: beyond(:)                !! beyond the end of the material's table [elements]
     type(contact_solution) :: contact
@@ -46,5 +49,17 @@ module epcont_result_answer
     real(wp) :: load_factor = 1.0_wp                 !! part of the loads for which this is
     integer :: unloaded = 0                          !! elements whose strain fell, after yielding, as the load grew
     integer :: first_unloaded = 0                    !! one of them
+  contains
+    procedure :: largest_pressure
   end type answer_type
+
+contains
+
+  !> The largest pressure of all pairs; negative where those that touch have none, since no boundary belongs to them [stress].
+  pure real(wp) function largest_pressure(self)
+    class(answer_type), intent(in) :: self
+
+    largest_pressure = 0.0_wp
+    if (any(self%contact%touching)) largest_pressure = maxval(self%pressure, mask=self%contact%touching)
+  end function largest_pressure
 end module epcont_result_answer

@@ -5,6 +5,7 @@ module epcont_result_line_pressure
   use epcont_base_kinds, only: wp
   use epcont_model_boundary_line, only: boundary_line
   use epcont_model_model, only: line_contact, model_type
+  use epcont_result_contact_line, only: no_area
   implicit none
   private
   public :: line_pressure, compare_sides
@@ -56,6 +57,7 @@ contains
       received(model%pair_node(2, k)) = received(model%pair_node(2, k)) + force(k)
     end do
     where (area > 0.0_wp) received = received/area
+    call complete(contact%master, area, received)
     found%touching = count(touching(contact%first:contact%last))
     found%force = sum(force(contact%first:contact%last))
     found%on_slave = max(0.0_wp, maxval(pressure(contact%first:contact%last)))
@@ -71,24 +73,46 @@ contains
     end do
   end function compare_one
 
-  !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it [length**2] [nodes].
+  !> Corners on the axis of rings, which no boundary belongs to, have the pressure of the middle beside them.
+  pure subroutine complete(line, area, received)
+    class(boundary_line), intent(in) :: line
+    real(wp), intent(in) :: area(:)
+    real(wp), intent(inout) :: received(:)
+    integer :: i, k
+
+    do i = 1, size(line%element)
+      associate (side => line%segment(:, i))
+        do k = 1, 2
+          if (side(3) > 0 .and. area(side(k)) == 0.0_wp) received(side(k)) = received(side(3))
+        end do
+      end associate
+    end do
+  end subroutine complete
+
+  !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it, 0 where that is rounding or
+  !! curvature [length**2] [nodes].
   pure function node_areas(model, line) result(area)
     type(model_type), intent(in) :: model
     class(boundary_line), intent(in) :: line
     real(wp), allocatable :: area(:)
     type(edge_point) :: point(edge_point_count)
     real(wp) :: depth
+    real(wp) :: share(3)
     integer :: i, k, p, side(3)
 
     allocate (area(model%nodes), source=0.0_wp)
     do i = 1, size(line%element)
       side = line%segment(:, i)
       point = edge_points(model%edge_coordinates(side))
+      share = 0.0_wp
       do p = 1, edge_point_count
         depth = model%depth(line%element(i), point(p)%x(1))
-        do k = 1, 3
-          if (side(k) > 0) area(side(k)) = area(side(k)) + depth*point(p)%values(k)*norm2(point(p)%tangent)
+        do k = 1, size(point(p)%values)
+          share(k) = share(k) + depth*point(p)%values(k)*norm2(point(p)%tangent)
         end do
+      end do
+      do k = 1, 3
+        if (side(k) > 0 .and. abs(share(k)) > no_area*sum(share)) area(side(k)) = area(side(k)) + share(k)
       end do
     end do
   end function node_areas

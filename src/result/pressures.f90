@@ -16,8 +16,8 @@ module epcont_result_pressures
   integer, parameter :: around_middle = 4, around_corner = 5
   !> Of the latter, those before it.
   integer, parameter :: before = 2
-  !> Corners of the least run of sides for which this is done.
-  integer, parameter :: least_corners = 4
+  !> Corners of the least run of sides for which this is done; for a corner without an area, of which force over area says nothing.
+  integer, parameter :: least_corners = 4, least_at_axis = 3
 
   !> A run of sides that touch all along, in their order.
   type :: run_type
@@ -30,7 +30,7 @@ module epcont_result_pressures
 
 contains
 
-  !> Pressures; negative where no boundary belongs to a pair.
+  !> Pressures; negative where no boundary belongs to a pair. `touching` are the pairs `in_contact`.
   pure function pair_pressures(model, line, touching, force) result(pressure)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
@@ -50,7 +50,27 @@ contains
       call sum_up(model, line, touching, force, run)
       call derive(model, line, run, pressure)
     end do
+    do pair = 1, model%pairs
+      if (line%tributary(pair) <= 0.0_wp) call complete(line, touching, force, pair, pressure)
+    end do
   end function pair_pressures
+
+  !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is at most where the
+  !! corner has opened, which it does where pressures rise away from the axis.
+  pure subroutine complete(line, touching, force, pair, pressure)
+    type(contact_line), intent(in) :: line
+    logical, intent(in) :: touching(:)
+    real(wp), intent(in) :: force(:)
+    integer, intent(in) :: pair
+    real(wp), intent(inout) :: pressure(:)
+
+    associate (next => maxval(line%neighbour(:, pair)))
+      if (next == 0) return
+      if (.not. touching(next)) return
+      if (pressure(pair) < 0.0_wp) pressure(pair) = pressure(next)
+      if (force(pair) == 0.0_wp) pressure(pair) = min(pressure(pair), pressure(next))
+    end associate
+  end subroutine complete
 
   !> Is the pair at the middle of a side that touches all along?
   pure logical function is_whole(line, touching, pair)
@@ -190,7 +210,13 @@ contains
     real(wp), intent(inout) :: pressure(:)
     integer :: first, k, last
 
-    if (size(run%area) < least_corners) return
+    if (size(run%area) < least_corners) then
+      if (size(run%area) < least_at_axis) return
+      do k = 1, size(run%corner), size(run%middle)
+        if (line%tributary(run%corner(k)) <= 0.0_wp) pressure(run%corner(k)) = slope(run, 1, least_at_axis, run%area(k))
+      end do
+      return
+    end if
     first = merge(1, 2, run%even(1))
     last = size(run%middle) - merge(0, 1, run%even(2))
     do k = first, last

@@ -2,6 +2,7 @@
 module epcont_result_stresses
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
+  use epcont_element_element, only: local_points, most_points, shape_values
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_material_total_theory, only: respond, response_type
@@ -10,7 +11,10 @@ module epcont_result_stresses
   use epcont_result_answer, only: answer_type
   implicit none
   private
-  public :: recover_stresses
+  public :: recover_stresses, place_of_point, first_largest
+
+  !> Stresses that differ by less than this part are the same.
+  real(wp), parameter :: same = 1.0e-9_wp
 
 contains
 
@@ -23,6 +27,7 @@ contains
     type(answer_type), intent(inout) :: answer
     type(material_type), allocatable :: material(:)
     type(response_type) :: response
+    real(wp), allocatable :: mises(:)   !! at each point
     real(wp) :: modulus, share, whole
     integer :: e, p
 
@@ -31,16 +36,20 @@ contains
     allocate (answer%stress(4, model%elements), answer%equivalent_stress(model%elements), source=0.0_wp)
     allocate (answer%equivalent_strain(model%elements), answer%secant_modulus(model%elements), source=0.0_wp)
     allocate (answer%plastic(model%elements), answer%beyond(model%elements), source=.false.)
+    allocate (answer%largest_stress(model%elements), answer%largest_at(model%elements))
+    mises = [(equivalent_stress(state%stress(:, p)), p=1, model%points)]
     do e = 1, model%elements
       associate (m => material(model%section(e)), first => model%first_point(e), last => model%first_point(e + 1) - 1)
         whole = sum(operator%volume(first:last))
+        answer%largest_stress(e) = maxval(mises(first:last))
+        answer%largest_at(e) = first - 1 + first_largest(mises(first:last))
         do p = first, last
           response = respond(m, state%strain(:, p))
           modulus = m%young
           if (response%curve%yielded) modulus = 1.0_wp/(1.0_wp/response%curve%modulus + m%shift)
           share = operator%volume(p)/whole
           answer%stress(:, e) = answer%stress(:, e) + share*state%stress(:, p)
-          answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*equivalent_stress(state%stress(:, p))
+          answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*mises(p)
           answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*response%curve%total
           answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
           answer%plastic(e) = answer%plastic(e) .or. response%curve%yielded
@@ -50,6 +59,25 @@ contains
     end do
     answer%reaction = reactions(model, operator%nodal_forces(model, state%stress), applied)
   end subroutine recover_stresses
+
+  !> Where the largest of some stresses is; of equal ones, but for rounding, the first.
+  pure integer function first_largest(stress) result(k)
+    real(wp), intent(in) :: stress(:)
+
+    k = findloc(stress >= maxval(stress)*(1.0_wp - same), .true., dim=1)
+  end function first_largest
+
+  !> Coordinates of an integration point [length].
+  pure function place_of_point(model, point) result(x)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: point
+    real(wp) :: x(2), local(2, most_points), weight(most_points)
+
+    associate (e => model%point_element(point))
+      call local_points(model%order(e), local, weight)
+      x = matmul(model%coordinates(e), shape_values(model%order(e), local(:, point - model%first_point(e) + 1)))
+    end associate
+  end function place_of_point
 
   !> What the supports must hold [force] [2, nodes].
   pure function reactions(model, force, applied) result(reaction)

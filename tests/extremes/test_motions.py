@@ -240,7 +240,7 @@ class Ties(Extremes):
         self.near(turned[1e-5], turned[1e-6], 1e-4)
 
     def test_travel_prescribed(self):
-        """Supports that move far more than the body gives way take the digits of its strains."""
+        """Supports may move far more than the body gives way: their common motion takes no digits of its strains."""
         for travel in (0.0, 1.0, 1e3, 1e6, 1e9, 1e12):
             deck = Deck()
             deck.material(1, 1000.0, 0.3)
@@ -250,10 +250,9 @@ class Ties(Extremes):
             deck.hold(1, nodes[0][0])
             deck.press(nodes[-1], 1.0)
             with self.subTest(travel=travel):
-                result = self.right_or_refused(deck, "the rounding of displacements is .* of the largest stress")
-                self.assertTrue(result if travel < 1e2 else travel < 1e5 or not result)
-                if result:
-                    self.near(result.column("elements", "sy"), [-0.5]*4, 1e-8)
+                result = self.valid(deck)
+                self.near(result.column("elements", "sy"), [-0.5]*4, 1e-8)
+                self.near(result.column("nodes", "uy")[:3], [travel]*3, 1e-15)
 
     def test_slender_ring(self):
         """So far from its axis that hardly anything resists its spreading; pressed on a floor evenly."""

@@ -127,7 +127,7 @@ class Disk(Case):
     def test_small_file_system(self):
         place = self.directory / "small"
         place.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", place], capture_output=True, check=False).returncode:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=24k", "tmpfs", place], capture_output=True, check=False).returncode:
             self.skipTest("no right to mount")
         try:
             self.check(self.run_it(SMALL, "-o", place, *ALL), 3, "is the disk full?")

@@ -180,6 +180,7 @@ class Model:
                         master[2 * self.row[g] + int(digit) - 1] = 2 * self.row[int(card[2])] + int(digit) - 1
         for _ in range(50):
             master = master[master]
+        self.leader = {(f // 2, f % 2): (int(m) // 2, int(m) % 2) for f, m in enumerate(master) if m != f}
         own = [i for i in range(n) if master[i] == i and np.isnan(held[i])]
         number = {f: j for j, f in enumerate(own)}
         rows = [i for i in range(n) if master[i] in number]
@@ -211,6 +212,7 @@ class Model:
                 weights = {slave: 1.0, **{row: -share for row, share in shares.items()}}
                 found.append((self.node[slave], (max(shares, key=shares.get), slave), n, gap, weights))
         self.held_directions = held
+        self.pair_nodes = [list(pair[4]) for pair in found]
         self.pair = [pair[0] for pair in found]
         self.ends = [pair[1] for pair in found]
         self.normal = np.array([pair[2] for pair in found]).reshape(-1, 2)

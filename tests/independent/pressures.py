@@ -5,13 +5,17 @@ The sum is known at the corners of a run of sides that touch all along; a polyno
 a node. Where the run ends on a line of symmetry it goes on mirrored; at the axis of rings it need not, for there a pressure
 that is even in the radius is smooth in the area. A run that closes goes on with itself. Where contact ends, the outermost corner
 and middle keep force over area; what that corner bears belongs to the run alone, unless the next middle touches too.
+
+A corner on the axis of rings has no area. It counts as touching where the middle beside it touches, and has that middle's pressure where
+its run has no three corners; it is told only where it touches itself.
 """
 from math import hypot, sqrt
 
 from boundary import side_points
 
 ALONG, NO_AREA, UPRIGHT = sqrt(0.5) * (1 + 1e-6), 1e-3, 0.9
-AROUND_MIDDLE, AROUND_CORNER, LEAST = 4, 5, 4
+AROUND_MIDDLE, AROUND_CORNER, LEAST, LEAST_AT_AXIS = 4, 5, 4, 3
+BESIDE = 1e-3
 
 
 def share(side, x, n):
@@ -114,6 +118,9 @@ class Run:
     def pressures(self, x, ring):
         """(pair, pressure) of all nodes but those of ends where contact ends. x of each pair."""
         if len(self.area) < LEAST:
+            for end in (0, -1):
+                if ring and x[self.chain[end]][0] == 0.0 and len(self.area) >= LEAST_AT_AXIS:
+                    yield self.chain[end], self.slope(0, LEAST_AT_AXIS, self.area[end])
             return
         last = len(self.chain) - 1
         for i in range(0 if self.even[0] else 2, last + 1 if self.even[1] else last - 1):
@@ -127,14 +134,43 @@ class Run:
             yield here, self.slope(k - AROUND_MIDDLE // 2 + 1, AROUND_MIDDLE, at)
 
 
-def pressures(sides, x, held, pairs, groups, forces, touching):
-    """Pressure of each pair, None where it has no area. `pairs`: (node on a side, normal); `held`: (node, direction);
-    `groups`: the pair numbers of each contact."""
+def on_symmetry(node, n, others, x, held, leader, near):
+    """Is a node held along its side, or in a rigid body that is, beside a node of the other body that is held so by itself?"""
+    along = 0 if abs(n[1]) > UPRIGHT else 1 if abs(n[0]) > UPRIGHT else None
+
+    def top(freedom):
+        while leader.get(freedom, freedom) != freedom:
+            freedom = leader[freedom]
+        return freedom
+
+    def guided(one):
+        return (one, along) in held and top((one, 1 - along)) not in held
+
+    if along is None or top((node, along)) not in held:
+        return False
+    return guided(node) or any(guided(other) and abs(x[other][along] - x[node][along]) <= near for other in others)
+
+
+def pressures(sides, x, held, leader, pairs, groups, forces, touching):
+    """Pressure of each pair, None where it has no area. `pairs`: (node on a side, normal, all nodes of the pair); `held`: (node,
+    direction); `leader`: of each tied (node, direction); `groups`: the pair numbers of each contact."""
+    said, others, pairs = touching, [nodes for *_, nodes in pairs], [(node, n) for node, n, _ in pairs]
     own = areas(sides, x, pairs)
+    touching = list(said)
+    beside, ends_here = {}, [False] * len(pairs)
+    for group in groups:
+        at = {pairs[k][0]: k for k in reversed(group)}
+        for k in group:
+            ends_here[k] = sum(any(node in at for node in (sides[ends].nodes[2:] or sides[ends].nodes) if node != pairs[k][0]) for ends in own[k]) < 2
+            if own[k] and not any(own[k].values()):
+                near = [at.get(node) for ends in own[k] for node in (sides[ends].nodes[2:] or sides[ends].nodes) if node != pairs[k][0]]
+                beside[k] = next((other for other in near if other is not None and said[other]), None)
+                touching[k] = said[k] or beside[k] is not None
     found = [force / sum(area.values()) if sum(area.values()) > 0 else None for force, area in zip(forces, own)]
     ring = any(side.thickness is None for side in sides.values())
     place = [x[node] for node, _ in pairs]
-    mirrored = [any((node, c) in held and abs(n[1 - c]) > UPRIGHT for c in (0, 1)) for node, n in pairs]
+    chord = [max((hypot(x[b][0] - x[a][0], x[b][1] - x[a][1]) for a, b in (sides[ends].nodes[:2] for ends in area)), default=0.0) for area in own]
+    mirrored = [ends_here[k] and on_symmetry(node, n, others[k], x, held, leader, BESIDE * chord[k]) for k, (node, n) in enumerate(pairs)]
     axis = [ring and p[0] == 0.0 for p in place]
     for group in groups:
         at = {pairs[k][0]: k for k in reversed(group)}
@@ -142,4 +178,9 @@ def pressures(sides, x, held, pairs, groups, forces, touching):
         for chain in runs(sides, {node: k for node, k in at.items() if touching[k]}, own):
             for k, pressure in Run(chain, own, forces, mirrored, axis, shared).pressures(place, ring):
                 found[k] = pressure
+    for k, other in beside.items():
+        if other is not None and found[k] is None:
+            found[k] = found[other]
+        if not said[k]:
+            found[k] = None
     return found

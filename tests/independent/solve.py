@@ -210,8 +210,8 @@ def tables(problem, v, force, gap, touching):
     reaction = np.where(model.is_held, reaction, 0.0).reshape(-1, 2)
     u = u.reshape(-1, 2)
     within = {int(row) for members in model.members for row in members}
-    places = [(b if b in within else a, n) for (a, b), n in zip(model.ends, model.normal)]
-    pressure = pressures(model.boundary, model.x, model.held_directions, places, model.contacts, force, touching)
+    places = [(b if b in within else a, n, nodes) for (a, b), n, nodes in zip(model.ends, model.normal, model.pair_nodes)]
+    pressure = pressures(model.boundary, model.x, model.held_directions, model.leader, places, model.contacts, force, touching)
     contact = []
     for k, pair in enumerate(model.pair):
         a, b = model.ends[k]
@@ -230,7 +230,7 @@ def tables(problem, v, force, gap, touching):
     summary += [["total_contact_force", float(force.sum()), ""],
                ["pairs_in_contact", int(touching.sum()), ""],
                ["plastic_elements", int(yielded.sum()), ""],
-               ["max_equivalent_stress", max((row[7] for row in elements), default=0.0), ""],
+               ["max_equivalent_stress", float(mises.max(initial=0.0)), ""],
                ["max_displacement", float(np.hypot(*u.T).max()), ""]]
     for node, digit in model.support:
         summary.append([f"approach_{node}_{digit}", u[model.row[node], digit - 1], ""])

@@ -125,7 +125,7 @@ class Values(Case):
             self.assertGreater(area([grid["points"][point] for point in points[:len(corner)]]), 0.0)
         self.assertEqual([int(cards[element][2]) for element in data["element_id"]], data["property_id"])
         self.assertEqual([material[number] for number in data["property_id"]], data["material_id"])
-        for name in ("equivalent_stress", "equivalent_strain", "secant_modulus"):
+        for name in ("equivalent_stress", "max_equivalent_stress", "equivalent_strain", "secant_modulus"):
             self.assertEqual([float(row[name]) for row in rows], data[name])
         self.assertEqual([[float(row[name]) for name in ("sx", "sy", "sz", "txy")] + [0.0, 0.0] for row in rows], data["stress"])
         self.assertEqual([int(row["state"] == "plastic") for row in rows], data["yielded"])

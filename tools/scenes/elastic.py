@@ -123,7 +123,7 @@ def layer(n=20):
     deck = Deck("LAYER ON A RIGID BASE, POINT LOAD", [
         "An elastic layer of height h = 1 lies on a rigid frictionless base; P = 100 on a point of its surface. It lifts off "
         "at the sides: receding contact, whose width does not depend on P. Half of the scene, x >= 0; half of P.",
-        "Known answer: half contact a = 0.85699 h, pressure under the load p(0) = 0.95965 P/h = 95.965."])
+        "Known answer: half contact a = 0.85699 h, pressure under the load p(0) = 0.96033 P/h = 96.033."])
     deck.nodes(mesh)
     deck.elements(mesh, 1)
     deck.material(1, 1000.0, 0.3)

@@ -129,7 +129,7 @@ def layer_lines(n=20, element="ctria6"):
     deck = Deck("LAYER ON A RIGID BASE, CONTACT BETWEEN LINES", [
         "An elastic layer of height h = 1 lies on a rigid frictionless base (elements whose nodes are all held); P = 100 on a point of "
         "its surface. It lifts off at the sides: receding contact, whose width does not depend on P. Half of the scene, x >= 0; half of P.",
-        "Known answer: half contact a = 0.85699 h, pressure under the load p(0) = 0.95965 P/h = 95.965."], from_geometry=False)
+        "Known answer: half contact a = 0.85699 h, pressure under the load p(0) = 0.96033 P/h = 96.033."], from_geometry=False)
     one, two = bodies(deck, ("Layer", layer), ("Base", base))
     deck.material(1, 1000.0, 0.3)
     deck.material(2, 1000.0, 0.3)

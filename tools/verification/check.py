@@ -162,7 +162,7 @@ def pressure_error(scene, tables):
     """Largest pressure, recomputed from the forces, and the largest difference from the table."""
     rows = [tables.contact[name] for name in scene.pair]
     number = {name: k for k, name in enumerate(scene.pair)}
-    ours = pressures(scene.side, scene.x, scene.held, [(pair.node, pair.normal) for pair in scene.pair.values()],
+    ours = pressures(scene.side, scene.x, scene.held, scene.leader, [(pair.node, pair.normal, list(pair.weights)) for pair in scene.pair.values()],
                      [[number[name] for name in contact] for contact in scene.contacts],
                      [float(row["force"]) for row in rows], [row["status"] == "touching" for row in rows])
     # A pressure that comes out below zero is not told.
