@@ -7,7 +7,7 @@ module epcont_result_contact_line
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
-  public :: contact_line, find_contact_line, contact_zone, find_zones, shared
+  public :: contact_line, find_contact_line, contact_zone, find_zones
 
   !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's corner's too.
   real(wp), parameter :: along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp)
@@ -36,6 +36,7 @@ module epcont_result_contact_line
     real(wp) :: half_width = -1.0_wp        !! to where the pressure vanishes; negative: unknown [length]
     integer, allocatable :: pairs(:)        !! from end to end
   end type contact_zone
+  public :: shared
 
 contains
 
