@@ -12,7 +12,7 @@ module epcont_accuracy_limits
   use epcont_result_contact_line, only: contact_line, shared
   implicit none
   private
-  public :: has_tip, is_edge
+  public :: edge_pairs, has_tip
 
   !> A tip's curvature is so many times that of the nodes around it.
   real(wp), parameter :: alone = 4.0_wp
@@ -23,6 +23,8 @@ module epcont_accuracy_limits
   !> Bodies that end together in corners of so much in all, or one alone on what is rigid, have no edge: what the quarter plane
   !! on a frictionless floor is a half of [rad].
   real(wp), parameter :: straight = acos(-1.0_wp)*(1.0_wp + 1.0e-3_wp)
+  !> Corners of two bodies are at one place within this part of a side.
+  real(wp), parameter :: flush = 1.0e-2_wp
   !> Part of a row's weights that says where a side is.
   real(wp), parameter :: least_weight = 1.0e-3_wp
 
@@ -48,7 +50,8 @@ contains
       if (gap_bends(model, line, pairs(k), least)) return
       if (pairs(k) <= gaps) cycle
       do i = model%row_start(pairs(k)) + 1, model%row_start(pairs(k) + 1) - 1
-        if (abs(model%row_weight(i)) >= least_weight .and. outline_bends(model, model%row_node(i), least)) return
+        if (abs(model%row_weight(i)) < least_weight) cycle
+        if (outline_bends(model, model%row_node(i), least) .and. .not. is_flush(model, line, pairs, model%row_node(i))) return
       end do
     end do
     has_tip = .false.
@@ -144,6 +147,24 @@ contains
     outline_bends = curvature >= alone*around
   end function outline_bends
 
+  !> Is a node a corner at which a zone's own outline ends in a corner too?
+  pure logical function is_flush(model, line, pairs, node)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    integer, intent(in) :: pairs(:), node
+    real(wp) :: side
+    integer :: beside(2), k, own
+
+    is_flush = .false.
+    if (corner_inside(model, node) <= 0.0_wp) return
+    beside = outline_beside(model, node)
+    side = norm2(model%x(:, beside(1)) - model%x(:, beside(2)))
+    do k = 1, size(pairs), max(1, size(pairs) - 1)
+      own = line%node(pairs(k))
+      is_flush = is_flush .or. corner_inside(model, own) > 0.0_wp .and. norm2(model%x(:, own) - model%x(:, node)) <= flush*side
+    end do
+  end function is_flush
+
   !> By how much an outline turns at a node, outward positive, and that over the length that the node stands for. On a line of
   !! symmetry it goes on as mirrored there.
   pure subroutine turn_at(model, node, beside, angle, curvature)
@@ -204,8 +225,10 @@ contains
     end do
   end function outline_beside
 
-  !> Is the last pair of a zone at an edge: does a body end there, and the other one go on?
-  pure logical function is_edge(model, line, pair)
+  !> How many pairs at the end of a zone tell by their pressures whether the last candidate is at an edge: 0: it is at none, since
+  !! both bodies end there; 1: the last, where no more than the candidates end; 2: also the one before it, where a body ends in a corner,
+  !! which may bear little by itself.
+  pure integer function edge_pairs(model, line, pair)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     integer, intent(in) :: pair
@@ -218,15 +241,20 @@ contains
     do i = model%row_start(pair), model%row_start(pair + 1) - 1
       associate (node => model%row_node(i))
         if (abs(model%row_weight(i)) < least_weight) cycle
-        if (node /= line%node(pair)) rigid = rigid .and. model%around%start(node) == model%around%start(node + 1)
+        if (node /= line%node(pair)) rigid = rigid .and. (model%around%start(node) == model%around%start(node + 1) .or. &
+                                                          all(model%held(:, node)))
         associate (found => inside(merge(1, 2, node == line%node(pair))))
           found = max(found, corner_inside(model, node))
         end associate
       end associate
     end do
-    if (rigid) inside(2) = 0.5_wp*acos(-1.0_wp)
-    is_edge = any(inside == 0.0_wp) .or. sum(inside) > straight
-  end function is_edge
+    edge_pairs = merge(2, 1, any(inside > 0.0_wp))
+    if (rigid) then
+      if (inside(1) > 0.0_wp .and. inside(1) <= 0.5_wp*straight) edge_pairs = 0
+    else if (all(inside > 0.0_wp) .and. sum(inside) <= straight) then
+      edge_pairs = 0
+    end if
+  end function edge_pairs
 
   !> The angle of the body at a corner; 0: the outline goes on [rad].
   pure real(wp) function corner_inside(model, node) result(inside)

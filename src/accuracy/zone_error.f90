@@ -4,7 +4,7 @@
 !> strains of both sides give there, how many pairs the zone has, and how far the half-width changes if the last three pairs say
 !> where the pressure vanishes instead of two. Their weights are measured (tests/accuracy).
 module epcont_accuracy_zone_error
-  use epcont_accuracy_limits, only: has_tip, is_edge
+  use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_patches, only: patch_table
   use epcont_accuracy_weights, only: estimate_weights, weights_of
   use epcont_base_kinds, only: wp
@@ -83,7 +83,7 @@ contains
         beyond(e) = vanishes(p(inward), d, 2, open)
         uncertain = uncertain + min(end_most*step, weights%step*step + &
                                     weights%ends*abs(beyond(e) - vanishes(p(inward), d, 3, open)))
-        if (open == 0.0_wp) edge = edge .or. maxval(p(inward(:min(n, 2)))) >= falls*largest .and. is_edge(model, line, last)
+        if (open == 0.0_wp) edge = edge .or. any(p(inward(:min(n, edge_pairs(model, line, last)))) >= falls*largest)
         cut_off = cut_off .or. open > 0.0_wp .and. n > few .and. peak == inward(1)
       end associate
     end do
