@@ -1,7 +1,7 @@
 """Scenes drawn by chance, for the score of the accuracy statement: contact that no deck of the repository has.
 
 A scene is a seed. It says how two bodies face each other (cylinders and balls, on flats, in grooves, in holes; rounded and sharp
-punches; wedges; layers; loads off the middle), of what they are made, whether they yield, and how they touch (CGAP pairs, lines, a rigid
+punches; wedges; layers; stacks of blocks; loads off the middle), of what they are made, whether they yield, and how they touch (CGAP pairs, lines, a rigid
 side); how fine its mesh is, and of which elements, is asked for apart. All lengths are parts of the half-width, about 1.
 """
 import dataclasses
@@ -17,7 +17,7 @@ from scenes.mesh import first_free  # noqa: E402
 from scenes.patches import join, walk  # noqa: E402
 
 PLANE, RINGS = ("ctria3", "ctria6", "cquad4"), ("ctrax3", "ctrax6")
-FAMILIES = ("round",) * 4 + ("groove", "rounded punch", "sharp punch", "wedge", "layer", "tilted", "hole")
+FAMILIES = ("round",) * 4 + ("groove", "rounded punch", "sharp punch", "wedge", "layer", "tilted", "hole", "stack")
 #: Those whose largest pressure has no limit.
 SHARP = ("sharp punch", "wedge")
 
@@ -62,7 +62,7 @@ class Fineness:
 def draw(seed, rings, yielding):
     """A scene: its figures by the seed alone."""
     chance = random.Random(f"{seed} {rings} {yielding}")
-    families = [f for f in FAMILIES if not (rings and f in ("tilted", "hole", "groove"))]
+    families = [f for f in FAMILIES if not (rings and f in ("tilted", "hole", "groove", "stack"))]
     family = chance.choice(families)
     rigid = family in ("round", "rounded punch", "wedge", "layer") and chance.random() < 0.3
     ratio = math.exp(chance.uniform(0.0, math.log(20.0)))
@@ -70,12 +70,14 @@ def draw(seed, rings, yielding):
     scene = Scene(family, rings, young, nu=chance.uniform(0.1, 0.45), rigid=rigid, flat=chance.uniform(0.3, 0.9))
     scene.lines = not rigid and (family in ("groove", "hole", "tilted") or chance.random() < (0.3 if rings else 0.5))
     scene.exchanged = family != "hole" and chance.random() < 0.3
-    scene.whole = family == "tilted" or not rings and family not in ("layer", "hole", "sharp punch") and chance.random() < 0.4
+    scene.whole = family in ("tilted", "stack") or not rings and family not in ("layer", "hole", "sharp punch") and chance.random() < 0.4
     scene.sheet = not rings and chance.random() < 0.2
     scene.radius = 1.0 / math.exp(chance.uniform(math.log(0.02), math.log(0.2)))
     scene.other = {"groove": -chance.uniform(0.3, 0.9), "round": chance.choice((0.0, 0.0, chance.uniform(0.2, 2.0)))}.get(family, 0.0) / scene.radius
     scene.wide = tuple(min(chance.uniform(5.0, 20.0), 0.8 * scene.radius) for _ in range(2))
     scene.deep = tuple(max(0.0, profile(scene, k, scene.wide[k])) + chance.uniform(4.0, 20.0) for k in range(2))
+    if family == "stack":
+        scene.wide = 1.0, 1.0
     if family == "layer":
         scene.deep = chance.uniform(0.4, 0.9), scene.deep[1]
     if yielding:
@@ -194,6 +196,9 @@ def columns(scene, which, mesh, ends=()):
         if scene.lines:
             inside = [1.0 - x for x in reversed(places(step * 0.5 / mesh.finer, 0.1, 1.0, mesh.growth))]
         return inside + [1.0 + x for x in places(inside[-1] - inside[-2], 0.1, end, mesh.growth)[1:]]
+    if scene.family == "stack":
+        count = math.ceil(1.0 / step)
+        return [k / count for k in range(-count, count + 1)]
     core = (scene.lasts - 0.1) * scene.width
     right = places(step, core, end, mesh.growth, mesh.shift if scene.whole and which == 0 else 0.0)
     if scene.family == "wedge" and scene.whole:
@@ -216,8 +221,8 @@ def make(scene, element, mesh):
     reach = scene.lasts * scene.width
     if not scene.lines and not scene.rigid:   # node faces node as far as they may touch
         near = [x for x in xs if abs(x) <= (1.0 if scene.family == "sharp punch" else reach) + 1e-9]
-        other = near + beyond(scene, mesh, near)
-        if scene.whole:
+        other = near if scene.family == "stack" else near + beyond(scene, mesh, near)
+        if scene.whole and scene.family != "stack":
             other = [-x for x in reversed(beyond(scene, mesh, [-x for x in reversed(near)]))] + other
     elif not scene.rigid:
         other = columns(scene, 1, mesh)
@@ -265,7 +270,7 @@ def on_surface(scene, mesh, which, reach):
     """Nodes of a surface within reach, corners of elements at both ends."""
     up = 1 if which == 0 else -1
     corners = {n for nodes in mesh.element for n in (nodes[:3] if len(nodes) == 6 else nodes)}
-    if scene.family == "sharp punch":
+    if scene.family in ("sharp punch", "stack"):
         reach = 1.0 if not scene.lines or which == 0 else 1.5
     near = [n for n, (x, y) in enumerate(mesh.point) if abs(x) <= reach + 1e-9 and abs(y * up - profile(scene, which, x)) < 1e-9]
     near.sort(key=lambda n: mesh.point[n][0])
@@ -277,7 +282,7 @@ def on_surface(scene, mesh, which, reach):
 
 
 def load(deck, scene, upper, top, one, free):
-    """Pressed by a platen, or by a pressure where a layer or a tilted punch is."""
+    """Pressed by a platen; layers, stacks and tilted punches by a pressure."""
     if not scene.whole:
         deck.hold(1, [n for n, (x, _) in enumerate(upper.point) if x == 0.0], one)
     else:
@@ -287,7 +292,7 @@ def load(deck, scene, upper, top, one, free):
         area = math.pi * scene.flat ** 2 if scene.rings else scene.flat
         deck.press(upper, pressed, scene.load / area, one, one)
         deck.card("SUPORT", one + top[0], 2)
-    elif scene.family == "tilted":
+    elif scene.family in ("tilted", "stack"):
         corners = {n for nodes in upper.element for n in (nodes[:3] if len(nodes) == 6 else nodes)}
         line = [n for n in top if n in corners]
         wide = scene.wide[0]

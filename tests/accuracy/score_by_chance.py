@@ -72,7 +72,7 @@ def find_truth(program, scene):
     for _ in range(2 if scene.yielding else 1):
         summary, zones, _ = solve(program, chance.make(scene, element, pilot))
         zone = max(zones, key=lambda z: float(z["force"]))
-        if scene.family not in ("sharp punch", "hole"):
+        if scene.family not in ("sharp punch", "hole", "stack"):
             scene.width, scene.lasts = float(zone["half_width"] or zone["width_last_pair"]), 1.6
         if scene.yielding and not scene.stress:
             scene.stress = float(f"{float(summary['max_equivalent_stress']) / scene.yielding ** (1 / 3 if scene.rings else 1 / 2):.6g}")
@@ -80,8 +80,8 @@ def find_truth(program, scene):
     truth = {key: (fine[key][0], abs(fine[key][0] - less[key][0]) / 2) for key in fine if key in less}
     if scene.family in chance.SHARP:
         truth["p"] = None
-        if scene.family == "sharp punch":
-            truth.pop("b", None)
+    if scene.family in ("sharp punch", "stack"):   # no half-width to find
+        truth.pop("b", None)
     return {"width": scene.width, "lasts": scene.lasts, "stress": scene.stress, "truth": truth}
 
 

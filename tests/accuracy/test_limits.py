@@ -43,6 +43,12 @@ class Limits(unittest.TestCase):
         for family in ("round", "rounded punch"):
             self.each(self.assertNotEqual, family=family, lasts=2.2)
 
+    def test_flush_ends(self):
+        """Two blocks of one width end together: pressures are finite there."""
+        for element, touch in itertools.product(chance.PLANE, ("pairs", "lines", "exchanged")):
+            with self.subTest(element=element, touch=touch):
+                self.assertRegex(said("stack", element, 5.0, touch, whole=True, wide=(1.0, 1.0), deep=(2.0, 2.0)), r"^\d\.\dE-\d\d +[\d.]+ %$")
+
     def test_too_few_pairs(self):
         for element in chance.PLANE:
             self.assertEqual(NOT_RESOLVED, said("round", element, 0.6 if element != "ctria6" else 0.3, "rigid", lasts=4.0))
