@@ -159,7 +159,8 @@ contains
     type(accuracy_type), intent(inout) :: accuracy
     integer :: z
 
-    accuracy%zone = [(estimate_zone(model, table, line, answer, stress_pressure, answer%zones(z)), z=1, size(answer%zones))]
+    accuracy%zone = [(estimate_zone(model, table, line, answer, stress_pressure, accuracy%energy_norm**2, &
+                                    answer%zones(z)), z=1, size(answer%zones))]
     if (size(accuracy%zone) == 0) return
     z = maxloc(answer%zones%max_pressure, dim=1)
     accuracy%max_pressure = accuracy%zone(z)%pressure
@@ -188,11 +189,12 @@ contains
     do z = 1, size(accuracy%zone)
       associate (zone => accuracy%zone(z))
         if (zone%peak == 0) cycle
-        between = sum(unit_force(answer%zones(z)%pairs))*answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length* &
-                  surface_compliance(model, table, zone%peak)
         weights = weights_of(zone%order, model%has_rings(), any(answer%plastic))
-        short = short - weights%between*between
-        end_error = end_error + weights%end*abs(between)
+        between = answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length*surface_compliance(model, table, zone%peak)
+        associate (force => unit_force(answer%zones(z)%pairs))   ! of a tilt of either sign: the ends count, not the sum
+          short = short - weights%between*between*sum(force)
+          end_error = end_error + weights%end*between*sum(abs(force))
+        end associate
       end associate
     end do
     accuracy%approach(motion) = weights%product*abs(short) + end_error

@@ -6,27 +6,34 @@ module epcont_accuracy_weights
   public :: estimate_weights, weights_of
 
   type :: estimate_weights
-    !> Of the largest pressure: its distance from a parabola through the nearest pairs, from the smooth stress, the smaller of
-    !! these two, and h/b of it.
-    real(wp) :: parabola, stress, smaller, spacing
-    !> Of the half-width: what three pairs say of the end less what two say, and the spacing there.
-    real(wp) :: ends, step
+    !> Of the largest pressure: its distance from a parabola through the nearest pairs, that from the smooth stress, the smaller of the
+    !! two; h/b, and the part of the energy that the mesh is off by, of it.
+    real(wp) :: parabola, stress, smaller, spacing, pressure_energy
+    !> Of the half-width: the spacing at its end, and the same part of the energy of it.
+    real(wp) :: step, width_energy
     !> Of the approach: the product of two fields of errors, whose parts may cancel; of pressure (h/b)**2 b/E*, by which bodies
-    !! come too near since their nodes touch and not the line between them; and the same for contact that ends at a node.
+    !! come too near since their nodes touch and not the line between them; and the same for contact that ends at a node: a distance
+    !! d from the true end counts as d**2.
     real(wp) :: product, between, end
   end type estimate_weights
 
-  !> Elastic, then with something beyond yield.
+  !> Each for elastic scenes, then for those with something beyond yield. Sides of six-node elements are two spacings long.
+  !                  of p_max: parabola, stress, smaller, spacing, energy; of b: step, energy; of the approach: product, between, end
   type(estimate_weights), parameter :: tria3(2) = [ &
-    estimate_weights(0.0_wp, 0.0_wp, 2.0_wp, 0.12_wp, 1.0_wp, 0.25_wp, 1.35_wp, 0.0_wp, 0.04_wp), &
-    estimate_weights(0.0_wp, 0.0_wp, 2.0_wp, 0.12_wp, 1.0_wp, 0.25_wp, 1.35_wp, 0.0_wp, 0.2_wp)]
+    estimate_weights(0.0_wp,   0.0_wp,   2.0_wp,   0.12_wp,  0.0_wp,   0.15_wp,  2.5_wp,   1.6_wp,   0.0_wp,   0.1_wp), &
+    estimate_weights(1.0_wp,   0.0_wp,   1.0_wp,   0.12_wp,  0.2_wp,   0.15_wp,  2.5_wp,   2.4_wp,   0.0_wp,   0.2_wp)]
   type(estimate_weights), parameter :: quad4(2) = [ &
-    estimate_weights(4.0_wp, 0.0_wp, 0.0_wp, 0.018_wp, 1.0_wp, 0.25_wp, 1.35_wp, 0.2_wp, 0.04_wp), &
-    estimate_weights(4.0_wp, 0.0_wp, 0.0_wp, 0.018_wp, 1.0_wp, 0.25_wp, 1.35_wp, 0.2_wp, 0.2_wp)]
+    estimate_weights(4.5_wp,   0.0_wp,   0.0_wp,   0.026_wp, 0.0_wp,   0.3_wp,   0.1_wp,   1.3_wp,   0.3_wp,   0.15_wp), &
+    estimate_weights(1.0_wp,   0.2_wp,   0.0_wp,   0.03_wp,  0.6_wp,   0.3_wp,   0.8_wp,   1.4_wp,   0.4_wp,   0.35_wp)]
   type(estimate_weights), parameter :: tria6(2) = [ &
-    estimate_weights(0.2_wp, 1.0_wp, 0.0_wp, 0.016_wp, 1.0_wp, 0.18_wp, 1.35_wp, 0.0_wp, 0.16_wp), &
-    estimate_weights(0.2_wp, 1.0_wp, 0.0_wp, 0.016_wp, 1.0_wp, 0.18_wp, 1.35_wp, 0.0_wp, 0.8_wp)]
-  type(estimate_weights), parameter :: trax3(2) = tria3, trax6(2) = tria6
+    estimate_weights(0.2_wp,   1.0_wp,   0.0_wp,   0.016_wp, 0.0_wp,   0.3_wp,   0.0_wp,   1.6_wp,   0.0_wp,   0.16_wp), &
+    estimate_weights(0.2_wp,   1.1_wp,   0.0_wp,   0.016_wp, 0.3_wp,   0.3_wp,   1.0_wp,   1.6_wp,   0.0_wp,   0.8_wp)]
+  type(estimate_weights), parameter :: trax3(2) = [ &
+    estimate_weights(1.5_wp,   0.2_wp,   0.0_wp,   0.2_wp,   0.2_wp,   0.25_wp,  0.7_wp,   1.4_wp,   0.0_wp,   0.6_wp), &
+    estimate_weights(1.5_wp,   0.2_wp,   0.0_wp,   0.1_wp,   0.7_wp,   0.2_wp,   0.6_wp,   1.4_wp,   0.0_wp,   0.2_wp)]
+  type(estimate_weights), parameter :: trax6(2) = [ &
+    estimate_weights(0.2_wp,   1.0_wp,   0.0_wp,   0.016_wp, 0.0_wp,   0.3_wp,   0.5_wp,   1.4_wp,   0.0_wp,   0.35_wp), &
+    estimate_weights(0.2_wp,   1.0_wp,   0.0_wp,   0.016_wp, 0.3_wp,   0.33_wp,  1.0_wp,   1.5_wp,   0.0_wp,   0.4_wp)]
 
 contains
 

@@ -1,8 +1,9 @@
 !> Errors of a zone's largest pressure and of its half-width.
 !>
-!> Four things tell of them: how far the peak is off a parabola through the nearest pairs, off the normal stress that the smooth
-!> strains of both sides give there, how many pairs the zone has, and how far the half-width changes if the last three pairs say
-!> where the pressure vanishes instead of two. Their weights are measured (tests/accuracy).
+!> Of the pressure four things tell: how far the peak is off a parabola through the nearest pairs, off the normal stress that the
+!> smooth strains of both sides give there, how many pairs the zone has, and what part of the energy the mesh is off by; of the
+!> half-width the spacing at its ends, and the energy. What each counts is measured (tests/accuracy). Where the pressure has no limit, or
+!> the zone too few pairs, nothing is said of it.
 module epcont_accuracy_zone_error
   use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_patches, only: patch_table
@@ -17,8 +18,6 @@ module epcont_accuracy_zone_error
 
   !> Pairs that the parabola goes through.
   integer, parameter :: around_peak = 7
-  !> Part of a spacing that the end of a zone is uncertain by, at most.
-  real(wp), parameter :: end_most = 0.5_wp
   !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved.
   integer, parameter :: few = 3
   !> Pressures that differ by less than this part are the same all over the zone.
@@ -43,13 +42,14 @@ module epcont_accuracy_zone_error
 
 contains
 
-  !> `stress_pressure` is the pressure at each pair that the smooth strains give.
-  pure function estimate_zone(model, table, line, answer, stress_pressure, zone) result(error)
+  !> `stress_pressure` is the pressure at each pair that the smooth strains give, `energy` what is missing of the energy.
+  pure function estimate_zone(model, table, line, answer, stress_pressure, energy, zone) result(error)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     real(wp), intent(in) :: stress_pressure(:)   !! [pairs]
+    real(wp), intent(in) :: energy               !! error of the mesh over all of it
     type(contact_zone), intent(in) :: zone
     type(zone_error) :: error
     type(estimate_weights) :: weights
@@ -80,16 +80,16 @@ contains
       associate (last => zone%pairs(inward(1)), d => abs(s(inward) - s(inward(1))))
         open = to_first_open(model, line, answer%contact%touching, last)
         step = max(open, d(min(n, 2)))
-        beyond(e) = vanishes(p(inward), d, 2, open)
-        uncertain = uncertain + min(end_most*step, weights%step*step + &
-                                    weights%ends*abs(beyond(e) - vanishes(p(inward), d, 3, open)))
+        beyond(e) = vanishes(p(inward), d, open)
+        uncertain = uncertain + weights%step*step
         if (open == 0.0_wp) edge = edge .or. any(p(inward(:min(n, edge_pairs(model, line, last)))) >= falls*largest)
         cut_off = cut_off .or. open > 0.0_wp .and. n > few .and. peak == inward(1)
       end associate
     end do
     error%half_length = 0.5_wp*(s(n) + sum(beyond))
     if (mirrored(1) .neqv. mirrored(2)) error%half_length = 2.0_wp*error%half_length
-    if (zone%half_width >= 0.0_wp) error%half_width = uncertain*merge(1.0_wp, 0.5_wp, any(mirrored))
+    if (zone%half_width >= 0.0_wp) error%half_width = uncertain*merge(1.0_wp, 0.5_wp, any(mirrored)) &
+                                                      + weights%width_energy*energy*zone%half_width
     spacing = 0.0_wp
     if (n > 1) spacing = (s(min(n, peak + 1)) - s(max(1, peak - 1)))/(min(n, peak + 1) - max(1, peak - 1))
     if (n > 1 .and. maxval(p) - minval(p) <= uniform*largest) then
@@ -103,7 +103,7 @@ contains
     if (error%unbounded .or. .not. error%resolved) return
     off = [off_parabola(s, p, mirrored, peak, spacing, error%resolution), abs(largest - stress_pressure(error%peak))]
     error%pressure = weights%parabola*off(1) + weights%stress*off(2) + weights%smaller*minval(off) &
-                     + weights%spacing*largest*error%resolution
+                     + (weights%spacing*error%resolution + weights%pressure_energy*energy)*largest
     if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
 
@@ -158,23 +158,18 @@ contains
     end do
   end function to_first_open
 
-  !> How far beyond an end the pressure vanishes: the least-squares line of p**2 over some pairs from there on.
-  pure real(wp) function vanishes(pressure, inward, many, limit)
+  !> How far beyond an end the pressure vanishes, where p**2 is linear: by the last two pairs, not beyond the first open one.
+  pure real(wp) function vanishes(pressure, inward, limit)
     real(wp), intent(in) :: pressure(:)
     real(wp), intent(in) :: inward(:)   !! distance of each pair from the end, which is the first [length]
-    integer, intent(in) :: many
     real(wp), intent(in) :: limit       !! distance to the first open pair [length]
-    real(wp) :: slope
-    integer :: n
+    real(wp) :: drop
 
-    n = min(many, size(pressure))
     vanishes = 0.0_wp
-    if (n < 2) return
+    if (size(pressure) < 2) return
+    drop = pressure(2)**2 - pressure(1)**2
     vanishes = limit
-    associate (x => inward(:n) - sum(inward(:n))/n, y => pressure(:n)**2)
-      slope = sum(x*y)/sum(x*x)
-      if (slope > 0.0_wp) vanishes = min(limit, max(0.0_wp, sum(y)/n/slope - sum(inward(:n))/n))
-    end associate
+    if (drop > 0.0_wp) vanishes = min(limit, inward(2)*pressure(1)**2/drop)
   end function vanishes
 
   !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, mirrored ones too. Of too few pairs
