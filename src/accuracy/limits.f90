@@ -1,8 +1,8 @@
 !> Where the pressure of a zone has no limit: at a tip inside it, or at an edge, where one body ends and the other goes on.
 !>
 !> Both are told by the geometry, not by the pressures, of which each kind of element has others. A tip is a bend of the gap, or
-!> of the other body's outline, at one node alone: arcs and fillets bend at each of their nodes. At an edge the contact reaches the last
-!> of its pairs and the pressure does not fall towards it.
+!> of the other body's outline, at one node alone: arcs and fillets bend at each of their nodes. At an edge the contact reaches
+!> the last of its pairs and the pressure does not fall towards it.
 module epcont_accuracy_limits
   use epcont_accuracy_contact_stress, only: surface_compliance
   use epcont_accuracy_patches, only: patch_table
@@ -226,8 +226,8 @@ contains
   end function outline_beside
 
   !> How many pairs at the end of a zone tell by their pressures whether the last candidate is at an edge: 0: it is at none, since
-  !! both bodies end there; 1: the last, where no more than the candidates end; 2: also the one before it, where a body ends in a corner,
-  !! which may bear little by itself.
+  !! both bodies end there; 1: the last, where no more than the candidates end; 2: also the one before it, where a body ends in a
+  !! corner, which may bear little by itself.
   pure integer function edge_pairs(model, line, pair)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line

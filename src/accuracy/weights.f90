@@ -6,8 +6,8 @@ module epcont_accuracy_weights
   public :: estimate_weights, weights_of
 
   type :: estimate_weights
-    !> Of the largest pressure: its distance from a parabola through the nearest pairs, that from the smooth stress, the smaller of the
-    !! two; h/b, and the part of the energy that the mesh is off by, of it.
+    !> Of the largest pressure: its distance from a parabola through the nearest pairs, that from the smooth stress, the smaller
+    !! of the two; h/b, and the part of the energy that the mesh is off by, of it.
     real(wp) :: parabola, stress, smaller, spacing, pressure_energy
     !> Of the half-width: the spacing at its end, and the same part of the energy of it.
     real(wp) :: step, width_energy
@@ -18,7 +18,7 @@ module epcont_accuracy_weights
   end type estimate_weights
 
   !> Each for elastic scenes, then for those with something beyond yield. Sides of six-node elements are two spacings long.
-  !                  of p_max: parabola, stress, smaller, spacing, energy; of b: step, energy; of the approach: product, between, end
+  ! Of p_max: parabola, stress, smaller, spacing, energy; of b: step, energy; of the approach: product, between, end.
   type(estimate_weights), parameter :: tria3(2) = [ &
     estimate_weights(0.0_wp,   0.0_wp,   2.0_wp,   0.12_wp,  0.0_wp,   0.15_wp,  2.5_wp,   1.6_wp,   0.0_wp,   0.1_wp), &
     estimate_weights(1.0_wp,   0.0_wp,   1.0_wp,   0.12_wp,  0.2_wp,   0.15_wp,  2.5_wp,   2.4_wp,   0.0_wp,   0.2_wp)]

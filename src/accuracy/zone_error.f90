@@ -2,8 +2,8 @@
 !>
 !> Of the pressure four things tell: how far the peak is off a parabola through the nearest pairs, off the normal stress that the
 !> smooth strains of both sides give there, how many pairs the zone has, and what part of the energy the mesh is off by; of the
-!> half-width the spacing at its ends, and the energy. What each counts is measured (tests/accuracy). Where the pressure has no limit, or
-!> the zone too few pairs, nothing is said of it.
+!> half-width the spacing at its ends, and the energy. What each counts is measured (tests/accuracy). Where the pressure has no
+!> limit, or the zone too few pairs, nothing is said of it.
 module epcont_accuracy_zone_error
   use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_patches, only: patch_table
