@@ -21,16 +21,16 @@ module epcont_accuracy_weights
   ! Of p_max: parabola, stress, smaller, spacing, energy; of b: step, energy; of the approach: product, between, end.
   type(estimate_weights), parameter :: tria3(2) = [ &
     estimate_weights(0.0_wp,   0.0_wp,   2.0_wp,   0.12_wp,  0.0_wp,   0.15_wp,  2.5_wp,   1.6_wp,   0.0_wp,   0.1_wp), &
-    estimate_weights(1.0_wp,   0.0_wp,   1.0_wp,   0.12_wp,  0.2_wp,   0.15_wp,  2.5_wp,   2.4_wp,   0.0_wp,   0.2_wp)]
+    estimate_weights(1.0_wp,   0.0_wp,   1.0_wp,   0.12_wp,  0.2_wp,   0.15_wp,  2.5_wp,   2.6_wp,   0.0_wp,   0.2_wp)]
   type(estimate_weights), parameter :: quad4(2) = [ &
-    estimate_weights(4.5_wp,   0.0_wp,   0.0_wp,   0.026_wp, 0.0_wp,   0.3_wp,   0.1_wp,   1.3_wp,   0.3_wp,   0.15_wp), &
+    estimate_weights(4.2_wp,   0.0_wp,   0.0_wp,   0.03_wp,  0.0_wp,   0.3_wp,   0.1_wp,   1.3_wp,   0.3_wp,   0.15_wp), &
     estimate_weights(1.0_wp,   0.2_wp,   0.0_wp,   0.03_wp,  0.6_wp,   0.3_wp,   0.8_wp,   1.4_wp,   0.4_wp,   0.35_wp)]
   type(estimate_weights), parameter :: tria6(2) = [ &
     estimate_weights(0.2_wp,   1.0_wp,   0.0_wp,   0.016_wp, 0.0_wp,   0.3_wp,   0.0_wp,   1.6_wp,   0.0_wp,   0.16_wp), &
-    estimate_weights(0.2_wp,   1.1_wp,   0.0_wp,   0.016_wp, 0.3_wp,   0.3_wp,   1.0_wp,   1.6_wp,   0.0_wp,   0.8_wp)]
+    estimate_weights(0.2_wp,   1.1_wp,   0.0_wp,   0.016_wp, 0.3_wp,   0.3_wp,   1.0_wp,   1.8_wp,   0.0_wp,   0.8_wp)]
   type(estimate_weights), parameter :: trax3(2) = [ &
     estimate_weights(1.5_wp,   0.2_wp,   0.0_wp,   0.2_wp,   0.2_wp,   0.25_wp,  0.7_wp,   1.4_wp,   0.0_wp,   0.6_wp), &
-    estimate_weights(1.5_wp,   0.2_wp,   0.0_wp,   0.1_wp,   0.7_wp,   0.2_wp,   0.6_wp,   1.4_wp,   0.0_wp,   0.2_wp)]
+    estimate_weights(1.7_wp,   0.2_wp,   0.0_wp,   0.15_wp,  0.7_wp,   0.2_wp,   0.6_wp,   1.4_wp,   0.0_wp,   0.2_wp)]
   type(estimate_weights), parameter :: trax6(2) = [ &
     estimate_weights(0.2_wp,   1.0_wp,   0.0_wp,   0.016_wp, 0.0_wp,   0.3_wp,   0.5_wp,   1.4_wp,   0.0_wp,   0.35_wp), &
     estimate_weights(0.2_wp,   1.0_wp,   0.0_wp,   0.016_wp, 0.3_wp,   0.33_wp,  1.0_wp,   1.5_wp,   0.0_wp,   0.4_wp)]
