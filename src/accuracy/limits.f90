@@ -25,6 +25,10 @@ module epcont_accuracy_limits
   real(wp), parameter :: straight = acos(-1.0_wp)*(1.0_wp + 1.0e-3_wp)
   !> Corners of two bodies are at one place within this part of a side.
   real(wp), parameter :: flush = 1.0e-2_wp
+  !> Where there is no line of symmetry.
+  real(wp), parameter :: nowhere(2, 2) = huge(1.0_wp)
+  !> Nodes are on a line of symmetry within this part of a side.
+  real(wp), parameter :: on_line = 1.0e-6_wp
   !> Part of a row's weights that says where a side is.
   real(wp), parameter :: least_weight = 1.0e-3_wp
 
@@ -38,10 +42,18 @@ contains
     integer, intent(in) :: pairs(:)
     real(wp), intent(in) :: largest   !! pressure [stress]
     integer :: gaps   !! CGAP pairs, whose gaps tell all of it: they come before those of lines
-    integer :: i, k
+    integer :: across, i, k
     real(wp) :: least
+    real(wp) :: mirror(2, 2)   !! places of lines of symmetry at the ends, across x and across y [length]
 
     has_tip = .true.
+    mirror = nowhere
+    do k = 1, 2
+      associate (pair => pairs(merge(1, size(pairs), k == 1)))
+        across = merge(1, 2, abs(model%normal(2, pair)) > abs(model%normal(1, pair)))
+        if (line%mirrored(pair)) mirror(across, k) = model%x(across, line%node(pair))
+      end associate
+    end do
     gaps = model%pairs
     if (size(model%line_contact) > 0) gaps = model%line_contact(1)%first - 1
     do k = 1, size(pairs)
@@ -51,7 +63,9 @@ contains
       if (pairs(k) <= gaps) cycle
       do i = model%row_start(pairs(k)) + 1, model%row_start(pairs(k) + 1) - 1
         if (abs(model%row_weight(i)) < least_weight) cycle
-        if (outline_bends(model, model%row_node(i), least) .and. .not. is_flush(model, line, pairs, model%row_node(i))) return
+        associate (node => model%row_node(i))
+          if (outline_bends(model, node, mirror, least) .and. .not. is_flush(model, line, pairs, node)) return
+        end associate
       end do
     end do
     has_tip = .false.
@@ -124,14 +138,15 @@ contains
   end subroutine bend_at
 
   !> Does the outline turn at a node alone?
-  pure logical function outline_bends(model, node, least)
+  pure logical function outline_bends(model, node, mirror, least)
     type(model_type), intent(in) :: model
     integer, intent(in) :: node
-    real(wp), intent(in) :: least   !! angle [rad]
+    real(wp), intent(in) :: mirror(2, 2)   !! lines of symmetry
+    real(wp), intent(in) :: least          !! angle [rad]
     real(wp) :: angle, around, curvature, other
     integer :: beside(2), here, k, next(2), step
 
-    call turn_at(model, node, beside, angle, curvature)
+    call turn_at(model, node, mirror, beside, angle, curvature)
     outline_bends = .false.
     if (angle < least) return
     around = 0.0_wp
@@ -139,7 +154,7 @@ contains
       here = beside(k)
       do step = 1, 2   ! the node beside it, then the one behind that
         if (here == 0) exit
-        call turn_at(model, here, next, angle, other)
+        call turn_at(model, here, mirror, next, angle, other)
         around = max(around, abs(other))
         here = next(k)
       end do
@@ -167,9 +182,10 @@ contains
 
   !> By how much an outline turns at a node, outward positive, and that over the length that the node stands for. On a line of
   !! symmetry it goes on as mirrored there.
-  pure subroutine turn_at(model, node, beside, angle, curvature)
+  pure subroutine turn_at(model, node, mirror, beside, angle, curvature)
     type(model_type), intent(in) :: model
     integer, intent(in) :: node
+    real(wp), intent(in) :: mirror(2, 2)     !! places of lines of symmetry, across x and across y
     integer, intent(out) :: beside(2)        !! nodes before and behind it, the body on their left; 0: none
     real(wp), intent(out) :: angle           !! [rad]
     real(wp), intent(out) :: curvature       !! [1/length]
@@ -184,7 +200,8 @@ contains
     behind = model%x(:, beside(2)) - model%x(:, node)
     do c = 1, 2
       do k = 1, 2
-        if (.not. along_symmetry(model, c, node, beside(k))) cycle
+        if (beside(k) == 0) cycle
+        if (.not. along_symmetry(model, c, mirror(c, :), node, beside(k))) cycle
         beside(k) = 0
         if (k == 1) before = merge(behind, -behind, [1, 2] == c)
         if (k == 2) behind = merge(before, -before, [1, 2] == c)
@@ -194,14 +211,19 @@ contains
     curvature = 2.0_wp*angle/(norm2(before) + norm2(behind))
   end subroutine turn_at
 
-  !> Does a side lie on a line of symmetry, or on the axis of rings, held across it?
-  pure logical function along_symmetry(model, c, one, other)
+  !> Does a side lie on a line of symmetry that is known, or on one along which its nodes alone are free, or on the axis of rings?
+  pure logical function along_symmetry(model, c, mirror, one, other)
     type(model_type), intent(in) :: model
     integer, intent(in) :: c   !! the direction across
+    real(wp), intent(in) :: mirror(2)
     integer, intent(in) :: one, other
 
-    along_symmetry = model%x(c, one) == model%x(c, other) .and. (all(model%held(c, [one, other])) .or. &
-                                                                 c == 1 .and. model%x(1, one) == 0.0_wp .and. model%has_rings())
+    associate (x => model%x(c, [one, other]), tolerance => on_line*norm2(model%x(:, one) - model%x(:, other)))
+      along_symmetry = any(abs(mirror - x(1)) <= tolerance .and. abs(mirror - x(2)) <= tolerance)
+      if (abs(x(1) - x(2)) > tolerance) return
+      along_symmetry = along_symmetry .or. all(model%held(c, [one, other])) .and. .not. any(model%held(3 - c, [one, other])) &
+                       .or. c == 1 .and. abs(x(1)) <= tolerance .and. model%has_rings()
+    end associate
   end function along_symmetry
 
   !> Nodes before and behind one on the outline of its body, which lies on their left; 0: none.
@@ -264,7 +286,7 @@ contains
     real(wp) :: angle, curvature
 
     inside = 0.0_wp
-    call turn_at(model, node, beside, angle, curvature)
+    call turn_at(model, node, nowhere, beside, angle, curvature)
     if (angle > corner) inside = acos(-1.0_wp) - angle
   end function corner_inside
 end module epcont_accuracy_limits

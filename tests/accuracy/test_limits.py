@@ -9,10 +9,12 @@ import sys
 import unittest
 
 import chance
+from chance import quads
 from score_by_chance import figures_of, solve
 
 PROGRAM = sys.argv.pop(1)
 UNBOUNDED, NOT_RESOLVED = "unbounded: it grows with every finer mesh", "not resolved: too few pairs where it is largest"
+GIVEN = r"^\d\.\dE[-+]\d\d +[\d.]+ %$"
 #: How bodies touch.
 TOUCH = {"pairs": {}, "rigid": {"rigid": True}, "lines": {"lines": True}, "exchanged": {"lines": True, "exchanged": True}}
 
@@ -47,7 +49,13 @@ class Limits(unittest.TestCase):
         """Two blocks of one width end together: pressures are finite there."""
         for element, touch in itertools.product(chance.PLANE, ("pairs", "lines", "exchanged")):
             with self.subTest(element=element, touch=touch):
-                self.assertRegex(said("stack", element, 5.0, touch, whole=True, wide=(1.0, 1.0), deep=(2.0, 2.0)), r"^\d\.\dE-\d\d +[\d.]+ %$")
+                self.assertRegex(said("stack", element, 5.0, touch, whole=True, wide=(1.0, 1.0), deep=(2.0, 2.0)), GIVEN)
+
+    def test_held_base(self):
+        """A base of elements that are held all over, cut off at the line of symmetry, has no tip there."""
+        for element in chance.PLANE:
+            with self.subTest(element=element):
+                self.assertRegex(figures_of(*solve(PROGRAM, quads.layer_lines(11, element)))["p"][2], GIVEN)
 
     def test_too_few_pairs(self):
         for element in chance.PLANE:
