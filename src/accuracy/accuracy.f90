@@ -3,7 +3,7 @@
 module epcont_accuracy_accuracy
   use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
   use epcont_accuracy_discretisation, only: error_products, stored_energy
-  use epcont_accuracy_patches, only: new_patch_table, patch_table
+  use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
   use epcont_accuracy_unit_motion, only: unit_forces, unit_strains
@@ -104,7 +104,9 @@ contains
     allocate (accuracy%zone(0))
     if (.not. pressed) return
 
-    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, smooth(:, :, 1)), accuracy)
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, smooth(:, :, 1)), &
+                      accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads(model, motions, table)), &
+                                                   sum(accuracy%element)), accuracy)
     if (.not. carried) return
 
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
@@ -150,17 +152,18 @@ contains
   end function travel
 
   !> Largest pressures and half-widths.
-  pure subroutine assess_zones(model, table, line, answer, stress_pressure, accuracy)
+  pure subroutine assess_zones(model, table, line, answer, stress_pressure, energy, accuracy)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     real(wp), intent(in) :: stress_pressure(:)   !! [pairs]
+    real(wp), intent(in) :: energy               !! error of the mesh over all of it
     type(accuracy_type), intent(inout) :: accuracy
     integer :: z
 
-    accuracy%zone = [(estimate_zone(model, table, line, answer, stress_pressure, accuracy%energy_norm**2, &
-                                    answer%zones(z)), z=1, size(answer%zones))]
+    accuracy%zone = [(estimate_zone(model, table, line, answer, stress_pressure, energy, answer%zones(z)), &
+                     z=1, size(answer%zones))]
     if (size(accuracy%zone) == 0) return
     z = maxloc(answer%zones%max_pressure, dim=1)
     accuracy%max_pressure = accuracy%zone(z)%pressure
@@ -212,6 +215,26 @@ contains
                       .and. count(model%leader(c, :) == node) == 1 .and. table%around%start(node + 1) > table%around%start(node)
     end associate
   end function is_point_load
+
+  !> Elements at a load on one node, and around these: there no mesh is fine enough, and the contact does not feel it [elements].
+  pure function beside_point_loads(model, motions, table) result(beside)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(patch_table), intent(in) :: table
+    logical :: beside(model%elements)
+    integer :: seen(model%elements)
+    integer, allocatable :: patch(:)
+    integer :: count, j
+
+    beside = .false.
+    seen = 0
+    allocate (patch(64))
+    do j = 1, motions%count
+      if (.not. is_point_load(model, motions, table, j)) cycle
+      call wide_patch(model, table, motions%node(j), seen, patch, count)
+      beside(patch(:count)) = .true.
+    end do
+  end function beside_point_loads
 
   !> Pairs pressed less than the error of their force, or open less than such a force would close.
   pure function find_weak(model, line, answer, run, accuracy) result(weak)
