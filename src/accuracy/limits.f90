@@ -42,6 +42,7 @@ contains
     integer, intent(in) :: pairs(:)
     real(wp), intent(in) :: largest   !! pressure [stress]
     integer :: gaps   !! CGAP pairs, whose gaps tell all of it: they come before those of lines
+    integer, allocatable :: ends(:), within(:)
     integer :: across, i, k
     real(wp) :: least
     real(wp) :: mirror(2, 2)   !! places of lines of symmetry at the ends, across x and across y [length]
@@ -56,12 +57,15 @@ contains
     end do
     gaps = model%pairs
     if (size(model%line_contact) > 0) gaps = model%line_contact(1)%first - 1
-    do k = 1, size(pairs)
-      least = matters*largest*surface_compliance(model, table, pairs(k))
+    ends = reshape(line%neighbour(:, pairs([1, size(pairs)])), [4])
+    ends = pack(ends, ends > 0)
+    within = [pairs, pack(ends, line%tributary(ends) == 0.0_wp)]   ! a corner on the axis bears nothing by itself
+    do k = 1, size(within)
+      least = matters*largest*surface_compliance(model, table, within(k))
       if (least <= 0.0_wp) cycle
-      if (gap_bends(model, line, pairs(k), least)) return
-      if (pairs(k) <= gaps) cycle
-      do i = model%row_start(pairs(k)) + 1, model%row_start(pairs(k) + 1) - 1
+      if (gap_bends(model, line, within(k), least)) return
+      if (within(k) <= gaps) cycle
+      do i = model%row_start(within(k)) + 1, model%row_start(within(k) + 1) - 1
         if (abs(model%row_weight(i)) < least_weight) cycle
         associate (node => model%row_node(i))
           if (outline_bends(model, node, mirror, least) .and. .not. is_flush(model, line, pairs, node)) return

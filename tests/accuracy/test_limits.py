@@ -23,7 +23,7 @@ def said(family, element, pairs, touch, **more):
     """What the listing says of the largest pressure."""
     scene = chance.Scene(family, element in chance.RINGS, (1000.0, 1500.0), **TOUCH[touch], **more)
     scene.load = chance.nominal_load(scene)
-    mesh = chance.Fineness(pairs, 1.3, 1.4, 0.4, 1.0, 0.0, 1)
+    mesh = chance.Fineness(pairs, 1.3, 0.8 if touch == "exchanged" else 1.4, 0.4, 1.0, 0.0, 1)   # the slave is the coarser one
     return figures_of(*solve(PROGRAM, chance.make(scene, element, mesh)))["p"][2]
 
 
