@@ -3,10 +3,11 @@
 module epcont_accuracy_accuracy
   use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
   use epcont_accuracy_discretisation, only: error_products, stored_energy
-  use epcont_accuracy_patches, only: new_patch_table, patch_table
+  use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
   use epcont_accuracy_unit_motion, only: unit_forces, unit_strains
+  use epcont_accuracy_weights, only: estimate_weights, weights_of
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, new_basis
@@ -24,16 +25,6 @@ module epcont_accuracy_accuracy
 
   !> Elements that are named as the worst.
   integer, parameter, public :: worst_count = 5
-  !> Safety of an approach's error that is a product of two fields, whose parts may cancel. Measured (tests/accuracy), as are the
-  !! next three.
-  real(wp), parameter :: of_product = 1.35_wp
-  !> The nodes of a zone, and not the line between them, are in contact: by how much bodies of four-node elements come too near for
-  !! that, over largest pressure (h/b)**2 b/E*.
-  real(wp), parameter :: between_pairs = 0.2_wp
-  !> Contact ends at a node, within a side of where it truly does: what that leaves uncertain, over the same with the side's length
-  !! for h. A distance d from the true end counts as d**2; more beyond yield, where the pressure ends more abruptly and the width
-  !! grows with the load, not with its root.
-  real(wp), parameter :: of_end = 0.04_wp, of_end_yielded = 0.2_wp
   !> Errors that differ by less than this part are equal.
   real(wp), parameter :: equal = 1.0e-6_wp
   !> An error in the energy norm up to this is rounding.
@@ -47,9 +38,9 @@ module epcont_accuracy_accuracy
     integer, allocatable :: worst(:)               !! elements with the largest errors
     type(zone_error), allocatable :: zone(:)
     real(wp) :: max_pressure = -1.0_wp             !! error of the largest pressure of all; negative: unknown [stress]
-    logical :: pressure_grows = .false.            !! with every finer mesh
+    logical :: pressure_unbounded = .false.        !! it grows with every finer mesh
     real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
-    logical, allocatable :: approach_grows(:)      !! with every finer mesh [motions]
+    logical, allocatable :: approach_unbounded(:)  !! it grows with every finer mesh [motions]
     type(contact_sensitivity) :: sensitivity
     logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
   end type accuracy_type
@@ -106,14 +97,16 @@ contains
       accuracy%energy_norm = 0.0_wp
       accuracy%element = 0.0_wp
     end if
-    allocate (accuracy%approach(motions%count), accuracy%approach_grows(motions%count), accuracy%weak(model%pairs))
+    allocate (accuracy%approach(motions%count), accuracy%approach_unbounded(motions%count), accuracy%weak(model%pairs))
     accuracy%approach = -1.0_wp
-    accuracy%approach_grows = .false.
+    accuracy%approach_unbounded = .false.
     accuracy%weak = .false.
     allocate (accuracy%zone(0))
     if (.not. pressed) return
 
-    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, smooth(:, :, 1)), accuracy)
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, smooth(:, :, 1)), &
+                      accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads(model, motions, table)), &
+                                                   sum(accuracy%element)), accuracy)
     if (.not. carried) return
 
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
@@ -159,32 +152,22 @@ contains
   end function travel
 
   !> Largest pressures and half-widths.
-  pure subroutine assess_zones(model, table, line, answer, stress_pressure, accuracy)
+  pure subroutine assess_zones(model, table, line, answer, stress_pressure, energy, accuracy)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     real(wp), intent(in) :: stress_pressure(:)   !! [pairs]
+    real(wp), intent(in) :: energy               !! error of the mesh over all of it
     type(accuracy_type), intent(inout) :: accuracy
     integer :: z
 
-    accuracy%zone = [(estimate_zone(model, line, answer%contact%touching, answer%pressure, stress_pressure, &
-                                    order_at(line%node(answer%zones(z)%first)), answer%zones(z)), z=1, size(answer%zones))]
+    accuracy%zone = [(estimate_zone(model, table, line, answer, stress_pressure, energy, answer%zones(z)), &
+                     z=1, size(answer%zones))]
     if (size(accuracy%zone) == 0) return
     z = maxloc(answer%zones%max_pressure, dim=1)
     accuracy%max_pressure = accuracy%zone(z)%pressure
-    accuracy%pressure_grows = accuracy%zone(z)%grows
-
-  contains
-
-    !> Nodes of the first element at a node; of none: 3.
-    pure integer function order_at(node) result(order)
-      integer, intent(in) :: node
-
-      order = 3
-      if (table%around%start(node + 1) > table%around%start(node)) &
-        order = model%order(table%around%group(table%around%start(node)))
-    end function order_at
+    accuracy%pressure_unbounded = accuracy%zone(z)%unbounded
   end subroutine assess_zones
 
   !> An approach: the product of the errors of the scene and of its answer to a unit load along the motion, signed, with what
@@ -199,21 +182,25 @@ contains
     real(wp), intent(in) :: product
     type(accuracy_type), intent(inout) :: accuracy
     real(wp) :: between, end_error, short
+    type(estimate_weights) :: weights
     integer :: z
 
-    accuracy%approach_grows(motion) = is_point_load(model, motions, table, motion)
+    accuracy%approach_unbounded(motion) = is_point_load(model, motions, table, motion)
     short = merge(product, 0.0_wp, accuracy%energy_norm > 0.0_wp)
     end_error = 0.0_wp
+    weights = weights_of(3, model%has_rings(), any(answer%plastic))   ! without a zone
     do z = 1, size(accuracy%zone)
       associate (zone => accuracy%zone(z))
         if (zone%peak == 0) cycle
-        between = sum(unit_force(answer%zones(z)%pairs))*answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length* &
-                  surface_compliance(model, table, zone%peak)
-        if (zone%order == 4) short = short - between_pairs*between
-        end_error = end_error + abs(between)*merge(4.0_wp, 1.0_wp, zone%order == 6)   ! two spacings a side
+        weights = weights_of(zone%order, model%has_rings(), any(answer%plastic))
+        between = answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length*surface_compliance(model, table, zone%peak)
+        associate (force => unit_force(answer%zones(z)%pairs))   ! of a tilt of either sign: the ends count, not the sum
+          short = short - weights%between*between*sum(force)
+          end_error = end_error + weights%end*between*sum(abs(force))
+        end associate
       end associate
     end do
-    accuracy%approach(motion) = of_product*abs(short) + merge(of_end_yielded, of_end, any(answer%plastic))*end_error
+    accuracy%approach(motion) = weights%product*abs(short) + end_error
   end subroutine assess_approach
 
   !> Is a SUPORT freedom the one node of its body's mesh that bears a load?
@@ -228,6 +215,26 @@ contains
                       .and. count(model%leader(c, :) == node) == 1 .and. table%around%start(node + 1) > table%around%start(node)
     end associate
   end function is_point_load
+
+  !> Elements at a load on one node, and around these: there no mesh is fine enough, and the contact does not feel it [elements].
+  pure function beside_point_loads(model, motions, table) result(beside)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(patch_table), intent(in) :: table
+    logical :: beside(model%elements)
+    integer :: seen(model%elements)
+    integer, allocatable :: patch(:)
+    integer :: count, j
+
+    beside = .false.
+    seen = 0
+    allocate (patch(64))
+    do j = 1, motions%count
+      if (.not. is_point_load(model, motions, table, j)) cycle
+      call wide_patch(model, table, motions%node(j), seen, patch, count)
+      beside(patch(:count)) = .true.
+    end do
+  end function beside_point_loads
 
   !> Pairs pressed less than the error of their force, or open less than such a force would close.
   pure function find_weak(model, line, answer, run, accuracy) result(weak)

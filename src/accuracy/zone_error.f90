@@ -1,11 +1,16 @@
 !> Errors of a zone's largest pressure and of its half-width.
 !>
-!> Four things tell of them: how far the peak is off a parabola through the nearest pairs, off the normal stress that the smooth
-!> strains of both sides give there, how many pairs the zone has, and how far the half-width changes if the last three pairs say
-!> where the pressure vanishes instead of two. Their weights are measured (tests/accuracy).
+!> Of the pressure four things tell: how far the peak is off a parabola through the nearest pairs, off the normal stress that the
+!> smooth strains of both sides give there, how many pairs the zone has, and what part of the energy the mesh is off by; of the
+!> half-width the spacing at its ends, and the energy. What each counts is measured (tests/accuracy). Where the pressure has no
+!> limit, or the zone too few pairs, nothing is said of it.
 module epcont_accuracy_zone_error
+  use epcont_accuracy_limits, only: edge_pairs, has_tip
+  use epcont_accuracy_patches, only: patch_table
+  use epcont_accuracy_weights, only: estimate_weights, weights_of
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
+  use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line
   use epcont_result_zones, only: contact_zone
   implicit none
@@ -14,13 +19,8 @@ module epcont_accuracy_zone_error
 
   !> Pairs that the parabola goes through.
   integer, parameter :: around_peak = 7
-  !> Weights in the error of the largest pressure for elements of 3, 4 and 6 nodes: of the distance from the parabola, of that
-  !! from the smooth stress, of the smaller of the two, and of h/b. Smooth stresses of linear elements may be off by more than
-  !! the pressure: of three nodes they count where the parabola says as much, of four they do not.
-  real(wp), parameter :: of_parabola(3) = [0.0_wp, 4.0_wp, 0.2_wp], of_stress(3) = [0.0_wp, 0.0_wp, 1.0_wp]
-  real(wp), parameter :: of_smaller(3) = [2.0_wp, 0.0_wp, 0.0_wp], of_spacing(3) = [0.12_wp, 0.018_wp, 0.016_wp]
-  !> Part of a spacing that the end of a zone is uncertain by, for the same; and at most.
-  real(wp), parameter :: of_end(3) = [0.25_wp, 0.25_wp, 0.18_wp], end_most = 0.5_wp
+  !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved.
+  integer, parameter :: few = 3
   !> Pressures that differ by less than this part are the same all over the zone.
   real(wp), parameter :: uniform = 1.0e-6_wp
   !> Part of the product of its diagonal that the determinant of the normal equations must be.
@@ -32,8 +32,9 @@ module epcont_accuracy_zone_error
 
   type :: zone_error
     integer :: peak = 0                  !! pair of the largest pressure
-    logical :: grows = .false.           !! with every finer mesh: a sharp edge
-    real(wp) :: pressure = -1.0_wp       !! of the largest pressure; negative: unknown [stress]
+    logical :: unbounded = .false.       !! the pressure grows with every finer mesh: a tip, a sharp edge
+    logical :: resolved = .true.         !! there are pairs enough to see where it is largest
+    real(wp) :: pressure = -1.0_wp       !! of the largest pressure; negative: unbounded, or not resolved [stress]
     real(wp) :: half_width = -1.0_wp     !! negative: unknown [length]
     real(wp) :: resolution = 1.0_wp      !! spacing of the pairs over half of the zone's length
     real(wp) :: half_length = 0.0_wp     !! of the zone, to where the pressure vanishes [length]
@@ -42,68 +43,68 @@ module epcont_accuracy_zone_error
 
 contains
 
-  !> `stress_pressure` is the pressure at each pair that the smooth strains give.
-  pure function estimate_zone(model, line, touching, pressure, stress_pressure, order, zone) result(error)
+  !> `stress_pressure` is the pressure at each pair that the smooth strains give, `energy` what is missing of the energy.
+  pure function estimate_zone(model, table, line, answer, stress_pressure, energy, zone) result(error)
     type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
     type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    real(wp), intent(in) :: pressure(:), stress_pressure(:)   !! [pairs]
-    integer, intent(in) :: order    !! nodes of the elements there: 3, 4 or 6
+    type(answer_type), intent(in) :: answer
+    real(wp), intent(in) :: stress_pressure(:)   !! [pairs]
+    real(wp), intent(in) :: energy               !! error of the mesh over all of it
     type(contact_zone), intent(in) :: zone
     type(zone_error) :: error
-    real(wp), allocatable :: s(:)    !! place of each of its pairs, from the first on [length]
-    integer, allocatable :: inward(:)   !! its pairs from one end on
-    real(wp), allocatable :: d(:), p(:)   !! distance from that end and pressure of each, and of the next beyond a line of symmetry
-    real(wp) :: off(2), open, step(2), uncertain(2), beyond(2), spacing, largest
-    logical :: even, mirrored(2), sharp(2)
-    integer :: e, kind, n, peak
+    type(estimate_weights) :: weights
+    real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
+    real(wp), allocatable :: s(:)     !! place of each of them, from the first on [length]
+    integer, allocatable :: inward(:) !! in p and s, from one end on
+    real(wp) :: off(2), beyond(2), largest, open, spacing, step, uncertain
+    logical :: cut_off, edge, mirrored(2)
+    integer :: e, k, n, peak
 
     n = size(zone%pairs)
-    peak = peak_of(pressure(zone%pairs), line%tributary(zone%pairs))
+    p = answer%pressure(zone%pairs)
+    peak = peak_of(p, line%tributary(zone%pairs))
     error%peak = zone%pairs(peak)
-    largest = pressure(error%peak)
+    largest = p(peak)
     if (largest <= 0.0_wp) return
     s = places(model, line, zone%pairs)
     mirrored = line%mirrored(zone%pairs([1, n]))
-    error%order = order
-    kind = findloc([3, 4, 6], order, dim=1)
+    error%order = order_at(model, table, line%node(zone%first))
+    weights = weights_of(error%order, model%has_rings(), any(answer%plastic))
     beyond = 0.0_wp
     uncertain = 0.0_wp
-    sharp = .false.
-    spacing = 0.0_wp
-    step = 0.0_wp
+    edge = .false.
+    cut_off = .false.
     do e = 1, 2
       if (mirrored(e)) cycle
-      if (e == 1) inward = zone%pairs
-      if (e == 2) inward = zone%pairs(n:1:-1)
-      p = pressure(inward)
-      d = abs(s(merge(1, n, e == 1)) - s(merge(1, n, e == 1):merge(n, 1, e == 1):3 - 2*e))
-      if (mirrored(3 - e) .and. n > 1) then
-        p = [p, p(n - 1)]
-        d = [d, 2.0_wp*d(n) - d(n - 1)]
-      end if
-      open = to_first_open(model, line, touching, inward(1))
-      step(e) = max(open, d(min(n, 2)))
-      beyond(e) = vanishes(p, d, 2, open)
-      uncertain(e) = min(end_most*step(e), abs(beyond(e) - vanishes(p, d, 3, open)) + of_end(kind)*step(e))
-      sharp(e) = open == 0.0_wp .and. p(1) >= falls*largest .or. n > 3 .and. inward(1) == error%peak
+      inward = [(merge(k, n + 1 - k, e == 1), k=1, n)]
+      associate (last => zone%pairs(inward(1)), d => abs(s(inward) - s(inward(1))))
+        open = to_first_open(model, line, answer%contact%touching, last)
+        step = max(open, d(min(n, 2)))
+        beyond(e) = vanishes(p(inward), d, open)
+        uncertain = uncertain + weights%step*step
+        if (open == 0.0_wp) edge = edge .or. any(p(inward(:min(n, edge_pairs(model, line, last)))) >= falls*largest)
+        cut_off = cut_off .or. open > 0.0_wp .and. n > few .and. peak == inward(1)
+      end associate
     end do
     error%half_length = 0.5_wp*(s(n) + sum(beyond))
     if (mirrored(1) .neqv. mirrored(2)) error%half_length = 2.0_wp*error%half_length
+    if (zone%half_width >= 0.0_wp) error%half_width = uncertain*merge(1.0_wp, 0.5_wp, any(mirrored)) &
+                                                      + weights%width_energy*energy*zone%half_width
+    spacing = 0.0_wp
     if (n > 1) spacing = (s(min(n, peak + 1)) - s(max(1, peak - 1)))/(min(n, peak + 1) - max(1, peak - 1))
-    even = n > 1 .and. maxval(pressure(zone%pairs)) - minval(pressure(zone%pairs)) <= uniform*largest
-    error%grows = any(sharp) .and. .not. even
-    if (even) then
+    if (n > 1 .and. maxval(p) - minval(p) <= uniform*largest) then
       error%resolution = 0.0_wp
-    else if (error%half_length > spacing) then   ! of a single pair it stays 1
-      error%resolution = spacing/error%half_length
+    else
+      if (error%half_length > spacing .and. n > 1) error%resolution = spacing/error%half_length   ! of a single pair it stays 1
+      error%unbounded = edge
+      if (.not. edge) error%unbounded = has_tip(model, table, line, zone%pairs, largest)
+      error%resolved = error%unbounded .or. n + count(mirrored)*(n - 1) >= few .and. .not. cut_off
     end if
-    if (zone%half_width >= 0.0_wp) error%half_width = sum(uncertain)*merge(1.0_wp, 0.5_wp, any(mirrored))
-    if (error%grows) return
-    off = [off_parabola(s, pressure(zone%pairs), mirrored, peak, spacing, error%resolution), &
-           abs(largest - stress_pressure(error%peak))]
-    error%pressure = of_parabola(kind)*off(1) + of_stress(kind)*off(2) + of_smaller(kind)*minval(off) &
-                     + of_spacing(kind)*largest*error%resolution
+    if (error%unbounded .or. .not. error%resolved) return
+    off = [off_parabola(s, p, mirrored, peak, spacing, error%resolution), abs(largest - stress_pressure(error%peak))]
+    error%pressure = weights%parabola*off(1) + weights%stress*off(2) + weights%smaller*minval(off) &
+                     + (weights%spacing*error%resolution + weights%pressure_energy*energy)*largest
     if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
 
@@ -113,6 +114,17 @@ contains
 
     peak = maxloc(area, mask=pressure >= maxval(pressure)*(1.0_wp - rounding), dim=1)
   end function peak_of
+
+  !> Nodes of the first element at a node; of none: 3.
+  pure integer function order_at(model, table, node) result(order)
+    type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
+    integer, intent(in) :: node
+
+    order = 3
+    if (table%around%start(node + 1) > table%around%start(node)) &
+      order = model%order(table%around%group(table%around%start(node)))
+  end function order_at
 
   !> Place of each pair along the zone.
   pure function places(model, line, pairs) result(s)
@@ -154,23 +166,18 @@ contains
     end do
   end function to_first_open
 
-  !> How far beyond an end the pressure vanishes: the least-squares line of p**2 over some pairs from there on.
-  pure real(wp) function vanishes(pressure, inward, many, limit)
+  !> How far beyond an end the pressure vanishes, where p**2 is linear: by the last two pairs, not beyond the first open one.
+  pure real(wp) function vanishes(pressure, inward, limit)
     real(wp), intent(in) :: pressure(:)
     real(wp), intent(in) :: inward(:)   !! distance of each pair from the end, which is the first [length]
-    integer, intent(in) :: many
     real(wp), intent(in) :: limit       !! distance to the first open pair [length]
-    real(wp) :: slope
-    integer :: n
+    real(wp) :: drop
 
-    n = min(many, size(pressure))
     vanishes = 0.0_wp
-    if (n < 2) return
+    if (size(pressure) < 2) return
+    drop = pressure(2)**2 - pressure(1)**2
     vanishes = limit
-    associate (x => inward(:n) - sum(inward(:n))/n, y => pressure(:n)**2)
-      slope = sum(x*y)/sum(x*x)
-      if (slope > 0.0_wp) vanishes = min(limit, max(0.0_wp, sum(y)/n/slope - sum(inward(:n))/n))
-    end associate
+    if (drop > 0.0_wp) vanishes = min(limit, inward(2)*pressure(1)**2/drop)
   end function vanishes
 
   !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, mirrored ones too. Of too few pairs

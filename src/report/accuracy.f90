@@ -23,7 +23,8 @@ module epcont_report_accuracy
 
   !> Pairs that are named.
   integer, parameter :: most_pairs = 8
-  character(len=*), parameter :: grows = '   grows with every finer mesh'
+  character(len=*), parameter :: unbounded = '   unbounded: it grows with every finer mesh'
+  character(len=*), parameter :: not_resolved = '   not resolved: too few pairs where it is largest'
 
 contains
 
@@ -85,7 +86,7 @@ contains
     do k = 1, motions%count
       call list_estimate(file, 'mesh: approach of GRID '//text_of(model%node_id(motions%node(k)))//' direction '// &
                          text_of(motions%component(k)), accuracy%approach(k), abs(answer%contact%approach(k)), &
-                         accuracy%approach_grows(k))
+                         accuracy%approach_unbounded(k))
     end do
     call list_worst(file, model, accuracy)
   end subroutine list_discretisation
@@ -96,7 +97,11 @@ contains
     type(zone_error), intent(in) :: zone
     real(wp), intent(in) :: pressure, half_width
 
-    call list_estimate(file, 'mesh: largest pressure of zone '//text_of(z), zone%pressure, pressure, zone%grows)
+    if (zone%resolved) then
+      call list_estimate(file, 'mesh: largest pressure of zone '//text_of(z), zone%pressure, pressure, zone%unbounded)
+    else
+      call figure(file, 'mesh: largest pressure of zone '//text_of(z), not_resolved)
+    end if
     call list_estimate(file, 'mesh: half-width of zone '//text_of(z), zone%half_width, half_width, .false.)
   end subroutine list_zone
 
@@ -105,13 +110,13 @@ contains
     type(text_file), intent(in) :: file
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: error, value
-    logical, intent(in) :: without_end   !! the figure grows with every finer mesh
+    logical, intent(in) :: without_end   !! the figure is unbounded
     real(wp), parameter :: none = 1.0e-9_wp   ! of the figure: rounding
     character(len=:), allocatable :: text
 
     text = '0.0'
     if (without_end) then
-      call figure(file, name, grows)
+      call figure(file, name, unbounded)
     else if (error >= 0.0_wp) then
       if (error > none*value) text = estimate_number(error)
       call figure(file, name, right(text, 13)//'   '//percent(error, value))

@@ -87,7 +87,7 @@ contains
     end subroutine put
   end subroutine write_summary
 
-  !> What the figures are worth; empty where an error is not known, since the figure grows with every finer mesh.
+  !> What the figures are worth; empty where an error is not known: the figure is unbounded, or not resolved.
   subroutine write_accuracy(file, model, motions, answer, accuracy)
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
@@ -104,7 +104,7 @@ contains
     end do
     do k = 1, motions%count
       call put('mesh_error_approach_'//text_of(model%node_id(motions%node(k)))//'_'//text_of(motions%component(k)), &
-               merge(-1.0_wp, accuracy%approach(k), accuracy%approach_grows(k)), 'length')
+               merge(-1.0_wp, accuracy%approach(k), accuracy%approach_unbounded(k)), 'length')
     end do
     if (.not. accuracy%sensitivity%known) return
     call put('contact_amplification', accuracy%sensitivity%amplification, '')

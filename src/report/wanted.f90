@@ -23,8 +23,8 @@ contains
     real(wp) :: error
 
     call figure(file, 'wanted error of contact pressures', right(short_real(model%controls%accuracy), 13))
-    if (accuracy%pressure_grows) then
-      call file%line('    not to be had: the largest pressure grows with every finer mesh')
+    if (accuracy%pressure_unbounded) then
+      call file%line('    not to be had: the largest pressure is unbounded: it grows with every finer mesh')
     else if (accuracy%max_pressure < 0.0_wp .or. .not. any(answer%contact%force > 0.0_wp)) then
       call file%line('    (of the mesh''s error nothing is known: no pressure, or too few pairs in contact)')
     else

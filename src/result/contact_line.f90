@@ -7,7 +7,7 @@ module epcont_result_contact_line
   use epcont_result_symmetry, only: is_on_symmetry
   implicit none
   private
-  public :: contact_line, find_contact_line, in_contact
+  public :: contact_line, find_contact_line, shared, in_contact
 
   !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's corner's too.
   real(wp), parameter :: along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp)

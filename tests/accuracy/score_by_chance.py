@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+"""Is the true error within what the listing says of it, in scenes drawn by chance (chance.py)?
+
+    tests/accuracy/score_by_chance.py PROGRAM FIRST COUNT [--known FILE] [--figures FILE]
+
+Draws COUNT scenes from each of four bowls (plane or rings, elastic or beyond yield), those of the seeds FIRST, FIRST + 1, ... The true
+figures are those of two fine meshes of six-node elements; what these leave open counts for the program, and a figure that they do not know
+better than a third of its error is left out. Each scene is solved on coarse meshes of each kind of element. Of largest pressures without
+limit, under wedges and at sharp edges, the program must say so. A table tells of each kind of element, elastic and beyond yield, how many
+errors are within what is said of them, and the median of what is said over the true error; exit status 1 below 90 %. --known keeps the
+true figures in a file, for the next time; --figures writes each figure.
+"""
+import argparse
+import csv
+import json
+import pathlib
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import chance
+
+#: Least part of the figures of a kind that estimates must cover; meshes of each kind of element that a scene is solved on.
+COVERED, MESHES = 0.90, 2
+#: A truth's own error, of the error that it judges.
+DOUBT = 0.3
+#: True errors below this part of a figure do not count in the median of estimates over true errors.
+TINY = 1.0e-4
+FIGURES = {"p": "largest pressure", "b": "half-width", "q": "approach"}
+
+
+class Failed(Exception):
+    """The program gives no answer."""
+
+
+def solve(program, deck):
+    """The tables of the summary and of the zones, and the listing."""
+    with tempfile.TemporaryDirectory() as place:
+        path = pathlib.Path(place) / "scene.dat"
+        path.write_text(deck.text(), encoding="ascii")
+        run = subprocess.run([program, path, "-o", place], capture_output=True, text=True, check=False, timeout=120)
+        if run.returncode:
+            raise Failed(f"exit status {run.returncode}: {run.stdout}{run.stderr[:300]}")
+        with open(path.with_suffix(".summary.csv"), newline="", encoding="ascii") as file:
+            summary = {row["key"]: row["value"] for row in csv.DictReader(file)}
+        with open(path.with_suffix(".zones.csv"), newline="", encoding="ascii") as file:
+            zones = list(csv.DictReader(file))
+        listing = next(p for p in pathlib.Path(place).iterdir() if p.suffix not in (".dat", ".csv")).read_text(encoding="ascii")
+        return summary, zones, listing
+
+
+def figures_of(summary, zones, listing):
+    """(value, estimate, what else is said) of the figures of the zone that bears most, and of the approaches."""
+    zone = max(zones, key=lambda z: float(z["force"]))
+    k = zone["zone"]
+    said = next(line.split(f"zone {k}")[1].strip() for line in listing.splitlines() if f"mesh: largest pressure of zone {k}" in line)
+    figures = {"p": (zone["max_pressure"], summary["mesh_error_pressure_zone_" + k], said),
+               "b": (zone["half_width"], summary["mesh_error_half_width_zone_" + k], "")}
+    for n, key in enumerate((key for key in summary if key.startswith("approach_")), 1):
+        figures[f"q{n}"] = summary[key], summary["mesh_error_" + key], ""
+    return {key: (float(value), float(estimate) if estimate else None, words) for key, (value, estimate, words) in figures.items() if value}
+
+
+def find_truth(program, scene):
+    """Width and yield stress of a scene, from coarse meshes; its true figures, each (value, doubt)."""
+    element = "ctrax6" if scene.rings else "ctria6"
+    pilot = chance.known(1)
+    pilot.pairs = 10.0
+    scene.width, scene.lasts = (1.0, 4.0 if scene.family == "layer" else 1.6)
+    for _ in range(2 if scene.yielding else 1):
+        summary, zones, _ = solve(program, chance.make(scene, element, pilot))
+        zone = max(zones, key=lambda z: float(z["force"]))
+        if scene.family not in ("sharp punch", "hole", "stack"):
+            scene.width, scene.lasts = float(zone["half_width"] or zone["width_last_pair"]), 1.6
+        if scene.yielding and not scene.stress:
+            scene.stress = float(f"{float(summary['max_equivalent_stress']) / scene.yielding ** (1 / 3 if scene.rings else 1 / 2):.6g}")
+    fine, less = (figures_of(*solve(program, chance.make(scene, element, chance.known(level)))) for level in (0, 1))
+    truth = {key: (fine[key][0], abs(fine[key][0] - less[key][0]) / 2) for key in fine if key in less}
+    if scene.family in chance.SHARP:
+        truth["p"] = None
+    if scene.family in ("sharp punch", "stack"):   # no half-width to find
+        truth.pop("b", None)
+    return {"width": scene.width, "lasts": scene.lasts, "stress": scene.stress, "truth": truth}
+
+
+def scenes(program, first, count, known):
+    """Scenes with their truth, each with its number in the bowl."""
+    for seed in range(first, first + count):
+        for rings in (False, True):
+            for yielding in (False, True):
+                scene, name = chance.draw(seed, rings, yielding), f"{seed} {rings} {yielding}"
+                try:
+                    if name not in known:
+                        known[name] = find_truth(program, scene)
+                except (Failed, subprocess.TimeoutExpired) as fault:
+                    known[name] = {"fault": str(fault)}
+                if "fault" in known[name]:
+                    print(f"{name} {scene.family}: no truth: {known[name]['fault'][:200]}", file=sys.stderr)
+                    continue
+                for key in ("width", "lasts", "stress"):
+                    setattr(scene, key, known[name][key])
+                yield name, scene, known[name]["truth"]
+
+
+def judge(program, name, scene, truth):
+    """Each figure of a scene on its coarse meshes."""
+    for element in chance.RINGS if scene.rings else chance.PLANE:
+        for turn in range(MESHES):
+            mesh = chance.fineness(random.Random(f"{name} {element} {turn}"))
+            try:
+                summary, zones, listing = solve(program, chance.make(scene, element, mesh))
+            except (Failed, subprocess.TimeoutExpired) as fault:
+                print(f"{name} {scene.family} {element} {mesh}: {fault}", file=sys.stderr)
+                continue
+            figures = figures_of(summary, zones, listing)
+            state = "yielded" if int(summary["plastic_elements"]) else "elastic"
+            features = {key: float(value) for key, value in summary.items() if key.startswith("f")}
+            zone = max(zones, key=lambda z: float(z["force"]))
+            for key, true in truth.items():
+                if key not in figures:
+                    continue
+                value, estimate, said = figures[key]
+                yield {"scene": name, "family": scene.family, "lines": scene.lines and ("exchanged" if scene.exchanged else "lines"), "rigid": scene.rigid, "whole": scene.whole, "sheet": scene.sheet,
+                       "element": element, "state": state, "pairs": mesh.pairs, "growth": mesh.growth, "finer": mesh.finer, "jitter": mesh.jitter,
+                       "figure": key, "value": value, "estimate": estimate, "said": said, "true": true and true[0], "doubt": true and true[1],
+                       "zone": zone["zone"], "zones": len(zones), "features": features, "title": f"{name} {element} {turn}"}
+
+
+def table(rows):
+    """Cover and caution of each kind of element, state and figure; faults."""
+    faults = []
+    for figure, word in FIGURES.items():
+        for element in chance.PLANE + chance.RINGS:
+            for state in ("elastic", "yielded"):
+                mine = [r for r in rows if r["figure"][0] == figure and r["element"] == element and r["state"] == state]
+                sharp = [r for r in mine if r["true"] is None]
+                given = [r for r in mine if r["true"] is not None and r["estimate"] is not None]
+                error = {id(r): abs(r["value"] - r["true"]) for r in given}
+                judged = [r for r in given if r["doubt"] <= DOUBT * max(error[id(r)], r["estimate"])]
+                if not judged:
+                    continue
+                covered = sum(error[id(r)] - r["doubt"] <= r["estimate"] for r in judged) / len(judged)
+                over = [r["estimate"] / error[id(r)] for r in judged if error[id(r)] > TINY * abs(r["value"])]
+                ten = sorted(error[id(r)] / max(r["estimate"], 1e-30) for r in judged)[int(0.9 * len(judged))]
+                size = statistics.median(r["estimate"] / abs(r["value"]) for r in judged)
+                line = (f"{word:17}{element} {state}  {len(judged):4} of {len(mine) - len(sharp):4}  covered {covered:6.1%}  "
+                        f"median estimate/error {statistics.median(over):5.1f}  median estimate {size:6.2%}  needs {ten:5.2f}")
+                if sharp:
+                    line += f"   without limit {len(sharp)}, said so {sum(r['said'].startswith('unbounded') for r in sharp)}"
+                print(line)
+                if covered < COVERED:
+                    faults.append(f"{word} {element} {state}: {covered:.1%}")
+    return faults
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("first", type=int)
+    parser.add_argument("count", type=int)
+    parser.add_argument("--known", type=pathlib.Path)
+    parser.add_argument("--figures", type=pathlib.Path)
+    options = parser.parse_args()
+    known = json.loads(options.known.read_text(encoding="ascii")) if options.known and options.known.exists() else {}
+    rows = []
+    for name, scene, truth in scenes(options.program, options.first, options.count, known):
+        rows += judge(options.program, name, scene, truth)
+        if options.known:
+            options.known.write_text(json.dumps(known), encoding="ascii")
+    if options.figures:
+        options.figures.write_text(json.dumps(rows), encoding="ascii")
+    faults = table(rows)
+    print("\n".join(faults), end="\n" if faults else "")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

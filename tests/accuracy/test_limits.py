@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""Largest pressures that have no limit are said to have none, by every kind of element and however the bodies touch; those of smooth
+contact never are, on any mesh.
+
+    test_limits.py PROGRAM
+"""
+import itertools
+import sys
+import unittest
+
+import chance
+from chance import quads
+from score_by_chance import figures_of, solve
+
+PROGRAM = sys.argv.pop(1)
+UNBOUNDED, NOT_RESOLVED = "unbounded: it grows with every finer mesh", "not resolved: too few pairs where it is largest"
+GIVEN = r"^\d\.\dE[-+]\d\d +[\d.]+ %$"
+#: How bodies touch.
+TOUCH = {"pairs": {}, "rigid": {"rigid": True}, "lines": {"lines": True}, "exchanged": {"lines": True, "exchanged": True}}
+
+
+def said(family, element, pairs, touch, **more):
+    """What the listing says of the largest pressure of all."""
+    scene = chance.Scene(family, element in chance.RINGS, (1000.0, 1500.0), **TOUCH[touch], **more)
+    scene.load = chance.nominal_load(scene)
+    mesh = chance.Fineness(pairs, 1.3, 0.8 if touch == "exchanged" else 1.4, 0.4, 1.0, 0.0, 1)   # the slave is the coarser one
+    summary, zones, listing = solve(PROGRAM, chance.make(scene, element, mesh))
+    return figures_of(summary, [max(zones, key=lambda zone: float(zone["max_pressure"]))], listing)["p"][2]
+
+
+class Limits(unittest.TestCase):
+    def each(self, check, touches=tuple(TOUCH), **more):
+        """Check what is said of each kind of element, half of the scene and, in the plane, all of it."""
+        for element, touch in itertools.product(chance.PLANE + chance.RINGS, touches):
+            for pairs, whole in ((3.4, False), (7.0, element in chance.PLANE and more["family"] != "sharp punch")):
+                with self.subTest(element=element, touch=touch, pairs=pairs, **more):
+                    check(UNBOUNDED, said(element=element, touch=touch, pairs=pairs, whole=whole, **more))
+
+    def test_a_tip(self):
+        self.each(self.assertEqual, family="wedge")
+
+    def test_a_sharp_edge(self):
+        self.each(self.assertEqual, ("pairs", "lines", "exchanged"), family="sharp punch")
+
+    def test_smooth_contact(self):
+        for family in ("round", "rounded punch"):
+            self.each(self.assertNotEqual, family=family, lasts=2.2)
+
+    def test_flush_ends(self):
+        """Two blocks of one width end together: pressures are finite there."""
+        for element, touch in itertools.product(chance.PLANE, ("pairs", "lines", "exchanged")):
+            with self.subTest(element=element, touch=touch):
+                self.assertRegex(said("stack", element, 5.0, touch, whole=True, wide=(1.0, 1.0), deep=(2.0, 2.0)), GIVEN)
+
+    def test_held_base(self):
+        """A base of elements that are held all over, cut off at the line of symmetry, has no tip there."""
+        for element in chance.PLANE:
+            with self.subTest(element=element):
+                self.assertRegex(figures_of(*solve(PROGRAM, quads.layer_lines(11, element)))["p"][2], GIVEN)
+
+    def test_too_few_pairs(self):
+        for element in chance.PLANE:
+            self.assertEqual(NOT_RESOLVED, said("round", element, 0.6 if element != "ctria6" else 0.3, "rigid", lasts=4.0))
+
+
+if __name__ == "__main__":
+    unittest.main()
