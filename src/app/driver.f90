@@ -80,11 +80,11 @@ contains
       run%notes = render_notes(run%faults, run%deck%source)
       call run%deck%forget_text()
       do solve = 1, most_solves
-        call check_memory(run%model, expected%bytes, arguments%memory, error)
-        call check_memory(run%model, expected%double_bytes, arguments%memory, in_double)
+        call check_memory(expected%bytes, arguments%memory, error)
+        call check_memory(expected%double_bytes, arguments%memory, in_double)
         if (allocated(in_double)) iteration%against_double = in_double%message
         if (allocated(error)) exit
-        iteration%threads = plan_threads(run%model, numbering, expected%bytes, granted_threads())
+        iteration%threads = plan_threads(numbering, expected%bytes, granted_threads())
         call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)
         call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular, watch)
         if (singular > 0 .or. solve == most_solves) exit
@@ -152,7 +152,7 @@ contains
     numbering = number_equations(run%model)
     call watch%lap(stage_numbering)
     iteration = plan_iteration(run%model)
-    expected = forecast(run%model, numbering, iteration)
+    expected = forecast(run%model, run%motions, numbering, iteration)
     run%plan = plan_text(run%model, run%motions, iteration, numbering, expected)
     call watch%lap(stage_plan)
   end subroutine make_plan

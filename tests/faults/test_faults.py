@@ -208,7 +208,7 @@ class Output(Case):
 
 class Memory(Case):
     def test_the_forecast_is_above_the_limit(self):
-        self.check(self.run_it(LARGE, "-o", self.directory, "--memory", "0.001"), 3, "the matrices need", "--memory allows 0.001000 GB")
+        self.check(self.run_it(LARGE, "-o", self.directory, "--memory", "0.001"), 3, "the scene needs about", "--memory allows 0.001000 GB")
         self.assertEqual({}, self.files(self.directory))
 
     def test_no_limit(self):
