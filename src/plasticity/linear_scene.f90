@@ -42,6 +42,7 @@ module epcont_plasticity_linear_scene
   contains
     procedure :: set_stiffness
     procedure :: solve
+    procedure :: sharpen
     procedure :: rounding_error
     procedure :: estimate_condition
     procedure, private :: factor_bodies
@@ -189,12 +190,51 @@ contains
       call solve_once(self, model, numbering, law, part, start, state, watch)
     end if
     if (state%contact%state /= contact_solved) return
+    call complete(self, model, motions, law, state)
+    call watch%lap(stage_displacements)
+  end subroutine solve
+
+  !> One step of refinement of what `solve` has found, in the precision of its factors: where a body is long and its elements fine,
+  !! rounding leaves forces out of balance though the factors are in double. The contact follows the deformation, and that the contact.
+  subroutine sharpen(self, model, motions, numbering, law, part, state, watch)
+    class(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(linear_law), intent(in) :: law
+    real(wp), intent(in) :: part
+    type(scene_state), intent(inout) :: state   !! as it was where the contact is not found again
+    class(stopwatch), intent(inout) :: watch
+    type(scene_state) :: refined
+    logical, allocatable :: touching(:)
+    real(wp) :: change
+
+    refined = state
+    touching = state%contact%touching
+    call correct(self, model, numbering, law, part, refined, change)
+    call watch%lap(stage_displacements)
+    call solve_contact_about(self, model, part, touching, refined)
+    call watch%lap(stage_contact)
+    if (refined%contact%state /= contact_solved) return
+    call correct(self, model, numbering, law, part, refined, change)
+    call complete(self, model, motions, law, refined)
+    state = refined
+    call watch%lap(stage_displacements)
+  end subroutine sharpen
+
+  !> What follows from deformation, strains and contact.
+  pure subroutine complete(self, model, motions, law, state)
+    type(linear_scene), intent(in) :: self
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(linear_law), intent(in) :: law
+    type(scene_state), intent(inout) :: state
+
     state%stress = law%stress(state%strain)
     state%displacement = state%deformation
     call add_motions(model, motions, state)
     call measure_gaps(self, model, state)
-    call watch%lap(stage_displacements)
-  end subroutine solve
+  end subroutine complete
 
   !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
   subroutine solve_once(self, model, numbering, law, part, start, state, watch)
@@ -333,7 +373,7 @@ contains
   !> Gaps of the pairs without force as the displacements have them. Where a rigid stop takes the load, what the flexibility says
   !! of the others is rounding of two deformations that cancel: a pair that seemed to touch may be open.
   pure subroutine measure_gaps(self, model, state)
-    class(linear_scene), intent(in) :: self
+    type(linear_scene), intent(in) :: self
     type(model_type), intent(in) :: model
     type(scene_state), intent(inout) :: state
     real(wp), allocatable :: opening(:)
