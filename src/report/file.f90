@@ -18,10 +18,12 @@ module epcont_report_file
     procedure :: finish
   end type text_file
 
+  integer(c_int), parameter :: no_file = -1
+
   !> The right to write the files of one name, till it is given back or the process ends, however it ends.
   type :: file_lock
     private
-    type(c_ptr) :: stream = c_null_ptr
+    integer(c_int) :: descriptor = no_file
     character(len=:), allocatable :: path
   end type file_lock
 
@@ -55,6 +57,14 @@ module epcont_report_file
       import :: c_int
       integer(c_int), value :: descriptor, operation
     end function c_flock
+    integer(c_int) function c_fcntl(descriptor, command, argument) bind(c, name='fcntl')
+      import :: c_int
+      integer(c_int), value :: descriptor, command, argument
+    end function c_fcntl
+    integer(c_int) function c_close(descriptor) bind(c, name='close')
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_close
     type(c_ptr) function c_errno_location() bind(c, name='__errno_location')
       import :: c_ptr
     end function c_errno_location
@@ -114,31 +124,45 @@ contains
 
     lock%path = stem//'.lock'
     do
-      lock%stream = c_fopen(lock%path//c_null_char, 'a'//c_null_char)
-      if (.not. c_associated(lock%stream)) return
-      if (c_flock(c_fileno(lock%stream), exclusive_at_once) /= 0) then
+      call open_lock(lock)
+      if (lock%descriptor == no_file) return
+      if (c_flock(lock%descriptor, exclusive_at_once) /= 0) then
         call c_f_pointer(c_errno_location(), errno)
         if (errno /= would_wait) return
-        ignored = c_fclose(lock%stream)
-        lock%stream = c_null_ptr
+        ignored = c_close(lock%descriptor)
+        lock%descriptor = no_file
         call raise(error, status_usage, stem//'.lst: another run is at work on these results: wait for it, or take another -o DIR')
         return
       end if
       inquire (file=lock%path, exist=exists)
       if (exists) return
-      ignored = c_fclose(lock%stream)   ! who had it has removed it since we opened it
+      ignored = c_close(lock%descriptor)   ! who had it has removed it since we opened it
     end do
   end subroutine lock_files
+
+  !> Open the file; but not in the place of a standard stream that is closed, or what is printed would go there.
+  subroutine open_lock(lock)
+    type(file_lock), intent(inout) :: lock
+    integer(c_int), parameter :: duplicate = 0, first = 3   ! F_DUPFD of Linux, and the first that is no standard stream
+    type(c_ptr) :: stream
+    integer(c_int) :: ignored
+
+    lock%descriptor = no_file
+    stream = c_fopen(lock%path//c_null_char, 'a'//c_null_char)
+    if (.not. c_associated(stream)) return
+    lock%descriptor = c_fcntl(c_fileno(stream), duplicate, first)
+    ignored = c_fclose(stream)
+  end subroutine open_lock
 
   !> Give it back.
   subroutine unlock_files(lock)
     type(file_lock), intent(inout) :: lock
     integer(c_int) :: ignored
 
-    if (.not. c_associated(lock%stream)) return
+    if (lock%descriptor == no_file) return
     call remove_file(lock%path)
-    ignored = c_fclose(lock%stream)
-    lock%stream = c_null_ptr
+    ignored = c_close(lock%descriptor)
+    lock%descriptor = no_file
   end subroutine unlock_files
 
   !> Begin a file.
