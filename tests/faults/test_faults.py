@@ -249,6 +249,51 @@ class OneRunAtATime(Case):
             self.assertIn(seen, run.stdout.decode() + run.stderr.decode())
 
 
+class Remarks(Case):
+    """Warnings and notes are in the listing, all of them, and counted in the summary."""
+    BLOCK = ["BEGIN BULK", "GRID,1,,0.,0.", "GRID,2,,1.,0.", "GRID,3,,1.,1.", "GRID,4,,0.,1.", "CQUAD4,1,1,1,2,3,4",
+             "PSHELL,1,1,1.,-1", "SPC1,1,12,1,2"]
+    FORCE = "FORCE,1,3,,1.,0.,-1.,0."
+
+    def solve(self, *cards, force=FORCE, density="1.", place="."):
+        path = self.directory / place / "scene.dat"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("\n".join([*self.BLOCK, f"MAT1,1,1000.,,.3,{density}", force, *cards, "ENDDATA", ""]))
+        run = self.run_it(path, "-o", path.parent)
+        self.check(run, 0)
+        listing = (path.parent / "scene.lst").read_text()
+        section = re.search(r"^(WARNINGS AND NOTES .*)\n((?:  .*\n)+)", listing, re.MULTILINE)
+        summary = (path.parent / "scene.summary.csv").read_text().splitlines()[1:4]
+        return run.stderr.decode(), section and section[1], section[2].splitlines() if section else [], summary
+
+    def test_none(self):
+        self.assertEqual(("", None, [], ["status,valid,", "warnings,0,", "notes,0,"]), self.solve(density=""))
+
+    def test_a_hundred_warnings(self):
+        (self.directory / "there").mkdir()
+        (self.directory / "there" / "lines.inc").write_text("".join(f"BLSEG,{k},1,2\n" for k in range(1, 51)))
+        cards = ["INCLUDE 'lines.inc'", *(f"BLSEG,{k},1,2" for k in range(51, 101))]
+        said, heading, lines, summary = self.solve(*cards, place="there")
+        self.assertEqual("WARNINGS AND NOTES  (100 warnings, 1 note)", heading)
+        self.assertEqual(["status,valid,", "warnings,100,", "notes,1,"], summary)
+        remedy = "no BCONP names it; a BCONP with it as SLAVE or MASTER, or no such line"
+        self.assertEqual(["  9:18-19: MAT1: field 6 (RHO) has no effect (cards with it: 1)"] +
+                         [f"  lines.inc:{k}:7{'-8' if k > 9 else ''}: warning: BLSEG {k}: {remedy}" for k in range(1, 51)] +
+                         [f"  {k - 39}:7-{8 if k < 100 else 9}: warning: BLSEG {k}: {remedy}" for k in range(51, 101)], lines)
+        self.assertIn("100 warnings (50 shown)\n", said)
+
+    def test_of_the_answer(self):
+        """Displacements are known, and not small, when all else is over; the text goes on below where it is long."""
+        said, heading, lines, summary = self.solve(force="FORCE,1,3,,300.,0.,-1.,0.")
+        self.assertEqual("WARNINGS AND NOTES  (1 warning, 1 note)", heading)
+        self.assertEqual(["status,valid,", "warnings,1,", "notes,1,"], summary)
+        text = "warning: displacements are not small: 100 % of the volume turned or stretched by over 0.1, most at 0.5000 0.5000; " \
+               "equilibrium and contact are those of the undeformed shape"
+        self.assertEqual(["  9:18-19: MAT1: field 6 (RHO) has no effect (cards with it: 1)",
+                          "  " + text[:text.index(" and contact")], "    " + text[text.index("and contact"):]], lines)
+        self.assertEqual(f"{self.directory}/scene.dat: {text}\n", said)
+
+
 class Output(Case):
     def test_standard_output_is_full(self):
         with open("/dev/full", "wb") as full:
