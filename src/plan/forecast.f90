@@ -120,8 +120,8 @@ contains
     end select
   end function factor_entries
 
-  !> Entries wanted while a body's part of the flexibility is found: the trailing block of the inverse, or the window that right-hand
-  !! sides go through; and that part.
+  !> Entries wanted while a body's part of the flexibility is found: the trailing block of the inverse, or the window that
+  !! right-hand sides go through; and that part.
   pure integer(i8) function flexibility_entries(body, pairs) result(entries)
     type(body_numbering), intent(in) :: body
     integer(i8), intent(in) :: pairs   !! of this body

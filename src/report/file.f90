@@ -110,7 +110,7 @@ contains
     ignored = c_unlink(path//c_null_char)
   end subroutine remove_file
 
-  !> Take the right to write the files that begin with `stem`. What tells others is a lock of the system's on a file beside them: one
+  !> Take the right to write the files that begin with `stem`. What tells others is a lock of the system on a file beside them: one
   !! that a killed process left behind is free. Where there can be no such file that shows when results are written, and where the
   !! file system knows no locks there is none.
   subroutine lock_files(stem, lock, error)
@@ -131,7 +131,8 @@ contains
         if (errno /= would_wait) return
         ignored = c_close(lock%descriptor)
         lock%descriptor = no_file
-        call raise(error, status_usage, stem//'.lst: another run is at work on these results: wait for it, or take another -o DIR')
+        call raise(error, status_usage, stem//'.lst: another run is at work on these results: wait for it, '// &
+                   'or take another -o DIR')
         return
       end if
       inquire (file=lock%path, exist=exists)
