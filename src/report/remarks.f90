@@ -42,18 +42,8 @@ contains
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
     type(remarks_type), intent(inout) :: remarks
-    integer :: c
 
     if (answer%gradient%part > 0.0_wp) call warn(not_small(model, answer), remarks)
-    if (allocated(model%line_contact)) then
-      do c = 1, size(model%line_contact)
-        associate (contact => model%line_contact(c))
-          if (any(answer%contact%touching(contact%border))) call warn('BCONP '//text_of(contact%id)// &
-            ': a pair touches beside nodes that were left out, so the contact may go on there: PARAM SEARCH above '// &
-            short_real(contact%search), remarks)
-        end associate
-      end do
-    end if
     if (answer%locking%elements > 0) call warn(plural(answer%locking%elements, 'three-node element')// &
       ' of nearly constant volume (Poisson''s ratio '//short_real(high_poisson)// &
       ' or more, as yielding has made it): too stiff; six-node elements or CQUAD4 would be right', remarks)
