@@ -27,6 +27,9 @@ module epcont_analysis
   private
   public :: analyse
 
+  !> Steps of refinement where forces are out of balance; each takes rounding's part of it down by digits.
+  integer, parameter :: most_refinements = 2
+
 contains
 
   !> Solve the scene. `singular` is a body whose stiffness could not be factored (0: none); without contact
@@ -43,8 +46,8 @@ contains
     class(onlooker), intent(inout) :: watch
     type(plastic_run) :: run
     type(contact_line) :: line
-    real(wp), allocatable :: load(:, :)
-    logical, allocatable :: touching(:)
+    type(answer_type) :: found
+    integer :: step
 
     call solve(model, motions, numbering, plan, run, answer, watch)
     singular = run%singular
@@ -54,11 +57,39 @@ contains
     if (answer%contact%state /= contact_solved) return
 
     call take_over(run, answer)
+    found = answer
+    line = find_contact_line(model)
+    call evaluate(model, plan, run, line, answer, certificate, watch)
+    do step = 1, most_refinements
+      if (.not. run%converged .or. certificate%equilibrium <= certificate%tolerance) exit
+      call run%scene%sharpen(model, motions, numbering, run%law, run%load_factor, run%state, watch)
+      answer = found
+      call evaluate(model, plan, run, line, answer, certificate, watch)
+    end do
+    call assess(model, motions, numbering, run, line, answer, accuracy)
+    where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp   ! an open pair does not press
+    call watch%lap(stage_accuracy)
+  end subroutine analyse
+
+  !> Stresses, pressures and zones of the state that was found, and their certificate.
+  subroutine evaluate(model, plan, run, line, answer, certificate, watch)
+    type(model_type), intent(in) :: model
+    type(iteration_plan), intent(in) :: plan
+    type(plastic_run), intent(in) :: run
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(inout) :: answer
+    type(certificate_type), intent(out) :: certificate
+    class(onlooker), intent(inout) :: watch
+    real(wp), allocatable :: load(:, :)
+    logical, allocatable :: touching(:)
+
+    answer%contact = run%state%contact
+    answer%displacement = run%state%displacement
+    answer%deformation = run%state%deformation
     load = run%load_factor*model%load
     call recover_stresses(model, run%scene%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
     answer%locking = find_locking(model, run%scene%operator%volume, answer%stress, answer%equivalent_stress, answer%secant_modulus)
     answer%gradient = find_gradients(model, run%scene%operator%volume, answer%displacement)
-    line = find_contact_line(model)
     touching = in_contact(line, answer%contact%touching)
     answer%pressure = pair_pressures(model, line, touching, answer%contact%force)
     answer%zones = find_zones(model, line, touching, answer%contact%force, answer%pressure)
@@ -67,10 +98,7 @@ contains
     call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
                  answer%contact%force, certificate, answer%rounding_error)
     call watch%lap(stage_certificate)
-    call assess(model, motions, numbering, run, line, answer, accuracy)
-    where (touching .and. .not. answer%contact%touching) answer%pressure = -1.0_wp   ! an open pair is not said to press
-    call watch%lap(stage_accuracy)
-  end subroutine analyse
+  end subroutine evaluate
 
   !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved by others in double.
   subroutine solve(model, motions, numbering, plan, run, answer, watch)
@@ -106,8 +134,6 @@ contains
     type(plastic_run), intent(in) :: run
     type(answer_type), intent(inout) :: answer
 
-    answer%displacement = run%state%displacement
-    answer%deformation = run%state%deformation
     answer%history = run%history
     answer%factorizations = run%factorizations
     answer%converged = run%converged

@@ -14,6 +14,7 @@ module epcont_accuracy_accuracy
   use epcont_contact_scaling, only: scale_problem, scaled_problem
   use epcont_material_curve, only: material_type, section_materials
   use epcont_model_model, only: model_type
+  use epcont_plan_forecast, only: loads_at_once
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
   use epcont_plasticity_iteration, only: plastic_run
@@ -57,14 +58,15 @@ contains
     type(accuracy_type), intent(out) :: accuracy
     type(patch_table) :: table
     type(material_type), allocatable :: material(:)
-    real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)   !! of the answer, then of each unit load [4, any, 1 + moved]
-    real(wp), allocatable :: product(:, :)                      !! [energy] [elements, 1 + moved]
+    real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)   !! of the answer, then of some unit loads [4, any, 1 + loads]
+    real(wp), allocatable :: product(:, :)                      !! [energy] [elements, 1 + loads]
+    real(wp), allocatable :: along(:)                           !! what it is of all elements [energy] [moved]
     real(wp), allocatable :: unit_force(:, :)                   !! contact forces under unit loads [pairs, motions]
     integer, allocatable :: moved(:)                            !! motions that unit loads say something of
     type(scaled_problem) :: problem
     type(contact_basis) :: basis
     logical :: carried, pressed
-    integer :: j
+    integer :: first, j, loads
 
     pressed = any(answer%contact%force > 0.0_wp)
     carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
@@ -75,17 +77,22 @@ contains
       unit_force = unit_forces(problem, basis, motions%count)
       moved = pack([(j, j=1, motions%count)], any(unit_force /= 0.0_wp, dim=1) .and. .not. answer%contact%motion_free)
     end if
-    allocate (strain(4, model%points, 1 + size(moved)))
-    strain(:, :, 1) = run%state%strain
-    do j = 1, size(moved)
-      strain(:, :, 1 + j) = unit_strains(model, numbering, run%scene, unit_force(:, moved(j)))
-    end do
-
     table = new_patch_table(model)
     material = section_materials(model)
+    allocate (along(size(moved)))
     associate (volume => run%scene%operator%volume)
-      smooth = recover_strains(model, table, volume, strain)
-      product = error_products(model, table, material, volume, strain, smooth)
+      do first = 1, max(1, size(moved)), loads_at_once
+        loads = min(loads_at_once, size(moved) - first + 1)
+        allocate (strain(4, model%points, 1 + loads))
+        strain(:, :, 1) = run%state%strain
+        do j = 1, loads
+          strain(:, :, 1 + j) = unit_strains(model, numbering, run%scene, unit_force(:, moved(first - 1 + j)))
+        end do
+        smooth = recover_strains(model, table, volume, strain)
+        product = error_products(model, table, material, volume, strain, smooth)
+        along(first:first + loads - 1) = sum(product(:, 2:), dim=1)
+        deallocate (strain)
+      end do
       accuracy%element = product(:, 1)
       accuracy%energy_norm = sqrt(part(sum(accuracy%element), &
                                        sum(accuracy%element) + abs(stored_energy(volume, run%state%strain, run%state%stress))))
@@ -111,7 +118,7 @@ contains
 
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
     do j = 1, size(moved)
-      call assess_approach(model, motions, answer, table, moved(j), unit_force(:, moved(j)), sum(product(:, 1 + j)), accuracy)
+      call assess_approach(model, motions, answer, table, moved(j), unit_force(:, moved(j)), along(j), accuracy)
     end do
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
   end subroutine assess

@@ -10,9 +10,10 @@ module epcont_app_driver
   use epcont_base_kinds, only: wp
   use epcont_base_memory, only: peak_memory
   use epcont_base_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
+  use epcont_base_text, only: shown
   use epcont_base_threads, only: granted_threads
   use epcont_deck_deck, only: read_deck
-  use epcont_deck_render, only: render, render_notes
+  use epcont_deck_render, only: render
   use epcont_model_build, only: build_model
   use epcont_model_nearness, only: enter_nodes_that_came_near
   use epcont_plan_forecast, only: check_memory, forecast, forecast_type
@@ -20,11 +21,13 @@ module epcont_app_driver
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_plan_side_by_side, only: plan_threads
+  use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_motions, only: report_motion_faults
   use epcont_report_number, only: column_number, known_column
   use epcont_report_outcome, only: judge, outcome_type
   use epcont_report_plan, only: plan_text
-  use epcont_report_results, only: run_results, write_results
+  use epcont_report_remarks, only: remark_answer, remarks_of_deck
+  use epcont_report_results, only: remove_results, run_results, write_results
   use epcont_report_solver, only: report_solver_fault
   use epcont_report_timing, only: timing_text
   use epcont_result_answer, only: answer_type
@@ -44,17 +47,43 @@ contains
     integer, intent(out) :: status
     type(progress_type) :: watch
 
-    call watch%begin(stem_of(path), arguments%progress, arguments%quiet)
+    call watch%begin(shown(stem_of(path)), arguments%progress, arguments%quiet)
     call follow_deck(path, arguments, watch, status)
-    if (arguments%timing) call print_error(timing_text(stem_of(path), watch, peak_memory()))
+    if (arguments%timing) call print_error(timing_text(shown(stem_of(path)), watch, peak_memory()))
   end subroutine run_deck
 
-  !> From file to results, and what there is to say of it.
+  !> From file to results, alone at work on them; what is there afterwards is of this run.
   subroutine follow_deck(path, arguments, watch, status)
     character(len=*), intent(in) :: path
     type(arguments_type), intent(in) :: arguments
     type(progress_type), intent(inout) :: watch
     integer, intent(out) :: status
+    type(error_type), allocatable :: error
+    type(file_lock) :: lock
+    logical :: written
+
+    if (arguments%check .or. arguments%plan) then
+      call solve_deck(path, arguments, watch, status, written)
+      return
+    end if
+    call lock_files(output_stem(path, arguments), lock, error)
+    if (allocated(error)) then
+      status = error%status
+      write (error_unit, '(a)') shown(error%message)
+      return
+    end if
+    call solve_deck(path, arguments, watch, status, written)
+    if (.not. written) call remove_results(output_stem(path, arguments))
+    call unlock_files(lock)
+  end subroutine follow_deck
+
+  !> From file to results, and what there is to say of it.
+  subroutine solve_deck(path, arguments, watch, status, written)
+    character(len=*), intent(in) :: path
+    type(arguments_type), intent(in) :: arguments
+    type(progress_type), intent(inout) :: watch
+    integer, intent(out) :: status
+    logical, intent(out) :: written   !! results, as far as that could be done
     type(error_type), allocatable :: error, in_double
     type(run_results) :: run
     type(numbering_type) :: numbering
@@ -64,27 +93,28 @@ contains
     logical :: entered
 
     status = status_valid
+    written = .false.
     call prepare(path, run, watch, error)
     if (.not. allocated(error)) then
       write (error_unit, '(a)', advance='no') render(run%faults, run%deck%source)
       if (run%faults%error_count() > 0) status = status_deck
       if (status == status_deck .or. arguments%check) then
-        call say(arguments, stem_of(path)//'  '//trim(merge('rejected', 'checked ', status == status_deck)), status)
+        call say(arguments, shown(stem_of(path))//'  '//trim(merge('rejected', 'checked ', status == status_deck)), status)
         return
       end if
       call make_plan(run, numbering, iteration, expected, watch)
       if (arguments%plan) then
-        call print_text(stem_of(path)//run%plan, status)
+        call print_text(shown(stem_of(path))//run%plan, status)
         return
       end if
-      run%notes = render_notes(run%faults, run%deck%source)
+      run%remarks = remarks_of_deck(run%faults, run%deck%source)
       call run%deck%forget_text()
       do solve = 1, most_solves
-        call check_memory(run%model, expected%bytes, arguments%memory, error)
-        call check_memory(run%model, expected%double_bytes, arguments%memory, in_double)
+        call check_memory(expected%bytes, arguments%memory, error)
+        call check_memory(expected%double_bytes, arguments%memory, in_double)
         if (allocated(in_double)) iteration%against_double = in_double%message
         if (allocated(error)) exit
-        iteration%threads = plan_threads(run%model, numbering, expected%bytes, granted_threads())
+        iteration%threads = plan_threads(numbering, expected%bytes, granted_threads())
         call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)
         call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular, watch)
         if (singular > 0 .or. solve == most_solves) exit
@@ -97,19 +127,35 @@ contains
       else
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
         status = run%outcome%status
+        if (run%outcome%has_answer) call remark_answer(run%model, run%answer, run%remarks)
         call write_results(run, output_stem(path, arguments), arguments%all_tables, arguments%vtk, error)
+        written = .true.
         call watch%lap(stage_writing)
         call watch%erase()
       end if
     end if
     if (allocated(error)) then
       status = error%status
-      write (error_unit, '(a)') error%message
+      write (error_unit, '(a)') shown(error%message)
     else
-      if (len(run%outcome%sentence) > 0) write (error_unit, '(a)') path//': '//run%outcome%sentence
-      call say(arguments, one_line(stem_of(path), run%answer, run%outcome), status)
+      call tell(shown(path)//': ', run%remarks%of_answer)
+      if (len(run%outcome%sentence) > 0) write (error_unit, '(a)') shown(path)//': '//run%outcome%sentence
+      call say(arguments, one_line(shown(stem_of(path)), run%answer, run%outcome), status)
     end if
-  end subroutine follow_deck
+  end subroutine solve_deck
+
+  !> Lines on standard error, each behind the name of the deck.
+  subroutine tell(name, text)
+    character(len=*), intent(in) :: name, text
+    integer :: from, to
+
+    from = 1
+    do while (from <= len(text))
+      to = from + index(text(from:), new_line('a')) - 2
+      write (error_unit, '(a)') name//text(from:to)
+      from = to + 2
+    end do
+  end subroutine tell
 
   !> Path of the result files, without their suffixes.
   pure function output_stem(path, arguments) result(stem)
@@ -152,7 +198,7 @@ contains
     numbering = number_equations(run%model)
     call watch%lap(stage_numbering)
     iteration = plan_iteration(run%model)
-    expected = forecast(run%model, numbering, iteration)
+    expected = forecast(run%model, run%motions, numbering, iteration)
     run%plan = plan_text(run%model, run%motions, iteration, numbering, expected)
     call watch%lap(stage_plan)
   end subroutine make_plan

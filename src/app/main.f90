@@ -11,6 +11,7 @@ program epcont
   use epcont_base_error, only: error_type, raise, status_usage, status_valid
   use epcont_base_memory, only: has_memory, memory_of_libraries
   use epcont_base_one_thread, only: use_one_thread
+  use epcont_base_text, only: shown
   use epcont_base_version, only: program_name, program_version
   use epcont_deck_manual, only: manual
   use epcont_report_file, only: make_directory
@@ -41,7 +42,7 @@ contains
     if (.not. allocated(error) .and. .not. has_memory(memory_of_libraries)) &
       call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs')
     if (allocated(error)) then
-      write (error_unit, '(a)') program_name//': '//error%message
+      write (error_unit, '(a)') program_name//': '//shown(error%message)
       worst = error%status
     else if (arguments%help) then
       call print_text(help_text(), worst)
@@ -55,7 +56,7 @@ contains
         call print_text(text, worst)
       else
         worst = status_usage
-        write (error_unit, '(a)') program_name//': '//arguments%card//': no such card; epcont --cards lists them'
+        write (error_unit, '(a)') program_name//': '//shown(arguments%card)//': no such card; epcont --cards lists them'
       end if
     else
       if (len(arguments%directory) > 0) call make_directory(arguments%directory)

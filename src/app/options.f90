@@ -25,7 +25,7 @@ module epcont_app_options
     option_type('--tables', '', 'all', 'write node and element tables, whatever the deck asks for', &
                 'Without it they are written where the deck has DISPLACEMENT, SPCFORCES or STRESS.'), &
     option_type('--vtk', '', '', 'write DECK.vtu and DECK.contact.vtu, for ParaView', ''), &
-    option_type('--memory', '', 'GB', 'refuse decks whose matrices need more (default 16)', ''), &
+    option_type('--memory', '', 'GB', 'refuse decks that need more memory (default 16)', ''), &
     option_type('--progress', '', '', 'tell of every solve on standard error, terminal or not', &
                 'Without it, one line on a terminal tells of runs of more than a second, and goes when they end: seconds gone '// &
                 'and expected, iteration, load factor, change of the displacements, yielded elements, touching pairs.'), &

@@ -343,15 +343,11 @@ contains
     type(source), intent(in) :: lines
     integer, intent(in) :: slot
     type(place_type) :: place
-    integer :: k, i, left, before
+    integer :: i, left, before
 
     place = self%name_place(lines)
     if (slot > self%count) return
-    k = self%lines
-    do while (self%at(k)%slot > slot)
-      k = k - 1
-    end do
-    associate (at => self%at(k))
+    associate (at => self%at(line_of(self, slot)))
       before = slot - at%slot
       left = lines%last(at%line) + 1
       if (before < at%fields .and. at%comma == 0) then
@@ -368,6 +364,24 @@ contains
       place = lines%columns(at%line, left, max(left, field_end(lines, at%line, left)))
     end associate
   end function place
+
+  !> The last line of the card that begins with this slot or one before it.
+  pure integer function line_of(self, slot) result(low)
+    type(card_fields), intent(in) :: self
+    integer, intent(in) :: slot
+    integer :: high, middle
+
+    low = 1
+    high = self%lines
+    do while (low < high)
+      middle = high - (high - low)/2
+      if (self%at(middle)%slot <= slot) then
+        low = middle
+      else
+        high = middle - 1
+      end if
+    end do
+  end function line_of
 
   !> The columns of the name.
   pure function name_place(self, lines) result(place)

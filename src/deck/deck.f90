@@ -75,27 +75,14 @@ contains
     end if
   end function place
 
-  !> Where an item of the open list of a card stands.
-  function list_place(self, card, k) result(place)
+  !> Where an item of the open list of a card stands. A card may have ten thousands of them: their places are kept.
+  pure function list_place(self, card, k) result(place)
     class(deck_type), intent(in) :: self
     integer, intent(in) :: card  !! which table
     integer, intent(in) :: k     !! which item of its lists
     type(place_type) :: place
-    integer :: low, high, middle
 
-    associate (table => self%card(card))
-      low = 1
-      high = table%count
-      do while (low < high)
-        middle = high - (high - low)/2
-        if (table%list_start(middle) <= k) then
-          low = middle
-        else
-          high = middle - 1
-        end if
-      end do
-      place = slot_place(self, table%line(low), slot_of(table%list_field(k)))
-    end associate
+    place = self%card(card)%list_place(k)
   end function list_place
 
   !> Where a slot of the card that begins at `line` stands; slot 0 is the name.

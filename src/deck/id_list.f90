@@ -46,9 +46,9 @@ contains
           else if (to > 0 .and. to < from) then
             call add_backward(lines, card, entry, slot, from, faults)
           end if
-          if (to > 0) call table%add_item(from, to, number_of(first), step)
+          if (to > 0) call table%add_item(from, to, card%place(lines, first), step)
         else if (from > 0) then
-          call table%add_item(from, to, number_of(slot))
+          call table%add_item(from, to, card%place(lines, slot))
         end if
       end if
       slot = slot + 1

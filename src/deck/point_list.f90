@@ -34,7 +34,7 @@ contains
       call read_number(lines, card, entry, slot, faults, point(1), sound)
       if (sound) call read_number(lines, card, entry, slot + 1, faults, point(2), sound)
       if (.not. sound) return
-      call table%add_point(point, number_of(slot))
+      call table%add_point(point, card%place(lines, slot))
       slot = slot + 2
     end do
     do slot = slot + 1, card%count

@@ -1,6 +1,6 @@
 !> Faults of a deck as text: file, line and columns, the line itself, and what would be right.
 module epcont_deck_render
-  use epcont_base_text, only: plural, text_of
+  use epcont_base_text, only: plural, shown, text_of
   use epcont_deck_diagnostic, only: diagnostic, diagnostics, place_type, severity_error, severity_note, severity_warning
   use epcont_deck_source, only: source
   implicit none
@@ -22,23 +22,23 @@ contains
     type(source), intent(in) :: lines
     character(len=:), allocatable :: text
     integer, allocatable :: order(:)
-    integer :: shown(2)
+    integer :: found(2)   !! errors, warnings
     integer :: i
     type(diagnostic) :: fault
 
     text = ''
     order = faults%in_deck_order()
-    shown = 0
+    found = 0
     do i = 1, size(order)
       fault = faults%item(order(i))
       if (fault%severity == severity_note) cycle
-      shown(fault%severity) = shown(fault%severity) + 1
-      if (shown(fault%severity) <= most_shown) text = text//paragraph(fault, lines)
+      found(fault%severity) = found(fault%severity) + 1
+      if (found(fault%severity) <= most_shown) text = text//paragraph(fault, lines)
     end do
-    if (any(shown > 0)) text = text//lines%deck_name()//': '//tally(shown)//newline
+    if (any(found > 0)) text = text//shown(lines%deck_name())//': '//tally(found)//newline
   end function render
 
-  !> The notes in deck order, one line each, for the listing: without the name of the deck, and of included files
+  !> Warnings and notes in deck order, one line each, for the listing: without the name of the deck, and of included files
   !! the name as seen from it, so that it does not matter from where the deck was read.
   pure function render_notes(faults, lines) result(text)
     type(diagnostics), intent(in) :: faults
@@ -52,8 +52,12 @@ contains
     order = faults%in_deck_order()
     do i = 1, size(order)
       fault = faults%item(order(i))
-      if (fault%severity /= severity_note) cycle
-      text = text//note_file(fault, lines)//columns(fault%place, lines)//printable(fault%what)//newline
+      if (fault%severity == severity_error) cycle
+      text = text//note_file(fault, lines)//columns(fault%place, lines)
+      if (fault%severity == severity_warning) text = text//'warning: '
+      text = text//printable(fault%what)
+      if (len(fault%remedy) > 0) text = text//'; '//printable(fault%remedy)
+      text = text//newline
     end do
   end function render_notes
 
@@ -107,9 +111,9 @@ contains
 
     associate (place => fault%place)
       if (place%line == 0) then
-        text = lines%deck_name()//': '
+        text = shown(lines%deck_name())//': '
       else
-        text = lines%file_name(place%line)//':'//columns(place, lines)
+        text = shown(lines%file_name(place%line))//':'//columns(place, lines)
       end if
     end associate
     if (fault%severity == severity_warning) text = text//'warning: '
@@ -140,6 +144,7 @@ contains
     if (lines%file(fault%place%line) == 1) return
     text = lines%file_name(fault%place%line)//':'
     if (index(text, deck_directory(lines)) == 1) text = text(len(deck_directory(lines)) + 1:)
+    text = shown(text)
   end function note_file
 
   !> The directory of the deck, with a slash at the end; empty where it was named without one.
@@ -157,16 +162,16 @@ contains
     type(diagnostic), intent(in) :: fault
     type(source), intent(in) :: lines
     character(len=:), allocatable :: text
-    character(len=:), allocatable :: shown
+    character(len=:), allocatable :: line
     integer :: left, first, last
 
     left = 0
     if (fault%place%last > width) left = max(0, min(fault%place%first - 1, fault%place%last - width))
-    shown = printable(lines%whole_line(fault%place%line, left + 1, width))
+    line = printable(lines%whole_line(fault%place%line, left + 1, width))
     first = fault%place%first - left
     last = min(fault%place%last - left, width)
-    call narrow(shown, first, last)
-    text = '  '//shown//newline//repeat(' ', first + 1)//repeat('^', last - first + 1)
+    call narrow(line, first, last)
+    text = '  '//line//newline//repeat(' ', first + 1)//repeat('^', last - first + 1)
     if (len(fault%remedy) > 0) text = text//' '//printable(fault%remedy)
     text = text//newline
   end function excerpt

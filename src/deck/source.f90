@@ -5,7 +5,7 @@
 module epcont_deck_source
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_kinds, only: i8
-  use epcont_base_text, only: text_of, upper
+  use epcont_base_text, only: shown, text_of, upper
   use epcont_deck_diagnostic, only: diagnostics, place_type
   implicit none
   private
@@ -240,7 +240,7 @@ contains
     parent = self%file(line)
     path = relative_to(self%files(parent)%name, path)
     if (includes(self, parent, path)) then
-      call faults%add_error(place, 'INCLUDE: '//path//' includes itself', 'a file that does not lead back here')
+      call faults%add_error(place, 'INCLUDE: '//shown(path)//' includes itself', 'a file that does not lead back here')
     else if (depth(self, parent) == deepest) then
       call faults%add_error(place, 'INCLUDE: files are included more than '//text_of(deepest)//' deep', 'fewer levels')
     else if (size(self%files) > most_files) then
@@ -248,7 +248,7 @@ contains
     else
       call load(self, path, parent, trouble)
       if (allocated(trouble)) then
-        call faults%add_error(place, 'INCLUDE: '//path//': '//trouble, 'a name relative to the file of this line')
+        call faults%add_error(place, 'INCLUDE: '//shown(path)//': '//trouble, 'a name relative to the file of this line')
       else
         call cut(self, size(self%files), faults, ended)
       end if

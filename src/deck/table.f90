@@ -1,6 +1,7 @@
 !> The cards of one name, field by field, as the reader hands them on.
 module epcont_deck_table
   use epcont_base_kinds, only: wp
+  use epcont_deck_diagnostic, only: place_type
   use epcont_deck_entry, only: card_entry, field_entry
   implicit none
   private
@@ -26,7 +27,7 @@ module epcont_deck_table
     !! list_step, or the point list_point. [count + 1], [items], [2, items]
     integer, allocatable :: list_start(:), list_from(:), list_to(:), list_step(:)
     real(wp), allocatable :: list_point(:, :)
-    integer, allocatable :: list_field(:)              !! position of each item in its card [items]
+    type(place_type), allocatable :: list_place(:)     !! where each item stands [items]
     integer :: items = 0                               !! in all lists
   contains
     procedure :: column
@@ -57,7 +58,7 @@ contains
     allocate (table%noted(columns), table%noted_card(columns), source=0)
     allocate (table%list_start(1), source=1)
     allocate (table%value(columns, 0), table%given(columns, 0), table%sound(0), table%line(0))
-    allocate (table%list_from(0), table%list_to(0), table%list_step(0), table%list_field(0), table%list_point(2, 0))
+    allocate (table%list_from(0), table%list_to(0), table%list_step(0), table%list_place(0), table%list_point(2, 0))
     if (entry%has_words) allocate (table%word(columns, 0))
   end function new_table
 
@@ -108,37 +109,31 @@ contains
   end subroutine add_card
 
   !> Add an item to the list of the last card.
-  subroutine add_item(self, from, to, field, step)
+  subroutine add_item(self, from, to, place, step)
     class(card_table), intent(inout) :: self
     integer, intent(in) :: from, to        !! the first and the last id
-    integer, intent(in) :: field           !! position in the card
+    type(place_type), intent(in) :: place  !! of the first
     integer, intent(in), optional :: step  !! from one id to the next; default 1
-    integer :: room
 
-    if (self%items == size(self%list_from)) then
-      room = max(first_room, 2*self%items)
-      call resize_integers(self%list_from, room)
-      call resize_integers(self%list_to, room)
-      call resize_integers(self%list_step, room)
-      call resize_integers(self%list_field, room)
-    end if
+    if (self%items == size(self%list_from)) call resize_list(self, max(first_room, 2*self%items))
     self%items = self%items + 1
     self%list_from(self%items) = from
     self%list_to(self%items) = to
     self%list_step(self%items) = 1
     if (present(step)) self%list_step(self%items) = step
-    self%list_field(self%items) = field
+    self%list_place(self%items) = place
     self%list_start(self%count + 1) = self%items + 1
   end subroutine add_item
 
-  !> Add a point to the list of the last card. Such lists are short and few: the array grows with each.
-  subroutine add_point(self, point, field)
+  !> Add a point to the list of the last card.
+  subroutine add_point(self, point, place)
     class(card_table), intent(inout) :: self
     real(wp), intent(in) :: point(2)
-    integer, intent(in) :: field     !! position of its first number in the card
+    type(place_type), intent(in) :: place   !! of its first number
 
-    call self%add_item(0, 0, field)
-    self%list_point = reshape([self%list_point, point], [2, self%items])
+    call self%add_item(0, 0, place)
+    if (size(self%list_point, 2) < self%items) call resize_points(self%list_point, size(self%list_from))
+    self%list_point(:, self%items) = point
   end subroutine add_point
 
   !> Cut the arrays to size.
@@ -146,10 +141,8 @@ contains
     class(card_table), intent(inout) :: self
 
     call resize(self, self%count)
-    call resize_integers(self%list_from, self%items)
-    call resize_integers(self%list_to, self%items)
-    call resize_integers(self%list_step, self%items)
-    call resize_integers(self%list_field, self%items)
+    call resize_list(self, self%items)
+    if (size(self%list_point) > 0) call resize_points(self%list_point, self%items)
   end subroutine finish
 
   !> All but the count of cards.
@@ -157,7 +150,7 @@ contains
     class(card_table), intent(inout) :: self
 
     deallocate (self%value, self%given, self%sound, self%line, self%list_start)
-    deallocate (self%list_from, self%list_to, self%list_step, self%list_field, self%list_point)
+    deallocate (self%list_from, self%list_to, self%list_step, self%list_place, self%list_point)
     if (allocated(self%word)) deallocate (self%word)
   end subroutine forget_fields
 
@@ -189,6 +182,32 @@ contains
     word(:, :kept) = self%word(:, :kept)
     call move_alloc(word, self%word)
   end subroutine resize
+
+  !> Room for `room` items of lists, the items so far kept.
+  subroutine resize_list(self, room)
+    type(card_table), intent(inout) :: self
+    integer, intent(in) :: room
+    type(place_type), allocatable :: place(:)
+
+    call resize_integers(self%list_from, room)
+    call resize_integers(self%list_to, room)
+    call resize_integers(self%list_step, room)
+    allocate (place(room))
+    place(:self%items) = self%list_place(:self%items)
+    call move_alloc(place, self%list_place)
+  end subroutine resize_list
+
+  subroutine resize_points(point, room)
+    real(wp), allocatable, intent(inout) :: point(:, :)
+    integer, intent(in) :: room
+    real(wp), allocatable :: resized(:, :)
+    integer :: kept
+
+    allocate (resized(2, room))
+    kept = min(room, size(point, 2))
+    resized(:, :kept) = point(:, :kept)
+    call move_alloc(resized, point)
+  end subroutine resize_points
 
   subroutine resize_integers(list, length)
     integer, allocatable, intent(inout) :: list(:)

@@ -7,48 +7,58 @@ module epcont_plan_forecast
   use epcont_linalg_panel_layout, only: panel_entries
   use epcont_model_controls, only: precision_double, solver_frontal, solver_sparse
   use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_numbering, only: body_numbering, numbering_type
   implicit none
   private
-  public :: forecast_type, forecast, check_memory, memory_of_run
+  public :: forecast_type, forecast, check_memory, most_memory
 
   type :: forecast_type
-    integer(i8) :: bytes = 0            !! of the matrices
-    integer(i8) :: double_bytes = 0     !! of the same in double precision
+    integer(i8) :: bytes = 0            !! that the process will hold at its peak, on one thread
+    integer(i8) :: double_bytes = 0     !! the same with factors in double precision
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
   end type forecast_type
 
   real(wp), parameter :: giga = 1.0e9_wp
+  integer(i8), parameter :: real_bytes = 8
+
+  !> What a run holds besides its matrices, as measured [bytes]: program and libraries; a node, an integration point, each node of
+  !! its element at a point, and a point that can yield. Within 0.8 to 1.3 in all (`tests/plan`).
+  integer(i8), parameter :: of_process = 7700000, of_node = 980, of_point = 250, of_node_of_point = 50, of_yielding_point = 400
+  !> Matrices over all pairs that are there at once while the contact is solved: F of the bodies that cannot yield, F, its scaled
+  !! copy, and factors of those that touch, here half of them to all.
+  real(wp), parameter :: pair_matrices = 4.2_wp
+  !> And over pairs and free motions.
+  integer(i8), parameter :: motion_matrices = 8
+  !> Unit loads along free motions whose strains are there at once when the figures are assessed: of a stack of many bodies those of
+  !! all would take more memory than the factors. And what each takes of a node and of a point [bytes].
+  integer, parameter, public :: loads_at_once = 15
+  integer(i8), parameter :: load_of_node = 32, load_of_point = 64
 
 contains
 
-  !> Refuse matrices that are above the limit, or for which, and for the scene, the system has not enough memory.
-  subroutine check_memory(model, matrices, limit, error)
-    type(model_type), intent(in) :: model
-    integer(i8), intent(in) :: matrices   !! [bytes]
+  !> Refuse a scene that is above the limit, or for which the system has not enough memory.
+  subroutine check_memory(bytes, limit, error)
+    integer(i8), intent(in) :: bytes      !! as forecast
     real(wp), intent(in) :: limit         !! [GB]
     type(error_type), allocatable, intent(out) :: error
-    integer(i8) :: bytes
 
-    bytes = memory_of_run(model, matrices)
-    if (real(matrices, wp) > giga*limit) then
-      call raise(error, status_usage, 'the matrices need '//gigabytes(real(matrices, wp))//', and --memory allows '// &
+    if (real(bytes, wp) > giga*limit) then
+      call raise(error, status_usage, 'the scene needs about '//gigabytes(real(bytes, wp))//' of memory, and --memory allows '// &
                  gigabytes(giga*limit))
-    else if (.not. has_memory(bytes)) then
-      call raise(error, status_usage, 'the scene needs up to '//gigabytes(real(bytes, wp))// &
+    else if (.not. has_memory(most_memory(bytes))) then
+      call raise(error, status_usage, 'the scene needs up to '//gigabytes(real(most_memory(bytes), wp))// &
                  ' of memory, and the system does not give it (ulimit -v)')
     end if
   end subroutine check_memory
 
-  !> What a run takes in all, at most [bytes].
-  pure integer(i8) function memory_of_run(model, matrices)
-    type(model_type), intent(in) :: model
-    integer(i8), intent(in) :: matrices   !! [bytes]
-    integer(i8), parameter :: part = 10000_i8   !! of a node or an element, with all that is kept of it: up to here [bytes]
+  !> What a run takes of addresses, at most: of what is forecast not all is touched, and the heap has its gaps [bytes].
+  pure integer(i8) function most_memory(bytes)
+    integer(i8), intent(in) :: bytes   !! as forecast
 
-    memory_of_run = matrices + part*(model%nodes + model%elements) + memory_of_libraries
-  end function memory_of_run
+    most_memory = 2*bytes + memory_of_libraries
+  end function most_memory
 
   pure function gigabytes(bytes) result(text)
     real(wp), intent(in) :: bytes
@@ -57,49 +67,103 @@ contains
     text = short_real(bytes/giga)//' GB'
   end function gigabytes
 
-  pure function forecast(model, numbering, plan) result(expected)
+  pure function forecast(model, motions, numbering, plan) result(expected)
     type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
     type(numbering_type), intent(in) :: numbering
     type(iteration_plan), intent(in) :: plan
     type(forecast_type) :: expected
-    integer(i8) :: entries, factor, pairs
+    integer, allocatable :: own_pairs(:)
+    integer(i8) :: entries, factor, flexibility, saved
     integer :: b
 
-    pairs = model%pairs
-    entries = 0
+    own_pairs = pairs_of_bodies(model)
+    entries = 0       ! of the factors
+    saved = 0         ! bytes, by factors in single precision
+    flexibility = 0   ! entries that are wanted for that of one body
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
-        select case (body%solver)
-        case (solver_sparse)
-          factor = sparse_entries(body%equations)
-        case (solver_frontal)
-          factor = body%fronts%entries() + body%fronts%remainders(body%can_yield)
-        case default
-          factor = panel_entries(body%reach)
-        end select
-        expected%bytes = expected%bytes + factor*merge(8, 4, body%solver == solver_sparse .or. plan%precision == precision_double)
-        expected%double_bytes = expected%double_bytes + 8_i8*factor
-        entries = entries + int(body%equations, i8)*body%border
-        if (body%contact_last) then
-          entries = entries + int(body%contact_equations, i8)**2
-        else
-          entries = entries + pairs*(pairs + body%half_bandwidth)
-        end if
+        factor = factor_entries(body)
+        entries = entries + factor + int(body%equations, i8)*body%border
+        if (body%solver /= solver_sparse .and. plan%precision /= precision_double) saved = saved + factor*real_bytes/2
+        flexibility = max(flexibility, flexibility_entries(body, int(own_pairs(b), i8)))
         expected%operations = expected%operations + 4.0_wp*body%border*factor + &
                               merge(sparse_operations(body%equations), body%operations, body%solver == solver_sparse)
       end associate
     end do
-    ! F, its scaled copy, and the tableau or factors.
-    expected%bytes = expected%bytes + 8_i8*(entries + 3_i8*pairs**2)
-    expected%double_bytes = expected%double_bytes + 8_i8*(entries + 3_i8*pairs**2)
+    associate (pairs => int(model%pairs, i8))
+      entries = entries + max(int(pair_matrices*real(pairs, wp)**2, i8), flexibility + 2*pairs**2) + &
+                (motion_matrices*pairs + 3*motions%parts%count)*motions%count
+    end associate
+    expected%double_bytes = real_bytes*entries + memory_of_model(model, min(motions%count, loads_at_once))
+    expected%bytes = expected%double_bytes - saved
     if (plan%contact%by_blocks) then
       ! The full set factored twice; the sets on the way to it are smaller, or little of them is factored.
-      expected%operations = expected%operations + 2.0_wp/3.0_wp*real(pairs, wp)**3
+      expected%operations = expected%operations + 2.0_wp/3.0_wp*real(model%pairs, wp)**3
     else
       ! A pivot runs over the whole tableau, about one pivot a pair.
-      expected%operations = expected%operations + 2.0_wp*real(pairs, wp)**3
+      expected%operations = expected%operations + 2.0_wp*real(model%pairs, wp)**3
     end if
   end function forecast
+
+  !> Entries of the factor of a body, and of what is kept with it.
+  pure integer(i8) function factor_entries(body) result(entries)
+    type(body_numbering), intent(in) :: body
+
+    select case (body%solver)
+    case (solver_sparse)
+      entries = sparse_entries(body%equations)
+    case (solver_frontal)
+      entries = body%fronts%entries() + body%fronts%remainders(body%can_yield)
+    case default
+      entries = panel_entries(body%reach)
+    end select
+  end function factor_entries
+
+  !> Entries wanted while a body's part of the flexibility is found: the trailing block of the inverse, or the window that
+  !! right-hand sides go through; and that part.
+  pure integer(i8) function flexibility_entries(body, pairs) result(entries)
+    type(body_numbering), intent(in) :: body
+    integer(i8), intent(in) :: pairs   !! of this body
+
+    if (body%contact_last) then
+      entries = int(body%contact_equations, i8)**2 + pairs**2
+    else
+      entries = pairs*body%half_bandwidth + 2*pairs**2
+    end if
+  end function flexibility_entries
+
+  !> Pairs that have nodes in each body [bodies].
+  pure function pairs_of_bodies(model) result(pairs)
+    type(model_type), intent(in) :: model
+    integer, allocatable :: pairs(:)
+    integer, allocatable :: last(:)   !! pair that was counted
+    integer :: i, k
+
+    allocate (pairs(model%bodies), last(model%bodies), source=0)
+    do k = 1, model%pairs
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        associate (b => model%body(model%row_node(i)))
+          if (last(b) < k) pairs(b) = pairs(b) + 1
+          last(b) = k
+        end associate
+      end do
+    end do
+  end function pairs_of_bodies
+
+  !> What a run holds besides its matrices [bytes].
+  pure integer(i8) function memory_of_model(model, loads) result(bytes)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: loads   !! unit loads at once
+    integer :: e, p
+
+    bytes = of_process + (of_node + load_of_node*loads)*model%nodes + load_of_point*loads*model%points
+    do p = 1, model%points
+      e = model%point_element(p)
+      bytes = bytes + of_point + of_node_of_point*model%order(e)
+      if (model%can_yield(e)) bytes = bytes + of_yielding_point
+    end do
+  end function memory_of_model
 
   !> Entries that MUMPS takes for its factor and its work: of nested fronts in the plane, n log n.
   pure integer(i8) function sparse_entries(equations)

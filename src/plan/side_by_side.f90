@@ -5,8 +5,7 @@ module epcont_plan_side_by_side
   use epcont_base_memory, only: has_memory, memory_of_thread
   use epcont_base_sorting, only: sorted_order
   use epcont_model_controls, only: solver_sparse
-  use epcont_model_model, only: model_type
-  use epcont_plan_forecast, only: memory_of_run
+  use epcont_plan_forecast, only: most_memory
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
@@ -18,10 +17,9 @@ module epcont_plan_side_by_side
 contains
 
   !> Threads for a scene: one where there is no memory for more, and with MUMPS, which does not bear calls side by side.
-  integer function plan_threads(model, numbering, matrices, granted) result(threads)
-    type(model_type), intent(in) :: model
+  integer function plan_threads(numbering, bytes, granted) result(threads)
     type(numbering_type), intent(in) :: numbering
-    integer(i8), intent(in) :: matrices   !! [bytes]
+    integer(i8), intent(in) :: bytes      !! that the run will hold on one thread
     integer, intent(in) :: granted
     real(wp), allocatable :: operations(:)
 
@@ -30,7 +28,7 @@ contains
     operations = numbering%body%operations
     threads = threads_for(operations, granted)
     if (threads == 1) return
-    if (.not. has_memory(memory_of_run(model, matrices) + (threads - 1)*memory_of_thread)) threads = 1
+    if (.not. has_memory(most_memory(bytes) + (threads - 1)*memory_of_thread)) threads = 1
   end function plan_threads
 
   !> Threads for some bodies: no more than granted, nor than are over before the largest body alone; one where a second would have

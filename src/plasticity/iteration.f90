@@ -33,6 +33,7 @@ module epcont_plasticity_iteration
   type :: plastic_run
     type(scene_state), allocatable :: state    !! the answer, or what came nearest to one
     type(linear_scene), allocatable :: scene   !! as the last solve left it, if there is an answer
+    type(linear_law), allocatable :: law       !! of that solve
     real(wp) :: load_factor = 0.0_wp       !! part of the loads that `state` carries
     logical :: converged = .false.         !! all loads, to the tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
@@ -52,7 +53,7 @@ module epcont_plasticity_iteration
     type(iteration_plan) :: plan
     type(material_type), allocatable :: material(:)   !! [sections]
     type(linear_scene), allocatable :: scene
-    type(linear_law) :: law
+    type(linear_law), allocatable :: law
     type(scene_state) :: about                        !! the state that the law is about
     integer :: yielded = 0                            !! elements that yield there
     logical, allocatable :: touching(:)               !! the last contact set: the next simplex starts from it [pairs]
@@ -107,6 +108,7 @@ contains
     end do
     run%converged = converged
     call move_alloc(loop%scene, run%scene)
+    call move_alloc(loop%law, run%law)
   end subroutine follow_loads
 
   subroutine begin(model, motions, plan, loop)

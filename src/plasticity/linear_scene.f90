@@ -16,6 +16,7 @@ module epcont_plasticity_linear_scene
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
+  use epcont_plasticity_completion, only: complete_state
   use epcont_plasticity_state, only: scene_state
   implicit none
   private
@@ -24,8 +25,6 @@ module epcont_plasticity_linear_scene
   !> Refinement is over when a step changes no strain by more than this part of the largest: the next would change it by
   !! much less. Where two steps no longer halve it, rounding is reached, or single precision leaves too little to begin with.
   real(wp), parameter :: small_step = 1.0e-11_wp, rounding_step = 1.0e-10_wp, slowest_rate = 0.5_wp
-  !> Part of what a gap is the sum of from which on it is open, though the flexibility has it touch.
-  real(wp), parameter :: clearly_open = 1.0e-6_wp
 
   type :: linear_scene
     type(strain_operator), allocatable :: operator
@@ -43,6 +42,7 @@ module epcont_plasticity_linear_scene
   contains
     procedure :: set_stiffness
     procedure :: solve
+    procedure :: sharpen
     procedure :: rounding_error
     procedure :: estimate_condition
     procedure, private :: factor_bodies
@@ -191,12 +191,37 @@ contains
       call solve_once(self, model, numbering, law, part, start, state, watch)
     end if
     if (state%contact%state /= contact_solved) return
-    state%stress = law%stress(state%strain)
-    state%displacement = state%deformation + part*model%travel
-    call add_motions(model, motions, state)
-    call measure_gaps(self, model, part, state)
+    call complete_state(model, motions, law, self%problem, part, state)
     call watch%lap(stage_displacements)
   end subroutine solve
+
+  !> One step of refinement of what `solve` has found: where a body is long and its elements fine, rounding leaves forces out of
+  !! balance though the factors are in double. The contact follows the deformation, and that the contact.
+  subroutine sharpen(self, model, motions, numbering, law, part, state, watch)
+    class(linear_scene), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(linear_law), intent(in) :: law
+    real(wp), intent(in) :: part
+    type(scene_state), intent(inout) :: state   !! as it was where the contact is not found again
+    class(stopwatch), intent(inout) :: watch
+    type(scene_state) :: refined
+    logical, allocatable :: touching(:)
+    real(wp) :: change
+
+    refined = state
+    touching = state%contact%touching
+    call correct(self, model, numbering, law, part, refined, change)
+    call watch%lap(stage_displacements)
+    call solve_contact_about(self, model, part, touching, refined)
+    call watch%lap(stage_contact)
+    if (refined%contact%state /= contact_solved) return
+    call correct(self, model, numbering, law, part, refined, change)
+    call complete_state(model, motions, law, self%problem, part, refined)
+    state = refined
+    call watch%lap(stage_displacements)
+  end subroutine sharpen
 
   !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
   subroutine solve_once(self, model, numbering, law, part, start, state, watch)
@@ -334,33 +359,6 @@ contains
       error = max(error, maxval(abs(refined%contact%force - state%contact%force))/maxval(state%contact%force))
   end subroutine rounding_error
 
-  !> Gaps of the pairs without force as the displacements have them. Where a rigid stop takes the load, what the flexibility says
-  !! of the others is rounding of two deformations that cancel: a pair that seemed to touch may be open.
-  pure subroutine measure_gaps(self, model, part, state)
-    class(linear_scene), intent(in) :: self
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: part
-    type(scene_state), intent(inout) :: state
-    real(wp), allocatable :: opening(:)
-    real(wp) :: gap, terms   !! what the gap is the sum of, added up
-    integer :: i, k
-
-    opening = gap_opening(model, state%deformation) + part*self%travel_gap
-    associate (contact => state%contact, g0 => self%problem%initial_gap, motion => self%problem%motion)
-      do k = 1, model%pairs
-        if (contact%force(k) > 0.0_wp) cycle
-        gap = g0(k) + opening(k) - dot_product(motion(k, :), contact%approach)
-        terms = abs(g0(k)) + abs(part*self%travel_gap(k)) + sum(abs(motion(k, :)*contact%approach))
-        do i = model%row_start(k), model%row_start(k + 1) - 1
-          terms = terms + abs(model%row_weight(i))*maxval(abs(state%deformation(:, model%row_node(i))))
-        end do
-        if (contact%touching(k) .and. gap <= clearly_open*terms) cycle
-        contact%touching(k) = .false.
-        contact%gap(k) = max(gap, 0.0_wp)
-      end do
-    end associate
-  end subroutine measure_gaps
-
   !> Estimate of the condition of the stiffness in the 1-norm.
   pure subroutine estimate_condition(self, model, numbering, condition)
     class(linear_scene), intent(inout) :: self
@@ -370,19 +368,4 @@ contains
 
     call self%bodies%estimate_condition(model, self%operator, self%law, numbering, condition)
   end subroutine estimate_condition
-
-  !> Add the rigid motions to the displacements.
-  pure subroutine add_motions(model, motions, state)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(scene_state), intent(inout) :: state
-    integer :: k, node
-
-    do k = 1, motions%count
-      do node = 1, model%nodes
-        state%displacement(:, node) = state%displacement(:, node) &
-                                      + state%contact%approach(k)*motions%displacement(model, node, k)
-      end do
-    end do
-  end subroutine add_motions
 end module epcont_plasticity_linear_scene

@@ -2,11 +2,11 @@
 !>
 !> They are written by the streams of C, which say whether all has reached the disk; Fortran's `close` does not.
 module epcont_report_file
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
   use epcont_base_error, only: error_type, raise, status_usage
   implicit none
   private
-  public :: text_file, new_text_file, make_directory, remove_file
+  public :: text_file, new_text_file, make_directory, remove_file, file_lock, lock_files, unlock_files
 
   !> Between `new_text_file` and `finish` the program is not to be stopped, lest half a file stay behind.
   type :: text_file
@@ -17,6 +17,15 @@ module epcont_report_file
     procedure :: line
     procedure :: finish
   end type text_file
+
+  integer(c_int), parameter :: no_file = -1
+
+  !> The right to write the files of one name, till it is given back or the process ends, however it ends.
+  type :: file_lock
+    private
+    integer(c_int) :: descriptor = no_file
+    character(len=:), allocatable :: path
+  end type file_lock
 
   !> SIGHUP, SIGINT and SIGTERM: who sends these wants the program to end in good order.
   integer(c_int), parameter :: stop_signals(3) = [1_c_int, 2_c_int, 15_c_int]
@@ -40,6 +49,25 @@ module epcont_report_file
       import :: c_int, c_ptr
       type(c_ptr), value :: stream
     end function c_fclose
+    integer(c_int) function c_fileno(stream) bind(c, name='fileno')
+      import :: c_int, c_ptr
+      type(c_ptr), value :: stream
+    end function c_fileno
+    integer(c_int) function c_flock(descriptor, operation) bind(c, name='flock')
+      import :: c_int
+      integer(c_int), value :: descriptor, operation
+    end function c_flock
+    integer(c_int) function c_fcntl(descriptor, command, argument) bind(c, name='fcntl')
+      import :: c_int
+      integer(c_int), value :: descriptor, command, argument
+    end function c_fcntl
+    integer(c_int) function c_close(descriptor) bind(c, name='close')
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_close
+    type(c_ptr) function c_errno_location() bind(c, name='__errno_location')
+      import :: c_ptr
+    end function c_errno_location
     integer(c_int) function c_rename(old, new) bind(c, name='rename')
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: old(*), new(*)
@@ -81,6 +109,62 @@ contains
 
     ignored = c_unlink(path//c_null_char)
   end subroutine remove_file
+
+  !> Take the right to write the files that begin with `stem`. What tells others is a lock of the system on a file beside them: one
+  !! that a killed process left behind is free. Where there can be no such file that shows when results are written, and where the
+  !! file system knows no locks there is none.
+  subroutine lock_files(stem, lock, error)
+    character(len=*), intent(in) :: stem
+    type(file_lock), intent(out) :: lock
+    type(error_type), allocatable, intent(out) :: error
+    integer(c_int), parameter :: exclusive_at_once = 6, would_wait = 11   ! LOCK_EX + LOCK_NB, EWOULDBLOCK of Linux
+    integer(c_int), pointer :: errno
+    integer(c_int) :: ignored
+    logical :: exists
+
+    lock%path = stem//'.lock'
+    do
+      call open_lock(lock)
+      if (lock%descriptor == no_file) return
+      if (c_flock(lock%descriptor, exclusive_at_once) /= 0) then
+        call c_f_pointer(c_errno_location(), errno)
+        if (errno /= would_wait) return
+        ignored = c_close(lock%descriptor)
+        lock%descriptor = no_file
+        call raise(error, status_usage, stem//'.lst: another run is at work on these results: wait for it, '// &
+                   'or take another -o DIR')
+        return
+      end if
+      inquire (file=lock%path, exist=exists)
+      if (exists) return
+      ignored = c_close(lock%descriptor)   ! who had it has removed it since we opened it
+    end do
+  end subroutine lock_files
+
+  !> Open the file; but not in the place of a standard stream that is closed, or what is printed would go there.
+  subroutine open_lock(lock)
+    type(file_lock), intent(inout) :: lock
+    integer(c_int), parameter :: duplicate = 0, first = 3   ! F_DUPFD of Linux, and the first that is no standard stream
+    type(c_ptr) :: stream
+    integer(c_int) :: ignored
+
+    lock%descriptor = no_file
+    stream = c_fopen(lock%path//c_null_char, 'a'//c_null_char)
+    if (.not. c_associated(stream)) return
+    lock%descriptor = c_fcntl(c_fileno(stream), duplicate, first)
+    ignored = c_fclose(stream)
+  end subroutine open_lock
+
+  !> Give it back.
+  subroutine unlock_files(lock)
+    type(file_lock), intent(inout) :: lock
+    integer(c_int) :: ignored
+
+    if (lock%descriptor == no_file) return
+    call remove_file(lock%path)
+    ignored = c_close(lock%descriptor)
+    lock%descriptor = no_file
+  end subroutine unlock_files
 
   !> Begin a file.
   subroutine new_text_file(path, file, error)

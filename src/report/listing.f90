@@ -11,7 +11,7 @@ module epcont_report_listing
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
-  use epcont_report_layout, only: figure, heading, lines, right
+  use epcont_report_layout, only: figure, heading, right, wrap
   use epcont_report_number, only: column_number, known_column, rounding_number
   use epcont_report_outcome, only: outcome_type
   use epcont_result_answer, only: answer_type
@@ -24,11 +24,10 @@ module epcont_report_listing
 
 contains
 
-  !> Title, what the deck holds, and what of it has no effect.
-  subroutine list_deck(file, deck, notes)
+  !> Title, and what the deck holds.
+  subroutine list_deck(file, deck)
     type(text_file), intent(in) :: file
     type(deck_type), intent(in) :: deck
-    character(len=*), intent(in) :: notes   !! of what in it has no effect, in lines
     integer :: k
 
     call file%line(program_name//' '//program_version//'   elastoplastic contact of plane bodies and rings')
@@ -46,7 +45,6 @@ contains
       if (deck%card(k)%count > 0) &
         call file%line('  '//deck%entry(k)%name//'  '//right(text_of(deck%card(k)%count), 9))
     end do
-    call lines(file, notes)
   end subroutine list_deck
 
   !> What came of the run, where the answer is not valid.
@@ -59,23 +57,6 @@ contains
     file%mark = '  *NOT VALID: '//outcome%word//'*'
     call wrap(file, '  *NOT VALID*  '//outcome%word//': '//outcome%sentence)
   end subroutine list_outcome
-
-  !> Text on lines of at most 132 columns.
-  subroutine wrap(file, text)
-    type(text_file), intent(in) :: file
-    character(len=*), intent(in) :: text
-    integer, parameter :: columns = 132
-    integer :: from, to
-
-    from = 1
-    do while (len(text) - from >= columns - 4)
-      to = from + index(text(from:from + columns - 4), ' ', back=.true.) - 1
-      if (to <= from) to = from + columns - 4
-      call file%line(repeat(' ', merge(4, 0, from > 1))//text(from:to))
-      from = to + 1
-    end do
-    call file%line(repeat(' ', merge(4, 0, from > 1))//text(from:))
-  end subroutine wrap
 
   !> Forces, pressures and gaps of the pairs, and the pivots that led to them.
   subroutine list_contact(file, model, answer)

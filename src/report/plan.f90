@@ -59,7 +59,7 @@ contains
       end associate
     end do
     if (model%bodies > most) text = text//'  and '//plural(model%bodies - most, 'further one')//newline
-    text = text//newline//'  memory for matrices '//megabytes(expected%bytes)
+    text = text//newline//'  memory '//megabytes(expected%bytes)
     if (iteration%precision /= precision_double) text = text//' (in double '//megabytes(expected%double_bytes)//')'
     text = text//', operations '//short_real(expected%operations)// &
            trim(merge(' a solve', '        ', iteration%yields))//newline

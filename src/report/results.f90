@@ -13,13 +13,14 @@ module epcont_report_results
   use epcont_report_listing, only: list_contact, list_deck, list_elements, list_lines, list_nodes, list_outcome, &
                                    list_summary, list_zones
   use epcont_report_outcome, only: outcome_type
+  use epcont_report_remarks, only: list_remarks, remarks_type
   use epcont_report_tables, only: write_contact, write_elements, write_history, write_nodes, write_summary, write_zones
   use epcont_report_vtk_bodies, only: write_vtk_bodies
   use epcont_report_vtk_contact, only: write_vtk_contact
   use epcont_result_answer, only: answer_type
   implicit none
   private
-  public :: run_results, write_results, result_file
+  public :: run_results, write_results, remove_results, result_file
 
   !> A file of results: what stands behind the name of the deck, and what it holds.
   type :: result_file
@@ -42,7 +43,7 @@ module epcont_report_results
   type :: run_results
     type(deck_type) :: deck
     type(diagnostics) :: faults
-    character(len=:), allocatable :: notes   !! of what in the deck has no effect, in lines
+    type(remarks_type) :: remarks
     type(model_type) :: model
     type(free_motions) :: motions
     character(len=:), allocatable :: plan   !! in words
@@ -69,7 +70,7 @@ contains
     call write_listing(run, stem, nodes, elements, error)
     associate (model => run%model, answer => run%answer)
       if (.not. allocated(error)) &
-        call write_summary(stem, model, run%motions, answer, run%certificate, run%accuracy, run%outcome, error)
+        call write_summary(stem, model, run%motions, answer, run%certificate, run%accuracy, run%outcome, run%remarks, error)
       if (.not. run%outcome%has_answer) return
       if (.not. allocated(error)) call write_contact(stem, model, answer, error)
       if (.not. allocated(error)) call write_zones(stem, model, answer%zones, error)
@@ -82,7 +83,7 @@ contains
     end associate
   end subroutine write_results
 
-  !> Remove what an earlier run has left: what is there is of one run, also where this one is stopped or has no answer.
+  !> Remove what an earlier run has left: what is there is of one run, also where this one is stopped, or has nothing to say.
   subroutine remove_results(stem)
     character(len=*), intent(in) :: stem
     integer :: i
@@ -101,7 +102,8 @@ contains
 
     call new_text_file(stem//'.lst', file, error)
     if (allocated(error)) return
-    call list_deck(file, run%deck, run%notes)
+    call list_deck(file, run%deck)
+    call list_remarks(file, run%remarks)
     call file%line(run%plan(:len(run%plan) - 1))
     call list_outcome(file, run%outcome)
     if (run%outcome%has_answer) then

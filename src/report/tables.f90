@@ -10,6 +10,7 @@ module epcont_report_tables
   use epcont_report_file, only: new_text_file, text_file
   use epcont_report_number, only: full_number, known_number
   use epcont_report_outcome, only: outcome_type
+  use epcont_report_remarks, only: remarks_type
   use epcont_result_answer, only: answer_type
   use epcont_result_zones, only: contact_zone
   use epcont_result_iteration_error, only: estimate_iteration_error, iteration_error
@@ -21,7 +22,7 @@ module epcont_report_tables
 contains
 
   !> key,value,unit.
-  subroutine write_summary(stem, model, motions, answer, certificate, accuracy, outcome, error)
+  subroutine write_summary(stem, model, motions, answer, certificate, accuracy, outcome, remarks, error)
     character(len=*), intent(in) :: stem
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
@@ -29,6 +30,7 @@ contains
     type(certificate_type), intent(in) :: certificate
     type(accuracy_type), intent(in) :: accuracy
     type(outcome_type), intent(in) :: outcome
+    type(remarks_type), intent(in) :: remarks
     type(error_type), allocatable, intent(out) :: error
     type(text_file) :: file
     type(iteration_error) :: error_left
@@ -39,6 +41,8 @@ contains
     if (allocated(error)) return
     call file%line('key,value,unit')
     call file%line('status,'//outcome%word//',')
+    call file%line('warnings,'//text_of(remarks%warnings)//',')
+    call file%line('notes,'//text_of(remarks%notes)//',')
     if (outcome%has_answer) then
       if (model%pairs > 0) &
         call file%line('max_pressure,'//known_number(answer%largest_pressure())//',force/length2')

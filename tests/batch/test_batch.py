@@ -14,6 +14,27 @@ from common import PROGRAM, ROOT, SMALL, Case  # noqa: E402
 
 
 class Whole(Case):
+    def test_warnings(self):
+        """Counted, the first of them told, and in the closing line."""
+        blseg = "BLSEG,7,1,2\n"
+        text = SMALL.read_text().replace("ENDDATA", blseg + "ENDDATA")
+        self.deck("a.dat")
+        (self.place / "b.dat").write_text(text)
+        run = self.run_it(0, "a.dat", "b.dat", "-o", "out")
+        rows = self.table()
+        self.assertEqual([("0", ""), ("1", f"{text[:text.index(blseg)].count(chr(10)) + 1}:7: warning: BLSEG 7: no BCONP names it; a BCONP "
+                                           "with it as SLAVE or MASTER, or no such line")],
+                         [(row["warnings"], row["first_warning"]) for row in rows])
+        self.assertIn("2 valid (1 of them with warnings)\n", run.stdout)
+
+    def test_no_formulas(self):
+        """Neither in names nor in values that a table of decks brings along; numbers are numbers."""
+        self.decks("=1+1.dat", "b.dat")
+        (self.place / "list.csv").write_text("deck,+a\n=1+1.dat,@SUM(1)\nb.dat,-1.5\n")
+        self.run_it(0, "--list", "list.csv", "-o", "out")
+        rows = self.table()
+        self.assertEqual([("'=1+1.dat", "'@SUM(1)"), ("b.dat", "-1.5")], [(row["deck"], row["'+a"]) for row in rows])
+
     def test_a_row_a_deck_in_the_order_of_the_list(self):
         self.decks("b.dat", "a.dat", "c_rejected.dat")
         run = self.run_it(1, "b.dat", "c_rejected.dat", "a.dat", "missing.dat", "-o", "out", "-j", "2")

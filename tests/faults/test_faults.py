@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """test_faults.py PROGRAM: what can go wrong around a run. Files appear whole or not at all, and the exit status says so."""
+import fcntl
 import os
 import pathlib
 import re
@@ -155,6 +156,7 @@ class Stopped(Case):
                 run.send_signal(number)
                 ended.append(run.wait(60))
                 left = self.files(pathlib.Path(place))
+                self.assertIn(left.pop("pin_in_lug60.lock", b""), (b"",))   # empty, and locked no more
                 yield ended[-1], left, whole, place
         self.assertIn(-number, ended, "no run was stopped before its end")
 
@@ -179,6 +181,117 @@ class Stopped(Case):
         left = self.files(self.directory)
         self.assertNotIn("hertz44.lst.part", left)
         self.assertNotIn(b"long ago", left["hertz44.lst"])
+
+
+class OneRunAtATime(Case):
+    """Results are of one run; what is there under the name of a deck is that run's."""
+    def deck(self, text=None):
+        path = self.directory / "scene.dat"
+        path.write_text(pathlib.Path(SMALL).read_text() if text is None else text)
+        return path
+
+    def test_the_second_refuses(self):
+        with open(self.directory / "hertz44.lock", "w", encoding="ascii") as held:
+            fcntl.flock(held, fcntl.LOCK_EX)
+            (self.directory / "hertz44.lst").write_text("of the other\n")
+            run = self.run_it(SMALL, "-o", self.directory)
+            self.assertEqual((3, b"", f"{self.directory}/hertz44.lst: another run is at work on these results: wait for it, "
+                                      "or take another -o DIR\n".encode()), (run.returncode, run.stdout, run.stderr))
+            self.assertEqual(b"of the other\n", self.files(self.directory)["hertz44.lst"])
+            self.check(self.run_it(SMALL, "--check"), 0)
+        self.check(self.run_it(SMALL, "-o", self.directory), 0)   # left behind, and nobody's
+        self.assertNotIn("hertz44.lock", self.files(self.directory))
+
+    def test_two_at_once(self):
+        """One of them ends, and what is there is whole and its own; the others refuse, or come after it."""
+        self.check(self.run_it(LARGE, "-o", self.directory, *ALL), 0)
+        whole = self.files(self.directory)
+        runs = [subprocess.Popen([PROGRAM, LARGE, "-o", self.directory, *ALL], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+                for _ in range(6)]
+        said = [run.communicate(timeout=100)[1] for run in runs]
+        self.assertIn(0, [run.returncode for run in runs])
+        for run, words in zip(runs, said):
+            self.assertIn(run.returncode, (0, 3))
+            self.assertEqual(run.returncode == 3, b"another run is at work" in words)
+        self.assertEqual(whole, self.files(self.directory))
+
+    def test_what_is_refused_leaves_nothing(self):
+        sound = self.deck()
+        text = sound.read_text()
+        for status, spoilt, options in ((2, text.replace("ENDDATA", ""), ()), (2, text.replace("MAT1", "MAT7"), ()),
+                                        (3, text, ("--memory", "0.001")), (3, None, ())):
+            self.deck(text)
+            self.check(self.run_it(sound, "-o", self.directory, *ALL), 0)
+            self.assertEqual(10, len(self.files(self.directory)))
+            sound.unlink()
+            if spoilt is not None:
+                self.deck(spoilt)
+            before = self.files(self.directory)
+            run = self.run_it(sound, "-o", self.directory, "--check")
+            self.assertEqual(before, self.files(self.directory))
+            run = self.run_it(sound, "-o", self.directory, *ALL, *options)
+            self.assertEqual(status, run.returncode, run.stderr)
+            self.assertEqual({"scene.dat"} & set(before), set(self.files(self.directory)))
+
+    def test_names_with_control_characters(self):
+        name = "a\nb\x1b[31m\u009bx\u00e9=1"
+        path = self.directory / f"{name}.dat"
+        seen = "a\\x0Ab\\x1B[31m\\xC2\\x9Bx\u00e9=1"
+        text = pathlib.Path(SMALL).read_text()
+        for status, spoilt, options in ((0, text, ()), (0, text, ("--plan",)), (0, text, ("--timing", "--progress")), (3, text, ("--memory", "0.001")),
+                                        (2, text.replace("ENDDATA", ""), ()), (3, None, ())):
+            path.write_text(spoilt) if spoilt is not None else path.unlink()
+            run = self.run_it(path, "-o", self.directory, *options)
+            self.assertEqual(status, run.returncode, run.stderr)
+            for stream in (run.stdout.decode(), run.stderr.decode()):
+                self.assertEqual([], [c for c in stream if c != "\n" and (c < " " or "\x7f" <= c < "\xa0")])
+                self.assertNotIn("a\nb", stream)
+            self.assertIn(seen, run.stdout.decode() + run.stderr.decode())
+
+
+class Remarks(Case):
+    """Warnings and notes are in the listing, all of them, and counted in the summary."""
+    BLOCK = ["BEGIN BULK", "GRID,1,,0.,0.", "GRID,2,,1.,0.", "GRID,3,,1.,1.", "GRID,4,,0.,1.", "CQUAD4,1,1,1,2,3,4",
+             "PSHELL,1,1,1.,-1", "SPC1,1,12,1,2"]
+    FORCE = "FORCE,1,3,,1.,0.,-1.,0."
+
+    def solve(self, *cards, force=FORCE, density="1.", place="."):
+        path = self.directory / place / "scene.dat"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("\n".join([*self.BLOCK, f"MAT1,1,1000.,,.3,{density}", force, *cards, "ENDDATA", ""]))
+        run = self.run_it(path, "-o", path.parent)
+        self.check(run, 0)
+        listing = (path.parent / "scene.lst").read_text()
+        section = re.search(r"^(WARNINGS AND NOTES .*)\n((?:  .*\n)+)", listing, re.MULTILINE)
+        summary = (path.parent / "scene.summary.csv").read_text().splitlines()[1:4]
+        return run.stderr.decode(), section and section[1], section[2].splitlines() if section else [], summary
+
+    def test_none(self):
+        self.assertEqual(("", None, [], ["status,valid,", "warnings,0,", "notes,0,"]), self.solve(density=""))
+
+    def test_a_hundred_warnings(self):
+        (self.directory / "there").mkdir()
+        (self.directory / "there" / "lines.inc").write_text("".join(f"BLSEG,{k},1,2\n" for k in range(1, 51)))
+        cards = ["INCLUDE 'lines.inc'", *(f"BLSEG,{k},1,2" for k in range(51, 101))]
+        said, heading, lines, summary = self.solve(*cards, place="there")
+        self.assertEqual("WARNINGS AND NOTES  (100 warnings, 1 note)", heading)
+        self.assertEqual(["status,valid,", "warnings,100,", "notes,1,"], summary)
+        remedy = "no BCONP names it; a BCONP with it as SLAVE or MASTER, or no such line"
+        self.assertEqual(["  9:18-19: MAT1: field 6 (RHO) has no effect (cards with it: 1)"] +
+                         [f"  lines.inc:{k}:7{'-8' if k > 9 else ''}: warning: BLSEG {k}: {remedy}" for k in range(1, 51)] +
+                         [f"  {k - 39}:7-{8 if k < 100 else 9}: warning: BLSEG {k}: {remedy}" for k in range(51, 101)], lines)
+        self.assertIn("100 warnings (50 shown)\n", said)
+
+    def test_of_the_answer(self):
+        """Displacements are known, and not small, when all else is over; the text goes on below where it is long."""
+        said, heading, lines, summary = self.solve(force="FORCE,1,3,,300.,0.,-1.,0.")
+        self.assertEqual("WARNINGS AND NOTES  (1 warning, 1 note)", heading)
+        self.assertEqual(["status,valid,", "warnings,1,", "notes,1,"], summary)
+        text = "warning: displacements are not small: 100 % of the volume turned or stretched by over 0.1, most at 0.5000 0.5000; " \
+               "equilibrium and contact are those of the undeformed shape"
+        self.assertEqual(["  9:18-19: MAT1: field 6 (RHO) has no effect (cards with it: 1)",
+                          "  " + text[:text.index(" and contact")], "    " + text[text.index("and contact"):]], lines)
+        self.assertEqual(f"{self.directory}/scene.dat: {text}\n", said)
 
 
 class Output(Case):
@@ -208,7 +321,7 @@ class Output(Case):
 
 class Memory(Case):
     def test_the_forecast_is_above_the_limit(self):
-        self.check(self.run_it(LARGE, "-o", self.directory, "--memory", "0.001"), 3, "the matrices need", "--memory allows 0.001000 GB")
+        self.check(self.run_it(LARGE, "-o", self.directory, "--memory", "0.001"), 3, "the scene needs about", "--memory allows 0.001000 GB")
         self.assertEqual({}, self.files(self.directory))
 
     def test_no_limit(self):

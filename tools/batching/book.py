@@ -12,7 +12,7 @@ import json
 import os
 
 from .decks import Deck, Refused, fingerprint
-from .outcome import ANSWERED, COLUMNS, KILLED, NOT_RUN
+from .outcome import ANSWERED, COLUMNS, KILLED, NOT_RUN, number
 
 ENDED = {"place", "row", "inputs", "at", "version", "listing"}   # what a line that tells of an end has
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
@@ -105,8 +105,8 @@ class Book:
         columns = COLUMNS[:1] + list(plan["decks"][0].values) + COLUMNS[1:]
         text = io.StringIO()
         table = csv.DictWriter(text, columns, lineterminator="\n")
-        table.writeheader()
-        table.writerows(rows)
+        table.writerow({name: no_formula(name) for name in columns})
+        table.writerows({name: no_formula(value) for name, value in row.items()} for row in rows)
         write_whole(self.table_path, text.getvalue())
         return rows
 
@@ -178,6 +178,13 @@ def write_whole(path, text):
         with contextlib.suppress(OSError):
             os.unlink(path + ".part")
         raise Refused(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def no_formula(value):
+    """What a spreadsheet would take for a formula is a text to it with an apostrophe before it; numbers stay as they are."""
+    if not isinstance(value, str) or not value.lstrip().startswith(("=", "+", "-", "@")) or number(value) is not None:
+        return value
+    return "'" + value
 
 
 def size_of(path):

@@ -7,7 +7,7 @@ import signal
 import tables
 
 COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "nodes", "p_max", "approach", "p_max_error",
-           "certificate", "certificate_part"]
+           "certificate", "certificate_part", "warnings", "first_warning"]
 ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "singular stiffness", "contact not found", "ill-conditioned",
             "not certified"}   # words of a whole listing
 NOT_RUN = "not run"
@@ -85,7 +85,15 @@ def figures(listing, summary):
     if error is not None and pressure:
         found["p_max_error"] = f"{error / pressure:.3g}"
     found["certificate"], found["certificate_part"] = worst_of_certificate(listing, summary)
+    found["warnings"], found["first_warning"] = summary.get("warnings", ""), first_warning(listing)
     return found
+
+
+def first_warning(listing):
+    """With its place, in one line again."""
+    section = re.search(r"^WARNINGS AND NOTES .*\n((?:  .*\n)+)", listing, re.MULTILINE)
+    lines = re.sub(r"\n {4}(?! )", " ", section[1]).splitlines() if section else []
+    return next((line.strip() for line in lines if re.match(r"  (?:.*?\d+:\d+(?:-\d+)?: )?warning: ", line)), "")
 
 
 def worst_of_certificate(listing, summary):

@@ -1,0 +1,96 @@
+!> Warnings and notes of a run: what the deck has that is not as it seems, and what of the answer is not as it should be. They stand
+!> in the listing, are counted in the summary, and warnings go to standard error too.
+module epcont_report_remarks
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: plural, short_real, text_of
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_deck_render, only: render_notes
+  use epcont_deck_source, only: source
+  use epcont_model_model, only: model_type
+  use epcont_report_file, only: text_file
+  use epcont_report_layout, only: heading, newline, wrap
+  use epcont_result_answer, only: answer_type
+  use epcont_result_locking, only: high_poisson
+  implicit none
+  private
+  public :: remarks_type, remarks_of_deck, remark_answer, list_remarks
+
+  type :: remarks_type
+    integer :: warnings = 0, notes = 0
+    character(len=:), allocatable :: of_deck     !! in lines; of warnings the place is followed by `warning: `
+    character(len=:), allocatable :: of_answer   !! in lines, each a warning
+  end type remarks_type
+
+  character(len=*), parameter :: warning = 'warning: '
+
+contains
+
+  !> Those of the deck.
+  pure function remarks_of_deck(faults, lines) result(remarks)
+    type(diagnostics), intent(in) :: faults
+    type(source), intent(in) :: lines
+    type(remarks_type) :: remarks
+
+    remarks%warnings = faults%warning_count()
+    remarks%notes = faults%note_count()
+    remarks%of_deck = render_notes(faults, lines)
+    remarks%of_answer = ''
+  end function remarks_of_deck
+
+  !> Add those of an answer: where its equations, solved as they are, are not those of the scene.
+  pure subroutine remark_answer(model, answer, remarks)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    type(remarks_type), intent(inout) :: remarks
+
+    if (answer%gradient%part > 0.0_wp) call warn(not_small(model, answer), remarks)
+    if (answer%locking%elements > 0) call warn(plural(answer%locking%elements, 'three-node element')// &
+      ' of nearly constant volume (Poisson''s ratio '//short_real(high_poisson)// &
+      ' or more, as yielding has made it): too stiff; six-node elements or CQUAD4 would be right', remarks)
+    if (any(answer%beyond)) call warn(plural(count(answer%beyond), 'element')// &
+      ' strained beyond the last point of the table, whose last slope goes on', remarks)
+    if (answer%unloaded > 0) call warn(plural(answer%unloaded, 'element')// &
+      ' unloaded after yielding: the theory takes them back along the curve, not along the elastic line', remarks)
+  end subroutine remark_answer
+
+  pure subroutine warn(text, remarks)
+    character(len=*), intent(in) :: text
+    type(remarks_type), intent(inout) :: remarks
+
+    remarks%warnings = remarks%warnings + 1
+    remarks%of_answer = remarks%of_answer//warning//text//newline
+  end subroutine warn
+
+  pure function not_small(model, answer) result(text)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    character(len=:), allocatable :: text
+    character(len=12) :: part
+    real(wp) :: centre(2)
+
+    associate (gradient => answer%gradient)
+      centre = sum(model%coordinates(gradient%worst), dim=2)/model%order(gradient%worst)
+      write (part, '(i0)') nint(100.0_wp*gradient%part)
+      text = 'displacements are not small: '//trim(part)//' % of the volume turned or stretched by over 0.1, most at '// &
+             short_real(centre(1))//' '//short_real(centre(2))//'; equilibrium and contact are those of the undeformed shape'
+    end associate
+  end function not_small
+
+  !> The section of the listing; none where there is nothing to say.
+  subroutine list_remarks(file, remarks)
+    type(text_file), intent(in) :: file
+    type(remarks_type), intent(in) :: remarks
+    character(len=:), allocatable :: text
+    integer :: from, to
+
+    if (remarks%warnings + remarks%notes == 0) return
+    call heading(file, 'WARNINGS AND NOTES  ('//plural(remarks%warnings, 'warning')//', '//plural(remarks%notes, 'note')//')')
+    text = remarks%of_deck//remarks%of_answer
+    from = 1
+    do while (from <= len(text))
+      to = from + index(text(from:), newline) - 1
+      call wrap(file, '  '//text(from:to - 1))
+      from = to + 1
+    end do
+  end subroutine list_remarks
+end module epcont_report_remarks

@@ -1,0 +1,124 @@
+"""Memory as it is forecast in the plan, against what the run has held at its peak: 0.8 to 1.3 of it."""
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+from scene import PROGRAM, Deck
+
+INPUT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])/"input"
+USUAL = 10.0    # MB that the least deck takes, at most; libraries that take more are not the forecast's fault
+
+
+def blocks_in_a_row(count, parts):
+    """Each held at its bottom, and against the one before; the first is pushed."""
+    deck = Deck()
+    deck.material(1, 1000.0, 0.3)
+    before = None
+    for k in range(count):
+        nodes = deck.block(1, [float(k*parts + i) for i in range(parts + 1)], [float(j) for j in range(parts + 1)],
+                           first=1 + k*(parts + 1)**2)
+        deck.hold(12, *nodes[0])
+        for j in range(1, parts + 1):
+            if before:
+                deck.pair(5_000_000 + k*parts + j, before[j][-1], nodes[j][0], normal=(1.0, 0.0))
+            else:
+                deck.force(nodes[j][0], 10.0, 0.0)
+        before = nodes
+    return deck
+
+
+def stack(count, parts):
+    """Blocks one upon the other, each free to move up and to turn."""
+    deck = Deck()
+    deck.material(1, 1000.0, 0.0)
+    below = None
+    for k in range(count):
+        nodes = deck.block(1, [float(i) for i in range(parts + 1)], [float(k*parts + j) for j in range(parts + 1)],
+                           first=1 + k*(parts + 1)**2)
+        if below:
+            deck.hold(1, nodes[0][0])
+            for i in range(parts + 1):
+                deck.pair(5_000_000 + k*(parts + 1) + i, below[i], nodes[0][i])
+            deck.support(nodes[-1][0], 2)
+            deck.support(nodes[-1][-1], 2)
+        else:
+            deck.hold(12, *nodes[0])
+        below = nodes[-1]
+    deck.press(below, 10.0)
+    return deck
+
+
+def strip(pairs, rows, length, height=1.0):
+    """On a floor, pressed from above: all pairs touch."""
+    deck = Deck()
+    deck.material(1, 1.0, 0.3)
+    nodes = deck.block(1, [length*k/(pairs - 1) for k in range(pairs)], [height*j/(rows - 1) for j in range(rows)])
+    deck.hold(1, nodes[0][0])
+    deck.support(nodes[-1][0], 2)
+    deck.support(nodes[-1][-1], 2)
+    deck.press(nodes[-1], 1.0)
+    deck.floor(nodes[0], first=5_000_001)
+    return deck
+
+
+def peak(deck, directory):
+    """Exit status and MB. The shell is small: what a process holds counts from where it was born."""
+    run = subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", PROGRAM, str(deck), "-o", directory, "--timing", "--quiet"],
+                         capture_output=True, text=True, timeout=200, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    return run.returncode, float(re.search(r"peak memory +([\d.]+) MB", run.stderr)[1])
+
+
+def forecast(deck):
+    """MB in the plan; None for a deck that is rejected."""
+    run = subprocess.run([PROGRAM, str(deck), "--plan"], capture_output=True, text=True, timeout=100)
+    found = re.search(r"^  memory (\d+) MB", run.stdout, re.MULTILINE)
+    return found and float(found[1])
+
+
+class Memory(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.directory = place.name
+        self.libraries = max(0.0, peak(INPUT/"one_element"/"one_element.dat", self.directory)[1] - USUAL)
+
+    def compare(self, deck, name):
+        if isinstance(deck, Deck):
+            path = pathlib.Path(self.directory)/f"{name}.dat"
+            path.write_text(deck.text())
+            deck = path
+        expected = forecast(deck)
+        if expected is None:
+            return
+        status, held = peak(deck, self.directory)
+        self.assertIn(status, (0, 1), name)
+        ratio = expected/(held - self.libraries)
+        with self.subTest(name, forecast=expected, held=held):
+            self.assertGreaterEqual(ratio, 0.8)
+            self.assertLessEqual(ratio, 1.3)
+
+    def test_decks_of_input(self):
+        decks = sorted(INPUT.glob("*/*.dat"))
+        self.assertGreater(len(decks), 40)
+        for deck in decks:
+            self.compare(deck, deck.stem)
+
+    def test_a_thousand_bodies(self):
+        """The pairs of all were once counted for each: 100 times too much, and the deck refused."""
+        self.compare(blocks_in_a_row(1000, 2), "row")
+
+    def test_bodies_that_are_free_to_move(self):
+        self.compare(stack(60, 6), "stack")
+
+    def test_two_thousand_pairs(self):
+        self.compare(strip(2000, 8, 9.0), "strip")
+
+    def test_a_fine_strip(self):
+        self.compare(strip(300, 60, 5.0), "fine")
+
+
+if __name__ == "__main__":
+    unittest.main()
