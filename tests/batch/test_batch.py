@@ -111,6 +111,22 @@ class Lists(Case):
         self.assertEqual([("1.5", "x, y", "valid"), ("2.5", "", "valid")],
                          [(row["young"], row["note"], row["status"]) for row in self.table()])
 
+    def test_a_table_keeps_every_row(self):
+        """A deck in several rows runs once; each row has its answer, in the order of the table."""
+        self.decks("sub/a.dat", "sub/b.dat", "sub/rejected.dat")
+        (self.place / "sub" / "list.csv").write_text("case,deck\n1,a.dat\n2,b.dat\n3,./a.dat\n4,rejected.dat\n5,rejected.dat\n")
+        run = self.run_it(1, "--list", "sub/list.csv", "-o", "out", "--program", self.fake)
+        wanted = [("1", "sub/a.dat", "valid"), ("2", "sub/b.dat", "valid"), ("3", "sub/a.dat", "valid"), ("4", "sub/rejected.dat", "rejected"),
+                  ("5", "sub/rejected.dat", "rejected")]
+        self.assertEqual(wanted, [(row["case"], row["deck"], row["status"]) for row in self.table()])
+        rows = self.table()
+        self.assertEqual({**rows[0], "case": "3"}, rows[2])
+        self.assertEqual(["a.dat", "b.dat", "rejected.dat"], self.calls())
+        self.assertRegex(run.stdout, r"^3 decks in \S+ s: 2 valid, 1 rejected\n  sub/rejected.dat: rejected: .*\nout/batch.csv ")
+        self.run_it(1, "--list", "sub/list.csv", "-o", "out", "--program", self.fake, "--resume")
+        self.assertEqual(wanted, [(row["case"], row["deck"], row["status"]) for row in self.table()])
+        self.assertEqual(["rejected.dat"], self.calls())
+
     def test_bad_lists(self):
         for name, text, words in (("empty", "# nothing\n", "no deck in the list"), ("binary", "a.dat\nb\0.dat\n", "binary:2: not a text"),
                                   ("a.csv", "name\nx\n", "a.csv:1: a list that is a table needs a column `deck`"),
@@ -144,7 +160,7 @@ class Lists(Case):
 
     def test_a_plan_that_is_none(self):
         (self.place / "out" / ".batch").mkdir(parents=True)
-        for text in ("{}", "[]", "{\"decks\": [3]}", "\0"):
+        for text in ("{}", "[]", "{\"decks\": [3]}", '{"decks": [["a.dat", "a", {"x": "1"}, 9]]}', "\0"):
             (self.place / "out" / ".batch" / "plan.json").write_text(text)
             self.assertIn("begin the batch anew", self.run_it(3, "--collect", "out").stderr)
 

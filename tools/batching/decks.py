@@ -19,7 +19,7 @@ class Refused(Exception):
 class Deck:
     path: str                                    # as it is named to the program and to people
     place: str = ""                              # its results below the folder of the batch, without their suffix
-    values: dict = field(default_factory=dict)   # further columns of a list that is a table
+    rows: list = field(default_factory=list)     # of a list that is a table: [number, further columns] of each row of the deck
     size: int = 0                                # bytes, with what it includes
 
 
@@ -53,7 +53,7 @@ def read_table(path, text):
     for line, row in rows:
         if not row["deck"]:
             raise Refused(f"{path}:{line}: the deck has no name")
-    return [Deck(row.pop("deck"), values=row) for _, row in rows]
+    return [Deck(row.pop("deck"), rows=[[number, row]]) for number, (_, row) in enumerate(rows)]
 
 
 def rows_of(path, text):
@@ -73,12 +73,15 @@ def rows_of(path, text):
 
 
 def arrange(decks):
-    """Each deck once, and a place for its results: the folders of the decks, from the one they have in common, are mirrored."""
+    """Each deck once, with all its rows, and a place for its results: the folders of the decks, from the one they have in common, are
+    mirrored."""
     single = {}
     for deck in decks:
         if not deck.path.strip("/"):
             raise Refused("a deck without a name")
-        single.setdefault(os.path.abspath(deck.path), deck)
+        first = single.setdefault(os.path.abspath(deck.path), deck)
+        if first is not deck:
+            first.rows += deck.rows
     common = os.path.commonpath([os.path.dirname(path) for path in single])
     places = {}
     for path, deck in single.items():
