@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """tools/batch on this machine: the table, places, resuming, and programs that crash, hang or write half."""
+import collections
 import os
 import pathlib
 import signal
@@ -10,6 +11,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 from batching.outcome import first_fault  # noqa: E402
+from batching.slurm import Watch  # noqa: E402
 from common import PROGRAM, ROOT, SMALL, Case  # noqa: E402
 
 
@@ -423,6 +425,31 @@ class StandIn(Case):
         self.assertIn("killed.dat: lost: killed 3 times, last: NODE_FAIL; see out/.batch/task", run.stdout)
         self.assertIn("squeue does not answer", run.stderr)
         self.assertEqual(3, self.calls().count("killed.dat"))
+
+    def test_none_is_lost_for_anothers_sake(self):
+        """A task whose time is up again and again: each deck that takes too long ends one, then come those behind them."""
+        sbatch = self.place / "bin" / "sbatch"
+        sbatch.write_text(sbatch.read_text().replace("sh " + str(self.place), "timeout 3 sh " + str(self.place)))
+        (self.place / "bin" / "scontrol").write_text("#!/bin/sh\necho JobState=TIMEOUT Reason=None\n")
+        names = ["hangs1.dat", "hangs2.dat", "hangs3.dat", "d1.dat", "d2.dat", "d3.dat"]
+        self.decks(*names)
+        run, submitted = self.submit(1, names, "--chunk", "6")
+        self.assertEqual({name: "lost" if "hangs" in name else "valid" for name in names}, self.words())
+        self.assertEqual(4, len(submitted))
+        self.assertIn("task 0: TIMEOUT, 6 decks left; submitted again\n", run.stderr)
+        self.assertIn("task 0: TIMEOUT, 3 decks left; given up after 4 times\n", run.stderr)
+        self.assertIn("hangs2.dat: lost: killed 4 times, last: TIMEOUT; see out/.batch/task0.out", run.stdout)
+        self.assertEqual(3, sum(name.startswith("d") for name in self.calls()))
+
+    def test_when_a_task_is_given_up(self):
+        """What somebody cancels is submitted three times; so is what gets no deck further."""
+        for why, begun, wanted in (("TIMEOUT", [{}, {}], [False, True]), ("CANCELLED by 0", [{}, {"a": 0}], [True, True]),
+                                   ("TIMEOUT", [{}, {"a": 0}, {"a": 0}], [False, False, True]), ("TIMEOUT", [{"a": 0}, {"a": 1}], [False, False]),
+                                   ("TIMEOUT", [{"a": 1, "b": 1}], [True])):
+            watch = Watch(None, {"jobs": [{"id": str(k), "tasks": [0]} for k in range(3)]}, "")
+            self.assertEqual(wanted, [watch.given_up(0, ["a", "b"], collections.Counter(each), why) for each in begun], (why, begun))
+        watch = Watch(None, {"jobs": [{"id": "1", "tasks": [0]}]}, "")
+        self.assertFalse(watch.given_up(0, ["a"], collections.Counter(a=1), "CANCELLED"))
 
     def test_resume_submits_the_rest_only(self):
         names = [f"d{k}.dat" for k in range(6)]

@@ -3,6 +3,7 @@
 The plan is written whole or not at all. A journal is only added to, a line when a deck begins and one when it has ended; a
 line that was cut off is no line. Each process that runs decks has a journal of its own; the table is made from all of them.
 """
+import collections
 import contextlib
 import csv
 import errno
@@ -57,12 +58,12 @@ class Book:
         return os.path.join(self.directory, deck.place)
 
     def entries(self):
-        """Of each place the last end in the journals, and the places where a deck was begun."""
-        ends, begun = {}, set()
+        """Of each place the last end in the journals; of each where a deck was begun how often it was begun alone."""
+        ends, begun = {}, collections.Counter()
         for name in sorted(os.listdir(self.folder)):
             if name.endswith(".journal"):
                 for entry in read_journal(os.path.join(self.folder, name)):
-                    begun.add(entry["place"])
+                    begun[entry["place"]] += bool(entry.get("alone"))
                     if "row" in entry and ends.get(entry["place"], entry)["at"] <= entry["at"]:
                         ends[entry["place"]] = entry
         return ends, begun
