@@ -10,7 +10,8 @@ import sys
 sys.path.insert(1, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "independent"))
 import deck as deck_reader  # noqa: E402
 import tables  # noqa: E402
-from verification.check import Tables, check, recompute  # noqa: E402
+from verification.check import check, recompute  # noqa: E402
+from verification.run import Tables  # noqa: E402
 from verification.scene import Scene  # noqa: E402
 
 WORDS = {"valid": 0, "no equilibrium": 1, "overlap": 1, "not converged": 1, "rejected": 2, "out of memory": 3, "singular stiffness": 4,
@@ -285,7 +286,7 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
         worst = max((abs(number(ours[k][column]) - number(theirs[k][column])) for k in ours for column in columns), default=0.0)
         if worst > bound * scale:
             try:
-                bound += 10 * recompute(*read_back(run, name, place))[-2]
+                bound += 10 * recompute(*read_back(run, name, place)).lost
             except NOT_UNDERSTOOD:   # nothing says what digits a travel leaves
                 bound = math.inf
         if math.isfinite(bound) and not worst <= bound * scale:
