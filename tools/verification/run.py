@@ -12,8 +12,9 @@ COLUMNS = {
     "zones": ("zone", ["first_pair", "last_pair", "force", "max_pressure", "width_last_pair"], ["half_width"], []),
     "history": ("iteration", ["pairs_in_contact", "plastic_elements", "pivots", "load_factor"], [], []),
 }
-#: Tables that every run writes of contact; the others come by --tables all.
-OF_PAIRS = ("contact", "zones")
+#: Keys of the summary that must be numbers.
+FIGURES = {"max_pressure", "total_contact_force", "max_equivalent_stress", "max_displacement", "equilibrium_residual", "smallest_force",
+           "smallest_gap", "largest_force_gap_product", "stress_off_curve", "curve_tolerance", "stress_off_curve_limit", "energy_balance", "load_factor"}
 
 
 class TableFault(ValueError):
@@ -39,6 +40,8 @@ class Tables:
                 raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
             if row["key"] in values:
                 raise TableFault(f"{path}:{line}: {row['key']} is there twice")
+            if row["key"] in FIGURES or row["key"].startswith("approach_"):
+                number(row["value"], path, row["key"])
             values[row["key"]], units[row["key"]] = row["value"], row["unit"]
         return values, units
 
