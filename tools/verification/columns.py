@@ -10,10 +10,10 @@ from verification.material import von_mises
 from verification.run import number
 from verification.zones import zones
 
-#: Of a sum that is taken in another order, over its largest term.
-ROUNDING = 1e-13
-#: A residual is that of the program, but for the order of its sums.
-LIKE, ROUNDED = 8.0, 1e-13
+#: Of a sum that is taken in another order, over its largest term: in double precision, and of the tolerance of another one.
+ROUNDING, OF_TOLERANCE = 1e-13, 1e-4
+#: A residual is that of the program, but for the order of its sums, up to a factor.
+LIKE = 8.0
 UNITS = {"status": "", "max_pressure": "force/length2", "total_contact_force": "force", "pairs_in_contact": "", "plastic_elements": "",
          "iterations": "", "pivots": "", "max_equivalent_stress": "force/length2", "max_displacement": "length", "equilibrium_residual": "",
          "smallest_force": "force", "smallest_gap": "length", "largest_force_gap_product": "force*length", "stress_off_curve": "",
@@ -25,8 +25,8 @@ BOUNDS = ("equilibrium_residual", "smallest_force", "smallest_gap", "largest_for
 class Report:
     """Lines as those of the certificate; of each column the cell that is farthest off, of what it may be."""
 
-    def __init__(self):
-        self.lines, self.faults = [], 0
+    def __init__(self, rounding):
+        self.lines, self.faults, self.rounding = [], 0, rounding
 
     def line(self, name, ours, told, good):
         self.faults += not good
@@ -52,7 +52,7 @@ class Report:
 
 def check_columns(scene, tables, found, tolerance):
     """Lines of the report and the number of faults. `found`: what recompute gives."""
-    report = Report()
+    report = Report(max(ROUNDING, OF_TOLERANCE * tolerance))
     check_nodes(report, scene, tables, found)
     check_elements(report, scene, tables, found, tolerance)
     if scene.pair:
@@ -66,7 +66,7 @@ def check_nodes(report, scene, tables, found):
     rows = tables.nodes
     for c, (place, move, reaction) in enumerate((("x", "ux", "rx"), ("y", "uy", "ry"))):
         report.column(f"nodes {place}", ((n, scene.x[n][c], row[place], 0.0) for n, row in rows.items()))
-        small = ROUNDING * found.length   # of a rigid motion
+        small = report.rounding * found.length   # of a rigid motion
         held = [(n, scene.given[n, c], rows[n][move], small) for n in rows if (n, c) in scene.held]
         tied = [(n, float(rows[leader[0]][("ux", "uy")[leader[1]]]), rows[n][move], small) for (n, digit), leader in scene.leader.items() if digit == c]
         report.column(f"nodes {move}, held or tied,", held + tied)
@@ -81,15 +81,15 @@ def check_elements(report, scene, tables, found, tolerance):
         row, section = tables.elements[element], scene.element[element][2]
         places = [scene.x[node] for node in scene.element[element][1]]
         for c, name in enumerate("xy"):
-            columns[name].append((element, math.fsum(p[c] for p in places) / len(places), row[name], ROUNDING * max(abs(p[c]) for p in places)))
+            columns[name].append((element, math.fsum(p[c] for p in places) / len(places), row[name], report.rounding * max(abs(p[c]) for p in places)))
         stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
-        noise = own.noise * stiffness + ROUNDING * own.largest
-        # A stress beyond yield is off its curve by what the iteration leaves.
-        loose = (told + ROUNDING) * found.stress if own.plastic or own.edge < told else 0.0
+        noise = own.noise * stiffness + report.rounding * own.largest
+        # A stress beyond yield, or before it in the last solve, is off its curve by what the iteration leaves.
+        loose = (told + report.rounding) * found.stress if own.plastic or own.edge < 10 * told else 0.0
         for k, name in enumerate(("sx", "sy", "sz", "txy")):
             columns[name].append((element, own.stress[k], row[name], loose + noise + tolerance * abs(own.stress[k])))
         mean = [float(row[name]) for name in ("sx", "sy", "sz", "txy")]
-        ours, allowed = (von_mises(mean), ROUNDING * own.largest) if own.points == 1 else (own.equivalent, loose + noise)
+        ours, allowed = (von_mises(mean), report.rounding * own.largest) if own.points == 1 else (own.equivalent, loose + noise)
         columns["equivalent_stress"].append((element, ours, row["equivalent_stress"], allowed + tolerance * ours))
         columns["equivalent_strain"].append((element, own.total, row["equivalent_strain"], own.noise + tolerance * own.total))
         part = own.noise / own.total if own.total else 0.0
@@ -111,17 +111,17 @@ def check_contact(report, scene, tables, found, tolerance):
     report.column("contact ga", ((pair, int(rows[pair]["ga"]) if near(own, rows[pair]["ga"]) else own.ends[0], rows[pair]["ga"], 0.0)
                                  for pair, own in scene.pair.items()))
     for c, name in enumerate(("nx", "ny")):
-        report.column(f"contact {name}", ((pair, float(own.normal[c]), rows[pair][name], tolerance * abs(own.normal[c]) + ROUNDING)
+        report.column(f"contact {name}", ((pair, float(own.normal[c]), rows[pair][name], tolerance * abs(own.normal[c]) + report.rounding)
                                           for pair, own in scene.pair.items()))
-    report.column("contact initial_gap", ((pair, own.initial, rows[pair]["initial_gap"], tolerance * abs(own.initial) + ROUNDING * size)
+    report.column("contact initial_gap", ((pair, own.initial, rows[pair]["initial_gap"], tolerance * abs(own.initial) + report.rounding * size)
                                           for pair, own in scene.pair.items()))
-    report.column("contact gap", ((pair, gap, rows[pair]["gap"], tolerance * abs(gap) + ROUNDING * (found.length + size))
+    report.column("contact gap", ((pair, gap, rows[pair]["gap"], tolerance * abs(gap) + report.rounding * (found.length + size))
                                   for pair, gap in found.gaps.items()))
     states = []
     for pair, row in rows.items():
         word, force, gap = row["status"], float(row["force"]), float(row["gap"])
         # Without force and gap it may be called either.
-        sure = "touching" if force > 0.0 else "open" if abs(gap) > ROUNDING * (found.length + size) else word if word in ("touching", "open") else "open"
+        sure = "touching" if force > 0.0 else "open" if abs(gap) > report.rounding * (found.length + size) else word if word in ("touching", "open") else "open"
         states.append((pair, sure, word, 0.0))
     report.column("contact status", states)
 
@@ -149,7 +149,7 @@ def check_zones(report, scene, tables, tolerance):
             value = getattr(own, attribute)
             value = "" if value is None else value
             small = math.fsum(abs(force[pair]) for pair in rank) if attribute == "force" else own.width
-            cells.append((k, value, row[column], tolerance * abs(value) + ROUNDING * small if isinstance(value, float) else 0.0))
+            cells.append((k, value, row[column], tolerance * abs(value) + report.rounding * small if isinstance(value, float) else 0.0))
         report.column(f"zones {column}", cells)
 
 
@@ -184,12 +184,15 @@ def check_summary(report, scene, tables, found, tolerance):
         report.line("history iteration", len(tables.history), str(max(tables.history)), max(tables.history) == len(tables.history))
     asked = max(tolerance, scene.off_curve)
     told = summary.get("curve_tolerance", "nan")
-    report.line("curve_tolerance", asked, told, abs(float(told) - asked) <= 1e-14 * asked)
+    single = scene.may_be_single and float(told) <= 1.001 * tolerance   # the listing has four digits of it
+    report.line("curve_tolerance", asked, told, abs(float(told) - asked) <= 1e-14 * asked or single)
     limit = summary.get("stress_off_curve_limit", "nan")
-    report.line("stress_off_curve_limit", asked, limit, asked * (1 - 1e-14) <= float(limit) <= 2 * asked)
-    residual = float(summary.get("equilibrium_residual", "nan"))
-    ours = found.figures["equilibrium"]
-    report.line("residual, of the program's", ours, f"{residual:.16E}", ours <= LIKE * residual + ROUNDED + found.lost)
+    report.line("stress_off_curve_limit", float(told), limit, float(told) * (1 - 1e-14) <= float(limit) <= 2 * float(told))
+    residual, ours = float(summary.get("equilibrium_residual", "nan")), found.figures["equilibrium"]
+    # Points beyond yield are off the curve otherwise than their mean, which is all that the tables hold.
+    several = any(own.points > 1 and own.plastic for own in found.elements.values())
+    loose = 10 * max(1.0, found.most) * float(summary.get("stress_off_curve", 0.0)) if several else 0.0
+    report.line("residual, of the program's", ours, f"{residual:.16E}", ours <= LIKE * residual + report.rounding + found.lost + loose)
     for key in sorted(summary):
         unit = "length" if key.startswith("approach_") else UNITS.get(key)
         if unit is not None and tables.units[key] != unit:

@@ -1,6 +1,7 @@
 """The tables of a run: read whole, held against the deck, and what of them nobody reads."""
 import math
 import pathlib
+import re
 
 import tables
 
@@ -79,6 +80,12 @@ class Tables:
         for name in ("zones", "history"):
             if not self.path(name).exists() and (scene.pair or name == "history"):
                 raise TableFault(f"{self.path(name)}: no such file")
+
+
+def told_tolerance(listing, least):
+    """That of the certificate in a listing: single precision has a larger one."""
+    found = re.search(r"(?m)^CERTIFICATE .*; tolerance +(\S+)\)", listing.read_text(encoding="latin-1"))
+    return max(least, float(found[1])) if found else least
 
 
 def number(text, place, name):
