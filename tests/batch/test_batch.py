@@ -90,6 +90,15 @@ class Places(Case):
         self.assertIn("a.dat and a.bdf would write the same files", run.stderr)
         self.assertFalse((self.place / "out").exists())
 
+    def test_names_that_mislead(self):
+        """No cell that a spreadsheet takes for a formula; no line of the screen that is not one."""
+        names = ["=1+1.dat", "+a.dat", "@b.dat", "rejected\n  c.dat: valid"]
+        self.decks(*names)
+        run = self.run_it(1, *names, "-o", "out")
+        self.assertEqual(["./=1+1.dat", "./+a.dat", "./@b.dat", "rejected\n  c.dat: valid"], [row["deck"] for row in self.table()])
+        self.assertEqual(["valid"] * 3 + ["rejected"], [row["status"] for row in self.table()])
+        self.assertIn("\n  rejected\\n  c.dat: valid: rejected: ", run.stdout)
+
     def test_odd_names(self):
         names = ["-x.dat", "with blank.dat", "comma,\"quote.dat", "ünïcode.dat", "a.b.dat", "no_suffix"]
         self.decks(*names)

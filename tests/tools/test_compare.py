@@ -139,12 +139,14 @@ class Files(Case):
         self.assertEqual(self.run_tool(compare, old, new), 0)
 
     def test_unreadable(self):
-        self.assertEqual(self.run_tool(compare, self.directory / "none.lst", self.write("a.lst", "")), 2)
+        self.assertEqual(self.run_tool(compare, self.directory / "none.lst", self.write("a.lst", "a\n")), 2)
         self.assertEqual(self.run_tool(compare, self.directory, self.directory), 0)
         (self.directory / "empty").mkdir()
         self.assertEqual(self.run_tool(compare, self.directory / "empty", self.directory / "empty"), 2)
         self.assertIn("no .lst or .csv in them", self.output)
         for suffix in ("lst", "csv"):
+            self.assertEqual(self.verdict("", "", suffix=suffix), 2)
+            self.assertIn(f"compare: {self.directory}/old.{suffix}: nothing in it: a listing or a table would be right\n", self.output)
             strange = self.directory / f"strange.{suffix}"
             strange.write_bytes(b"a\n\xff\n")
             self.assertEqual(self.run_tool(compare, self.write(f"a.{suffix}", "a\n"), strange), 2)

@@ -6,9 +6,12 @@ import os
 import re
 from dataclasses import dataclass, field
 
+from wording import counted
+
 INCLUDE = re.compile(rb"""[ ]*include[ ]*(['"])(.*?)\1[ ]*(?:\$.*)?\r?$""", re.IGNORECASE)
 DEEPEST = 8      # as the program has it
 MOST_FILES = 10000
+NO_NAME = ("-", "=", "+", "@")   # the program would take it for an option, a spreadsheet for a formula
 
 
 class Refused(Exception):
@@ -65,7 +68,7 @@ def rows_of(path, text):
             raise Refused(f"{path}:1: a first line with the name of each column, each once, would be right")
         for row in reader:
             if None in row or None in row.values():
-                raise Refused(f"{path}:{reader.line_num}: {len(columns)} values would be right")
+                raise Refused(f"{path}:{reader.line_num}: {counted(len(columns), 'value')} would be right")
             rows.append((reader.line_num, row))
     except csv.Error as error:
         raise Refused(f"{path}:{reader.line_num}: {error}") from None
@@ -86,7 +89,7 @@ def arrange(decks):
     places = {}
     for path, deck in single.items():
         deck.place = os.path.relpath(os.path.splitext(path)[0], common)
-        if deck.path.startswith("-"):
+        if deck.path.startswith(NO_NAME):
             deck.path = "./" + deck.path
         if deck.place in places:
             raise Refused(f"{places[deck.place].path} and {deck.path} would write the same files: another name for one of them")
