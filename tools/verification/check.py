@@ -30,6 +30,7 @@ class Element:
     stress: list
     change: list
     equivalent: float
+    peak: float      # largest equivalent stress of a point
     total: float
     secant: float
     plastic: bool
@@ -70,7 +71,8 @@ def recompute_element(scene, tables, element, moved):
     stresses = [[s + c for s, c in zip(stress, change)] for stress, _, _ in found]
     limit = section.points[1][0] if section.points else math.inf
     steepest = max(abs(v) for _, unit in points for of in unit for each in of for v in each)
-    result = Element(own, change, mean(map(von_mises, stresses)), mean(total for _, total, _ in found), mean(secant for _, _, secant in found),
+    equivalent = [von_mises(stress) for stress in stresses]
+    result = Element(own, change, mean(equivalent), max(equivalent), mean(total for _, total, _ in found), mean(secant for _, _, secant in found),
                      any(total > limit for _, total, _ in found), min(abs(total / limit - 1.0) for _, total, _ in found),
                      ROUNDINGS * steepest * max(abs(v) for pair in moved for v in pair),
                      max(abs(v) for stress in stresses for v in stress), len(points))

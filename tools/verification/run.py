@@ -13,6 +13,9 @@ COLUMNS = {
     "zones": ("zone", ["first_pair", "last_pair", "force", "max_pressure", "width_last_pair"], ["half_width"], []),
     "history": ("iteration", ["pairs_in_contact", "plastic_elements", "pivots", "load_factor"], [], []),
 }
+#: Columns as other versions of the program call them, and those that only some have.
+RENAMED = {"half_width_last_pair": "width_last_pair"}
+SOME = {"elements": ["max_equivalent_stress"]}
 #: Keys of the summary that must be numbers.
 FIGURES = {"max_pressure", "total_contact_force", "max_equivalent_stress", "max_displacement", "equilibrium_residual", "smallest_force",
            "smallest_gap", "largest_force_gap_product", "stress_off_curve", "curve_tolerance", "stress_off_curve_limit", "energy_balance", "load_factor"}
@@ -51,9 +54,11 @@ class Tables:
         key, needed, may_be_empty, words = COLUMNS[name]
         path, found = self.path(name), {}
         for line, row in enumerate(tables.rows(path), 2):
+            row = {RENAMED.get(column, column): value for column, value in row.items()}
             if None in row or None in row.values():
                 raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
-            for column in (key, *needed, *may_be_empty, *words):
+            some = [column for column in SOME.get(name, []) if column in row]
+            for column in (key, *needed, *may_be_empty, *words, *some):
                 if column not in row:
                     raise TableFault(f"{path}:{line}: {column}: no such column")
                 if column not in words and not (column in may_be_empty and row[column] == ""):
@@ -65,7 +70,7 @@ class Tables:
             if own in found:
                 raise TableFault(f"{path}:{line}: {key} {own} is there twice")
             found[own] = row
-            self.unread[name] = [column for column in row if column not in (key, *needed, *may_be_empty, *words)]
+            self.unread[name] = [column for column in row if column not in (key, *needed, *may_be_empty, *words, *some)]
         return found
 
     def hold(self, scene):
