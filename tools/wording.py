@@ -4,3 +4,8 @@
 def counted(number, word):
     """`1 deck`, `2 decks`."""
     return f"{number} {word}" + "s" * (number != 1)
+
+
+def shown(text):
+    """On one line, whatever is in it: names of files may have control characters."""
+    return "".join(c if c.isprintable() or "\udc80" <= c <= "\udcff" else c.encode("unicode_escape").decode() for c in text)

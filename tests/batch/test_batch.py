@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """tools/batch on this machine: the table, places, resuming, and programs that crash, hang or write half."""
+import collections
 import os
 import pathlib
 import signal
@@ -10,6 +11,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 from batching.outcome import first_fault  # noqa: E402
+from batching.slurm import Watch  # noqa: E402
 from common import PROGRAM, ROOT, SMALL, Case  # noqa: E402
 
 
@@ -109,6 +111,15 @@ class Places(Case):
         self.assertIn("a.dat and a.bdf would write the same files", run.stderr)
         self.assertFalse((self.place / "out").exists())
 
+    def test_names_that_mislead(self):
+        """No cell that a spreadsheet takes for a formula; no line of the screen that is not one."""
+        names = ["=1+1.dat", "+a.dat", "@b.dat", "rejected\n  c.dat: valid"]
+        self.decks(*names)
+        run = self.run_it(1, *names, "-o", "out")
+        self.assertEqual(["./=1+1.dat", "./+a.dat", "./@b.dat", "rejected\n  c.dat: valid"], [row["deck"] for row in self.table()])
+        self.assertEqual(["valid"] * 3 + ["rejected"], [row["status"] for row in self.table()])
+        self.assertIn("\n  rejected\\n  c.dat: valid: rejected: ", run.stdout)
+
     def test_odd_names(self):
         names = ["-x.dat", "with blank.dat", "comma,\"quote.dat", "ünïcode.dat", "a.b.dat", "no_suffix"]
         self.decks(*names)
@@ -131,6 +142,22 @@ class Lists(Case):
         self.run_it(0, "--list", "sub/list.csv", "-o", "out")
         self.assertEqual([("1.5", "x, y", "valid"), ("2.5", "", "valid")],
                          [(row["young"], row["note"], row["status"]) for row in self.table()])
+
+    def test_a_table_keeps_every_row(self):
+        """A deck in several rows runs once; each row has its answer, in the order of the table."""
+        self.decks("sub/a.dat", "sub/b.dat", "sub/rejected.dat")
+        (self.place / "sub" / "list.csv").write_text("case,deck\n1,a.dat\n2,b.dat\n3,./a.dat\n4,rejected.dat\n5,rejected.dat\n")
+        run = self.run_it(1, "--list", "sub/list.csv", "-o", "out", "--program", self.fake)
+        wanted = [("1", "sub/a.dat", "valid"), ("2", "sub/b.dat", "valid"), ("3", "sub/a.dat", "valid"), ("4", "sub/rejected.dat", "rejected"),
+                  ("5", "sub/rejected.dat", "rejected")]
+        self.assertEqual(wanted, [(row["case"], row["deck"], row["status"]) for row in self.table()])
+        rows = self.table()
+        self.assertEqual({**rows[0], "case": "3"}, rows[2])
+        self.assertEqual(["a.dat", "b.dat", "rejected.dat"], self.calls())
+        self.assertRegex(run.stdout, r"^3 decks in \S+ s: 2 valid, 1 rejected\n  sub/rejected.dat: rejected: .*\nout/batch.csv ")
+        self.run_it(1, "--list", "sub/list.csv", "-o", "out", "--program", self.fake, "--resume")
+        self.assertEqual(wanted, [(row["case"], row["deck"], row["status"]) for row in self.table()])
+        self.assertEqual(["rejected.dat"], self.calls())
 
     def test_bad_lists(self):
         for name, text, words in (("empty", "# nothing\n", "no deck in the list"), ("binary", "a.dat\nb\0.dat\n", "binary:2: not a text"),
@@ -165,7 +192,7 @@ class Lists(Case):
 
     def test_a_plan_that_is_none(self):
         (self.place / "out" / ".batch").mkdir(parents=True)
-        for text in ("{}", "[]", "{\"decks\": [3]}", "\0"):
+        for text in ("{}", "[]", "{\"decks\": [3]}", '{"decks": [["a.dat", "a", {"x": "1"}, 9]]}', "\0"):
             (self.place / "out" / ".batch" / "plan.json").write_text(text)
             self.assertIn("begin the batch anew", self.run_it(3, "--collect", "out").stderr)
 
@@ -428,6 +455,31 @@ class StandIn(Case):
         self.assertIn("killed.dat: lost: killed 3 times, last: NODE_FAIL; see out/.batch/task", run.stdout)
         self.assertIn("squeue does not answer", run.stderr)
         self.assertEqual(3, self.calls().count("killed.dat"))
+
+    def test_none_is_lost_for_anothers_sake(self):
+        """A task whose time is up again and again: each deck that takes too long ends one, then come those behind them."""
+        sbatch = self.place / "bin" / "sbatch"
+        sbatch.write_text(sbatch.read_text().replace("sh " + str(self.place), "timeout 3 sh " + str(self.place)))
+        (self.place / "bin" / "scontrol").write_text("#!/bin/sh\necho JobState=TIMEOUT Reason=None\n")
+        names = ["hangs1.dat", "hangs2.dat", "hangs3.dat", "d1.dat", "d2.dat", "d3.dat"]
+        self.decks(*names)
+        run, submitted = self.submit(1, names, "--chunk", "6")
+        self.assertEqual({name: "lost" if "hangs" in name else "valid" for name in names}, self.words())
+        self.assertEqual(4, len(submitted))
+        self.assertIn("task 0: TIMEOUT, 6 decks left; submitted again\n", run.stderr)
+        self.assertIn("task 0: TIMEOUT, 3 decks left; given up after 4 times\n", run.stderr)
+        self.assertIn("hangs2.dat: lost: killed 4 times, last: TIMEOUT; see out/.batch/task0.out", run.stdout)
+        self.assertEqual(3, sum(name.startswith("d") for name in self.calls()))
+
+    def test_when_a_task_is_given_up(self):
+        """What somebody cancels is submitted three times; so is what gets no deck further."""
+        for why, begun, wanted in (("TIMEOUT", [{}, {}], [False, True]), ("CANCELLED by 0", [{}, {"a": 0}], [True, True]),
+                                   ("TIMEOUT", [{}, {"a": 0}, {"a": 0}], [False, False, True]), ("TIMEOUT", [{"a": 0}, {"a": 1}], [False, False]),
+                                   ("TIMEOUT", [{"a": 1, "b": 1}], [True])):
+            watch = Watch(None, {"jobs": [{"id": str(k), "tasks": [0]} for k in range(3)]}, "")
+            self.assertEqual(wanted, [watch.given_up(0, ["a", "b"], collections.Counter(each), why) for each in begun], (why, begun))
+        watch = Watch(None, {"jobs": [{"id": "1", "tasks": [0]}]}, "")
+        self.assertFalse(watch.given_up(0, ["a"], collections.Counter(a=1), "CANCELLED"))
 
     def test_resume_submits_the_rest_only(self):
         names = [f"d{k}.dat" for k in range(6)]

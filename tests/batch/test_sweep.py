@@ -3,6 +3,7 @@
 import csv
 import os
 import subprocess
+import time
 import unittest
 
 from common import PROGRAM, ROOT, SMALL, Case
@@ -17,7 +18,7 @@ class Sweep(Case):
     def sweep(self, status, deck, table, name="s.in", directory="set"):
         (self.place / name).parent.mkdir(exist_ok=True, parents=True)
         (self.place / name).write_text(deck)
-        (self.place / "t.csv").write_text(table)
+        (self.place / "t.csv").write_text(table, encoding="utf-8")
         return self.run_it(status, name, "t.csv", "-o", directory, tool="sweep")
 
     def cards(self, name, card):
@@ -93,7 +94,8 @@ class Refusals(Sweep):
     def test_what_does_not_fit(self):
         line = SMALL_FIELD.splitlines().index("MAT1    1       %E%             %nu%") + 1
         for value, words in (("1.23456e-5", "8 columns hold 1.2346-5"), ("-1.23456789e-12", "8 columns hold -1.23-12"), ("x", "a real such as"),
-                             ("1e400", "beyond what a real holds"), ("nan", "a real such as"), ("1 2", "a real such as")):
+                             ("1e400", "beyond what a real holds"), ("1.5e400", "beyond what a real holds"), ("\uff12.5", "a real such as"), ("\u0663.0", "a real such as"),
+                             ("nan", "a real such as"), ("1 2", "a real such as")):
             with self.subTest(value):
                 self.refused(SMALL_FIELD, f"E,nu\n20400,.3\n{value},.3\n", f"t.csv:3: column E, {value!r}: s.in:{line}:17-24: MAT1 field 3 (E): ",
                              words, "\ntools/sweep: 1 fault, nothing is written\n")
@@ -110,6 +112,35 @@ class Refusals(Sweep):
         self.refused(deck, "E,nu,node,geom\n1.,.3,41.5,NO\n1.,.3,41,long_words\n1.,.3,123456789,NO\n",
                      "(G): a whole number would be right", "a word of at most 8 characters", "9 characters in a field of 8", "3 faults, nothing")
 
+    def test_digits_of_other_scripts(self):
+        deck = SMALL_FIELD.replace("FORCE   1       41      0 ", "FORCE   1       %node%  0 ")
+        self.refused(deck, "E,nu,node\n1.,.3,\uff14\uff11\n", "t.csv:2: column node, '\uff14\uff11': s.in:", "(G): a whole number would be right")
+        for card, value in (("XYZ     ", "\uff15"), ("PARAM   NOSUCH  ", "\uff15")):   # of a kind that is not known
+            self.refused(deck.replace("BEGIN BULK", f"BEGIN BULK\n{card}%x%"), f"E,nu,node,x\n1.,.3,41,{value}\n", f"column x, '{value}'", "would be right")
+
+    def test_unlike_rows_of_one_deck(self):
+        """A field of 8 columns rounds both to the same: whatever titles say, they would be one deck."""
+        line = SMALL_FIELD.splitlines().index("MAT1    1       %E%             %nu%") + 1
+        more = "; a large field (a * behind the card's name) or a free one (commas) holds more"
+        for deck in (SMALL_FIELD, SMALL_FIELD.replace("CEND", "CEND\n$ %E%")):
+            k = line + (deck != SMALL_FIELD)
+            run = self.sweep(3, deck, "E,nu\n66666.671,.3\n1.,.3\n66666.672,.3\n66666.67,0.30\n66666.671,.31\n")
+            self.assertEqual(f"t.csv:4: the same deck as of line 2: column E, '66666.671' and '66666.672': s.in:{k}:17-24: MAT1 field 3 (E): "
+                             f"both are 66666.67: 8 columns hold 7 digits{more}\n"
+                             f"t.csv:5: the same deck as of line 2: column E, '66666.671' and '66666.67': s.in:{k}:17-24: MAT1 field 3 (E): "
+                             f"both are 66666.67: 8 columns hold 7 digits{more}\ntools/sweep: 2 faults, nothing is written\n", run.stderr)
+            self.assertFalse((self.place / "set").exists())
+        line = FREE_FIELD.splitlines().index("MAT1,1,%E%,,%nu%") + 1
+        self.refused(FREE_FIELD, "E,nu\n0.12345678901234567891,.3\n0.12345678901234567892,.3\n",
+                     "t.csv:3: the same deck as of line 2: column E, '0.12345678901234567891' and '0.12345678901234567892': "
+                     f"s.in:{line}:8-10: MAT1 field 3 (E): both are 0.12345678901234567892: a real holds 16 digits\n")
+
+    def test_like_rows_and_other_decks(self):
+        """The same number otherwise written is meant; a free field tells apart what a small one does not."""
+        self.sweep(0, SMALL_FIELD, "E,nu\n20400,.3\n2.04e4,0.30\n20400.0,.3\n")
+        self.sweep(0, FREE_FIELD, "E,nu\n66666.671,.3\n66666.672,.3\n", directory="free")
+        self.assertNotEqual((self.place / "free" / "s_1.dat").read_text(), (self.place / "free" / "s_2.dat").read_text())
+
     def test_places(self):
         self.refused(SMALL_FIELD.replace("%E%     ", "%young% "), "E,nu\n1.,.3\n", "%young% has no column in t.csv, which has E, nu")
         self.refused(SMALL_FIELD.replace("%E%     ", "1%E%    "), "E,nu\n1.,.3\n", "%E% does not fill a field of its own")
@@ -118,7 +149,7 @@ class Refusals(Sweep):
 
     def test_tables(self):
         for table, words in (("", "a first line with the name of each column"), ("E,E\n1,2\n", "each once"), ("E,nu\n", "no row of values"),
-                             ("E,nu\n1.\n", "t.csv:2: 2 values"), ("E,nu\n1.,.3,4\n", "t.csv:2: 2 values"), ("deck,E,nu\n../x,1.,.3\n", "letters, digits"),
+                             ("E,nu\n1.\n", "t.csv:2: 2 values"), ("E,nu\n1.,.3,4\n", "t.csv:2: 2 values"), ("E\n1,2\n", "t.csv:2: 1 value would be right\n"), ("deck,E,nu\n../x,1.,.3\n", "letters, digits"),
                              ("deck,E,nu\na,1.,.3\nA.dat,1.,.3\n", "deck A.dat is there twice"), ("deck,E,nu,status\na,1.,.3,4\n", "column status is one of"),
                              ("deck,E,nu\na.csv,1.,.3\n", "not .lst or .csv")):
             with self.subTest(table):
@@ -170,6 +201,30 @@ class Sets(Sweep):
             self.assertEqual([], os.listdir(place))
         finally:
             subprocess.run(["umount", place], check=True)
+
+    def test_nothing_is_left_behind(self):
+        (self.place / "set").mkdir()
+        (self.place / "set" / "b.dat").mkdir()
+        self.assertIn("set/b.dat is there, and of no earlier sweep", self.sweep(3, SMALL_FIELD, "deck,E,nu\na,1.,.3\nb,2.,.3\n").stderr)
+        self.assertEqual(["b.dat"], os.listdir(self.place / "set"))
+        name = "a" * 300
+        for table, directory, words in ((f"deck,E,nu\nb,1.,.3\n{name},1.,.3\n", "new/deep/set", f"new/deep/set/{name}.dat.part: cannot be written: File name too long"),
+                                        ("E,nu\n1.,.3\n", f"new/{name}", f"new/{name}: cannot be written: File name too long"),
+                                        (f"deck,E,nu\n{name[:251]},1.,.3\n", "new/set", ".dat.part: cannot be written: File name too long"),
+                                        ("E,nu\n1.,.3\n", "s.in/set", "s.in/set: cannot be written: Not a directory")):
+            self.assertIn(words, self.sweep(3, SMALL_FIELD, table, directory=directory).stderr)
+            self.assertEqual(["s.in", "set", "t.csv"], sorted(path.name for path in self.place.iterdir() if path.name != "fake"))
+
+    def test_the_command_that_follows(self):
+        run = self.sweep(0, SMALL_FIELD, "E,nu\n1.,.3\n", directory="a set")
+        self.assertEqual("1 deck; tools/batch --list 'a set/sweep.csv' -o 'a set/results'\n", run.stdout)
+
+    def test_a_large_table(self):
+        """Rows are not looked for one in another."""
+        begun = time.monotonic()
+        self.sweep(0, "BEGIN BULK\nMAT1,1,%E%\nENDDATA\n", "E\n" + "".join(f"{k}.\n" for k in range(1, 2001)))
+        self.assertLess(time.monotonic() - begun, 20)
+        self.assertEqual(2001, len(os.listdir(self.place / "set")))
 
     def test_numbers_have_equal_widths(self):
         self.sweep(0, SMALL_FIELD, "E,nu\n" + "1.,.3\n" * 12)

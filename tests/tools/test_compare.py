@@ -105,6 +105,18 @@ class Numbers(Case):
         self.assertEqual(self.verdict("r < 1E-12\n", "r 0.3E-11\n"), 0)
         self.assertEqual(self.verdict("r 0.3E-11\n", "r < 1E-12\n"), 0)
         self.assertEqual(self.verdict("r < 1E-12\n", "r 0.3E-09\n"), 1)
+        self.assertEqual(self.verdict("r < 1E-12\n", "r 0.0\n"), 0)
+        self.assertEqual(self.verdict("r < 1E-12\n", "r -0.3E-11\n"), 0)
+        self.assertEqual(self.verdict("r < 1E-12\n", "r -1.0\n"), 1)
+
+    def test_a_bound_is_no_word_for_any_bound(self):
+        for old, new in (("< 1E-12", "< 1E+12"), ("< 1E+12", "< 1E-12"), ("6.0E-03", "< 1E+12"), ("6.0E-03", "< 1E-12"), ("0.0", "< 1E-12"),
+                         ("< 1E-12", "< 1E-9"), ("< 1E-9", "< 1E-12")):
+            self.assertEqual(self.verdict(f"r {old}\n", f"r {new}\n"), 1, (old, new))
+            self.assertIn(f"new.lst: 1 of 1 reals differ from {self.directory}/old.lst\n", self.output)
+            self.assertIn(f"{self.directory}/new.lst:1:3: {new}, reference {self.directory}/old.lst:1:3: {old}\n", self.output)
+        for old, new in (("< 1E-12", "< 1E-10"), ("< 1E-10", "< 1E-12")):
+            self.assertEqual(self.verdict(f"r {old}\n", f"r {new}\n"), 0, (old, new))
 
     def test_punctuation_is_no_part_of_a_number(self):
         self.assertEqual(self.verdict("(x=1.00000, 5.00000%)\n", "(x=1.00001, 5.00001%)\n"), 0)
@@ -127,12 +139,14 @@ class Files(Case):
         self.assertEqual(self.run_tool(compare, old, new), 0)
 
     def test_unreadable(self):
-        self.assertEqual(self.run_tool(compare, self.directory / "none.lst", self.write("a.lst", "")), 2)
+        self.assertEqual(self.run_tool(compare, self.directory / "none.lst", self.write("a.lst", "a\n")), 2)
         self.assertEqual(self.run_tool(compare, self.directory, self.directory), 0)
         (self.directory / "empty").mkdir()
         self.assertEqual(self.run_tool(compare, self.directory / "empty", self.directory / "empty"), 2)
         self.assertIn("no .lst or .csv in them", self.output)
         for suffix in ("lst", "csv"):
+            self.assertEqual(self.verdict("", "", suffix=suffix), 2)
+            self.assertIn(f"compare: {self.directory}/old.{suffix}: nothing in it: a listing or a table would be right\n", self.output)
             strange = self.directory / f"strange.{suffix}"
             strange.write_bytes(b"a\n\xff\n")
             self.assertEqual(self.run_tool(compare, self.write(f"a.{suffix}", "a\n"), strange), 2)

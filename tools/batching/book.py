@@ -3,6 +3,7 @@
 The plan is written whole or not at all. A journal is only added to, a line when a deck begins and one when it has ended; a
 line that was cut off is no line. Each process that runs decks has a journal of its own; the table is made from all of them.
 """
+import collections
 import contextlib
 import csv
 import errno
@@ -37,6 +38,8 @@ class Book:
             with open(self.plan_path, encoding="utf-8") as file:
                 plan = json.load(file)
             plan["decks"] = [Deck(*fields) for fields in plan["decks"]]
+            if not all(isinstance(deck.rows, list) for deck in plan["decks"]):
+                raise ValueError
         except OSError as error:
             raise Refused(f"{self.directory}: no batch was begun here ({self.plan_path}: {error.strerror})") from None
         except (ValueError, KeyError, TypeError):
@@ -44,7 +47,7 @@ class Book:
         return plan
 
     def save(self, plan):
-        decks = [[deck.path, deck.place, deck.values, deck.size] for deck in plan["decks"]]
+        decks = [[deck.path, deck.place, deck.rows, deck.size] for deck in plan["decks"]]
         write_whole(self.plan_path, json.dumps({**plan, "decks": decks}, indent=0))
 
     def journal(self, name):
@@ -55,12 +58,12 @@ class Book:
         return os.path.join(self.directory, deck.place)
 
     def entries(self):
-        """Of each place the last end in the journals, and the places where a deck was begun."""
-        ends, begun = {}, set()
+        """Of each place the last end in the journals; of each where a deck was begun how often it was begun alone."""
+        ends, begun = {}, collections.Counter()
         for name in sorted(os.listdir(self.folder)):
             if name.endswith(".journal"):
                 for entry in read_journal(os.path.join(self.folder, name)):
-                    begun.add(entry["place"])
+                    begun[entry["place"]] += bool(entry.get("alone"))
                     if "row" in entry and ends.get(entry["place"], entry)["at"] <= entry["at"]:
                         ends[entry["place"]] = entry
         return ends, begun
@@ -91,18 +94,20 @@ class Book:
         return kept
 
     def rows(self, plan, ends):
-        """One row a deck, in the order of the list."""
+        """The rows of the decks, in the order of the list."""
+        found = []
         for deck in plan["decks"]:
             row = ends[deck.place]["row"] if deck.place in ends else \
                 {**dict.fromkeys(COLUMNS, ""), "deck": deck.path, "status": NOT_RUN}
             lost = plan.get("lost", {}).get(deck.place)
             if lost and row["status"] in (NOT_RUN, KILLED):
                 row = {**row, "status": "lost", "message": lost}
-            yield {**row, **deck.values}
+            found += [(number, {**row, **values}) for number, values in deck.rows or [(0, {})]]
+        return [row for _, row in sorted(found, key=lambda each: each[0])]
 
     def write_table(self, plan, ends):
-        rows = list(self.rows(plan, ends))
-        columns = COLUMNS[:1] + list(plan["decks"][0].values) + COLUMNS[1:]
+        rows, first = self.rows(plan, ends), plan["decks"][0].rows
+        columns = COLUMNS[:1] + (list(first[0][1]) if first else []) + COLUMNS[1:]
         text = io.StringIO()
         table = csv.DictWriter(text, columns, lineterminator="\n")
         table.writerow({name: no_formula(name) for name in columns})

@@ -6,9 +6,12 @@ import os
 import re
 from dataclasses import dataclass, field
 
+from wording import counted
+
 INCLUDE = re.compile(rb"""[ ]*include[ ]*(['"])(.*?)\1[ ]*(?:\$.*)?\r?$""", re.IGNORECASE)
 DEEPEST = 8      # as the program has it
 MOST_FILES = 10000
+NO_NAME = ("-", "=", "+", "@")   # the program would take it for an option, a spreadsheet for a formula
 
 
 class Refused(Exception):
@@ -19,7 +22,7 @@ class Refused(Exception):
 class Deck:
     path: str                                    # as it is named to the program and to people
     place: str = ""                              # its results below the folder of the batch, without their suffix
-    values: dict = field(default_factory=dict)   # further columns of a list that is a table
+    rows: list = field(default_factory=list)     # of a list that is a table: [number, further columns] of each row of the deck
     size: int = 0                                # bytes, with what it includes
 
 
@@ -53,7 +56,7 @@ def read_table(path, text):
     for line, row in rows:
         if not row["deck"]:
             raise Refused(f"{path}:{line}: the deck has no name")
-    return [Deck(row.pop("deck"), values=row) for _, row in rows]
+    return [Deck(row.pop("deck"), rows=[[number, row]]) for number, (_, row) in enumerate(rows)]
 
 
 def rows_of(path, text):
@@ -65,7 +68,7 @@ def rows_of(path, text):
             raise Refused(f"{path}:1: a first line with the name of each column, each once, would be right")
         for row in reader:
             if None in row or None in row.values():
-                raise Refused(f"{path}:{reader.line_num}: {len(columns)} values would be right")
+                raise Refused(f"{path}:{reader.line_num}: {counted(len(columns), 'value')} would be right")
             rows.append((reader.line_num, row))
     except csv.Error as error:
         raise Refused(f"{path}:{reader.line_num}: {error}") from None
@@ -73,17 +76,20 @@ def rows_of(path, text):
 
 
 def arrange(decks):
-    """Each deck once, and a place for its results: the folders of the decks, from the one they have in common, are mirrored."""
+    """Each deck once, with all its rows, and a place for its results: the folders of the decks, from the one they have in common, are
+    mirrored."""
     single = {}
     for deck in decks:
         if not deck.path.strip("/"):
             raise Refused("a deck without a name")
-        single.setdefault(os.path.abspath(deck.path), deck)
+        first = single.setdefault(os.path.abspath(deck.path), deck)
+        if first is not deck:
+            first.rows += deck.rows
     common = os.path.commonpath([os.path.dirname(path) for path in single])
     places = {}
     for path, deck in single.items():
         deck.place = os.path.relpath(os.path.splitext(path)[0], common)
-        if deck.path.startswith("-"):
+        if deck.path.startswith(NO_NAME):
             deck.path = "./" + deck.path
         if deck.place in places:
             raise Refused(f"{places[deck.place].path} and {deck.path} would write the same files: another name for one of them")

@@ -4,7 +4,7 @@ from decimal import Decimal
 
 import cards
 
-NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]?([+-]\d+)|[eEdD](\d+))?")
+NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]?([+-]\d+)|[eEdD](\d+))?", re.ASCII)   # digits of other scripts are none
 MOST_ROUNDED = 1e-6   # of a value; most reals of seven digits fit a small field
 
 
@@ -19,7 +19,7 @@ def fit(text, kind, width):
         return ""
     if kind == "":
         raise Unfit("the field must be blank")
-    if kind == "integer" or (kind == "any" and re.fullmatch(r"[+-]?\d+", text)):
+    if kind == "integer" or (kind == "any" and re.fullmatch("[+-]?[0-9]+", text)):
         text = whole(text)
     elif kind == "real" or (kind == "any" and NUMBER.fullmatch(text)):
         text = real(text, width)
@@ -35,7 +35,7 @@ def fit(text, kind, width):
 
 def whole(text):
     """Tables often write whole numbers as reals."""
-    match = re.fullmatch(r"([+-]?\d+)(\.0*)?", text)
+    match = re.fullmatch(r"([+-]?[0-9]+)(\.0*)?", text)
     if not match:
         raise Unfit("a whole number would be right")
     return match[1]
@@ -46,18 +46,28 @@ def real(text, width):
     match = NUMBER.fullmatch(text)
     if not match:
         raise Unfit("a real such as 1.5, 1.5E-3 or 1.5-3 would be right")
-    if "." in match[1] and len(text) <= (width or len(text)):
-        return text
-    value = Decimal(f"{match[1]}E{match[2] or match[3] or 0}")
+    value = number(text)
     if not value.is_zero() and not -300 < value.adjusted() < 300:
         raise Unfit("beyond what a real holds")
+    if "." in match[1] and len(text) <= (width or len(text)):
+        return text
     try:
         short = cards.written(value, width or None)
     except ValueError as error:
         raise Unfit(str(error)) from None
-    match = NUMBER.fullmatch(short)
-    off = abs(Decimal(f"{match[1]}E{match[2] or 0}") - value)
+    off = abs(number(short) - value)
     if off > abs(value) * Decimal(MOST_ROUNDED):
         raise Unfit(f"{width} columns hold {short}, off by {float(off / abs(value)):.1g} of it; "
                     "a large field (a * behind the card's name) or a free one (commas) holds it")
     return short
+
+
+def number(text):
+    """The number that a text is, or none."""
+    match = NUMBER.fullmatch(text.strip())
+    return match and Decimal(f"{match[1]}E{match[2] or match[3] or 0}")
+
+
+def digits(text):
+    """How many digits a real has."""
+    return len(re.sub("[^0-9]", "", NUMBER.fullmatch(text.strip())[1]).lstrip("0"))

@@ -77,7 +77,7 @@ class Runner:
         settings, folder = self.settings, os.path.dirname(self.book.stem(decks[0])) or "."
         inputs = [fingerprint(deck.path)[0] for deck in decks]
         for deck in decks:
-            self.journal.add({"place": deck.place})
+            self.journal.add({"place": deck.place, "alone": len(decks) == 1})
             forget(self.book.stem(deck))
         command = [settings["program"], *(deck.path for deck in decks), "-o", folder, "--quiet"]
         if settings["memory"]:

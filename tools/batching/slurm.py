@@ -17,7 +17,7 @@ from .outcome import KILLED
 
 CHUNK = 50             # decks a task, where nothing else is asked
 MOST_TASKS = 1000      # Slurm's MaxArraySize is 1001 where nobody changed it
-TRIES = 3              # a task is submitted at most so often
+TRIES = 3              # a task is submitted at most so often, but for decks that were not tried alone yet
 SHORTEST, LONGEST = 2.0, 30.0   # s between looks at the queue
 
 
@@ -79,6 +79,7 @@ class Watch:
     def __init__(self, book, plan, script):
         self.book, self.plan, self.script = book, plan, script
         self.missing = set()    # tasks that were not in the queue when it was last looked at
+        self.untried = {}       # of tasks how far their decks were from having been tried alone when they were last looked after
 
     def unfinished(self, ends):
         """Places without an end that are not lost, by task."""
@@ -101,17 +102,24 @@ class Watch:
             if queue is None and answered:
                 print("squeue does not answer: waiting for it, and for what ends meanwhile", file=sys.stderr)
             answered = queue is not None
-            ends = self.book.entries()[0]
+            ends, begun = self.book.entries()
             show(ends)
             left = self.unfinished(ends)
             if not left:
                 return
             if queue is not None:
-                self.look_after(left, queue)
+                self.look_after(left, queue, begun)
             pause = SHORTEST if self.missing else min(1.3 * pause, LONGEST)
             time.sleep(pause)
 
-    def look_after(self, left, queue):
+    def given_up(self, task, places, begun, why):
+        """After some tries, unless the last one has brought decks nearer to one of their own: none is lost for another's sake."""
+        untried, before = sum(2 - (place in begun) - (begun[place] > 0) for place in places), self.untried.get(task)
+        self.untried[task] = untried
+        hopeful = 0 < untried and (before is None or untried < before) and not why.startswith("CANCELLED")
+        return len(self.jobs_of(task)) >= TRIES and not hopeful
+
+    def look_after(self, left, queue, begun):
         """Submit again what was killed; what was killed too often is lost. Missing twice, that is: files may be late."""
         gone = {task for task in left if not any((job, str(task)) in queue for job in self.jobs_of(task))}
         killed, self.missing = sorted(gone & self.missing), gone - self.missing
@@ -119,12 +127,13 @@ class Watch:
         for task in killed:
             jobs = self.jobs_of(task)
             why = reason(jobs[-1], task) if jobs else "never submitted"
+            lost = self.given_up(task, left[task], begun, why)
             print(f"task {task}: {why}, {counted(len(left[task]), 'deck')} left" +
-                  ("; submitted again" if len(jobs) < TRIES else f"; given up after {TRIES} times"), file=sys.stderr)
-            if len(jobs) < TRIES:
+                  (f"; given up after {len(jobs)} times" if lost else "; submitted again"), file=sys.stderr)
+            if not lost:
                 again.append(task)
             else:
-                said = f"killed {TRIES} times, last: {why}; see {self.book.folder}/task{task}.out"
+                said = f"killed {len(jobs)} times, last: {why}; see {self.book.folder}/task{task}.out"
                 self.plan["lost"].update(dict.fromkeys(left[task], said))
         if again:
             submit(self.book, self.plan, again, self.script)

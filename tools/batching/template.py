@@ -4,8 +4,9 @@ import re
 from dataclasses import dataclass
 
 import cards
+from wording import counted
 
-from .fitting import Unfit, fit
+from .fitting import Unfit, digits, fit, number
 
 PLACE = re.compile(r"%([A-Za-z_]\w*)%")
 INCLUDE = re.compile(r"""([ ]*include[ ]*)(['"])(.*?)\2(.*)""", re.IGNORECASE)
@@ -29,6 +30,7 @@ class Template:
     def __init__(self, path, text, catalogue):
         self.path, self.lines, self.catalogue = path, re.sub(r"\r?\n?\Z", "", text).replace("\r\n", "\n").split("\n"), catalogue
         self.places, self.faults = [], []
+        self.includes = [k for k, line in enumerate(self.lines) if INCLUDE.match(line)]
         bulk = next((k + 1 for k, line in enumerate(self.lines) if line.upper().split("$")[0].split() == ["BEGIN", "BULK"]), 0)
         card, slot, ended = "", 0, False
         for k, line in enumerate(self.lines):
@@ -92,7 +94,33 @@ class Template:
             if "," in lines[place.line] and place.what and len(lines[place.line].split("$")[0].rstrip()) > LONGEST:
                 faults.append(f"column {place.name}, {value!r}: {self.path}:{place.line + 1}: "
                               f"the line has more than {LONGEST} characters")
-        return "\n".join(self.moved(k, line, folder, faults) for k, line in enumerate(lines)) + "\n"
+        for k in self.includes:
+            lines[k] = self.moved(k, lines[k], folder, faults)
+        return "\n".join(lines) + "\n"
+
+    def meaning(self, values):
+        """What the program reads in the places of a row that fits: rows that mean the same give the same deck, whatever its comments."""
+        found = []
+        for place in self.places:
+            text = self.text_of(place, values[place.name]).strip()
+            if place.kind != "text":
+                value = number(text)
+                found.append(text.upper() if value is None else float(value))
+            elif place.line in self.includes:
+                found.append(text)
+        return tuple(found)
+
+    def lost(self, values, others):
+        """Of two rows that mean the same: the first place whose numbers are unlike, and how many digits it holds; or nothing."""
+        for place in self.places:
+            one, two = number(others[place.name]), number(values[place.name])
+            if place.kind != "text" and None not in (one, two) and one != two:
+                text = self.text_of(place, values[place.name]).strip()
+                held = f"{place.width} columns hold {counted(digits(text), 'digit')}" if place.width else "a real holds 16 digits"
+                wider = "; a large field (a * behind the card's name) or a free one (commas) holds more" if place.width else ""
+                return (f"column {place.name}, {others[place.name].strip()!r} and {values[place.name].strip()!r}: {self.path}:{place.line + 1}:"
+                        f"{place.first + 1}-{place.last}: {place.what}: both are {text}: {held}{wider}")
+        return ""
 
     def text_of(self, place, value):
         if place.kind == "text":

@@ -22,7 +22,8 @@ class Maker:
         self.free = self.find_free()
         self.pressures, self.forces = self.find_loads()
         self.groups.note_unused()
-        if not self.pressures and not self.forces and not any(value for own in self.held.values() for value, _ in own.values()):
+        moved = any(value for own in self.held.values() for value, _ in own.values())
+        if not (faults.errors or self.pressures or self.forces or moved):
             faults.note("[load]", "there is none, and no support that moves: nothing but overlaps of the drawing gives forces")
         faults.end_stage()
         self.number = self.numbers()
@@ -103,11 +104,15 @@ class Maker:
 
     def find_loads(self):
         """(body, element, a, b, pressure) of each side pressed; {node: [x, y]} of forces."""
-        pressures, forces = [], {}
+        pressures, forces, pressed = [], {}, {}
         for name, load in self.scene.loads.items():
             where = f"[load.{name}]"
             if "pressure" in load:
-                pressures += [(body, k, side[0], side[1], load["pressure"]) for side, body, k in self.groups.boundary(f"{where} pressure", name)]
+                sides = self.groups.boundary(f"{where} pressure", name)
+                pressures += [(body, k, side[0], side[1], load["pressure"]) for side, body, k in sides]
+                twice = {pressed.setdefault(frozenset(side), where) for side, _, _ in sides} - {where}
+                if twice:
+                    self.faults.note(f"{where} pressure", f"presses sides that {listed(sorted(twice))} presses, too: the pressures are added")
             if "force" in load:
                 nodes = self.groups.find(f"{where} force", name)
                 parts = dict.fromkeys(nodes, 1.0 / max(len(nodes), 1))

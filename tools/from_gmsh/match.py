@@ -21,6 +21,11 @@ def check_bodies(scene, mesh, faults):
             faults.add(f"[body.{name}]", f"the surface has no elements in {mesh.file}", "a surface that is meshed")
         elif scene.rings and any(corners == 4 for corners, _ in elements):
             faults.add(f"[body.{name}]", "rings have no quadrilaterals", f"no Recombine Surface in {mesh.file}, or another kind")
+    for side, owners in mesh.sides().items():
+        if len({middle for _, _, middle in owners}) > 1:
+            faults.add("[body]", f"elements with and without middle nodes have a common side in {mesh.file}, at {describe(mesh, sorted(side))} "
+                       f"({listed(sorted({owner[0] for owner in owners}))})", "one order for bodies that are joined (Mesh.ElementOrder)")
+            break
     faults.end_stage()
     flatten(scene, mesh, faults)
 
@@ -66,12 +71,26 @@ class Groups:
         else:
             self.unknown(where, name, points_too)
             return []
-        strange = [node for node in nodes if node not in mesh.place]
+        return [] if self.apart(where, name, nodes) else nodes
+
+    def apart(self, where, name, nodes):
+        """Whether a group is not of nodes of bodies, or a line not of sides of elements, middle nodes and all: told as a fault."""
+        sides = self.mesh.lines[name] if name in self.mesh.lines else []
+        owners = {side: self.sides.get(frozenset(side[:2]), []) for side in sides}
+        for side, own in owners.items():
+            if any((middle,) != (side[2:] or (None,)) for _, _, middle in own):
+                what = "two nodes along six-node triangles" if len(side) == 2 else "three nodes along elements without that middle node"
+                self.faults.add(where, f"'{name}' has a side of {what}, at {describe(self.mesh, side[:2])}",
+                                f"lines and surfaces of one order in {self.mesh.file}, as Gmsh makes them by Mesh.ElementOrder")
+                return True
+        strange = [node for node in nodes if node not in self.mesh.place]
+        alone = next((side for side in sides if not owners[side]), None)
         if strange or not nodes:
             what = f"{len(strange)} of the {len(nodes)} nodes of '{name}' are on no body" if nodes else f"'{name}' has no nodes"
-            self.faults.add(where, what, f"the boundary of a named surface; points within one by Point{{..}} In Surface{{..}} in {mesh.file}")
-            return []
-        return nodes
+            self.faults.add(where, what, "the boundary of a named surface; points within one by Point{..} In Surface{..} in " + self.mesh.file)
+        elif alone:
+            self.faults.add(where, f"'{name}' has a side of no element, at {describe(self.mesh, alone[:2])}", "a line along the sides of the elements")
+        return bool(strange or not nodes or alone)
 
     def unknown(self, where, name, points_too):
         mesh = self.mesh
@@ -93,12 +112,12 @@ class Groups:
         for side in self.mesh.lines[name]:
             owners = self.sides.get(frozenset(side[:2]), [])
             if len(owners) != 1:
-                what = "between two elements" if owners else "of no element"
-                bodies = f" ({listed(sorted({body for body, _ in owners}))})" if owners else ""
+                what = "between two elements"
+                bodies = f" ({listed(sorted({owner[0] for owner in owners}))})"
                 self.faults.add(where, f"'{name}' has a side {what}{bodies}, at {describe(self.mesh, side[:2])}",
                                 "a line along the outside; bodies in contact need curves and points of their own each, not common ones")
                 return []
-            found.append((side, *owners[0]))
+            found.append((side, *owners[0][:2]))
         return found
 
     def chain(self, where, name):

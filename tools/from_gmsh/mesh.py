@@ -1,10 +1,12 @@
 """What Gmsh has: nodes, elements of the named surfaces, sides of the named lines, named points."""
+import multiprocessing
 import re
+from collections import Counter
 from dataclasses import dataclass, field
 
 import gmsh
 
-from .faults import Faults, listed, spot
+from .faults import Faults, Rejected, listed, spot
 
 #: Corners and nodes of the elements of Gmsh that have a card, by its number of their kind.
 SURFACES = {2: (3, 3), 3: (4, 4), 9: (3, 6)}
@@ -24,25 +26,75 @@ class Mesh:
     points: dict = field(default_factory=dict)     # point: nodes
 
     def sides(self):
-        """The bodies' elements at each pair of corners that a side joins: (body, number in the body)."""
+        """The bodies' elements at each pair of corners that a side joins: (body, number in the body, middle node or None)."""
         found = {}
         for name, elements in self.bodies.items():
             for k, (corners, nodes) in enumerate(elements):
                 for i in range(corners):
-                    found.setdefault(frozenset((nodes[i], nodes[(i + 1) % corners])), []).append((name, k))
+                    middle = nodes[corners + i] if len(nodes) > corners else None
+                    found.setdefault(frozenset((nodes[i], nodes[(i + 1) % corners])), []).append((name, k, middle))
         return found
 
 
 def read_mesh(path, faults: Faults):
-    """The mesh of a .msh, or of a .geo once it is meshed."""
+    """The mesh of a .msh, or of a .geo once it is meshed: by a process of its own, which `Exit;` in a drawing ends."""
+    check_file(path, faults)
+    receiver, sender = multiprocessing.Pipe(duplex=False)
+    child = multiprocessing.get_context("fork").Process(target=send_mesh, args=(path, faults, sender))
+    child.start()
+    sender.close()
+    try:
+        mesh, faults.errors, faults.notes, failed = receiver.recv()
+    except EOFError:
+        mesh, failed = None, ""
+    child.join()
+    if failed:
+        raise RuntimeError(failed)
+    if mesh is None and not faults.errors:
+        how = f"signal {-child.exitcode}" if child.exitcode < 0 else f"exit status {child.exitcode}"
+        faults.add("mesh", f"{path.name} ends Gmsh before there is a mesh ({how})", "a drawing that meshes in Gmsh itself, without Exit;")
+    faults.end_stage()
+    return mesh
+
+
+def send_mesh(path, faults, sender):
+    """The mesh, or None, with the faults, and what failed in this program."""
+    mesh, failed = None, ""
+    try:
+        mesh = mesh_of(path, faults)
+    except Rejected:
+        pass
+    except Exception as error:   # the process that waits tells of it
+        failed = f"{type(error).__name__}: {error}"
+    sender.send((mesh, faults.errors, faults.notes, failed))
+
+
+def check_file(path, faults):
+    """What can be told without Gmsh."""
+    text = b""
     if path.suffix.lower() not in (".geo", ".msh"):
         faults.add("mesh", f"{path.name} is neither .geo nor .msh", "a script or a mesh of Gmsh")
     elif not path.is_file():
         beside = sorted(p.name for p in path.parent.glob("*") if p.suffix in (".geo", ".msh"))
         faults.add("mesh", f"there is no file {path.name} beside the scene", f"one of: {listed(beside)}")
+    else:
+        try:
+            text = path.read_bytes()
+        except OSError as error:
+            faults.add("mesh", f"{path.name} cannot be read: {error.strerror}", "a file that you may read")
     faults.end_stage()
-    if path.suffix.lower() == ".geo" and path.read_bytes().rpartition(b"\n")[2].count(b";") > 1:
+    if path.suffix.lower() == ".geo" and text.rpartition(b"\n")[2].count(b";") > 1:
         faults.note("mesh", f"the last line of {path.name} has no end of line: Gmsh reads the first of its commands alone")
+
+
+def is_old(path):
+    """A mesh in MSH 1 or 2: elements have their group beside them, and are there once for each."""
+    with open(path, "rb") as file:
+        head = file.read(100).split()
+    return path.suffix.lower() == ".msh" and (head[:1] == [b"$NOD"] or head[:1] == [b"$MeshFormat"] and head[1:2] < [b"3"])
+
+
+def mesh_of(path, faults):
     gmsh.initialize(["gmsh"], readConfigFiles=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
@@ -87,6 +139,8 @@ def check_warning(path, line, faults):
 
 def collect(path, faults):
     mesh = Mesh(path.name)
+    for dimension in (LINE, SURFACE):
+        check_parts(path, dimension, faults)
     tags, values, _ = gmsh.model.mesh.getNodes()
     mesh.place = {int(tag): tuple(float(v) for v in values[3 * i:3 * i + 3]) for i, tag in enumerate(tags)}
     check_groups(mesh, faults)
@@ -97,7 +151,7 @@ def collect(path, faults):
             if owner.setdefault(entity, name) != name:
                 faults.add("mesh", f"surface {entity} of {path.name} is in two groups: {owner[entity]}, {name}", "in one of them only")
     for name, entities in groups(LINE):
-        mesh.lines[name] = [side for entity in entities for side in line(entity)]
+        mesh.lines[name] = list({frozenset(side): side for entity in entities for side in line(entity)}.values())
     for name, entities in groups(POINT):
         mesh.points[name] = [int(tag) for entity in entities for tag in gmsh.model.mesh.getNodes(POINT, entity)[0]]
     faults.end_stage()
@@ -133,8 +187,25 @@ def check_groups(mesh, faults):
             faults.note("mesh", f"surface {entity} of {mesh.file} is in no Physical Surface and is left out")
 
 
+def check_parts(path, dimension, faults):
+    """In an old mesh each element of a curve or surface must be there for each of its groups: Gmsh gives a group all of the curve."""
+    for _, entity in gmsh.model.getEntities(dimension):
+        groups_of = gmsh.model.getPhysicalGroupsForEntity(dimension, entity)
+        times = Counter()
+        for kind, tags, nodes in zip(*gmsh.model.mesh.getElements(dimension, entity)):
+            count = len(nodes) // max(len(tags), 1)
+            times.update(frozenset(map(int, nodes[count * i:count * (i + 1)])) for i in range(len(tags)))
+        old = is_old(path) or any(number > 1 for number in times.values())
+        if old and len(groups_of) > 1 and set(times.values()) - {len(groups_of)}:
+            names = [gmsh.model.getPhysicalName(dimension, group) or str(group) for group in groups_of]
+            faults.add("mesh", f"{('curve', 'surface')[dimension - 1]} {entity} of {path.name} is in the groups {listed(names)}, but not all of its "
+                       "elements are in all of them", "a number of its own for each curve and surface, the second tag of its elements in MSH 2, "
+                       "such as Gmsh itself writes; or MSH 4.1")
+
+
 def surface(entity, mesh, name, faults):
-    """Elements of a surface, counterclockwise."""
+    """Elements of a surface, counterclockwise, each once."""
+    found = {}
     for kind, tags, nodes in zip(*gmsh.model.mesh.getElements(SURFACE, entity)):
         if int(kind) not in SURFACES:
             said = NAMES.get(int(kind)) or gmsh.model.mesh.getElementProperties(int(kind))[0]
@@ -144,7 +215,8 @@ def surface(entity, mesh, name, faults):
         corners, count = SURFACES[int(kind)]
         for i in range(len(tags)):
             own = [int(node) for node in nodes[count * i:count * (i + 1)]]
-            yield corners, turned(own, corners, mesh.place)
+            found.setdefault(frozenset(own), (corners, turned(own, corners, mesh.place)))
+    return found.values()
 
 
 def turned(nodes, corners, place):

@@ -118,7 +118,7 @@ def positive(value):
 def load(path, faults):
     """The tables of the file."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         faults.add("scene", "there is no such file", f"TOML files beside it: {listed(sorted(p.name for p in path.parent.glob('*.toml')))}")
     except (OSError, UnicodeDecodeError) as error:

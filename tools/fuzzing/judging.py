@@ -10,7 +10,8 @@ import sys
 sys.path.insert(1, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "independent"))
 import deck as deck_reader  # noqa: E402
 import tables  # noqa: E402
-from verification.check import Tables, check, recompute  # noqa: E402
+from verification.check import check, recompute  # noqa: E402
+from verification.run import Tables, told_tolerance  # noqa: E402
 from verification.scene import Scene  # noqa: E402
 
 WORDS = {"valid": 0, "no equilibrium": 1, "overlap": 1, "not converged": 1, "rejected": 2, "out of memory": 3, "singular stiffness": 4,
@@ -153,15 +154,9 @@ def summary_of(run, name):
     return tables.summary(run.out / f"{name}.summary.csv")
 
 
-def told_tolerance(run, name, tolerance):
-    """That of the certificate: single precision has a larger one."""
-    found = re.search(r"(?m)^CERTIFICATE .*; tolerance +(\S+)\)", (run.out / f"{name}.lst").read_text(encoding="latin-1"))
-    return max(tolerance, number(found[1])) if found else tolerance
-
-
 def fault_of_certificate(run, name, tolerance):
     """The certificate's figures, held against its tolerance."""
-    tolerance = told_tolerance(run, name, tolerance)
+    tolerance = told_tolerance(run.out / f"{name}.lst", tolerance)
     summary = summary_of(run, name)
     for key in RELATIVE:
         if not number(summary.get(key)) <= tolerance:
@@ -190,7 +185,7 @@ def fault_of_answer(run, name, place, tolerance):
     """The certificate recomputed from deck and tables by tools/verify; None, too, where that does not understand the deck."""
     try:
         scene, tables = read_back(run, name, place)
-        lines, faults = check(scene, tables, told_tolerance(run, name, tolerance))
+        lines, faults = check(scene, tables, told_tolerance(run.out / f"{name}.lst", tolerance))
         # Sides that span a corner of the other line are cut elsewhere there: tests/independent/README.md.
         if scene.deck.of("BCONP") and any(line.startswith("gap column") and line.endswith("WRONG") for line in lines):
             return None
@@ -259,7 +254,7 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
     if one != "valid":
         return None
     condition = summary_of(run, name)["condition"]
-    certified = [told_tolerance(run, name, 0.0), told_tolerance(other, twin, 0.0)]
+    certified = [told_tolerance(run.out / f"{name}.lst", 0.0), told_tolerance(other.out / f"{twin}.lst", 0.0)]
     bound = max(max(certified) / 10, tolerance, 1e-13 * number(condition))
     if max(certified) > CERTIFIED:   # single precision, of one or both, has answers as good as it certifies
         bound = max(bound, sum(certified))
@@ -285,7 +280,7 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
         worst = max((abs(number(ours[k][column]) - number(theirs[k][column])) for k in ours for column in columns), default=0.0)
         if worst > bound * scale:
             try:
-                bound += 10 * recompute(*read_back(run, name, place))[-2]
+                bound += 10 * recompute(*read_back(run, name, place)).lost
             except NOT_UNDERSTOOD:   # nothing says what digits a travel leaves
                 bound = math.inf
         if math.isfinite(bound) and not worst <= bound * scale:

@@ -1,13 +1,12 @@
 """The figures of a certificate, recomputed from a scene and the tables of its run, and held against the program's own."""
 import math
-import pathlib
+from dataclasses import dataclass, field
 
-import tables
 from deck import integer
 from kinds import KINDS
 from pressures import pressures
 from verification.elements import strain_of, unit_strains
-from verification.material import stress_of
+from verification.material import respond, von_mises
 
 # Names of the figures in the summary; the key on the left is ours.
 KEYS = {
@@ -24,96 +23,94 @@ KEYS = {
 ROUNDINGS = 128 * 2.0 ** -52
 
 
-class TableFault(ValueError):
-    """A table that cannot be what epcont has written for the deck: which, where, why."""
+@dataclass
+class Element:
+    """What its displacements give: means over its points by volume; `change`: of the stress in the table from that; `noise`: of strains,
+    by the rounding of the displacements; `edge`: distance of a point from its yield point, over the latter."""
+    stress: list
+    change: list
+    equivalent: float
+    peak: float      # largest equivalent stress of a point
+    total: float
+    secant: float
+    plastic: bool
+    edge: float
+    noise: float
+    largest: float   # stress of a point
+    points: int
 
 
-class Tables:
-    def __init__(self, directory, stem):
-        self.directory, self.stem = pathlib.Path(directory), stem
-        self.summary = tables.summary(self.path("summary"))
-        for key, value in self.summary.items():
-            if key in KEYS.values() or key in ("total_contact_force", "max_pressure") or key.startswith("approach_"):
-                number(value, self.path("summary"), key)
-        self.nodes = self.read("nodes", "node", "ux", "uy", "rx", "ry")
-        self.elements = self.read("elements", "element", "sx", "sy", "sz", "txy")
-        self.contact = self.read("contact", "pair", "nx", "ny", "force", "gap") if self.path("contact").exists() else {}
-
-    def path(self, name):
-        return self.directory / f"{self.stem}.{name}.csv"
-
-    def read(self, name, key, *columns):
-        """Rows by number; these columns are numbers."""
-        found = {}
-        for line, row in enumerate(tables.rows(self.path(name)), 2):
-            if None in row.values():
-                raise TableFault(f"{self.path(name)}:{line}: the line is cut off")
-            for column in (key, *columns):
-                number(row.get(column), f"{self.path(name)}:{line}", column)
-            found[int(row[key])] = row
-        return found
-
-    def hold(self, scene):
-        """All that the deck has must be in the tables."""
-        for name, what, wanted, found in (("nodes", "node", {node for _, nodes, _ in scene.element.values() for node in nodes}, self.nodes),
-                                          ("elements", "element", scene.element, self.elements), ("contact", "pair", scene.pair, self.contact)):
-            lacking = sorted(set(wanted) - set(found))
-            if lacking:
-                raise TableFault(f"{self.path(name)}: no {what} {lacking[0]}: the table of another deck, or cut off")
+@dataclass
+class Recomputed:
+    figures: dict = field(default_factory=dict)
+    force: float = 0.0       # scales
+    length: float = 0.0
+    spread: float = 0.0      # largest error in the column of gaps
+    lost: float = 0.0        # part of the stresses and forces that is lost, where a travel leaves few digits of the strains
+    most: float = 0.0        # largest force that the largest stress could make, over the scale
+    stress: float = 0.0      # largest
+    elements: dict = field(default_factory=dict)
+    gaps: dict = field(default_factory=dict)
 
 
-def number(text, place, name):
-    try:
-        float(text)
-    except (TypeError, ValueError):
-        raise TableFault(f"{place}: {name}: {'no such column' if text is None else f'{text!r} is no number'}") from None
-
-
-def add_elements(scene, tables, u, rest):
-    """Nodal forces of the stresses are taken off `rest`. Largest element forces summed at a node, work stored, largest distance
-    of a mean stress in the tables from that on the curve, largest stress, the stress and force that rounding of the displacements makes, the
-    largest force of a unit stress.
+def recompute_element(scene, tables, element, moved):
+    """An Element, with its points, strains, and their stresses as they must be for the means in the table.
 
     The tables hold means over the points of an element; what a point has is taken to be off the curve as much as the mean."""
-    magnitude, stored, off, largest, lost, lost_force, reach = {}, [], 0.0, 0.0, 0.0, 0.0, 0.0
-    for element, (name, nodes, section) in scene.element.items():
-        points = unit_strains(name, [scene.x[node] for node in nodes], section.thickness, section.plane_stress)
-        moved = [u[node] for node in nodes]
-        strains = [strain_of(unit, moved, section.thickness is None) for _, unit in points]
-        stresses = [stress_of(strain, section.young, section.nu, section.plane_stress, section.points, scene.paper)
-                    for strain in strains]
-        whole = math.fsum(volume for volume, _ in points)
-        told = [float(tables.elements[element][key]) for key in ("sx", "sy", "sz", "txy")]
-        change = [t - math.fsum(volume * s[i] for (volume, _), s in zip(points, stresses)) / whole for i, t in enumerate(told)]
-        off = max(off, *map(abs, change))
-        stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
-        steepest = max(abs(v) for _, unit in points for of in unit for each in of for v in each)
-        own = ROUNDINGS * stiffness * steepest * max(abs(v) for pair in moved for v in pair)
-        lost, lost_force = max(lost, own), max(lost_force, own * whole * steepest)
-        reach = max(reach, whole * steepest)
+    name, nodes, section = scene.element[element]
+    points = unit_strains(name, [scene.x[node] for node in nodes], section.thickness, section.plane_stress)
+    strains = [strain_of(unit, moved, section.thickness is None) for _, unit in points]
+    found = [respond(strain, section.young, section.nu, section.plane_stress, section.points, scene.paper) for strain in strains]
+    whole = math.fsum(volume for volume, _ in points)
+
+    def mean(values):
+        return math.fsum(volume * value for (volume, _), value in zip(points, values)) / whole
+
+    own = [mean(stress[i] for stress, _, _ in found) for i in range(4)]
+    change = [float(tables.elements[element][key]) - value for key, value in zip(("sx", "sy", "sz", "txy"), own)]
+    stresses = [[s + c for s, c in zip(stress, change)] for stress, _, _ in found]
+    limit = section.points[1][0] if section.points else math.inf
+    steepest = max(abs(v) for _, unit in points for of in unit for each in of for v in each)
+    equivalent = [von_mises(stress) for stress in stresses]
+    result = Element(own, change, mean(equivalent), max(equivalent), mean(total for _, total, _ in found), mean(secant for _, _, secant in found),
+                     any(total > limit for _, total, _ in found), min(abs(total / limit - 1.0) for _, total, _ in found),
+                     ROUNDINGS * steepest * max(abs(v) for pair in moved for v in pair),
+                     max(abs(v) for stress in stresses for v in stress), len(points))
+    return result, points, strains, stresses, whole * steepest
+
+
+def add_elements(scene, tables, u, rest, result):
+    """Nodal forces of the stresses are taken off `rest`. Largest element forces summed at a node, work stored, largest distance
+    of a mean stress in the tables from that on the curve, the stress and force that rounding of the displacements makes, the
+    largest force of a unit stress."""
+    magnitude, stored, off, lost, lost_force, reach = {}, [], 0.0, 0.0, 0.0, 0.0
+    for element, (_, nodes, section) in scene.element.items():
+        own, points, strains, stresses, size = recompute_element(scene, tables, element, [u[node] for node in nodes])
+        result.elements[element] = own
+        off = max(off, *map(abs, own.change))
+        noise = own.noise * section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
+        lost, lost_force, reach = max(lost, noise), max(lost_force, noise * size), max(reach, size)
+        result.stress = max(result.stress, own.largest)
         force = [[[], []] for _ in nodes]
         for (volume, unit), strain, stress in zip(points, strains, stresses):
-            stress = [s + c for s, c in zip(stress, change)]
-            largest = max(largest, *map(abs, stress))
             stored.append(volume * math.fsum(s * e for s, e in zip(stress, strain)))
-            for of, own in zip(unit, force):
+            for of, sums in zip(unit, force):
                 for c in (0, 1):
-                    own[c].append(volume * sum(s * e for s, e in zip(stress, of[c])))
-        for node, own in zip(nodes, force):
-            sums = [math.fsum(own[c]) for c in (0, 1)]
+                    sums[c].append(volume * sum(s * e for s, e in zip(stress, of[c])))
+        for node, parts in zip(nodes, force):
+            sums = [math.fsum(parts[c]) for c in (0, 1)]
             for c in (0, 1):
                 rest.setdefault((node, c), []).append(-sums[c])
             magnitude.setdefault(node, []).append(max(map(abs, sums)))
-    return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, off, largest, lost, lost_force, reach
+    return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, off, lost, lost_force, reach
 
 
 def recompute(scene, tables):
-    """The figures, and the scales of force and length; the largest error in the column of gaps; the part of the stresses and
-    forces that is lost, where a travel leaves few digits of the strains; the largest force that the largest stress could make, over
-    the scale."""
+    """All that the certificate says, from displacements, forces, reactions and stresses."""
+    result = Recomputed()
     u = {node: (float(row["ux"]), float(row["uy"])) for node, row in tables.nodes.items()}
     rest, works, given = {}, [], []
-    element_force, stored, off, largest, lost, lost_force, reach = add_elements(scene, tables, u, rest)
+    element_force, stored, off, lost, lost_force, reach = add_elements(scene, tables, u, rest, result)
     for (node, i), values in scene.load.items():
         rest.setdefault((node, i), []).extend(values)
         works.append(math.fsum(values) * u[node][i])
@@ -121,13 +118,14 @@ def recompute(scene, tables):
         for i, key in enumerate(("rx", "ry")):
             rest.setdefault((node, i), []).append(float(row[key]))
             works.append(float(row[key]) * u[node][i])
-    forces, gaps, spread = [], [], 0.0
+    forces, gaps = [], []
     for name, pair in scene.pair.items():
         force = float(tables.contact[name]["force"])
         moved = math.fsum(w * u[node][i] * pair.normal[i] for node, w in pair.weights.items() for i in (0, 1))
         forces.append(force)
         gaps.append(pair.initial + moved)
-        spread = max(spread, abs(gaps[-1] - float(tables.contact[name]["gap"])))
+        result.gaps[name] = gaps[-1]
+        result.spread = max(result.spread, abs(gaps[-1] - float(tables.contact[name]["gap"])))
         works.append(force * moved)
         for node, w in pair.weights.items():
             for i in (0, 1):
@@ -138,20 +136,21 @@ def recompute(scene, tables):
             freedom = scene.leader.get(freedom, freedom)
         gathered.setdefault(freedom, []).extend(values)
     loads = [abs(math.fsum(values)) for values in scene.load.values()]
-    force_scale = max([abs(f) for f in forces] + loads, default=0.0)
-    length_scale = max([math.hypot(*v) for v in u.values()] + [abs(pair.initial) for pair in scene.pair.values()], default=0.0)
-    scale = max(element_force, force_scale)
+    result.force = max([abs(f) for f in forces] + loads, default=0.0)
+    result.length = max([math.hypot(*v) for v in u.values()] + [abs(pair.initial) for pair in scene.pair.values()], default=0.0)
+    scale = max(element_force, result.force)
     terms = math.fsum(map(abs, works)) + abs(math.fsum(stored))
-    figures = {
+    result.figures = {
         "equilibrium": max((abs(math.fsum(v)) for v in gathered.values()), default=0.0) / (scale or 1.0),
         "smallest_force": min(forces, default=0.0),
         "smallest_gap": min(gaps, default=0.0),
         "product": max((abs(f * g) for f, g in zip(forces, gaps)), default=0.0),
-        "off_curve": off / (largest or 1.0),
+        "off_curve": off / (result.stress or 1.0),
         "energy": max(abs(math.fsum(works) - math.fsum(stored)), -math.fsum(stored)) / (terms or 1.0),
     }
-    return figures, force_scale, length_scale, spread, max(part(lost, largest), part(lost_force, scale)), \
-        largest * reach / (scale or 1.0)
+    result.lost = max(part(lost, result.stress), part(lost_force, scale))
+    result.most = result.stress * reach / (scale or 1.0)
+    return result
 
 
 def part(lost, of):
@@ -170,12 +169,13 @@ def pressure_error(scene, tables):
     return max((p for p, _ in both), default=0.0), max((abs(p - told) for p, told in both), default=0.0)
 
 
-def check(scene, tables, tolerance):
+def check(scene, tables, tolerance, found=None):
     """Lines of the report and the number of faults."""
-    figures, force, length, spread, lost, most = recompute(scene, tables)
+    found = found or recompute(scene, tables)
+    figures, force, length, lost = found.figures, found.force, found.length, found.lost
     # The points of an element with several are known only as well as its mean lies on the curve.
     sure = all(len(KINDS[name].points) == 1 for name, _, _ in scene.element.values())
-    loose = tolerance if sure else max(tolerance, 10 * max(1.0, most) * float(tables.summary.get(KEYS["off_curve"], 0.0)))
+    loose = tolerance if sure else max(tolerance, 10 * max(1.0, found.most) * float(tables.summary.get(KEYS["off_curve"], 0.0)))
     scale = {"smallest_force": force, "smallest_gap": length, "product": force * length}
     bounds = {name: tolerance * scale.get(name, 1.0) for name in KEYS}
     bounds["equilibrium"] = bounds["energy"] = max(loose, lost)
@@ -200,7 +200,7 @@ def check(scene, tables, tolerance):
         near = ours * (1 - 2 * float(told)) <= float(told) + bounds[name] and float(told) <= allowed[name] \
             if name == "off_curve" and not sure else abs(apart) <= bounds[name]
         line(key, ours, told, valid and near)
-    line("gap column, largest error", spread, "", spread <= tolerance * length)
+    line("gap column, largest error", found.spread, "", found.spread <= tolerance * length)
     if scene.pair:
         total = math.fsum(float(row["force"]) for row in tables.contact.values())
         told = tables.summary.get("total_contact_force", "nan")

@@ -16,10 +16,11 @@ class Section:
 
 
 class Pair:
-    """Gap = initial + sum of weight * displacement . normal over its nodes. `node`: of the boundary side it lies on."""
+    """Gap = initial + sum of weight * displacement . normal over its nodes. `node`: of the boundary side it lies on; `ends`: the nodes
+    that name it."""
 
-    def __init__(self, initial, normal, weights, node):
-        self.initial, self.normal, self.weights, self.node = initial, normal, weights, node
+    def __init__(self, initial, normal, weights, node, ends):
+        self.initial, self.normal, self.weights, self.node, self.ends = initial, normal, weights, node, ends
 
 
 class Scene:
@@ -31,6 +32,7 @@ class Scene:
         self.parameter = parameter = {c[1]: c[2] for c in deck.of("PARAM")}
         newton = parameter.get("METHOD", "AUTO") in ("NEWTON", "AUTO") and parameter.get("MUP") != "PAPER"
         single = parameter.get("PRECIS") == "SINGLE"
+        self.may_be_single = single or "ACCURACY" in parameter
         wanted = real(parameter.get("ACCURACY", ""), 0.0) * (0.1 if newton else 0.002)
         self.off_curve = real(parameter.get("TOL", ""), wanted or (0.01 if not newton else 1e-3 if single else 1e-8)) * (1 if newton else 10)
         self.off_curve *= bool(deck.of("MATS1"))
@@ -60,15 +62,16 @@ class Scene:
             self.section[int(c[1])] = Section(None, material[int(c[2])], False, curve.get(int(c[2])))
 
     def supports(self):
-        """Held directions and the leaders of tied ones."""
+        """Held directions with their displacements, and the leaders of tied ones."""
         cards = self.deck.of("SPC1") + self.deck.of("SPC")
         chosen = self.deck.case.get("SPC", next((int(c[1]) for c in cards), 0))
-        named = [(int(c[1]), at(c, 8)) for c in self.deck.of("GRID")]
+        named = [(int(c[1]), at(c, 8), 0.0) for c in self.deck.of("GRID")]
         for c in cards:
             if int(c[1]) == chosen:
-                named += ([(g, c[2]) for g in ids(c[3:])] if c[0] == "SPC1"
-                          else [(int(c[i]), c[i + 1]) for i in (2, 5) if at(c, i)])
-        self.held = {(node, int(digit) - 1) for node, digits in named for digit in set(digits) & {"1", "2"}}
+                named += ([(g, c[2], 0.0) for g in ids(c[3:])] if c[0] == "SPC1"
+                          else [(int(c[i]), c[i + 1], real(at(c, i + 2))) for i in (2, 5) if at(c, i)])
+        self.given = {(node, int(digit) - 1): value for node, digits, value in named for digit in set(digits) & {"1", "2"}}
+        self.held = set(self.given)
         self.leader = {}
         for c in self.deck.of("RBE2"):
             for node in ids(c[4:]):
@@ -88,14 +91,15 @@ class Scene:
             gap = given[int(c[2] or c[1])]
             if self.parameter.get("GAPGEOM") == "YES":
                 gap += along[0] * n[0] + along[1] * n[1]
-            self.pair[int(c[1])] = Pair(gap, n, {a: -1.0, b: 1.0}, b if b in within else a)
+            self.pair[int(c[1])] = Pair(gap, n, {a: -1.0, b: 1.0}, b if b in within else a, (a, b))
         self.contacts.append(list(self.pair))
         for contact in pairs_of_lines(self.deck, self.parameter, self.side, self.x, self.held, likely=likely):
             self.contacts.append([node for node, *_ in contact])
             for node, shares, n, gap in contact:
                 if node in self.pair:
                     raise DeckError(f"two pairs have id {node}")
-                self.pair[node] = Pair(gap, n, {node: 1.0, **{other: -share for other, share in shares.items()}}, node)
+                self.pair[node] = Pair(gap, n, {node: 1.0, **{other: -share for other, share in shares.items()}}, node,
+                                       (max(shares, key=shares.get), node))
 
     def loads(self):
         self.load = {}

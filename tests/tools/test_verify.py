@@ -1,0 +1,184 @@
+"""tools/verify: each single edit of a table is found, or its column is named as not read."""
+import contextlib
+import csv
+import importlib.machinery
+import importlib.util
+import io
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+ROOT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
+PROGRAM = str(pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve())
+sys.path.insert(0, str(ROOT / "tools"))
+loader = importlib.machinery.SourceFileLoader("verify", str(ROOT / "tools" / "verify"))
+verify = importlib.util.module_from_spec(importlib.util.spec_from_loader("verify", loader))
+loader.exec_module(verify)
+
+HERTZ, LINES, RING = (ROOT / "input" / name for name in ("hertz/hertz44.dat", "flat_match/flat_lines.dat", "from_gmsh/press_fit.dat"))
+TABLES = ("summary", "nodes", "elements", "contact", "zones", "history")
+WORDS = {"touching": "open", "open": "touching", "plastic": "elastic", "elastic": "plastic"}
+#: What is told apart from rounding, of the largest value of a column.
+SEEN = 1e-9
+
+
+def changed(value):
+    """A value with a relative change of 1e-6, or another word; none of nothing and zero."""
+    try:
+        number = float(value)
+    except ValueError:
+        return WORDS.get(value, value and "x" + value[1:])
+    if value.lstrip("-").isdigit():
+        return str(int(value) + 1)
+    return repr(number * (1 + 1e-6)) if number else ""
+
+
+def size(value):
+    try:
+        return abs(float(value))
+    except ValueError:
+        return 0.0
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.place = pathlib.Path(directory.name)
+
+    def solved(self, deck):
+        subprocess.run([PROGRAM, deck, "-o", self.place, "--tables", "all", "--quiet"], check=True, stderr=subprocess.DEVNULL)
+
+    def told(self, deck, *options):
+        """Exit status and what is printed."""
+        output = io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
+            status = verify.main([str(deck), str(self.place), *options])
+        return status, output.getvalue()
+
+    def path(self, deck, table):
+        return self.place / f"{deck.stem}.{table}.csv"
+
+    def rows(self, deck, table):
+        return list(csv.reader(self.path(deck, table).read_text().splitlines()))
+
+    def spoilt(self, deck, table, rows):
+        """What comes of the run with these rows of a table; the table is put back."""
+        path = self.path(deck, table)
+        whole = path.read_text()
+        path.write_text("".join(",".join(row) + "\n" for row in rows))
+        try:
+            return self.told(deck)
+        finally:
+            path.write_text(whole)
+
+
+class Edits(Case):
+    def edits(self, deck, table, rng, several):
+        """(row, column) of some cells of each column: the largest, and others that are more than rounding."""
+        rows = self.rows(deck, table)
+        for column in range(len(rows[0])):
+            cells = [k for k in range(1, len(rows)) if changed(rows[k][column])]
+            if table != "summary":
+                largest = max((size(rows[k][column]) for k in cells), default=0.0)
+                cells = [k for k in cells if size(rows[k][column]) >= SEEN * largest]
+                first = max(cells, key=lambda k: size(rows[k][column]), default=None)
+                cells = ([first] if cells else []) + rng.sample(cells, min(several, len(cells)))
+            yield from ((k, column) for k in cells)
+
+    def check(self, deck, several):
+        self.solved(deck)
+        status, text = self.told(deck)
+        self.assertEqual(0, status, text)
+        unread = [line.partition(": ")[2] for line in text.splitlines() if line.startswith(("not read", "held to"))]
+        rng, found, named = random.Random(5), 0, 0
+        for table in TABLES:
+            for k, column in self.edits(deck, table, rng, several):
+                rows = self.rows(deck, table)
+                name = rows[k][0] if table == "summary" else rows[0][column]
+                old, rows[k][column] = rows[k][column], changed(rows[k][column])
+                status, text = self.spoilt(deck, table, rows)
+                words = f"{deck.name} {table}, row {rows[k][0]}, {rows[0][column]}: {old} -> {rows[k][column]}\n{text}"
+                self.assertNotIn("Traceback", text, words)
+                if status == 0:
+                    last = table != "history" or "but of its last row" not in " ".join(unread) or k < len(rows) - 1
+                    self.assertTrue(last and any(name in line for line in unread), words)
+                found, named = found + (status != 0), named + (status == 0)
+        self.assertGreater(found, 2 * named)
+
+    def test_pairs_beyond_yield(self):
+        self.check(HERTZ, 2)
+
+    def test_lines(self):
+        self.check(LINES, 1)
+
+
+class Wholesale(Case):
+    """What a single cell is not."""
+
+    def setUp(self):
+        super().setUp()
+        self.solved(HERTZ)
+
+    def wrong(self, table, change, *words, status=1):
+        rows = self.rows(HERTZ, table)
+        code, text = self.spoilt(HERTZ, table, change(rows))
+        self.assertEqual(status, code, text)
+        for word in words:
+            self.assertRegex(text, word)
+
+    def test_stresses_doubled(self):
+        def doubled(rows):
+            return [rows[0]] + [[*row[:3], *(repr(2 * float(value)) for value in row[3:8]), *row[8:]] for row in rows[1:]]
+        self.wrong("elements", doubled, r"(?m)^elements sx .*WRONG$", r"(?m)^equilibrium_residual .*WRONG$", r"(?m)^max_equivalent_stress .*WRONG$")
+
+    def test_a_row_twice_or_too_many(self):
+        for table, key, row in (("nodes", "node", 7), ("elements", "element", 7), ("contact", "pair", 2), ("zones", "zone", 1), ("history", "iteration", 2)):
+            self.wrong(table, lambda rows: [*rows, rows[row]], rf"hertz44\.{table}\.csv:\d+: {key} \d+ is there twice", status=2)
+        self.wrong("summary", lambda rows: [*rows, rows[2]], r"hertz44.summary.csv:\d+: max_pressure is there twice", status=2)
+        for table, key in (("nodes", "node"), ("elements", "element"), ("contact", "pair")):
+            self.wrong(table, lambda rows: [*rows, ["77777", *rows[1][1:]]], f"{key} 77777 is not in the deck: the table of another one", status=2)
+        self.wrong("zones", lambda rows: [*rows, ["2", *rows[1][1:]]], r"(?m)^zones +1 +2  WRONG$")
+        self.wrong("history", lambda rows: rows[:-1], r"(?m)^iterations +6 +7  WRONG$")
+
+    def test_what_is_no_number(self):
+        for word in ("nan", "inf", "1e999"):
+            self.wrong("nodes", lambda rows: [*rows[:9], [*rows[9][:3], word, *rows[9][4:]], *rows[10:]], f"hertz44.nodes.csv:10: ux: '{word}' is no finite number", status=2)
+        self.wrong("summary", lambda rows: [row if row[0] != "max_pressure" else [row[0], "", row[2]] for row in rows], "max_pressure: '' is no number", status=2)
+
+    def test_a_status_that_is_not_valid(self):
+        self.wrong("summary", lambda rows: [row if row[0] != "status" else ["status", "not certified", ""] for row in rows],
+                   r"(?m)^status +valid +not certified  WRONG$")
+
+    def test_what_later_versions_add(self):
+        """Columns and keys that are not known here are named, and are no faults."""
+        def widened(rows):
+            return [[*rows[0], "largest_stress"]] + [[*row, "1.5"] for row in rows[1:]]
+        rows = self.rows(HERTZ, "elements")
+        self.assertRegex(self.spoilt(HERTZ, "elements", widened(rows))[1], "(?m)^not read: elements.csv largest_stress$")
+        rows = self.rows(HERTZ, "summary")
+        status, text = self.spoilt(HERTZ, "summary", [*rows, ["warnings", "BCONP 1: a word", ""], ["penetration", "1.0E-3", "length"]])
+        self.assertEqual(0, status, text)
+        self.assertRegex(text, "(?m)^not read: summary.csv factorizations, condition, .*, weak_pairs, warnings, penetration$")
+        self.assertRegex(text, "(?m)^not read: hertz44.lst$")
+
+    def test_quiet(self):
+        self.assertEqual((0, ""), self.told(HERTZ, "--quiet"))
+
+    def test_a_missing_table(self):
+        for table in ("zones", "history"):
+            shutil.move(self.path(HERTZ, table), self.place / "aside")
+            status, text = self.told(HERTZ)
+            self.assertEqual(2, status)
+            self.assertIn(f"hertz44.{table}.csv: no such file; epcont", text)
+            shutil.move(self.place / "aside", self.path(HERTZ, table))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,220 @@
+"""Every column of the tables and every key of the summary, recomputed cell by cell; what is not read is named.
+
+The certificate is held to its tolerance of the largest force or length. A cell is held to the same part of itself, and of what
+rounding makes it the sum of, so that a small one that is wrong is found, too.
+"""
+import math
+
+from deck import integer
+from verification.material import von_mises
+from verification.run import number
+from verification.zones import zones
+
+#: Of a sum that is taken in another order, over its largest term: in double precision, and of the tolerance of another one.
+ROUNDING, OF_TOLERANCE = 1e-13, 1e-4
+#: A residual is that of the program, but for the order of its sums, up to a factor.
+LIKE = 8.0
+UNITS = {"status": "", "max_pressure": "force/length2", "total_contact_force": "force", "pairs_in_contact": "", "plastic_elements": "",
+         "iterations": "", "pivots": "", "max_equivalent_stress": "force/length2", "max_displacement": "length", "equilibrium_residual": "",
+         "smallest_force": "force", "smallest_gap": "length", "largest_force_gap_product": "force*length", "stress_off_curve": "",
+         "curve_tolerance": "", "stress_off_curve_limit": "", "energy_balance": "", "load_factor": ""}
+#: Figures that are rounding in a valid answer: held to their tolerance, not digit by digit.
+BOUNDS = ("equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "energy_balance", "stress_off_curve_limit")
+
+
+class Report:
+    """Lines as those of the certificate; of each column the cell that is farthest off, of what it may be."""
+
+    def __init__(self, rounding):
+        self.lines, self.faults, self.rounding = [], 0, rounding
+
+    def line(self, name, ours, told, good):
+        self.faults += not good
+        shown = f"{ours:24.16E}" if isinstance(ours, float) else f"{str(ours):>24s}"
+        self.lines.append(f"{name:30s} {shown} {told:>26s}  {'ok' if good else 'WRONG'}")
+
+    def column(self, name, cells):
+        """`cells`: (row, ours, told, allowed); words must be the same, numbers as near as is allowed."""
+        worst = None
+        for row, ours, told, allowed in cells:
+            if not isinstance(ours, float):
+                off = 0.0 if str(ours) == told else math.inf
+            elif told == "":
+                off = math.inf
+            else:
+                off = abs(float(told) - ours)
+                off = off / allowed if allowed > 0.0 else math.inf if off > 0.0 else 0.0
+            if worst is None or off > worst[0]:
+                worst = off, row, ours, told
+        if worst:
+            self.line(f"{name} {worst[1]}", worst[2], worst[3], worst[0] <= 1.0)
+
+
+def check_columns(scene, tables, found, tolerance):
+    """Lines of the report and the number of faults. `found`: what recompute gives."""
+    report = Report(max(ROUNDING, OF_TOLERANCE * tolerance))
+    check_nodes(report, scene, tables, found)
+    check_elements(report, scene, tables, found, tolerance)
+    if scene.pair:
+        check_contact(report, scene, tables, found, tolerance)
+        check_zones(report, scene, tables, tolerance)
+    check_summary(report, scene, tables, found, tolerance)
+    return report.lines, report.faults
+
+
+def check_nodes(report, scene, tables, found):
+    rows = tables.nodes
+    for c, (place, move, reaction) in enumerate((("x", "ux", "rx"), ("y", "uy", "ry"))):
+        report.column(f"nodes {place}", ((n, scene.x[n][c], row[place], 0.0) for n, row in rows.items()))
+        small = report.rounding * found.length   # of a rigid motion
+        held = [(n, scene.given[n, c], rows[n][move], small) for n in rows if (n, c) in scene.held]
+        tied = [(n, float(rows[leader[0]][("ux", "uy")[leader[1]]]), rows[n][move], small) for (n, digit), leader in scene.leader.items() if digit == c]
+        report.column(f"nodes {move}, held or tied,", held + tied)
+        free = [(n, 0.0, row[reaction], 0.0) for n, row in rows.items() if (n, c) not in scene.held]
+        report.column(f"nodes {reaction}, not held,", free)
+
+
+def check_elements(report, scene, tables, found, tolerance):
+    told = float(tables.summary.get("stress_off_curve") or 0.0)
+    columns = {name: [] for name in ("x", "y", "sx", "sy", "sz", "txy", "equivalent_stress", "equivalent_strain", "secant_modulus", "state")}
+    for element, own in found.elements.items():
+        row, section = tables.elements[element], scene.element[element][2]
+        places = [scene.x[node] for node in scene.element[element][1]]
+        for c, name in enumerate("xy"):
+            columns[name].append((element, math.fsum(p[c] for p in places) / len(places), row[name], report.rounding * max(abs(p[c]) for p in places)))
+        stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
+        noise = own.noise * stiffness + report.rounding * own.largest
+        # A stress beyond yield, or before it in the last solve, is off its curve by what the iteration leaves.
+        loose = (told + report.rounding) * found.stress if own.plastic or own.edge < 10 * told else 0.0
+        for k, name in enumerate(("sx", "sy", "sz", "txy")):
+            columns[name].append((element, own.stress[k], row[name], loose + noise + tolerance * abs(own.stress[k])))
+        mean = [float(row[name]) for name in ("sx", "sy", "sz", "txy")]
+        ours, allowed = (von_mises(mean), report.rounding * own.largest) if own.points == 1 else (own.equivalent, loose + noise)
+        columns["equivalent_stress"].append((element, ours, row["equivalent_stress"], allowed + tolerance * ours))
+        if "max_equivalent_stress" in row:
+            peak = ours if own.points == 1 else own.peak
+            columns.setdefault("max_equivalent_stress", []).append((element, peak, row["max_equivalent_stress"], allowed + tolerance * peak))
+        columns["equivalent_strain"].append((element, own.total, row["equivalent_strain"], own.noise + tolerance * own.total))
+        part = own.noise / own.total if own.total else 0.0
+        columns["secant_modulus"].append((element, own.secant, row["secant_modulus"], own.secant * (tolerance + part * (own.plastic or own.edge < part))))
+        state = "plastic" if own.plastic else "elastic"
+        if own.edge < tolerance + part and row["state"] in ("plastic", "elastic"):
+            state = row["state"]   # at the yield point, but for rounding
+        columns["state"].append((element, state, row["state"], 0.0))
+    for name, cells in columns.items():
+        report.column(f"elements {name}", cells)
+
+
+def check_contact(report, scene, tables, found, tolerance):
+    rows = tables.contact
+    size = max(abs(v) for place in scene.x.values() for v in place)
+    for c, name in enumerate(("x", "y")):
+        report.column(f"contact {name}", ((pair, scene.x[own.ends[1]][c], rows[pair][name], 0.0) for pair, own in scene.pair.items()))
+    report.column("contact gb", ((pair, own.ends[1], rows[pair]["gb"], 0.0) for pair, own in scene.pair.items()))
+    report.column("contact ga", ((pair, int(rows[pair]["ga"]) if near(own, rows[pair]["ga"]) else own.ends[0], rows[pair]["ga"], 0.0)
+                                 for pair, own in scene.pair.items()))
+    for c, name in enumerate(("nx", "ny")):
+        report.column(f"contact {name}", ((pair, float(own.normal[c]), rows[pair][name], tolerance * abs(own.normal[c]) + report.rounding)
+                                          for pair, own in scene.pair.items()))
+    report.column("contact initial_gap", ((pair, own.initial, rows[pair]["initial_gap"], tolerance * abs(own.initial) + report.rounding * size)
+                                          for pair, own in scene.pair.items()))
+    report.column("contact gap", ((pair, gap, rows[pair]["gap"], tolerance * abs(gap) + report.rounding * (found.length + size))
+                                  for pair, gap in found.gaps.items()))
+    states = []
+    for pair, row in rows.items():
+        word, force, gap = row["status"], float(row["force"]), float(row["gap"])
+        # Without force and gap it may be called either.
+        sure = "touching" if force > 0.0 else "open" if abs(gap) > report.rounding * (found.length + size) else word if word in ("touching", "open") else "open"
+        states.append((pair, sure, word, 0.0))
+    report.column("contact status", states)
+
+
+def near(pair, told):
+    """Is it, but for rounding, the master node that has the largest part of a pair?"""
+    parts = {node: -weight for node, weight in pair.weights.items() if node != pair.ends[1]}
+    return parts.get(int(told), 0.0) >= (1 - 1e-9) * max(parts.values())
+
+
+def check_zones(report, scene, tables, tolerance):
+    rows = tables.contact
+    touching = {pair: rows[pair]["status"] == "touching" for pair in scene.pair}
+    force, pressure = ({pair: float(rows[pair][name] or -1.0) for pair in scene.pair} for name in ("force", "pressure"))
+    ours = zones(scene, touching, force, pressure)
+    told = [tables.zones[k] for k in sorted(tables.zones)]
+    report.line("zones", len(ours), str(len(told)), len(ours) == len(told) and sorted(tables.zones) == list(range(1, len(told) + 1)))
+    if len(ours) != len(told):
+        return
+    rank = {pair: k for k, pair in enumerate(scene.pair)}
+    for column, attribute in (("first_pair", "first"), ("last_pair", "last"), ("force", "force"), ("max_pressure", "peak"),
+                              ("width_last_pair", "width"), ("half_width", "half_width")):
+        cells = []
+        for k, (own, row) in enumerate(zip(ours, told), 1):
+            value = getattr(own, attribute)
+            value = "" if value is None else value
+            small = math.fsum(abs(force[pair]) for pair in rank) if attribute == "force" else own.width
+            cells.append((k, value, row[column], tolerance * abs(value) + report.rounding * small if isinstance(value, float) else 0.0))
+        report.column(f"zones {column}", cells)
+
+
+def check_summary(report, scene, tables, found, tolerance):
+    """Counts, maxima, words and units; the figures of the certificate are held elsewhere."""
+    summary = tables.summary
+
+    def largest(values):
+        return max(values, default=0.0)
+
+    rows = list(tables.nodes.values())
+    wanted = {
+        "pairs_in_contact": sum(row["status"] == "touching" for row in tables.contact.values()),
+        "plastic_elements": sum(row["state"] == "plastic" for row in tables.elements.values()),
+        "iterations": len(tables.history),
+        "pivots": sum(int(row["pivots"]) for row in tables.history.values()),
+        "max_equivalent_stress": largest(float(row.get("max_equivalent_stress", row["equivalent_stress"])) for row in tables.elements.values()),
+        "max_displacement": largest(math.hypot(float(row["ux"]), float(row["uy"])) for row in rows),
+        "load_factor": 1.0,
+    }
+    if not scene.pair:
+        wanted["total_contact_force"] = 0.0
+    for key, ours in wanted.items():
+        told = summary.get(key, "missing")
+        good = told == str(ours) if isinstance(ours, int) else told != "missing" and abs(number(told, tables.path("summary"), key) - ours) <= tolerance * ours
+        report.line(key, ours, told, good)
+    if tables.history:
+        last = tables.history[max(tables.history)]
+        for key in ("pairs_in_contact", "plastic_elements"):
+            report.line(f"history {key}, last", wanted[key], last[key], last[key] == str(wanted[key]))
+        report.line("history load_factor, last", 1.0, last["load_factor"], float(last["load_factor"]) == 1.0)
+        report.line("history iteration", len(tables.history), str(max(tables.history)), max(tables.history) == len(tables.history))
+    asked = max(tolerance, scene.off_curve)
+    told = summary.get("curve_tolerance", "nan")
+    single = scene.may_be_single and float(told) <= 1.001 * tolerance   # the listing has four digits of it
+    report.line("curve_tolerance", asked, told, abs(float(told) - asked) <= 1e-14 * asked or single)
+    limit = summary.get("stress_off_curve_limit", "nan")
+    report.line("stress_off_curve_limit", float(told), limit, float(told) * (1 - 1e-14) <= float(limit) <= 2 * float(told))
+    residual, ours = float(summary.get("equilibrium_residual", "nan")), found.figures["equilibrium"]
+    # Points beyond yield are off the curve otherwise than their mean, which is all that the tables hold.
+    several = any(own.points > 1 and own.plastic for own in found.elements.values())
+    loose = 10 * max(1.0, found.most) * float(summary.get("stress_off_curve", 0.0)) if several else 0.0
+    report.line("residual, of the program's", ours, f"{residual:.16E}", ours <= LIKE * residual + report.rounding + found.lost + loose)
+    for key in sorted(summary):
+        unit = "length" if key.startswith("approach_") else UNITS.get(key)
+        if unit is not None and tables.units[key] != unit:
+            report.line(f"unit of {key}", unit, tables.units[key], False)
+    report.line("status", "valid", summary.get("status", "missing"), summary.get("status") == "valid")
+
+
+def not_read(tables):
+    """Lines that name what nothing here looks at, and what is held to a bound only."""
+    keys = [key for key in tables.summary if key not in UNITS and not key.startswith("approach_")]
+    files = sorted(path.name for path in tables.directory.glob(f"{glob_safe(tables.stem)}.*")
+                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "history")})
+    lines = [f"not read: {name}.csv {', '.join(columns)}" for name, columns in (("summary", keys), *tables.unread.items()) if columns]
+    if len(tables.history) > 1:
+        lines.append("not read: history.csv pairs_in_contact, plastic_elements, load_factor, but of its last row")
+    lines += [f"not read: {', '.join(files)}"] if files else []
+    lines.append(f"held to their tolerance, not to their digits: {', '.join(key for key in BOUNDS if key in tables.summary)}")
+    return lines
+
+
+def glob_safe(text):
+    return "".join(f"[{c}]" if c in "*?[" else c for c in text)

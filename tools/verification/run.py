@@ -1,0 +1,103 @@
+"""The tables of a run: read whole, held against the deck, and what of them nobody reads."""
+import math
+import pathlib
+import re
+
+import tables
+
+#: Of each table the key of a row, columns that are numbers, those that may be empty, and words.
+COLUMNS = {
+    "nodes": ("node", ["x", "y", "ux", "uy", "rx", "ry"], [], []),
+    "elements": ("element", ["x", "y", "sx", "sy", "sz", "txy", "equivalent_stress", "equivalent_strain", "secant_modulus"], [], ["state"]),
+    "contact": ("pair", ["ga", "gb", "x", "y", "nx", "ny", "initial_gap", "force", "gap"], ["pressure"], ["status"]),
+    "zones": ("zone", ["first_pair", "last_pair", "force", "max_pressure", "width_last_pair"], ["half_width"], []),
+    "history": ("iteration", ["pairs_in_contact", "plastic_elements", "pivots", "load_factor"], [], []),
+}
+#: Columns as other versions of the program call them, and those that only some have.
+RENAMED = {"half_width_last_pair": "width_last_pair"}
+SOME = {"elements": ["max_equivalent_stress"]}
+#: Keys of the summary that must be numbers.
+FIGURES = {"max_pressure", "total_contact_force", "max_equivalent_stress", "max_displacement", "equilibrium_residual", "smallest_force",
+           "smallest_gap", "largest_force_gap_product", "stress_off_curve", "curve_tolerance", "stress_off_curve_limit", "energy_balance", "load_factor"}
+
+
+class TableFault(ValueError):
+    """A table that cannot be what epcont has written for the deck: which, where, why."""
+
+
+class Tables:
+    """Rows of each table by number; `summary`: values by key, `units` likewise; `unread`: columns that are not known here, by table."""
+
+    def __init__(self, directory, stem):
+        self.directory, self.stem, self.unread = pathlib.Path(directory), stem, {}
+        self.summary, self.units = self.read_summary()
+        for name in COLUMNS:
+            setattr(self, name, self.read(name) if name in ("nodes", "elements") or self.path(name).exists() else {})
+
+    def path(self, name):
+        return self.directory / f"{self.stem}.{name}.csv"
+
+    def read_summary(self):
+        path, values, units = self.path("summary"), {}, {}
+        for line, row in enumerate(tables.rows(path), 2):
+            if None in row or not all(row.get(column) is not None for column in ("key", "value", "unit")):
+                raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
+            if row["key"] in values:
+                raise TableFault(f"{path}:{line}: {row['key']} is there twice")
+            if row["key"] in FIGURES or row["key"].startswith("approach_"):
+                number(row["value"], path, row["key"])
+            values[row["key"]], units[row["key"]] = row["value"], row["unit"]
+        return values, units
+
+    def read(self, name):
+        """Rows by number; one row a number, and numbers in the columns that are some."""
+        key, needed, may_be_empty, words = COLUMNS[name]
+        path, found = self.path(name), {}
+        for line, row in enumerate(tables.rows(path), 2):
+            row = {RENAMED.get(column, column): value for column, value in row.items()}
+            if None in row or None in row.values():
+                raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
+            some = [column for column in SOME.get(name, []) if column in row]
+            for column in (key, *needed, *may_be_empty, *words, *some):
+                if column not in row:
+                    raise TableFault(f"{path}:{line}: {column}: no such column")
+                if column not in words and not (column in may_be_empty and row[column] == ""):
+                    number(row[column], f"{path}:{line}", column)
+            try:
+                own = int(row[key])
+            except ValueError:
+                raise TableFault(f"{path}:{line}: {key}: {row[key]!r} is no whole number") from None
+            if own in found:
+                raise TableFault(f"{path}:{line}: {key} {own} is there twice")
+            found[own] = row
+            self.unread[name] = [column for column in row if column not in (key, *needed, *may_be_empty, *words, *some)]
+        return found
+
+    def hold(self, scene):
+        """All that the deck has must be in the tables, and nothing else."""
+        for name, what, wanted, found in (("nodes", "node", scene.x, self.nodes), ("elements", "element", scene.element, self.elements),
+                                          ("contact", "pair", scene.pair, self.contact)):
+            lacking, strange = sorted(set(wanted) - set(found)), sorted(set(found) - set(wanted))
+            if lacking:
+                raise TableFault(f"{self.path(name)}: no {what} {lacking[0]}: the table of another deck, or cut off")
+            if strange:
+                raise TableFault(f"{self.path(name)}: {what} {strange[0]} is not in the deck: the table of another one")
+        for name in ("zones", "history"):
+            if not self.path(name).exists() and (scene.pair or name == "history"):
+                raise TableFault(f"{self.path(name)}: no such file")
+
+
+def told_tolerance(listing, least):
+    """That of the certificate in a listing: single precision has a larger one."""
+    found = re.search(r"(?m)^CERTIFICATE .*; tolerance +(\S+)\)", listing.read_text(encoding="latin-1"))
+    return max(least, float(found[1])) if found else least
+
+
+def number(text, place, name):
+    try:
+        value = float(text)
+    except (TypeError, ValueError):
+        raise TableFault(f"{place}: {name}: {'no such column' if text is None else f'{text!r} is no number'}") from None
+    if not math.isfinite(value):
+        raise TableFault(f"{place}: {name}: {text!r} is no finite number")
+    return value

@@ -1,0 +1,94 @@
+"""Zones of contact from pairs that touch: neighbours along the boundary, runs, half-widths."""
+import math
+
+from pressures import ALONG, UPRIGHT
+
+
+class Zone:
+    """`half_width`: None where no end is found on either side."""
+
+    def __init__(self, run, force, peak, width, half_width):
+        self.first, self.last, self.force, self.peak, self.width, self.half_width = run[0], run[-1], force, peak, width, half_width
+
+
+def neighbours(scene):
+    """Of each pair the pairs beside it on the sides along its tangent, of the same contact."""
+    around = {}
+    for side in scene.side.values():
+        for node in side.nodes:
+            around.setdefault(node, []).append(side)
+    found = {}
+    for contact in scene.contacts:
+        at = {}
+        for name in contact:
+            at.setdefault(scene.pair[name].node, name)
+        for name in contact:
+            pair, own = scene.pair[name], []
+            for side in around.get(pair.node, []):
+                a, b = side.nodes[:2]
+                along = [scene.x[b][c] - scene.x[a][c] for c in (0, 1)]
+                if abs(along[0] * pair.normal[0] + along[1] * pair.normal[1]) > ALONG * math.hypot(*along):
+                    continue
+                beside = [a, b] if pair.node in side.nodes[2:] else [*side.nodes[2:], b if pair.node == a else a][:1]
+                own += [at.get(node) for node in beside]
+            found[name] = [other for other in own[:2] if other is not None]
+    return found
+
+
+def zones(scene, touching, force, pressure):
+    """The runs of touching pairs in the order of the deck; all arguments by the name of a pair."""
+    beside = neighbours(scene)
+    linked = {name: set() for name in scene.pair}
+    for name, others in beside.items():
+        for other in others:
+            if touching[name] and touching[other]:
+                linked[name].add(other)
+                linked[other].add(name)
+    rank, done, found = {name: k for k, name in enumerate(scene.pair)}, set(), []
+    for name in scene.pair:
+        if not touching[name] or name in done:
+            continue
+        reached, front = {name}, [name]
+        while front:
+            front = [other for each in front for other in linked[each] if other not in reached and not reached.add(other)]
+        done |= reached
+        run = walk(beside, touching, walk(beside, touching, name)[-1])
+        found.append(measured(scene, beside, touching, force, pressure, run if rank[run[0]] <= rank[run[-1]] else run[::-1]))
+    return found
+
+
+def walk(beside, touching, start):
+    run, seen = [start], {start}
+    while True:
+        following = next((other for other in beside[run[-1]] if touching[other] and other not in seen), None)
+        if following is None:
+            return run
+        run.append(following)
+        seen.add(following)
+
+
+def measured(scene, beside, touching, force, pressure, run):
+    def apart(a, b):
+        return math.dist(scene.x[scene.pair[a].node], scene.x[scene.pair[b].node])
+
+    def mirrored(name):
+        pair = scene.pair[name]
+        return any((pair.node, c) in scene.held and abs(pair.normal[1 - c]) > UPRIGHT for c in (0, 1))
+
+    def beyond(run):
+        """How far behind the last pair the pressure ends, p**2 being linear; None where it does not fall."""
+        opened = [other for other in beside[run[-1]] if not touching[other]]
+        if len(run) < 2 or not opened or pressure[run[-1]] >= 0.5 * max(pressure[name] for name in run):
+            return None
+        drop = pressure[run[-2]] ** 2 - pressure[run[-1]] ** 2
+        step = apart(run[-1], run[-2])
+        return min(step * pressure[run[-1]] ** 2 / drop, apart(run[-1], opened[-1])) if drop > 0.0 else 0.0
+
+    length = math.fsum(apart(a, b) for a, b in zip(run, run[1:]))
+    ends = [beyond(run[::-1]), beyond(run)]
+    if mirrored(run[0]) != mirrored(run[-1]):
+        part, ends = 1.0, ends[1:] if mirrored(run[0]) else ends[:1]
+    else:
+        part = 0.5
+    half_width = part * (length + sum(ends)) if None not in ends else None
+    return Zone(run, math.fsum(force[name] for name in run), max(pressure[name] for name in run), part * length, half_width)
