@@ -140,4 +140,4 @@ class Counts(Extremes):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)   # tells why a test is skipped
