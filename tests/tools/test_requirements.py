@@ -212,6 +212,11 @@ class Telling(Case):
         call, = self.calls("ctest")
         self.assertTrue(call.startswith("ctest --preset release --parallel 2 ") and call.endswith(" -R name"), call)
 
+    def test_tests_find_what_has_come_since_the_program_was_built(self):
+        for tool, status in (("tools/run", 4), ("tools/test", 8)):
+            self.run_it(status, tool)
+            self.assertEqual(["cmake --preset release"], self.calls("cmake --preset"))
+
     def test_none_run(self):
         (self.place / "results.xml").unlink()
         self.assertEqual("ctest's summary\n", self.run_it(8, "tools/test", "-N").stdout)
