@@ -14,7 +14,9 @@ echo "cmake $*" >> "{place}/calls"
 case "$*" in
   --preset*)
     [ -e "{place}/liblapack.so" ] || {{ echo "Could NOT find LAPACK (missing: LAPACK_LIBRARIES)" >&2; exit 1; }}
-    mkdir -p "build/$2" && touch "build/$2/Makefile" ;;
+    mkdir -p "build/$2" && touch "build/$2/Makefile"
+    [ -e "{place}/bin/python3" ] && found=/usr/bin/python3 || found=_Python3_EXECUTABLE-NOTFOUND
+    echo "_Python3_EXECUTABLE:INTERNAL=$found" > "build/$2/CMakeCache.txt" ;;
   --build*)
     [ ! -e "{place}/broken" ] || {{ echo "Error: syntax" >&2; exit 2; }}
     grep -q build "{place}/slow" 2>/dev/null && sleep 3
@@ -212,10 +214,13 @@ class Telling(Case):
         call, = self.calls("ctest")
         self.assertTrue(call.startswith("ctest --preset release --parallel 2 ") and call.endswith(" -R name"), call)
 
-    def test_tests_find_what_has_come_since_the_program_was_built(self):
-        for tool, status in (("tools/run", 4), ("tools/test", 8)):
-            self.run_it(status, tool)
-            self.assertEqual(["cmake --preset release"], self.calls("cmake --preset"))
+    def test_tests_find_a_python_that_has_come_since_the_program_was_built(self):
+        self.machine(lacking=["python3"])
+        self.run_it(4, "tools/run")
+        self.machine()
+        for times in (1, 0):
+            self.run_it(8, "tools/test")
+            self.assertEqual(times, len(self.calls("cmake --preset")))
 
     def test_none_run(self):
         (self.place / "results.xml").unlink()
