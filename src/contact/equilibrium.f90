@@ -119,10 +119,10 @@ contains
     end do
   end subroutine price
 
-  !> Exchange until no force lowers the cost. The force that lowers it most enters (Dantzig), so that the basis keeps clear of
-  !> pairs that all but depend on each other: two opposite ones would have to carry a load across them by wedging. That may run in
-  !> circles among ties; Bland's rule ends. The limit guards against rounding, and a set that is not quite the best serves as
-  !> well, since the contact simplex lifts its start.
+  !> Exchange until no force lowers the cost. The force that lowers it most enters (Dantzig; of ties the first), so that the basis
+  !> keeps clear of pairs that all but depend on each other: two opposite ones would have to carry a load across them by wedging.
+  !> That may run in circles among ties; Bland's rule ends. The limit guards against rounding, and a set that is not quite the best
+  !> serves as well, since the contact simplex lifts its start.
   pure subroutine minimise(lp, n)
     type(programme), intent(inout) :: lp
     integer, intent(in) :: n   !! columns that may enter
@@ -134,7 +134,7 @@ contains
       if (by_index) then
         column = findloc(lp%reduced_cost(:n) < -negligible, .true., dim=1)
       else
-        column = minloc(lp%reduced_cost(:n), dim=1, mask=lp%reduced_cost(:n) < -negligible)
+        column = first_largest(-lp%reduced_cost(:n), negligible)
       end if
       if (column == 0) exit
       row = leaving_row(lp, column, by_index)
@@ -143,7 +143,19 @@ contains
     end do
   end subroutine minimise
 
-  !> Least ratio; of ties, the largest pivot, or the variable of least index (Bland). 0: none decreases.
+  !> The first of those that are the largest but for rounding, so that it is the same on every processor; 0: none is above `least`.
+  pure function first_largest(values, least) result(at)
+    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: least     !! > 0
+    integer :: at
+    real(wp) :: largest
+
+    at = 0
+    largest = maxval([values, least])
+    if (largest > least) at = findloc(values > max(largest - negligible*maxval(abs(values)), least), .true., dim=1)
+  end function first_largest
+
+  !> Least ratio; of ties, the first of the largest pivots, or the variable of least index (Bland). 0: none decreases.
   pure function leaving_row(lp, column, by_index) result(row)
     type(programme), intent(in) :: lp
     integer, intent(in) :: column
@@ -162,7 +174,7 @@ contains
         if (ratio > least + negligible) cycle
         if (ratio >= least - negligible) then
           if (by_index .and. lp%basic(i) > lp%basic(row)) cycle
-          if (.not. by_index .and. lp%entry(i, column) <= lp%entry(row, column)) cycle
+          if (.not. by_index .and. lp%entry(i, column) <= lp%entry(row, column)*(1.0_wp + negligible)) cycle
         end if
       end if
       row = i
@@ -196,12 +208,11 @@ contains
     integer, intent(in) :: n
     integer :: column, i
 
-    if (n == 0) return
     do i = 1, size(lp%basic)
       if (lp%basic(i) <= n) cycle
       lp%value(i) = 0.0_wp
-      column = maxloc(abs(lp%entry(i, :n)), dim=1)
-      if (abs(lp%entry(i, column)) > dependence_tolerance) then
+      column = first_largest(abs(lp%entry(i, :n)), dependence_tolerance)
+      if (column > 0) then
         call exchange(lp, i, column)
       else
         lp%entry(i, :n) = 0.0_wp

@@ -525,4 +525,4 @@ class StandIn(Case):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)   # tells why a test is skipped

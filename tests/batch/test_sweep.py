@@ -233,4 +233,4 @@ class Sets(Sweep):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)   # tells why a test is skipped

@@ -408,4 +408,4 @@ class Mumps(Case):
 
 if __name__ == "__main__":
     PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
-    unittest.main()
+    unittest.main(verbosity=2)   # tells why a test is skipped

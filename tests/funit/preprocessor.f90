@@ -6,6 +6,7 @@
 program preprocessor
   use, intrinsic :: iso_fortran_env, only: error_unit
   implicit none
+  integer, parameter :: columns = 132   ! of a line of Fortran
   character(len=1000) :: pf_path, f90_path, buffer
   character(len=:), allocatable :: line, output, tests, before, after, awaited, module_name
   integer :: number, unit, status
@@ -28,6 +29,8 @@ program preprocessor
     line = trim(buffer)
     if (index(adjustl(line), '@') == 1) then
       call translate(trim(adjustl(line)))
+    else if (len(line) > columns) then
+      call fault(too_long('the line', len(line)))
     else if (awaited /= '' .or. module_name == '') then
       call look_for_name(trim(adjustl(line)))
     end if
@@ -67,7 +70,29 @@ contains
       call fault(name//' does not end with its closing parenthesis on this line')
     end if
     line = assertion(name, arguments(2:i - 1))//'; if (anyExceptions()) return'
+    i = len(pfunit_line(name, arguments(2:i - 1)))
+    if (i > columns) call fault(too_long(name//', as pFUnit writes it,', i))
   end subroutine translate
+
+  !> What pFUnit 4.14 makes of an assertion, as far as its first line goes; the place follows on lines of their own.
+  pure function pfunit_line(name, arguments) result(first_line)
+    character(len=*), intent(in) :: name, arguments
+    character(len=:), allocatable :: first_line
+
+    first_line = '  call '//name(2:)//'('//arguments
+    if (arguments /= '') first_line = first_line//', '
+    first_line = first_line//'&'
+  end function pfunit_line
+
+  function too_long(what, length) result(text)
+    character(len=*), intent(in) :: what
+    integer, intent(in) :: length
+    character(len=:), allocatable :: text
+    character(len=60) :: numbers
+
+    write (numbers, '(a,i0,a,i0)') ' takes ', length, ' columns; a line of Fortran has ', columns
+    text = what//trim(numbers)
+  end function too_long
 
   !> The call that an assertion stands for.
   function assertion(name, arguments) result(statement)

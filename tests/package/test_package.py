@@ -210,4 +210,4 @@ if __name__ == "__main__":
         print("skipped: no " + ", ".join(missing))
         sys.exit(77)
     print(__doc__)
-    unittest.main()
+    unittest.main(verbosity=2)   # tells why a test is skipped

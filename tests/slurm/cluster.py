@@ -44,7 +44,7 @@ def install():
     if shutil.which("slurmctld") and shutil.which("slurmd") and shutil.which("sbatch"):
         return
     if os.geteuid() != 0 or not shutil.which("apt-get"):
-        sys.exit("missing packages; please run: sudo apt-get install -y " + " ".join(PACKAGES))
+        sys.exit("missing packages; please run: sudo apt-get update && sudo apt-get install -y " + " ".join(PACKAGES))
     # Services of the machine are not to be started: policy-rc.d says so to the packages, where there is no other.
     policy = pathlib.Path("/usr/sbin/policy-rc.d")
     ours = not policy.exists()

@@ -31,7 +31,7 @@ def make(scene_path, path, faults):
     try:
         from .mesh import read_mesh
     except ImportError as error:
-        raise Unusable(f"no Gmsh for this Python ({error}); use tools/deck, or pip install -r tools/requirements.txt") from error
+        raise Unusable(f"no Gmsh for this Python ({error}); use tools/deck, or pip install --no-deps -r tools/requirements.txt") from error
     except OSError as error:
         raise Unusable(f"Gmsh does not load ({error}); remove build/venv/installed and try again") from error
     from .deck import Maker
