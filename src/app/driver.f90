@@ -25,6 +25,7 @@ module epcont_app_driver
   use epcont_report_outcome, only: judge, outcome_type
   use epcont_report_plan, only: plan_text
   use epcont_report_results, only: run_results, write_results
+  use epcont_report_scene, only: scene_warnings
   use epcont_report_solver, only: report_solver_fault
   use epcont_report_timing, only: timing_text
   use epcont_result_answer, only: answer_type
@@ -107,9 +108,24 @@ contains
       write (error_unit, '(a)') error%message
     else
       if (len(run%outcome%sentence) > 0) write (error_unit, '(a)') path//': '//run%outcome%sentence
+      if (run%outcome%has_answer) &
+        call warn(path, scene_warnings(run%model, run%certificate%scene, run%answer%gradient))
       call say(arguments, one_line(stem_of(path), run%answer, run%outcome), status)
     end if
   end subroutine follow_deck
+
+  !> Warnings of an answer, each line of text ended by a newline.
+  subroutine warn(path, text)
+    character(len=*), intent(in) :: path, text
+    integer :: from, to
+
+    from = 1
+    do while (from <= len(text))
+      to = from + index(text(from:), new_line('a')) - 1
+      write (error_unit, '(a)') path//': warning: '//text(from:to - 1)
+      from = to + 1
+    end do
+  end subroutine warn
 
   !> Path of the result files, without their suffixes.
   pure function output_stem(path, arguments) result(stem)

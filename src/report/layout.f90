@@ -3,7 +3,7 @@ module epcont_report_layout
   use epcont_report_file, only: text_file
   implicit none
   private
-  public :: heading, figure, lines, right
+  public :: heading, figure, lines, right, wrap
 
   character(len=1), parameter, public :: newline = new_line('a')
 
@@ -42,6 +42,23 @@ contains
       from = to + 1
     end do
   end subroutine lines
+
+  !> Text on lines of at most 132 columns.
+  subroutine wrap(file, text)
+    type(text_file), intent(in) :: file
+    character(len=*), intent(in) :: text
+    integer, parameter :: columns = 132
+    integer :: from, to
+
+    from = 1
+    do while (len(text) - from >= columns - 4)
+      to = from + index(text(from:from + columns - 4), ' ', back=.true.) - 1
+      if (to <= from) to = from + columns - 4
+      call file%line(repeat(' ', merge(4, 0, from > 1))//text(from:to))
+      from = to + 1
+    end do
+    call file%line(repeat(' ', merge(4, 0, from > 1))//text(from:))
+  end subroutine wrap
 
   !> Text at the right of `width` columns; wider text is kept whole.
   pure function right(text, width) result(field)

@@ -11,9 +11,10 @@ module epcont_report_listing
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
-  use epcont_report_layout, only: figure, heading, lines, right
+  use epcont_report_layout, only: figure, heading, lines, right, wrap
   use epcont_report_number, only: column_number, rounding_number
   use epcont_report_outcome, only: outcome_type
+  use epcont_report_scene, only: list_scene
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
@@ -58,23 +59,6 @@ contains
     file%mark = '  *NOT VALID: '//outcome%word//'*'
     call wrap(file, '  *NOT VALID*  '//outcome%word//': '//outcome%sentence)
   end subroutine list_outcome
-
-  !> Text on lines of at most 132 columns.
-  subroutine wrap(file, text)
-    type(text_file), intent(in) :: file
-    character(len=*), intent(in) :: text
-    integer, parameter :: columns = 132
-    integer :: from, to
-
-    from = 1
-    do while (len(text) - from >= columns - 4)
-      to = from + index(text(from:from + columns - 4), ' ', back=.true.) - 1
-      if (to <= from) to = from + columns - 4
-      call file%line(repeat(' ', merge(4, 0, from > 1))//text(from:to))
-      from = to + 1
-    end do
-    call file%line(repeat(' ', merge(4, 0, from > 1))//text(from:))
-  end subroutine wrap
 
   !> Forces, pressures and gaps of the pairs, and the pivots that led to them.
   subroutine list_contact(file, model, answer)
@@ -293,5 +277,6 @@ contains
     if (certificate%off_curve > certificate%curve_tolerance .and. certificate%off_curve <= certificate%off_curve_limit) &
       call figure(file, 'and with the rounding of displacements', right(short_real(certificate%off_curve_limit), 13))
     call figure(file, 'energy balance', right(rounding_number(certificate%energy), 13))
+    call list_scene(file, model, certificate%scene, answer%gradient)
   end subroutine list_summary
 end module epcont_report_listing
