@@ -4,6 +4,7 @@ module epcont_analysis
   use epcont_base_kinds, only: wp
   use epcont_base_stopwatch, only: stage_accuracy, stage_certificate, stage_stresses
   use epcont_certificate_certificate, only: certificate_type, certify
+  use epcont_certificate_scene, only: look_through
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_model_controls, only: precision_double
@@ -97,6 +98,8 @@ contains
     call watch%lap(stage_stresses)
     call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
                  answer%contact%force, certificate, answer%rounding_error)
+    if (answer%converged .and. certificate%valid) &
+      certificate%scene = look_through(model, answer%displacement, answer%contact%force)
     call watch%lap(stage_certificate)
   end subroutine evaluate
 

@@ -127,7 +127,7 @@ contains
       else
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
         status = run%outcome%status
-        if (run%outcome%has_answer) call remark_answer(run%model, run%answer, run%remarks)
+        if (run%outcome%has_answer) call remark_answer(run%model, run%answer, run%certificate%scene, run%remarks)
         call write_results(run, output_stem(path, arguments), arguments%all_tables, arguments%vtk, error)
         written = .true.
         call watch%lap(stage_writing)

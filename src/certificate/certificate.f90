@@ -6,6 +6,7 @@
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
   use epcont_certificate_gradient, only: kind_of, kind_type, most_places, unit_strains
+  use epcont_certificate_scene, only: scene_type
   use epcont_certificate_yielding, only: stress_on_curve
   use epcont_model_model, only: axisymmetric, model_type, most_nodes
   implicit none
@@ -49,6 +50,7 @@ module epcont_certificate_certificate
     real(wp) :: off_curve_limit = exact_tolerance  !! the same of a valid answer: rounding of displacements may add as much again
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
     logical :: valid = .false.            !! that one too
+    type(scene_type) :: scene             !! whether bodies pass through each other; looked through where all else is right
   end type certificate_type
 
 contains

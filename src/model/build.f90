@@ -9,9 +9,11 @@ module epcont_model_build
   use epcont_deck_entry, only: least_cause
   use epcont_model_choices, only: build_controls
   use epcont_model_elements, only: build_elements, check_axis, element_cards
+  use epcont_model_free_sides, only: find_outline
   use epcont_model_line_contacts, only: build_line_contacts
   use epcont_model_lines, only: build_lines
   use epcont_model_loads, only: build_loads
+  use epcont_model_lying_together, only: warn_of_lying_together
   use epcont_model_mesh, only: build_nodes, build_sections
   use epcont_model_model, only: model_type
   use epcont_model_pair_checks, only: check_pairs
@@ -54,6 +56,8 @@ contains
     call check_pairs(deck, model, faults)
     call find_bodies(model)
     call find_travels(model)
+    model%body_outline = find_outline(model)
+    call warn_of_lying_together(deck, model, faults)
   end subroutine build_model
 
   !> Bodies: nodes joined by elements or RBE2.

@@ -5,6 +5,7 @@
 module epcont_model_model
   use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
+  use epcont_model_body_outline, only: outline_type
   use epcont_model_controls, only: controls_type, uniaxial_curve
   use epcont_model_side_boxes, only: boxed_line
   implicit none
@@ -79,6 +80,7 @@ module epcont_model_model
     type(named_line), allocatable :: line(:)
     type(line_contact), allocatable :: line_contact(:)
     integer, allocatable :: body(:)             !! of each node [nodes]
+    type(outline_type) :: body_outline          !! of all bodies
   contains
     procedure :: coordinates
     procedure :: corners

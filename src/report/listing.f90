@@ -14,6 +14,7 @@ module epcont_report_listing
   use epcont_report_layout, only: figure, heading, right, wrap
   use epcont_report_number, only: column_number, known_column, rounding_number
   use epcont_report_outcome, only: outcome_type
+  use epcont_report_scene, only: list_scene
   use epcont_result_answer, only: answer_type
   use epcont_result_zones, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
@@ -288,5 +289,6 @@ contains
     if (certificate%off_curve > certificate%curve_tolerance .and. certificate%off_curve <= certificate%off_curve_limit) &
       call figure(file, 'and with the rounding of displacements', right(short_real(certificate%off_curve_limit), 13))
     call figure(file, 'energy balance', right(rounding_number(certificate%energy), 13))
+    call list_scene(file, model, certificate%scene)
   end subroutine list_summary
 end module epcont_report_listing

@@ -8,6 +8,7 @@ module epcont_report_outcome
   use epcont_model_controls, only: precision_name
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
+  use epcont_report_scene, only: scene_fault
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -74,7 +75,13 @@ contains
     else
       outcome%has_answer = .true.
       outcome%word = 'valid'
-      if (answer%converged .and. certificate%valid .and. loss_of(answer) <= largest_loss) return
+      if (answer%converged .and. certificate%valid .and. loss_of(answer) <= largest_loss) then
+        if (certificate%scene%sound()) return
+        outcome%status = status_numerical
+        outcome%word = 'not certified'
+        outcome%sentence = scene_fault(model, certificate%scene)
+        return
+      end if
       if (.not. answer%converged .and. (certificate%balanced .or. answer%runs_away)) then
         outcome%status = status_no_answer
         outcome%word = 'not converged'

@@ -3,12 +3,14 @@
 module epcont_report_remarks
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
+  use epcont_certificate_scene, only: scene_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: render_notes
   use epcont_deck_source, only: source
   use epcont_model_model, only: model_type
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: heading, newline, wrap
+  use epcont_report_scene, only: changed_text, drawn_text, itself_text
   use epcont_result_answer, only: answer_type
   use epcont_result_locking, only: high_poisson
   implicit none
@@ -38,12 +40,19 @@ contains
   end function remarks_of_deck
 
   !> Add those of an answer: where its equations, solved as they are, are not those of the scene.
-  pure subroutine remark_answer(model, answer, remarks)
+  pure subroutine remark_answer(model, answer, scene, remarks)
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
+    type(scene_type), intent(in) :: scene
     type(remarks_type), intent(inout) :: remarks
 
-    if (answer%gradient%part > 0.0_wp) call warn(not_small(model, answer), remarks)
+    call warn(itself_text(model, scene), remarks)
+    call warn(drawn_text(model, scene), remarks)
+    if (answer%gradient%part > 0.0_wp) then
+      call warn(not_small(model, answer), remarks)
+    else
+      call warn(changed_text(model, scene), remarks)
+    end if
     if (answer%locking%elements > 0) call warn(plural(answer%locking%elements, 'three-node element')// &
       ' of nearly constant volume (Poisson''s ratio '//short_real(high_poisson)// &
       ' or more, as yielding has made it): too stiff; six-node elements or CQUAD4 would be right', remarks)
@@ -53,10 +62,12 @@ contains
       ' unloaded after yielding: the theory takes them back along the curve, not along the elastic line', remarks)
   end subroutine remark_answer
 
+  !> Add a warning; an empty text is none.
   pure subroutine warn(text, remarks)
     character(len=*), intent(in) :: text
     type(remarks_type), intent(inout) :: remarks
 
+    if (len(text) == 0) return
     remarks%warnings = remarks%warnings + 1
     remarks%of_answer = remarks%of_answer//warning//text//newline
   end subroutine warn

@@ -72,6 +72,12 @@ contains
       call put('curve_tolerance', certificate%curve_tolerance, '')
       call put('stress_off_curve_limit', certificate%off_curve_limit, '')
       call put('energy_balance', certificate%energy, '')
+      if (certificate%scene%looked_through) then
+        call put('largest_penetration', certificate%scene%inside%depth, 'length')
+        call put('allowed_penetration', certificate%scene%inside%allowed, 'length')
+        call put('largest_pressed_gap', certificate%scene%apart%depth, 'length')
+        call put('allowed_pressed_gap', certificate%scene%apart%allowed, 'length')
+      end if
       call put('condition', answer%condition, '')
       call put('load_factor', answer%load_factor, '')
       error_left = estimate_iteration_error(answer%history, answer%load_factor)

@@ -1,0 +1,169 @@
+!> By how much displaced outlines may overlap, or stand apart where they press on each other, though every equation holds:
+!> what straight sides, displacements linear between nodes and linear kinematics leave open.
+!>
+!> A side of length h allows 3 (s + b + k), and as much again as CGAPs there say otherwise than the coordinates:
+!>     s = h theta/8          above its chord lies the smooth curve, to which gaps are measured; theta the turn at its ends
+!>     b = h |d theta|/8      what displacements add to that turn
+!>     k = d |w| + d**2 c/2   sliding by d along a side that turns by w, and has the curvature c
+!>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
+module epcont_certificate_allowance
+  use epcont_base_geometry, only: cross_product
+  use epcont_base_kinds, only: wp
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: allowance_type, new_allowance
+
+  real(wp), parameter :: factor = 3.0_wp
+  !> Where no line says more, sides that turn by more than this meet at a corner.
+  real(wp), parameter :: corner_angle = 35.0_wp*acos(-1.0_wp)/180.0_wp
+  !> The least that is allowed: as a part of the scene's extent, and in roundings of its coordinates.
+  real(wp), parameter :: least_part = 1.0e-8_wp, roundings = 16.0_wp
+
+  type :: allowance_type
+    real(wp) :: least = 0.0_wp             !! between any two sides [length]
+    real(wp), allocatable :: sag(:)        !! s [length] [sides]
+    real(wp), allocatable :: bend(:)       !! b [length] [sides]
+    real(wp), allocatable :: turn(:)       !! w, of the displaced side from that drawn [rad] [sides]
+    real(wp), allocatable :: curvature(:)  !! c [1/length] [sides]
+    real(wp), allocatable :: stretch(:)    !! of the side, whatever its sign [sides]
+    real(wp), allocatable :: length(:)     !! h [length] [sides]
+    real(wp), allocatable :: gap(:)        !! that CGAPs there give, less that of the coordinates [length] [sides]
+  contains
+    procedure :: of
+  end type allowance_type
+
+contains
+
+  !> What a side allows where another slides along it.
+  pure real(wp) function of(self, side, slide)
+    class(allowance_type), intent(in) :: self
+    integer, intent(in) :: side
+    real(wp), intent(in) :: slide   !! [length]
+
+    of = factor*(self%sag(side) + self%bend(side) + abs(slide)*abs(self%turn(side)) &
+                 + 0.5_wp*slide**2*self%curvature(side) &
+                 + 0.5_wp*self%length(side)*max(abs(self%turn(side)), self%stretch(side))**2) + self%gap(side)
+  end function of
+
+  !> For all sides of the outlines.
+  pure function new_allowance(model, displacement) result(allowance)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    type(allowance_type) :: allowance
+    real(wp), allocatable :: drawn(:, :, :), moved(:, :), now(:, :, :), theta(:)
+    real(wp) :: before, added
+    integer :: i, s, n
+
+    n = model%body_outline%sides
+    allocate (allowance%sag(n), allowance%bend(n), allowance%turn(n), allowance%curvature(n), allowance%stretch(n), &
+              allowance%length(n), theta(n), source=0.0_wp)
+    allocate (drawn(2, 2, n), now(2, 2, n))
+    moved = model%x + displacement
+    associate (chord => allowance%length)
+      do s = 1, n
+        call side_ends(model%body_outline%node(:, s), model%x, drawn(:, :, s), chord(s))
+        call side_ends(model%body_outline%node(:, s), moved, now(:, :, s), allowance%stretch(s))
+        allowance%stretch(s) = abs(allowance%stretch(s)/chord(s) - 1.0_wp)
+        allowance%turn(s) = angle(sum(drawn(:, :, s), dim=2), sum(now(:, :, s), dim=2))
+        allowance%curvature(s) = abs(angle(drawn(:, 1, s), drawn(:, 2, s)))/chord(s)
+      end do
+      do s = 1, n
+        associate (next => model%body_outline%after(s))
+          before = angle(drawn(:, 2, s), drawn(:, 1, next))
+          if (abs(before) > corner_angle) cycle
+          added = abs(angle(now(:, 2, s), now(:, 1, next)) - before)
+          do i = 1, 2
+            associate (side => merge(s, next, i == 1))
+              theta(side) = max(theta(side), abs(before))
+              allowance%bend(side) = max(allowance%bend(side), chord(side)*added/8.0_wp)
+            end associate
+          end do
+        end associate
+      end do
+      allowance%sag = chord*theta/8.0_wp
+      call take_lines(model, drawn, chord, allowance%sag)
+      allowance%curvature = allowance%curvature + 8.0_wp*allowance%sag/chord**2
+    end associate
+    call take_gaps(model, allowance%gap)
+    allowance%least = least_part*maxval(maxval(model%x, dim=2) - minval(model%x, dim=2)) &
+                      + roundings*epsilon(1.0_wp)*(maxval(abs(model%x)) + maxval(abs(displacement)))
+  end function new_allowance
+
+  !> Directions of a side where it begins and where it ends, and its length from the one to the other.
+  pure subroutine side_ends(node, x, along, length)
+    integer, intent(in) :: node(3)
+    real(wp), intent(in) :: x(:, :)
+    real(wp), intent(out) :: along(2, 2), length
+    real(wp) :: middle(2)
+
+    along(:, 1) = x(:, node(2)) - x(:, node(1))
+    length = norm2(along(:, 1))
+    along(:, 2) = along(:, 1)
+    if (node(3) == 0) return
+    middle = 4.0_wp*(x(:, node(3)) - 0.5_wp*(x(:, node(1)) + x(:, node(2))))
+    along(:, 1) = along(:, 1) + middle
+    along(:, 2) = along(:, 2) - middle
+  end subroutine side_ends
+
+  !> From one direction to another, counter-clockwise [rad].
+  pure real(wp) function angle(from, to)
+    real(wp), intent(in) :: from(2), to(2)
+
+    angle = atan2(cross_product(from, to), dot_product(from, to))
+  end function angle
+
+  !> Where lines are in contact: over its chord each side has the curve with the normals of contact at its ends.
+  pure subroutine take_lines(model, along, chord, sag)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: along(:, :, :), chord(:)
+    real(wp), intent(inout) :: sag(:)
+    integer :: side_of(model%nodes)
+    real(wp) :: most
+    integer :: i, k, s
+
+    if (.not. allocated(model%outline%element)) return
+    side_of = 0
+    do s = 1, model%body_outline%sides
+      side_of(model%body_outline%node(1, s)) = s
+    end do
+    do i = 1, size(model%outline%element)
+      s = side_of(model%outline%segment(1, i))
+      if (s == 0) cycle
+      if (model%body_outline%element(s) /= model%outline%element(i)) cycle
+      most = 0.0_wp
+      do k = 1, 2
+        most = max(most, abs(angle([along(2, k, s), -along(1, k, s)], model%outline%normal(:, k, i))))
+      end do
+      ! The angle between normal and side is half the turn.
+      sag(s) = chord(s)*most/4.0_wp
+    end do
+  end subroutine take_lines
+
+  !> By how much the gaps of CGAPs between two bodies differ from those of the coordinates.
+  pure subroutine take_gaps(model, gap)
+    type(model_type), intent(in) :: model
+    real(wp), allocatable, intent(out) :: gap(:)
+    real(wp) :: at_node(model%nodes), drawn
+    integer :: c, k, last, s
+
+    last = model%pairs
+    do c = 1, size(model%line_contact)
+      last = last - (model%line_contact(c)%last - model%line_contact(c)%first + 1)
+    end do
+    at_node = 0.0_wp
+    do k = 1, last
+      associate (pair => model%pair_node(:, k))
+        if (any(model%body_outline%part_of(pair) == 0)) cycle
+        drawn = dot_product(model%normal(:, k), model%x(:, pair(2)) - model%x(:, pair(1)))
+        at_node(pair) = max(at_node(pair), abs(model%initial_gap(k) - drawn))
+      end associate
+    end do
+    allocate (gap(model%body_outline%sides))
+    do s = 1, model%body_outline%sides
+      associate (node => model%body_outline%node(:, s))
+        gap(s) = maxval(at_node(node(:merge(3, 2, node(3) > 0))))
+      end associate
+    end do
+  end subroutine take_gaps
+end module epcont_certificate_allowance

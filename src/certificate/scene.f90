@@ -1,0 +1,361 @@
+!> Looks through the displaced outlines of all bodies for places where one lies inside another, or inside itself, and for
+!> forces that press across a gap. Pairs and lines have no say in where it looks.
+!>
+!> Each side of the outlines that meets the box of another body is sampled: where it begins, at its quarter points, and
+!> between two places where it crosses the other outline. The depth of a point is its distance from the other outline.
+module epcont_certificate_scene
+  use epcont_base_geometry, only: cross_product
+  use epcont_base_kinds, only: wp
+  use epcont_certificate_allowance, only: allowance_type, new_allowance
+  use epcont_model_mates, only: find_mates, is_mate
+  use epcont_model_model, only: model_type
+  use epcont_model_outline_shape, only: near_place, new_outline_shape, outline_shape
+  implicit none
+  private
+  public :: overlap_place, scene_type, look_through
+
+  !> Sides turned [rad] or stretched by more than this are warned of.
+  real(wp), parameter, public :: largest_change = 0.2_wp
+  !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths off the largest
+  !! allowance counts.
+  real(wp), parameter :: about = 1.5_wp
+  !> A pair presses if its force is more than this part of the largest.
+  real(wp), parameter :: pressing = 1.0e-6_wp
+  !> Points of each side: its beginning and its quarter points.
+  integer, parameter :: quarters = 4
+
+  !> Of places that differ by less than this part the first counts: rounding decides nothing.
+  real(wp), parameter :: more = 1.0_wp + 1.0e-9_wp
+
+  !> Where a body lies in another, or in itself.
+  type :: overlap_place
+    real(wp) :: ratio = 0.0_wp     !! depth, of what is allowed
+    real(wp) :: depth = 0.0_wp     !! [length]
+    real(wp) :: allowed = 0.0_wp   !! [length]
+    real(wp) :: x(2) = 0.0_wp      !! of the point that lies inside, displaced [length]
+    integer :: side = 0            !! of the outlines, on which the point is; 0: there is no such place
+    integer :: other = 0           !! the side of the other body that it is nearest to
+  end type overlap_place
+
+  type :: scene_type
+    logical :: looked_through = .false.
+    type(overlap_place) :: inside          !! deepest in another body, by what is allowed
+    type(overlap_place) :: itself          !! deepest in its own body
+    type(overlap_place) :: apart           !! the depth is that of a gap across which `pair` presses
+    integer :: pair = 0
+    type(overlap_place) :: drawn           !! overlap as drawn, which no pair is to close: no fault, but told
+    real(wp) :: change = 0.0_wp            !! largest turn [rad] or stretch of a side
+    integer :: changed_side = 0            !! which one
+  contains
+    procedure :: sound
+  end type scene_type
+
+  !> What is worked with.
+  type :: search_type
+    type(outline_shape) :: now, drawn      !! displaced; as drawn, made where it is asked for
+    type(allowance_type) :: allowance
+    real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
+    integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
+    integer, allocatable :: near(:), nearer(:)    !! room for what trees find
+    real(wp), allocatable :: crossing(:)   !! room for where a side crosses others
+    integer :: last = 1                    !! the side that was nearest to the point before: the next is not far from it
+  end type search_type
+
+contains
+
+  !> Does no body lie in another, and no force press across a gap?
+  pure logical function sound(self)
+    class(scene_type), intent(in) :: self
+
+    sound = self%inside%ratio <= 1.0_wp .and. self%apart%ratio <= 1.0_wp
+  end function sound
+
+  !> Look through the whole scene.
+  pure function look_through(model, displacement, force) result(scene)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), intent(in) :: force(:)             !! contact forces [pairs]
+    type(scene_type) :: scene
+    type(search_type) :: search
+    integer :: side
+
+    scene%looked_through = .true.
+    if (model%body_outline%sides == 0) return
+    search%displacement = displacement
+    search%now = new_outline_shape(model%body_outline, model%x + displacement)
+    search%allowance = new_allowance(model, displacement)
+    search%mate = find_mates(model)
+    allocate (search%near(16), search%nearer(16), search%crossing(16))
+    do side = 1, model%body_outline%sides
+      call look_at_side(model, search, side, scene)
+    end do
+    call look_at_pairs(model, search, force, scene)
+    associate (allowance => search%allowance)
+      scene%changed_side = maxloc(max(abs(allowance%turn), allowance%stretch), dim=1)
+      scene%change = max(abs(allowance%turn(scene%changed_side)), allowance%stretch(scene%changed_side))
+    end associate
+  end function look_through
+
+  !> The points of a side, in the bodies whose boxes it meets.
+  pure subroutine look_at_side(model, search, side, scene)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(inout) :: search
+    integer, intent(in) :: side
+    type(scene_type), intent(inout) :: scene
+    integer :: b, crossings, k, other, parts
+    real(wp) :: h
+
+    h = 0.5_wp*norm2(search%now%chord(side))
+    associate (now => search%now, low => search%now%low(:, side), high => search%now%high(:, side), &
+               part => model%body_outline%part(side))
+      call now%part_tree%meeting(low, high, search%near, parts)
+      do b = 1, parts
+        other = search%near(b)
+        if (other == part) cycle
+        do k = 0, quarters - 1
+          call look_at_point(model, search, side, real(k, wp)/quarters, other, scene)
+        end do
+        call find_crossings(search, side, other, crossings)
+        do k = 2, crossings
+          call look_at_point(model, search, side, 0.5_wp*(search%crossing(k - 1) + search%crossing(k)), other, scene)
+        end do
+      end do
+      call now%side_tree(part)%meeting(low - h, high + h, search%near, parts)
+      do b = 1, parts
+        call look_at_itself(model, search, side, model%body_outline%first(part) + search%near(b) - 1, scene)
+      end do
+    end associate
+  end subroutine look_at_side
+
+  !> One point of a side, in another body.
+  pure subroutine look_at_point(model, search, side, s, part, scene)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(inout) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    integer, intent(in) :: part
+    type(scene_type), intent(inout) :: scene
+    type(near_place) :: before, place
+    real(wp) :: allowed, depth, slide, x(2)
+
+    x = search%now%at(side, s)
+    if (search%now%side_tree(part)%away(1, x) > 0.0_wp) return
+    place = search%now%nearest(part, x, search%last)
+    search%last = place%side
+    if (.not. place%inside) return
+    depth = place%distance
+    slide = slide_of(model, search, side, s, place)
+    allowed = search%allowance%least + own_allowance(model, search, side, s, slide) &
+              + own_allowance(model, search, place%side, place%s, slide)
+    if (depth <= more*allowed*scene%inside%ratio) return
+    if (depth > allowed) then
+      allowed = search%allowance%least + allowance_about(search, model%body_outline%part(side), x, about*depth, side, slide) &
+                + allowance_about(search, part, x, about*depth, place%side, slide)
+      if (.not. allocated(search%drawn%x)) search%drawn = new_outline_shape(model%body_outline, model%x)
+      before = search%drawn%nearest(part, search%drawn%at(side, s))
+      if (before%inside .and. .not. is_paired(model, search, side, place%side)) then
+        if (before%distance > allowed .and. before%distance > more*scene%drawn%depth) &
+          scene%drawn = overlap_place(before%distance/allowed, before%distance, allowed, search%drawn%at(side, s), side, &
+                                      before%side)
+        depth = depth - before%distance
+      end if
+      if (depth <= more*allowed*scene%inside%ratio) return
+    end if
+    scene%inside = overlap_place(depth/allowed, depth, allowed, x, side, place%side)
+  end subroutine look_at_point
+
+  !> Does a pair join the two bodies at one of two sides?
+  pure logical function is_paired(model, search, side, other)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side, other
+
+    associate (outline => model%body_outline)
+      is_paired = is_mate(search%mate, outline%node(:, side), outline%part(other)) .or. &
+                  is_mate(search%mate, outline%node(:, other), outline%part(side))
+    end associate
+  end function is_paired
+
+  !> How far a point of a side has slid along the place that it is near to [length].
+  pure real(wp) function slide_of(model, search, side, s, place) result(slide)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    type(near_place), intent(in) :: place
+    real(wp) :: along(2)
+
+    along = search%now%tangent(place%side, place%s)
+    slide = dot_product(along, motion(side, s) - motion(place%side, place%s))/max(norm2(along), tiny(1.0_wp))
+
+  contains
+
+    !> Displacement of a place of a side.
+    pure function motion(side, s) result(u)
+      integer, intent(in) :: side
+      real(wp), intent(in) :: s
+      real(wp) :: u(2)
+
+      associate (node => model%body_outline%node(:, side), v => search%displacement)
+        u = (1.0_wp - s)*v(:, node(1)) + s*v(:, node(2))
+        if (node(3) > 0) u = u + 4.0_wp*s*(1.0_wp - s)*(v(:, node(3)) - 0.5_wp*(v(:, node(1)) + v(:, node(2))))
+      end associate
+    end function motion
+  end function slide_of
+
+  !> What a side allows, and at a node also the one with which it shares that [length].
+  pure real(wp) function own_allowance(model, search, side, s, slide) result(allowed)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s, slide
+
+    allowed = search%allowance%of(side, slide)
+    if (s <= 0.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%before(side), slide))
+    if (s >= 1.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%after(side), slide))
+  end function own_allowance
+
+  !> The most that sides of a part within a distance of a point allow, and one of them at least [length].
+  pure real(wp) function allowance_about(search, part, x, distance, side, slide) result(allowed)
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: part
+    real(wp), intent(in) :: x(2), distance
+    integer, intent(in) :: side
+    real(wp), intent(in) :: slide
+    type(near_place) :: place
+    integer, allocatable :: near(:)
+    integer :: k, n, other
+
+    allowed = search%allowance%of(side, slide)
+    allocate (near(16))
+    call search%now%side_tree(part)%meeting(x - distance, x + distance, near, n)
+    do k = 1, n
+      other = search%now%outline%first(part) + near(k) - 1
+      place = search%now%near_side(other, x)
+      if (place%distance <= distance) allowed = max(allowed, search%allowance%of(other, slide))
+    end do
+  end function allowance_about
+
+  !> Where the chord of a side crosses those of another part, ascending.
+  pure subroutine find_crossings(search, side, part, crossings)
+    type(search_type), intent(inout) :: search
+    integer, intent(in) :: side, part
+    integer, intent(out) :: crossings
+    real(wp) :: across, along(2), from(2), other(2), s, t
+    integer :: i, k, n
+
+    crossings = 0
+    associate (now => search%now)
+      call now%side_tree(part)%meeting(now%low(:, side), now%high(:, side), search%nearer, n)
+      if (n < 2) return
+      along = now%chord(side)
+      do k = 1, n
+        associate (j => now%outline%first(part) + search%nearer(k) - 1)
+          other = now%chord(j)
+          across = cross_product(along, other)
+          if (across == 0.0_wp) cycle
+          from = now%x(:, 1, j) - now%x(:, 1, side)
+          s = cross_product(from, other)/across
+          t = cross_product(from, along)/across
+          if (s < 0.0_wp .or. s > 1.0_wp .or. t < 0.0_wp .or. t > 1.0_wp) cycle
+        end associate
+        if (crossings == size(search%crossing)) search%crossing = [search%crossing, search%crossing]
+        i = crossings
+        do while (i > 0)
+          if (search%crossing(i) <= s) exit
+          search%crossing(i + 1) = search%crossing(i)
+          i = i - 1
+        end do
+        search%crossing(i + 1) = s
+        crossings = crossings + 1
+      end do
+    end associate
+  end subroutine find_crossings
+
+  !> The points of a side, behind another side of its own body, before which they were drawn.
+  pure subroutine look_at_itself(model, search, side, other, scene)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side, other
+    type(scene_type), intent(inout) :: scene
+    type(near_place) :: place
+    real(wp) :: allowed, drawn, s, slide, x(2)
+    integer :: k
+
+    associate (node => model%body_outline%node, now => search%now)
+      if (any(node(1, side) == node(:2, other)) .or. any(node(2, side) == node(:2, other))) return
+      do k = 0, quarters - 1
+        s = real(k, wp)/quarters
+        x = now%at(side, s)
+        place = now%near_side(other, x)
+        if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. 2.0_wp*place%distance > norm2(now%chord(side))) cycle
+        if (.not. now%is_inside(place, x)) cycle
+        slide = slide_of(model, search, side, s, place)
+        allowed = search%allowance%least + own_allowance(model, search, side, s, slide) &
+                  + own_allowance(model, search, other, place%s, slide)
+        if (place%distance <= more*allowed*scene%itself%ratio) cycle
+        ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
+        associate (a => model%x(:, node(1, other)), b => model%x(:, node(2, other)))
+          drawn = cross_product(b - a, x_drawn(model, search, side, s) - a)/norm2(b - a)
+        end associate
+        if (drawn > allowed) cycle
+        scene%itself = overlap_place(place%distance/allowed, place%distance, allowed, x, side, other)
+      end do
+    end associate
+  end subroutine look_at_itself
+
+  !> A place of a side as drawn.
+  pure function x_drawn(model, search, side, s) result(x)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    real(wp) :: x(2)
+
+    associate (node => model%body_outline%node(:, side))
+      x = (1.0_wp - s)*model%x(:, node(1)) + s*model%x(:, node(2))
+      if (node(3) > 0) x = x + 4.0_wp*s*(1.0_wp - s)*(model%x(:, node(3)) - 0.5_wp*(model%x(:, node(1)) + model%x(:, node(2))))
+    end associate
+  end function x_drawn
+
+  !> Pressed pairs: the distance between the outlines along the normal.
+  pure subroutine look_at_pairs(model, search, force, scene)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    real(wp), intent(in) :: force(:)
+    type(scene_type), intent(inout) :: scene
+    type(near_place) :: place
+    real(wp) :: allowed, gap, least, s, slide, x(2)
+    integer :: i, k, side_of(model%nodes)
+
+    if (model%pairs == 0) return
+    least = pressing*maxval(force)
+    side_of = 0
+    do i = 1, model%body_outline%sides
+      if (model%body_outline%node(3, i) > 0) side_of(model%body_outline%node(3, i)) = i
+      side_of(model%body_outline%node(1, i)) = i
+    end do
+    do k = 1, model%pairs
+      associate (a => model%pair_node(1, k), b => model%pair_node(2, k), part => model%body_outline%part_of)
+        if (force(k) <= least .or. side_of(b) == 0 .or. part(a) == 0 .or. part(a) == part(b)) cycle
+        x = model%x(:, b) + search%displacement(:, b)
+        place = search%now%nearest(part(a), x)
+        if (place%inside) cycle
+        gap = abs(dot_product(x - place%x, model%normal(:, k)))
+        ! What has slid off the other body's end has nothing before it along the normal.
+        if (abs(cross_product(x - place%x, model%normal(:, k))) > gap) cycle
+        s = merge(0.5_wp, 0.0_wp, model%body_outline%node(3, side_of(b)) == b)
+        slide = slide_of(model, search, side_of(b), s, place)
+        allowed = search%allowance%least + own_allowance(model, search, side_of(b), s, slide) &
+                  + own_allowance(model, search, place%side, place%s, slide)
+        if (gap <= more*allowed*scene%apart%ratio) cycle
+        if (gap > allowed) allowed = search%allowance%least &
+                                     + allowance_about(search, part(b), x, about*place%distance, side_of(b), slide) &
+                                     + allowance_about(search, part(a), x, about*place%distance, place%side, slide)
+        if (gap <= more*allowed*scene%apart%ratio) cycle
+        scene%apart = overlap_place(gap/allowed, gap, allowed, x, side_of(b), place%side)
+        scene%pair = k
+      end associate
+    end do
+  end subroutine look_at_pairs
+end module epcont_certificate_scene

@@ -1,0 +1,199 @@
+!> Bodies that pass through each other, in words: where, how deep, and what would mend it.
+module epcont_report_scene
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: short_real, text_of
+  use epcont_certificate_scene, only: largest_change, overlap_place, scene_type
+  use epcont_model_boundary_line, only: boundary_line
+  use epcont_model_elements, only: element_name
+  use epcont_model_mates, only: find_mates, is_mate
+  use epcont_model_model, only: model_type
+  use epcont_report_file, only: text_file
+  use epcont_report_layout, only: figure, right
+  use epcont_report_number, only: estimate_number
+  implicit none
+  private
+  public :: scene_fault, itself_text, drawn_text, changed_text, list_scene
+
+contains
+
+  !> What speaks against a scene that is not sound.
+  pure function scene_fault(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    if (scene%inside%ratio >= scene%apart%ratio) then
+      text = 'bodies pass through each other: '//inside(model, scene%inside)//'; '//short_real(scene%inside%allowed)// &
+             ' is allowed. What may mend it: '//remedy(model, scene%inside)
+    else
+      text = 'pair '//text_of(model%pair_id(scene%pair))//' presses across a gap: '//where_is(model, scene%apart)//' is '// &
+             short_real(scene%apart%depth)//' off '//side_name(model, scene%apart%other)//'; '// &
+             short_real(scene%apart%allowed)//' is allowed. What may mend it: pairs of nodes, or lines, that face each other'
+    end if
+  end function scene_fault
+
+  !> Which body lies where in which, and how deep.
+  pure function inside(model, place) result(text)
+    type(model_type), intent(in) :: model
+    type(overlap_place), intent(in) :: place
+    character(len=:), allocatable :: text
+
+    text = 'the body of GRID '//first_node(model, place%side)//' lies '//short_real(place%depth)// &
+           ' deep in that of GRID '//first_node(model, place%other)//', '//where_is(model, place)//', behind '// &
+           side_name(model, place%other)
+  end function inside
+
+  !> The place and the side it is on.
+  pure function where_is(model, place) result(text)
+    type(model_type), intent(in) :: model
+    type(overlap_place), intent(in) :: place
+    character(len=:), allocatable :: text
+
+    text = 'at '//short_real(place%x(1))//' '//short_real(place%x(2))//' on '//side_name(model, place%side)
+  end function where_is
+
+  !> A side of the outlines by its ends.
+  pure function side_name(model, side) result(name)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side
+    character(len=:), allocatable :: name
+
+    associate (outline => model%body_outline)
+      name = 'side GRID '//text_of(model%node_id(outline%node(1, side)))//' to '// &
+             text_of(model%node_id(outline%node(2, side)))//' of '//element_name(model, outline%element(side))
+    end associate
+  end function side_name
+
+  !> Id of the first node of the body that a side belongs to.
+  pure function first_node(model, side) result(id)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side
+    character(len=:), allocatable :: id
+
+    associate (outline => model%body_outline)
+      id = text_of(minval(model%node_id, mask=outline%part_of == outline%part(side)))
+    end associate
+  end function first_node
+
+  !> What would keep the bodies apart there.
+  pure function remedy(model, place) result(text)
+    type(model_type), intent(in) :: model
+    type(overlap_place), intent(in) :: place
+    character(len=:), allocatable :: text
+    integer :: c, lines(2)
+
+    c = contact_of(model, place)
+    lines = [line_of(model, place%side), line_of(model, place%other)]
+    if (c > 0) then
+      associate (contact => model%line_contact(c))
+        text = 'shorter sides of both lines there'
+        if (has_side(model, contact%master, place%side)) &
+          text = 'SLAVE and MASTER of BCONP '//text_of(contact%bconp(1))//' exchanged, or '//text
+        if (contact%nodes_left_out > 0) text = 'PARAM SEARCH above '//short_real(contact%search)//', or '//text
+      end associate
+    else if (all(lines > 0)) then
+      text = 'a BCONP between BLSEG '//text_of(model%line(lines(1))%id)//' and BLSEG '//text_of(model%line(lines(2))%id)
+    else if (any(lines > 0)) then
+      text = 'a BLSEG along '//side_name(model, merge(place%other, place%side, lines(1) > 0))// &
+             ', and a BCONP between it and BLSEG '//text_of(model%line(maxval(lines))%id)
+    else
+      text = 'a BLSEG along each of the two sides, and a BCONP between the lines'
+      if (is_mate(find_mates(model), model%body_outline%node(:, place%side), model%body_outline%part(place%other))) &
+        text = 'more CGAPs there, or '//text
+    end if
+  end function remedy
+
+  !> The contact of lines that has both sides of a place; 0: there is none.
+  pure integer function contact_of(model, place) result(c)
+    type(model_type), intent(in) :: model
+    type(overlap_place), intent(in) :: place
+
+    do c = size(model%line_contact), 1, -1
+      associate (slave => model%line_contact(c)%slave, master => model%line_contact(c)%master)
+        if (has_side(model, slave, place%side) .and. has_side(model, master, place%other)) return
+        if (has_side(model, slave, place%other) .and. has_side(model, master, place%side)) return
+      end associate
+    end do
+  end function contact_of
+
+  !> A line that a side belongs to; 0: there is none.
+  pure integer function line_of(model, side) result(line)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side
+
+    line = 0
+    if (.not. allocated(model%outline%element)) return   ! no card names one
+    do line = size(model%line), 1, -1
+      if (has_side(model, model%outline%pick(model%line(line)%side), side)) return
+    end do
+  end function line_of
+
+  !> Has a line this side of the bodies' outlines?
+  pure logical function has_side(model, line, side)
+    type(model_type), intent(in) :: model
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side
+
+    has_side = any(line%segment(1, :) == model%body_outline%node(1, side) .and. &
+                   line%element == model%body_outline%element(side))
+  end function has_side
+
+  !> A body that passes through itself; empty: none does.
+  pure function itself_text(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (scene%itself%ratio > 1.0_wp) text = 'a body passes through itself: it lies '//short_real(scene%itself%depth)// &
+      ' deep, '//where_is(model, scene%itself)//', behind '//side_name(model, scene%itself%other)//'; '// &
+      short_real(scene%itself%allowed)//' is allowed'
+  end function itself_text
+
+  !> Bodies that overlap as drawn, and have no pair to close that; empty: none do.
+  pure function drawn_text(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (scene%drawn%ratio > 1.0_wp) text = 'bodies overlap as drawn, with no pair between them there: '//inside(model, scene%drawn)
+  end function drawn_text
+
+  !> A side that turns or stretches too far for small displacements; empty: none does.
+  pure function changed_text(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (scene%change > largest_change) text = 'displacements are not small: '//side_name(model, scene%changed_side)// &
+      ' is turned or stretched by '//short_real(scene%change)
+  end function changed_text
+
+  !> The lines of the certificate.
+  subroutine list_scene(file, model, scene)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+
+    if (scene%looked_through) then
+      call list_ratio('bodies in each other, of what is allowed', scene%inside)
+      if (model%pairs > 0) call list_ratio('pressed across a gap, of what is allowed', scene%apart)
+    end if
+
+  contains
+
+    subroutine list_ratio(name, place)
+      character(len=*), intent(in) :: name
+      type(overlap_place), intent(in) :: place
+      real(wp), parameter :: little = 0.01_wp
+      character(len=:), allocatable :: text
+
+      text = right('< '//short_real(little), 13)
+      if (place%ratio >= little) text = right(estimate_number(place%ratio), 13)//'   '//short_real(place%depth)// &
+                                        ' at '//short_real(place%x(1))//' '//short_real(place%x(2))
+      call figure(file, name, text)
+    end subroutine list_ratio
+  end subroutine list_scene
+end module epcont_report_scene
