@@ -7,7 +7,6 @@ module epcont_report_iterations
   use epcont_report_layout, only: figure, heading, right
   use epcont_report_number, only: column_number, rounding_number
   use epcont_result_answer, only: answer_type
-  use epcont_result_iteration_error, only: estimate_iteration_error, iteration_error
   implicit none
   private
   public :: list_iterations, list_iteration_error
@@ -56,12 +55,12 @@ contains
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
-    type(iteration_error) :: error
 
-    error = estimate_iteration_error(answer%history, answer%load_factor)
-    call figure(file, 'iteration error, of the largest displacement', right(error_text(error%displacement), 13))
-    if (model%pairs > 0) &
-      call figure(file, 'iteration error, of the largest force', right(error_text(error%force), 13))
+    associate (last => answer%history(findloc(answer%history%load_factor, answer%load_factor, dim=1, back=.true.)))
+      call figure(file, 'iteration error, of the largest displacement', right(error_text(last%error), 13))
+      if (model%pairs > 0) &
+        call figure(file, 'iteration error, of the largest force', right(error_text(last%force_error), 13))
+    end associate
   end subroutine list_iteration_error
 
   pure function error_text(error) result(text)

@@ -12,7 +12,6 @@ module epcont_report_tables
   use epcont_report_outcome, only: outcome_type
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_zone
-  use epcont_result_iteration_error, only: estimate_iteration_error, iteration_error
   implicit none
   private
   public :: write_summary, write_contact, write_zones, write_nodes, write_elements, write_history
@@ -30,7 +29,6 @@ contains
     type(outcome_type), intent(in) :: outcome
     type(error_type), allocatable, intent(out) :: error
     type(text_file) :: file
-    type(iteration_error) :: error_left
     integer :: k
 
     call new_text_file(stem//'.summary.csv', file, error)
@@ -61,9 +59,9 @@ contains
       call put('energy_balance', certificate%energy, '')
       call put('condition', answer%condition, '')
       call put('load_factor', answer%load_factor, '')
-      error_left = estimate_iteration_error(answer%history, answer%load_factor)
-      call put('iteration_error_displacement', error_left%displacement, '')
-      call put('iteration_error_force', error_left%force, '')
+      k = findloc(answer%history%load_factor, answer%load_factor, dim=1, back=.true.)
+      call put('iteration_error_displacement', answer%history(k)%error, '')
+      call put('iteration_error_force', answer%history(k)%force_error, '')
       call write_accuracy(file, model, motions, answer, accuracy)
     end if
     call file%finish(error)
