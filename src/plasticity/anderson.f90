@@ -1,5 +1,6 @@
 !> Anderson's acceleration of a fixed-point iteration x -> g(x): from the last steps the mixture of g whose g - x is
-!> least, in the norm of the elastic energy of strains.
+!> least, in the norm of the elastic energy of strains. A mixture after which g - x has grown has misled: twice as many steps
+!> as after the last such one are then taken as they are, so that where mixing does harm it is the plain iteration.
 module epcont_plasticity_anderson
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
@@ -10,8 +11,6 @@ module epcont_plasticity_anderson
 
   !> Steps remembered.
   integer, parameter :: memory = 5
-  !> Steps are forgotten when g - x has grown by this factor: they mislead.
-  real(wp), parameter :: growth_limit = 1.0_wp
   !> A step that is the others' mixture but for this part of it tells nothing new.
   real(wp), parameter :: dependent = 1.0e-10_wp
 
@@ -82,7 +81,7 @@ contains
     type(scene_state), intent(in) :: found
     integer :: k
 
-    if (self%mixed .and. product_of(self, rest, rest) > growth_limit**2*product_of(self, self%rest, self%rest)) then
+    if (self%mixed .and. product_of(self, rest, rest) > product_of(self, self%rest, self%rest)) then
       self%steps = 0
       self%penalty = max(1, 2*self%penalty)
       self%plain = self%penalty

@@ -178,6 +178,7 @@ contains
       end if
       run%history = [run%history, now]
       converged = is_over(loop, run%history)
+      if (converged .and. is_slow(model, loop, now)) converged = iteration < model%controls%most_iterations
       if (converged .and. is_slow(model, loop, now)) &
         call step_by_tangent(model, motions, numbering, part, loop, run%history, found, converged, watch)
       now = run%history(size(run%history))
