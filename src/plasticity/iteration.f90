@@ -178,7 +178,6 @@ contains
       end if
       run%history = [run%history, now]
       converged = is_over(loop, run%history)
-      if (converged .and. is_slow(model, loop, now)) converged = iteration < model%controls%most_iterations
       if (converged .and. is_slow(model, loop, now)) &
         call step_by_tangent(model, motions, numbering, part, loop, run%history, found, converged, watch)
       now = run%history(size(run%history))
@@ -311,6 +310,8 @@ contains
     type(iteration_record) :: now
     integer :: singular
 
+    holds = .false.
+    if (history(size(history))%iteration == model%controls%most_iterations) return
     about = loop%about
     now = history(size(history))
     now%iteration = now%iteration + 1
@@ -328,6 +329,7 @@ contains
     if (holds) then
       now%error = now%change
       now%force_error = now%force_change
+      now%by_tangent = .true.
       history = [history, now]
       call move_alloc(next, found)
     else

@@ -31,6 +31,8 @@ contains
       end associate
     end do
     call file%line('')
+    if (any(answer%history%by_tangent)) &
+      call file%line('  the iteration is slow: its last step is one by the tangent, and changes what was left')
     call file%line('  '//plural(count(answer%plastic), 'element')//' of '//text_of(model%elements)//' beyond the yield point')
     if (any(answer%beyond)) &
       call file%line('  beyond the last point of its table, whose last slope goes on: '// &

@@ -71,11 +71,11 @@ def number(text, place, name):
 
 def add_elements(scene, tables, u, rest):
     """Nodal forces of the stresses are taken off `rest`. Largest element forces summed at a node, work stored, largest distance
-    of a mean stress in the tables from that on the curve, largest stress, the stress and force that rounding of the displacements makes, the
+    of a mean stress in the tables from that on the curve (relative), largest stress, the stress and force that rounding of the displacements makes, the
     largest force of a unit stress.
 
     The tables hold means over the points of an element; what a point has is taken to be off the curve as much as the mean."""
-    magnitude, stored, off, largest, lost, lost_force, reach = {}, [], 0.0, 0.0, 0.0, 0.0, 0.0
+    magnitude, stored, off, largest, lost, lost_force, reach = {}, [], [], 0.0, 0.0, 0.0, 0.0
     for element, (name, nodes, section) in scene.element.items():
         points = unit_strains(name, [scene.x[node] for node in nodes], section.thickness, section.plane_stress)
         moved = [u[node] for node in nodes]
@@ -85,7 +85,7 @@ def add_elements(scene, tables, u, rest):
         whole = math.fsum(volume for volume, _ in points)
         told = [float(tables.elements[element][key]) for key in ("sx", "sy", "sz", "txy")]
         change = [t - math.fsum(volume * s[i] for (volume, _), s in zip(points, stresses)) / whole for i, t in enumerate(told)]
-        off = max(off, *map(abs, change))
+        off.append((change, max(map(von_mises, stresses)), section.points))
         stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
         steepest = max(abs(v) for _, unit in points for of in unit for each in of for v in each)
         own = ROUNDINGS * stiffness * steepest * max(abs(v) for pair in moved for v in pair)
@@ -104,7 +104,22 @@ def add_elements(scene, tables, u, rest):
             for c in (0, 1):
                 rest.setdefault((node, c), []).append(-sums[c])
             magnitude.setdefault(node, []).append(max(map(abs, sums)))
+    off = max((distance(*each, largest) for each in off), default=0.0)
     return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, off, largest, lost, lost_force, reach
+
+
+def von_mises(stress):
+    x, y, z, xy = stress
+    return math.sqrt(0.5 * ((x - y)**2 + (y - z)**2 + (z - x)**2) + 3 * xy**2)
+
+
+def distance(change, curve, points, largest):
+    """How far a stress is off its curve, `curve` being von Mises stress there. An elastic one: the largest component, of the largest
+    stress. A yielding one: von Mises stress, of that of the curve or of the yield stress; and the mean part, of the largest stress."""
+    if not points:
+        return max(map(abs, change)) / (largest or 1.0)
+    scale = curve if curve >= points[1][1] else min(points[1][1], largest)
+    return max(von_mises(change) / (scale or 1.0), abs(math.fsum(change[:3])) / 3 / (largest or 1.0))
 
 
 def recompute(scene, tables):
@@ -147,7 +162,7 @@ def recompute(scene, tables):
         "smallest_force": min(forces, default=0.0),
         "smallest_gap": min(gaps, default=0.0),
         "product": max((abs(f * g) for f, g in zip(forces, gaps)), default=0.0),
-        "off_curve": off / (largest or 1.0),
+        "off_curve": off,
         "energy": max(abs(math.fsum(works) - math.fsum(stored)), -math.fsum(stored)) / (terms or 1.0),
     }
     return figures, force_scale, length_scale, spread, max(part(lost, largest), part(lost_force, scale)), \
