@@ -7,7 +7,7 @@ module epcont_plasticity_iteration
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_material_total_theory, only: distance_from_curve, respond, response_type
-  use epcont_model_controls, only: method_newton, precision_single
+  use epcont_model_controls, only: method_newton, method_secant, precision_single
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -26,10 +26,11 @@ module epcont_plasticity_iteration
   real(wp), parameter :: far_away = 1.0e4_wp
   !> Stresses this near to their curves are on them but for rounding.
   real(wp), parameter :: rounding = 1.0e-10_wp
-  !> An iteration of which more is to come than so many times the last change, or that has taken more than so many solves, is
-  !! slow: its estimate hangs on the rate, and is tested.
+  !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times the last change, it is
+  !! a slow one. Few, slow or mixed steps say too little of what is to come, and prescribed displacements hide it in the largest: the
+  !! estimate is tested.
+  integer, parameter :: few_solves = 4, many_solves = 8
   real(wp), parameter :: slow = 3.0_wp
-  integer, parameter :: many_solves = 8
   !> A tangent step that shows more than so many times what was estimated is no measure of it.
   real(wp), parameter :: most_doubt = 1.0e2_wp
   !> A tangent with this part of the secant matrix in it, or more, tests nothing.
@@ -178,7 +179,7 @@ contains
       end if
       run%history = [run%history, now]
       converged = is_over(loop, run%history)
-      if (converged .and. is_slow(model, loop, now)) &
+      if (converged .and. wants_test(model, loop, now)) &
         call step_by_tangent(model, motions, numbering, part, loop, run%history, found, converged, watch)
       now = run%history(size(run%history))
       travel = maxval(abs(found%displacement))
@@ -282,17 +283,19 @@ contains
     end associate
   end function is_over
 
-  !> Does the estimate of what is to come hang on a rate, and is there a tangent to test it with?
-  pure logical function is_slow(model, loop, now)
+  !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
+  pure logical function wants_test(model, loop, now)
     type(model_type), intent(in) :: model
     type(loop_type), intent(in) :: loop
     type(iteration_record), intent(in) :: now
 
-    is_slow = loop%plan%method /= method_newton .and. .not. model%controls%paper_ratio
-    is_slow = is_slow .and. now%residual > rounding .and. (now%error > slow*now%change .or. now%iteration > many_solves)
-  end function is_slow
+    wants_test = loop%plan%method /= method_secant .or. now%iteration <= few_solves .or. now%iteration > many_solves &
+                 .or. now%error > slow*now%change .or. any(model%prescribed /= 0.0_wp)
+    wants_test = wants_test .and. now%residual > rounding
+    wants_test = wants_test .and. loop%plan%method /= method_newton .and. .not. model%controls%paper_ratio
+  end function wants_test
 
-  !> The last step of a slow iteration is one by the tangent, whose change is what was left. If that is more than the tolerance,
+  !> The last step is one by the tangent, whose change is what was left. If that is more than the tolerance,
   !! all is as it was before, but for the doubt in estimates.
   subroutine step_by_tangent(model, motions, numbering, part, loop, history, found, holds, watch)
     type(model_type), intent(in) :: model

@@ -15,7 +15,7 @@ module epcont_plasticity_onlooker
     real(wp) :: residual = 0.0_wp      !! largest distance of a stress from its curve / the curve's stress there
     real(wp) :: error = 0.0_wp         !! of a displacement, estimated / largest displacement; negative: not known
     real(wp) :: force_error = 0.0_wp   !! of a contact force, estimated / largest contact force; negative: not known
-    logical :: by_tangent = .false.    !! the step that tests a slow iteration, and ends it
+    logical :: by_tangent = .false.    !! the step that tests what was estimated, and ends the iteration
     integer :: touching = 0            !! pairs
     integer :: yielded = 0             !! elements
     integer :: pivots = 0
