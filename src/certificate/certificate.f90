@@ -188,8 +188,7 @@ contains
     scale = largest_stress
     off = ratio(largest(apart), largest_stress)
     if (.not. allocated(model%curve(section)%strain)) return
-    scale = von_mises_stress(on_curve)
-    if (scale < model%curve(section)%stress(2)) scale = min(model%curve(section)%stress(2), largest_stress)
+    scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
     off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
   end subroutine measure_stress
 

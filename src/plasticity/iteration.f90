@@ -26,9 +26,9 @@ module epcont_plasticity_iteration
   real(wp), parameter :: far_away = 1.0e4_wp
   !> Stresses this near to their curves are on them but for rounding.
   real(wp), parameter :: rounding = 1.0e-10_wp
-  !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times the last change, it is
-  !! a slow one. Few, slow or mixed steps say too little of what is to come, and prescribed displacements hide it in the largest: the
-  !! estimate is tested.
+  !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times the last change,
+  !! it is a slow one. Few, slow or mixed steps say too little of what is to come, and prescribed displacements hide it in the
+  !! largest: the estimate is tested.
   integer, parameter :: few_solves = 4, many_solves = 8
   real(wp), parameter :: slow = 3.0_wp
   !> A tangent step that shows more than so many times what was estimated is no measure of it.

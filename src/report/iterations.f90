@@ -32,8 +32,8 @@ contains
     end do
     call file%line('')
     if (answer%load_steps > answer%asked_load_steps) &
-      call file%line('  in '//plural(answer%asked_load_steps, 'load step')//' no answer was found; tried again in '//text_of(answer%load_steps)// &
-                     ' (AUTO)')
+      call file%line('  in '//plural(answer%asked_load_steps, 'load step')//' no answer was found; tried again in '// &
+                     text_of(answer%load_steps)//' (AUTO)')
     if (any(answer%history%by_tangent)) &
       call file%line('  the last step is one by the tangent: its change is what the others have left')
     call file%line('  '//plural(count(answer%plastic), 'element')//' of '//text_of(model%elements)//' beyond the yield point')

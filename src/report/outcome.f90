@@ -75,14 +75,15 @@ contains
       outcome%has_answer = .true.
       outcome%word = 'valid'
       if (answer%converged .and. certificate%valid .and. loss_of(answer) <= largest_loss) return
-      if (.not. answer%converged .and. (certificate%balanced .or. answer%runs_away)) then
+      if (.not. answer%converged .and. (certificate%balanced .and. loss_of(answer) <= largest_loss .or. answer%runs_away)) then
         outcome%status = status_no_answer
         outcome%word = 'not converged'
         outcome%sentence = unconverged(model, answer)
         return
       end if
       outcome%status = status_numerical
-      outcome%word = trim(merge('ill-conditioned', 'not certified  ', certificate%valid))
+      outcome%word = trim(merge('ill-conditioned', 'not certified  ', certificate%valid .or. certificate%balanced .and. &
+                                loss_of(answer) > largest_loss))
       outcome%sentence = 'the figures are not to be trusted: '//doubts(model, answer, certificate)
     end if
   end function judge

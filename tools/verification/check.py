@@ -118,7 +118,7 @@ def distance(change, curve, points, largest):
     stress. A yielding one: von Mises stress, of that of the curve or of the yield stress; and the mean part, of the largest stress."""
     if not points:
         return max(map(abs, change)) / (largest or 1.0)
-    scale = curve if curve >= points[1][1] else min(points[1][1], largest)
+    scale = max(curve, min(points[1][1], largest))
     return max(von_mises(change) / (scale or 1.0), abs(math.fsum(change[:3])) / 3 / (largest or 1.0))
 
 
