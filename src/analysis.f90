@@ -30,6 +30,8 @@ module epcont_analysis
 
   !> Steps of refinement where forces are out of balance; each takes rounding's part of it down by digits.
   integer, parameter :: most_refinements = 2
+  !> So many times the load steps, where those asked for did not lead to an answer.
+  integer, parameter :: more_steps = 5
 
 contains
 
@@ -112,25 +114,45 @@ contains
     type(plastic_run), intent(out) :: run
     type(answer_type), intent(inout) :: answer
     class(onlooker), intent(inout) :: watch
-    class(plastic_method), allocatable :: method
     type(iteration_plan) :: now
 
     now = plan
     answer%asked_precision = plan%precision
     answer%largest_rounding_error = plan%rounding_error
-    call choose_method(plan%method, method)
-    call follow_loads(model, motions, numbering, now, method, run, watch)
+    call follow_or_step(model, motions, numbering, now, run, watch)
     if (plan%precision /= precision_double .and. .not. (run%converged .and. run%rounding_error <= plan%rounding_error)) then
       if (allocated(plan%against_double)) then
         answer%against_double = plan%against_double
         return
       end if
       now%precision = precision_double
-      call choose_method(plan%method, method)
-      call follow_loads(model, motions, numbering, now, method, run, watch)
+      now%load_steps = plan%load_steps
+      call follow_or_step(model, motions, numbering, now, run, watch)
     end if
     answer%precision = now%precision
+    answer%load_steps = now%load_steps
+    answer%asked_load_steps = plan%load_steps
   end subroutine solve
+
+  !> Follow the loads; where the method was chosen here and has found neither an answer nor a limit load, in more steps.
+  subroutine follow_or_step(model, motions, numbering, plan, run, watch)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(iteration_plan), intent(inout) :: plan   !! its load steps become those that were taken
+    type(plastic_run), intent(out) :: run
+    class(onlooker), intent(inout) :: watch
+    class(plastic_method), allocatable :: method
+
+    call choose_method(plan%method, method)
+    call follow_loads(model, motions, numbering, plan, method, run, watch)
+    if (.not. (plan%chosen_here .and. plan%yields) .or. run%converged .or. run%runs_away .or. run%lacks_memory) return
+    ! What the first solve does not find, steps do not; single precision is followed by double.
+    if (size(run%history) <= 1 .or. plan%precision /= precision_double) return
+    plan%load_steps = more_steps*plan%load_steps
+    call choose_method(plan%method, method)
+    call follow_loads(model, motions, numbering, plan, method, run, watch)
+  end subroutine follow_or_step
 
   !> What the loop has found, and how.
   pure subroutine take_over(run, answer)

@@ -7,7 +7,7 @@ module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
   use epcont_certificate_gradient, only: kind_of, kind_type, most_places, unit_strains
   use epcont_certificate_scene, only: scene_type
-  use epcont_certificate_yielding, only: stress_on_curve
+  use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
   use epcont_model_model, only: axisymmetric, model_type, most_nodes
   implicit none
   private
@@ -38,9 +38,9 @@ module epcont_certificate_certificate
     real(wp) :: smallest_gap = 0.0_wp     !! [length]
     real(wp) :: overlap = 0.0_wp          !! largest by which a gap is below zero and its rounding [length]
     real(wp) :: force_gap = 0.0_wp        !! largest |R gap| [force*length]
-    real(wp) :: off_curve = 0.0_wp        !! largest difference of a stress from its curve / largest stress
+    real(wp) :: off_curve = 0.0_wp        !! largest distance of a stress from its curve (`measure_stress`)
     real(wp) :: motion_strain = 0.0_wp    !! largest strain of the rigid motions / its rounding
-    real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes / largest stress
+    real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes / what such distances are over
     real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of all |terms|, or minus the latter's
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
@@ -69,16 +69,13 @@ contains
     type(certificate_type), intent(out) :: certificate
     real(wp), intent(in), optional :: rounding_error  !! of strains and contact forces; not given: that of double precision
     real(wp), allocatable :: residual(:, :), element_force(:)
-    real(wp) :: exact, forces, largest_stress, stored, terms, tolerance, work
+    real(wp) :: exact, forces, stored, terms, tolerance, work
 
     if (present(rounding_error)) certificate%tolerance = max(exact_tolerance, rounding_errors*rounding_error)
     tolerance = certificate%tolerance
     allocate (residual(2, model%nodes), element_force(model%nodes), source=0.0_wp)
     stored = 0.0_wp
     call sum_elements(model, deformation, displacement - deformation, stress, residual, element_force, stored, certificate)
-    largest_stress = maxval(abs(stress))
-    certificate%off_curve = ratio(certificate%off_curve, largest_stress)
-    certificate%lost_stress = ratio(certificate%lost_stress, largest_stress)
     residual = residual - load - reaction
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
@@ -128,11 +125,12 @@ contains
     type(kind_type) :: kind(most_nodes)
     logical :: moves, ring
     real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), u(2, most_nodes), travel(2, most_nodes)
-    real(wp) :: strain(4), steepest(4), force(2), rounding
+    real(wp) :: strain(4), steepest(4), force(2), largest_stress, off, rounding, scale
     integer :: c, e, k, n, p, point, section
 
     kind([3, 4, 6]) = [kind_of(3), kind_of(4), kind_of(6)]
     moves = any(motion /= 0.0_wp)
+    largest_stress = maxval(abs(stress))
     do e = 1, model%elements
       n = model%order(e)
       section = model%section(e)
@@ -146,14 +144,16 @@ contains
         do p = 1, kind(n)%places
           point = first + p - 1
           strain = strain_at(n, ring, u, unit(:, :, :, p))
-          certificate%off_curve = max(certificate%off_curve, largest(stress(:, point) - stress_on_curve(model, section, strain)))
+          call measure_stress(model, section, largest_stress, strain, stress(:, point), off, scale)
+          certificate%off_curve = max(certificate%off_curve, off)
           stored = stored + volume(p)*dot_product(stress(:, point), strain)
           steepest = 0.0_wp
           do k = 1, n
             steepest = max(steepest, abs(unit(:, 1, k, p)), abs(unit(:, 2, k, p)))
           end do
           rounding = epsilon(1.0_wp)*largest(steepest)   ! of a strain by unit displacements
-          certificate%lost_stress = max(certificate%lost_stress, model%young(section)*rounding*maxval(abs(u(:, :n))))
+          certificate%lost_stress = max(certificate%lost_stress, &
+                                        ratio(model%young(section)*rounding*maxval(abs(u(:, :n))), scale))
           if (.not. moves) cycle
           strain = strain_at(n, ring, travel, unit(:, :, :, p))
           rounding = rounding*maxval(abs(travel(:, :n)) + abs(u(:, :n)))
@@ -172,6 +172,27 @@ contains
       end associate
     end do
   end subroutine sum_elements
+
+  !> How far a stress is off its curve. Of a material that yields: von Mises stress of the difference over the curve's stress
+  !! there, or below yield the yield stress (a larger one than any stress is no measure), and the difference of the mean parts,
+  !! which are elastic, over the largest stress: hydrostatic stress says nothing of the curve. Of an elastic one: the largest
+  !! difference over the largest stress. `scale` is what rounding is to be compared with.
+  pure subroutine measure_stress(model, section, largest_stress, strain, stress, off, scale)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: section
+    real(wp), intent(in) :: largest_stress   !! in the scene
+    real(wp), intent(in) :: strain(4), stress(4)
+    real(wp), intent(out) :: off, scale
+    real(wp) :: apart(4), on_curve(4)
+
+    on_curve = stress_on_curve(model, section, strain)
+    apart = stress - on_curve
+    scale = largest_stress
+    off = ratio(largest(apart), largest_stress)
+    if (.not. allocated(model%curve(section)%strain)) return
+    scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
+    off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
+  end subroutine measure_stress
 
   !> Largest component, whatever its sign.
   pure real(wp) function largest(vector)

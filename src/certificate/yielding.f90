@@ -5,7 +5,7 @@ module epcont_certificate_yielding
   use epcont_model_model, only: model_type, plane_stress
   implicit none
   private
-  public :: stress_on_curve
+  public :: stress_on_curve, von_mises_stress
 
   !> Halvings that leave nothing of an interval.
   integer, parameter :: halvings = 60
@@ -33,6 +33,19 @@ contains
       stress(4) = shear*strain(4)
     end associate
   end function stress_on_curve
+
+  !> Equivalent stress (2-1), from the largest component: squares of very small or large ones are beyond the range of numbers.
+  pure real(wp) function von_mises_stress(stress)
+    real(wp), intent(in) :: stress(4)   !! xx, yy, zz, xy
+    real(wp) :: part(4), largest
+
+    largest = maxval(abs(stress))
+    von_mises_stress = 0.0_wp
+    if (largest == 0.0_wp) return
+    part = stress/largest
+    von_mises_stress = largest*sqrt(0.5_wp*((part(1) - part(2))**2 + (part(2) - part(3))**2 + (part(3) - part(1))**2) &
+                                    + 3.0_wp*part(4)**2)
+  end function von_mises_stress
 
   !> E' = sigma_i/eps_i of the curve, and mu: that with which eps_i of the strain is eps_i of the curve.
   pure subroutine find_secant(model, section, strain, secant, mu)

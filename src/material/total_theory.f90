@@ -6,10 +6,10 @@
 module epcont_material_total_theory
   use epcont_base_kinds, only: wp
   use epcont_material_curve, only: curve_value, material_type
-  use epcont_material_elasticity, only: isotropic_matrix
+  use epcont_material_elasticity, only: equivalent_stress, isotropic_matrix
   implicit none
   private
-  public :: response_type, respond, secant_matrix, tangent_matrix
+  public :: response_type, respond, distance_from_curve, secant_matrix, tangent_matrix
 
   !> Steps for the strain across a plane-stress sheet; bisection alone would end after some 60.
   integer, parameter :: most_steps = 100
@@ -37,6 +37,16 @@ contains
       response = respond_in_space(material, strain)
     end if
   end function respond
+
+  !> How far a stress is from that of the material: von Mises stress of the difference, over that of the curve there, or the yield
+  !! stress below yield. (The mean parts are elastic in every law.)
+  pure real(wp) function distance_from_curve(material, response, stress)
+    type(material_type), intent(in) :: material   !! one that yields
+    type(response_type), intent(in) :: response
+    real(wp), intent(in) :: stress(4)
+
+    distance_from_curve = equivalent_stress((stress - response%stress)/max(response%curve%modulus*response%e, material%stress(1)))
+  end function distance_from_curve
 
   !> The same with the strain zz as it is given.
   pure function respond_in_space(material, strain) result(response)

@@ -18,8 +18,8 @@ module epcont_plan_iteration_plan
   !! others (seven scenes of contact beyond yield, TOL from 0.1 to 1.E-4): less than a tenth of the accuracy, thus.
   real(wp), parameter :: newton_part = 1.0_wp/10, secant_part = 1.0_wp/500
 
-  !> The methods but NEWTON stop by the change of displacements, as the paper does. Where a travel or a slender body
-  !! hides the strains in it, stresses may still be far off: they may be by no more than this times TOL.
+  !> The methods but NEWTON stop by displacements, as the paper does. Where a travel or a slender body
+  !! hides the strains in them, stresses may still be far off: they may be by no more than this times TOL.
   real(wp), parameter :: looseness = 10.0_wp
 
   type :: iteration_plan
@@ -28,7 +28,7 @@ module epcont_plan_iteration_plan
     integer :: load_steps = 1              !! more than one only where something can yield
     integer :: method = method_secant
     logical :: chosen_here = .false.       !! the deck leaves the method to us
-    real(wp) :: tolerance = 0.0_wp         !! largest change of a displacement that ends the iteration
+    real(wp) :: tolerance = 0.0_wp         !! largest change, and largest estimated error, of a displacement that ends the iteration
     integer :: precision = precision_double  !! of the factors
     real(wp) :: rounding_error = 0.0_wp    !! largest that single precision may leave in displacements, strains and forces
     character(len=:), allocatable :: against_double  !! what stands against solving anew in double; not allocated: nothing

@@ -1,5 +1,6 @@
 !> Anderson's acceleration of a fixed-point iteration x -> g(x): from the last steps the mixture of g whose g - x is
-!> least, in the norm of the elastic energy of strains.
+!> least, in the norm of the elastic energy of strains. A mixture after which g - x has grown has misled: twice as many steps
+!> as after the last such one are then taken as they are, so that where mixing does harm it is the plain iteration.
 module epcont_plasticity_anderson
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
@@ -10,14 +11,15 @@ module epcont_plasticity_anderson
 
   !> Steps remembered.
   integer, parameter :: memory = 5
-  !> Steps are forgotten when g - x has grown by this factor: they mislead.
-  real(wp), parameter :: growth_limit = 2.0_wp
   !> A step that is the others' mixture but for this part of it tells nothing new.
   real(wp), parameter :: dependent = 1.0e-10_wp
 
   type :: anderson_mixer
     integer :: steps = 0                               !! remembered
     logical :: begun = .false.
+    logical :: mixed = .false.                         !! the last step was a mixture
+    integer :: plain = 0                               !! steps to be taken as they are before the next mixture
+    integer :: penalty = 0                             !! the same after the last mixture that misled
     real(wp), allocatable :: weight(:)                 !! of each point in the norm [points]
     ! The last strains of g - x, and g.
     real(wp), allocatable :: rest(:, :), strain(:, :), displacement(:, :)
@@ -35,6 +37,9 @@ contains
 
     self%steps = 0
     self%begun = .false.
+    self%mixed = .false.
+    self%plain = 0
+    self%penalty = 0
   end subroutine forget
 
   !> The next x, when the last one was `about` and g(about) is `found`.
@@ -57,7 +62,10 @@ contains
     self%rest = found%strain - about%strain
     self%strain = found%strain
     self%displacement = found%displacement
-    share = best_shares(self)
+    share = 0.0_wp
+    if (self%plain == 0) share = best_shares(self)
+    self%mixed = any(share /= 0.0_wp)
+    self%plain = max(0, self%plain - 1)
     about%displacement = found%displacement
     about%strain = found%strain
     do k = 1, self%steps
@@ -73,8 +81,10 @@ contains
     type(scene_state), intent(in) :: found
     integer :: k
 
-    if (product_of(self, rest, rest) > growth_limit**2*product_of(self, self%rest, self%rest)) then
+    if (self%mixed .and. product_of(self, rest, rest) > product_of(self, self%rest, self%rest)) then
       self%steps = 0
+      self%penalty = max(1, 2*self%penalty)
+      self%plain = self%penalty
       return
     end if
     self%steps = min(memory, self%steps + 1)

@@ -6,14 +6,16 @@ module epcont_plasticity_iteration
   use epcont_contact_problem, only: contact_solved, contact_stalled
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
-  use epcont_material_total_theory, only: respond, response_type
-  use epcont_model_controls, only: precision_single
+  use epcont_material_total_theory, only: distance_from_curve, respond, response_type
+  use epcont_model_controls, only: method_newton, method_secant, precision_single
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: numbering_type
+  use epcont_plasticity_iteration_error, only: error_estimator
   use epcont_plasticity_linear_scene, only: linear_scene, new_linear_scene
   use epcont_plasticity_method, only: plastic_method
+  use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_onlooker, only: iteration_record, onlooker
   use epcont_plasticity_state, only: scene_state
   implicit none
@@ -22,8 +24,17 @@ module epcont_plasticity_iteration
 
   !> Displacements so many times those of the first solve, with a flat curve: nothing carries the load.
   real(wp), parameter :: far_away = 1.0e4_wp
-  !> Stresses this near to their curves, of the largest stress, are on them but for rounding.
-  real(wp), parameter, public :: rounding = 1.0e-10_wp
+  !> Stresses this near to their curves are on them but for rounding.
+  real(wp), parameter :: rounding = 1.0e-10_wp
+  !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times the last change,
+  !! it is a slow one. Few, slow or mixed steps say too little of what is to come, and prescribed displacements hide it in the
+  !! largest: the estimate is tested.
+  integer, parameter :: few_solves = 4, many_solves = 8
+  real(wp), parameter :: slow = 3.0_wp
+  !> A tangent step that shows more than so many times what was estimated is no measure of it.
+  real(wp), parameter :: most_doubt = 1.0e2_wp
+  !> A tangent with this part of the secant matrix in it, or more, tests nothing.
+  real(wp), parameter :: too_stiff = 1.0e-3_wp
   !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, it has lost the answer.
   real(wp), parameter :: stagnant = 1.0e-3_wp
   !> A strain that falls by less than this part of it stays.
@@ -60,6 +71,8 @@ module epcont_plasticity_iteration
     real(wp), allocatable :: force(:)                 !! the last contact forces [force] [pairs]
     logical :: stiff = .false.                        !! the scene has been factored
     logical :: elastic = .false.                      !! with the law of a state that has not yielded
+    type(error_estimator) :: estimator
+    real(wp) :: doubt = 1.0_wp                        !! times what was estimated is what a tangent step has shown
   end type loop_type
 
 contains
@@ -120,7 +133,6 @@ contains
     loop%plan = plan
     loop%scene = new_linear_scene(model, motions, plan%body, plan%contact%by_blocks, plan%precision, plan%threads)
     loop%material = section_materials(model)
-    loop%law = elastic_law(model, loop%material)
     allocate (loop%about%displacement(2, model%nodes), loop%about%strain(4, model%points), source=0.0_wp)
     allocate (loop%force(model%pairs), source=0.0_wp)
   end subroutine begin
@@ -145,7 +157,10 @@ contains
     converged = .false.
     least_residual = huge(1.0_wp)
     allocate (state, found)
+    if (.not. loop%stiff) loop%law = elastic_law(model, loop%material)   ! it may be a last step's tangent
     call method%restart()
+    call loop%estimator%restart()
+    loop%doubt = 1.0_wp
     do iteration = 1, model%controls%most_iterations
       call set_law(model, numbering, method, loop, run%singular, watch)
       if (run%singular > 0) return
@@ -158,8 +173,17 @@ contains
       now%load_factor = part
       now%iteration = iteration
       call measure(model, loop, found, now)
+      call loop%estimator%estimate(method%telling_steps, loop%about, found, now)
+      if (now%yielded + loop%yielded == 0 .or. now%residual <= rounding .and. now%error < 0.0_wp) then
+        ! What changes is rounding, if anything.
+        now%error = merge(now%change, 0.0_wp, iteration > 1)
+        now%force_error = merge(now%force_change, 0.0_wp, iteration > 1)
+      end if
       run%history = [run%history, now]
       converged = is_over(loop, run%history)
+      if (converged .and. wants_test(model, loop, now)) &
+        call step_by_tangent(model, motions, numbering, part, loop, run%history, found, converged, watch)
+      now = run%history(size(run%history))
       travel = maxval(abs(found%displacement))
       if (iteration == 1) farthest = far_away*travel
       ! A state far away is none to show: its numbers may be at the end of their range.
@@ -228,11 +252,11 @@ contains
         if (.not. m%yields) cycle
         response = respond(m, found%strain(:, p))
         yielded(e) = yielded(e) .or. response%curve%yielded
-        off = max(off, maxval(abs(found%stress(:, p) - response%stress)))
+        off = max(off, distance_from_curve(m, response, found%stress(:, p)))
       end associate
     end do
     now%yielded = count(yielded)
-    now%residual = ratio(off, maxval(abs(found%stress)))
+    now%residual = off
   end subroutine measure
 
   !> a/b, 0 where both are 0; finite.
@@ -243,7 +267,8 @@ contains
     if (a > 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
   end function ratio
 
-  !> Is the iteration over? Where nothing has yielded, the first solve was exact; and where stresses are on their curves
+  !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than the tolerance.
+  !! Where nothing has yielded, the first solve was exact; and where stresses are on their curves
   !! to rounding while the changes fall no more, rounding allows no smaller ones.
   pure logical function is_over(loop, history)
     type(loop_type), intent(in) :: loop
@@ -253,11 +278,72 @@ contains
     n = size(history)
     associate (now => history(n))
       is_over = now%yielded + loop%yielded == 0
-      if (now%change <= loop%plan%tolerance) is_over = is_over .or. now%residual <= loop%plan%off_curve
+      if (now%change <= loop%plan%tolerance .and. now%residual <= loop%plan%off_curve) &
+        is_over = is_over .or. now%residual <= rounding .or. now%error >= 0.0_wp .and. loop%doubt*now%error <= loop%plan%tolerance
       if (now%iteration > 3 .and. now%residual <= rounding .and. now%change <= stagnant) &
         is_over = is_over .or. now%change >= history(n - 2)%change
     end associate
   end function is_over
+
+  !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
+  pure logical function wants_test(model, loop, now)
+    type(model_type), intent(in) :: model
+    type(loop_type), intent(in) :: loop
+    type(iteration_record), intent(in) :: now
+
+    wants_test = loop%plan%method /= method_secant .or. now%iteration <= few_solves .or. now%iteration > many_solves &
+                 .or. now%error > slow*now%change .or. any(model%prescribed /= 0.0_wp)
+    wants_test = wants_test .and. now%residual > rounding
+    wants_test = wants_test .and. loop%plan%method /= method_newton .and. .not. model%controls%paper_ratio
+  end function wants_test
+
+  !> The last step is one by the tangent, whose change is what was left. If that is more than the tolerance,
+  !! all is as it was before, but for the doubt in estimates.
+  subroutine step_by_tangent(model, motions, numbering, part, loop, history, found, holds, watch)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    real(wp), intent(in) :: part
+    type(loop_type), intent(inout) :: loop
+    type(iteration_record), allocatable, intent(inout) :: history(:)
+    type(scene_state), allocatable, intent(inout) :: found
+    logical, intent(out) :: holds
+    class(onlooker), intent(inout) :: watch
+    type(newton_method) :: tangent
+    type(scene_state), allocatable :: next
+    type(scene_state) :: about
+    type(iteration_record) :: now
+    integer :: singular
+
+    holds = .false.
+    if (history(size(history))%iteration == model%controls%most_iterations) return
+    about = loop%about
+    now = history(size(history))
+    now%iteration = now%iteration + 1
+    now%change = huge(1.0_wp)
+    loop%about = found
+    loop%force = found%contact%force
+    loop%yielded = now%yielded
+    allocate (next)
+    call set_law(model, numbering, tangent, loop, singular, watch)
+    if (singular == 0 .and. tangent%blended() < too_stiff) then
+      call loop%scene%solve(model, motions, numbering, loop%law, part, found%contact%touching, next, watch)
+      if (next%contact%state == contact_solved) call measure(model, loop, next, now)
+    end if
+    holds = now%change <= loop%plan%tolerance .and. now%residual <= loop%plan%off_curve
+    if (holds) then
+      now%error = now%change
+      now%force_error = now%force_change
+      now%by_tangent = .true.
+      history = [history, now]
+      call move_alloc(next, found)
+    else
+      loop%doubt = max(2.0_wp*loop%doubt, min(now%change/history(size(history))%error, most_doubt))
+      loop%about = about
+      loop%law = elastic_law(model, loop%material)
+    end if
+    loop%stiff = .false.
+  end subroutine step_by_tangent
 
   !> Elements beyond yield whose strain falls as the load grows: total theory takes them back along the curve.
   pure subroutine find_unloaded(model, loop, strained, run)

@@ -12,6 +12,7 @@ module epcont_plasticity_method
   type, abstract :: plastic_method
     real(wp), allocatable :: volume(:)     !! of each integration point [length**3] [points]
     logical :: keeps_stiffness = .false.   !! the matrices of the law stay elastic: factors and flexibility serve again
+    integer :: telling_steps = 2           !! behind that tell what is to come: a plain iteration's last are its slowest
   contains
     procedure :: restart
     procedure(linearise_about), deferred :: linearise

@@ -20,9 +20,11 @@ contains
     select case (kind)
     case (method_modsec)
       allocate (modified_secant_method :: method)
+      method%telling_steps = huge(1)   ! a mixture's last steps are not its slowest
     case (method_inistr)
       allocate (initial_stress_method :: method)
       method%keeps_stiffness = .true.
+      method%telling_steps = huge(1)
     case (method_newton)
       allocate (newton_method :: method)
     case default

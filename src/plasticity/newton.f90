@@ -34,6 +34,7 @@ module epcont_plasticity_newton
     procedure :: linearise
     procedure :: stiffen
     procedure :: advance
+    procedure :: blended
   end type newton_method
 
 contains
@@ -55,6 +56,14 @@ contains
     self%blend = 0
     call set_law(model, material, strain, 0.0_wp, law)
   end subroutine linearise
+
+  !> Part of the secant matrix in the last tangent.
+  pure real(wp) function blended(self)
+    class(newton_method), intent(in) :: self
+
+    blended = 0.0_wp
+    if (self%blend > 0) blended = blends(self%blend)
+  end function blended
 
   !> D_t + w (D_secant - D_t): a flat curve makes D_t semidefinite.
   pure subroutine stiffen(self, model, material, strain, law, possible)

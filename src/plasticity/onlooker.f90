@@ -12,7 +12,10 @@ module epcont_plasticity_onlooker
     integer :: iteration = 0           !! its number in its load step
     real(wp) :: change = 0.0_wp        !! largest change of a displacement / largest displacement
     real(wp) :: force_change = 0.0_wp  !! largest change of a contact force / largest contact force
-    real(wp) :: residual = 0.0_wp      !! largest distance of a stress from its curve / largest stress
+    real(wp) :: residual = 0.0_wp      !! largest distance of a stress from its curve / the curve's stress there
+    real(wp) :: error = 0.0_wp         !! of a displacement, estimated / largest displacement; negative: not known
+    real(wp) :: force_error = 0.0_wp   !! of a contact force, estimated / largest contact force; negative: not known
+    logical :: by_tangent = .false.    !! the step that tests what was estimated, and ends the iteration
     integer :: touching = 0            !! pairs
     integer :: yielded = 0             !! elements
     integer :: pivots = 0

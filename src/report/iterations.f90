@@ -7,7 +7,6 @@ module epcont_report_iterations
   use epcont_report_layout, only: figure, heading, right
   use epcont_report_number, only: column_number, rounding_number
   use epcont_result_answer, only: answer_type
-  use epcont_result_iteration_error, only: estimate_iteration_error, iteration_error
   implicit none
   private
   public :: list_iterations, list_iteration_error
@@ -32,6 +31,11 @@ contains
       end associate
     end do
     call file%line('')
+    if (answer%load_steps > answer%asked_load_steps) &
+      call file%line('  in '//plural(answer%asked_load_steps, 'load step')//' no answer was found; tried again in '// &
+                     text_of(answer%load_steps)//' (AUTO)')
+    if (any(answer%history%by_tangent)) &
+      call file%line('  the last step is one by the tangent: its change is what the others have left')
     call file%line('  '//plural(count(answer%plastic), 'element')//' of '//text_of(model%elements)//' beyond the yield point')
     if (any(answer%beyond)) &
       call file%line('  beyond the last point of its table, whose last slope goes on: '// &
@@ -56,12 +60,12 @@ contains
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
-    type(iteration_error) :: error
 
-    error = estimate_iteration_error(answer%history, answer%load_factor)
-    call figure(file, 'iteration error, of the largest displacement', right(error_text(error%displacement), 13))
-    if (model%pairs > 0) &
-      call figure(file, 'iteration error, of the largest force', right(error_text(error%force), 13))
+    associate (last => answer%history(findloc(answer%history%load_factor, answer%load_factor, dim=1, back=.true.)))
+      call figure(file, 'iteration error, of the largest displacement', right(error_text(last%error), 13))
+      if (model%pairs > 0) &
+        call figure(file, 'iteration error, of the largest force', right(error_text(last%force_error), 13))
+    end associate
   end subroutine list_iteration_error
 
   pure function error_text(error) result(text)

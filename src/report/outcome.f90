@@ -82,14 +82,15 @@ contains
         outcome%sentence = scene_fault(model, certificate%scene)
         return
       end if
-      if (.not. answer%converged .and. (certificate%balanced .or. answer%runs_away)) then
+      if (.not. answer%converged .and. (certificate%balanced .and. loss_of(answer) <= largest_loss .or. answer%runs_away)) then
         outcome%status = status_no_answer
         outcome%word = 'not converged'
         outcome%sentence = unconverged(model, answer)
         return
       end if
       outcome%status = status_numerical
-      outcome%word = trim(merge('ill-conditioned', 'not certified  ', certificate%valid))
+      outcome%word = trim(merge('ill-conditioned', 'not certified  ', certificate%valid .or. certificate%balanced .and. &
+                                loss_of(answer) > largest_loss))
       outcome%sentence = 'the figures are not to be trusted: '//doubts(model, answer, certificate)
     end if
   end function judge

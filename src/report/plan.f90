@@ -157,9 +157,9 @@ contains
     text = '  total theory of plasticity; bodies that can yield: '//text_of(count(iteration%body))//newline
     text = text//'  iteration '//trim(method_name(iteration%method))//': '//what_it_does(iteration)//newline
     if (iteration%chosen_here) text = text//'    chosen here (AUTO): '//why(iteration)//newline
-    text = text//'    until no displacement changes by more than '//short_real(iteration%tolerance)// &
-           ' of the largest, and no stress is off its curve'//newline//'    by more than '// &
-           short_real(iteration%off_curve)//' of the largest; at most '// &
+    text = text//'    until no displacement changes, or is estimated to be off, by more than '//short_real(iteration%tolerance)// &
+           ' of the largest,'//newline//'    and no stress is off its curve by more than '// &
+           short_real(iteration%off_curve)//' of the stress there; at most '// &
            plural(model%controls%most_iterations, 'iteration')//newline
     if (iteration%load_steps > 1) &
       text = text//'  '//plural(iteration%load_steps, 'load step')//'; elastic unloading is not modelled'//newline

@@ -13,7 +13,6 @@ module epcont_report_tables
   use epcont_report_remarks, only: remarks_type
   use epcont_result_answer, only: answer_type
   use epcont_result_zones, only: contact_zone
-  use epcont_result_iteration_error, only: estimate_iteration_error, iteration_error
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none
   private
@@ -33,7 +32,6 @@ contains
     type(remarks_type), intent(in) :: remarks
     type(error_type), allocatable, intent(out) :: error
     type(text_file) :: file
-    type(iteration_error) :: error_left
     real(wp) :: place(2)
     integer :: k
 
@@ -80,9 +78,9 @@ contains
       end if
       call put('condition', answer%condition, '')
       call put('load_factor', answer%load_factor, '')
-      error_left = estimate_iteration_error(answer%history, answer%load_factor)
-      call put('iteration_error_displacement', error_left%displacement, '')
-      call put('iteration_error_force', error_left%force, '')
+      k = findloc(answer%history%load_factor, answer%load_factor, dim=1, back=.true.)
+      call put('iteration_error_displacement', answer%history(k)%error, '')
+      call put('iteration_error_force', answer%history(k)%force_error, '')
       call write_accuracy(file, model, motions, answer, accuracy)
     end if
     call file%finish(error)

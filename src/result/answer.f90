@@ -44,6 +44,8 @@ module epcont_result_answer
     integer :: factorizations = 0                    !! of bodies
     character(len=:), allocatable :: against_double  !! single precision has failed, and this stands against double
     logical :: lacks_memory = .false.                !! a body could not be factored for want of memory
+    integer :: load_steps = 1                        !! taken
+    integer :: asked_load_steps = 1                  !! that did not lead to an answer, where they are fewer
     logical :: converged = .false.                   !! all of the load, to the tolerance of the iteration
     logical :: runs_away = .false.                   !! no equilibrium: the displacements grow without end
     real(wp) :: load_factor = 1.0_wp                 !! part of the loads for which this is
