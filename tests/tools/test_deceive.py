@@ -164,6 +164,12 @@ class Judging(Case):
     def test_a_sound_scene_has_no_faults(self):
         self.assertEqual(self.faults(PROGRAM), [])
 
+    def test_a_run_that_crashes_takes_no_other_with_it(self):
+        path = self.directory / "crasher"
+        path.write_text(f"#!/bin/sh\ncase $* in *moved.dat*) kill -SEGV $$;; esac\nexec {PROGRAM} \"$@\"\n")
+        path.chmod(0o755)
+        self.assertEqual(self.faults(str(path)), [("broken", "moved"), ("twin", "moved")])
+
     def test_a_twin_that_differs_a_little(self):
         program = self.falsified("rotated", "summary", "value", "* 1.000001", "row['key'] == 'total_contact_force'")
         self.assertEqual(self.faults(program), [("twin", "rotated")])
@@ -225,7 +231,7 @@ class CommandLine(Case):
     def test_a_table_and_the_same_again(self):
         status, text = self.run_it("--family", SOUND[0], "--scenes", "2")
         self.assertEqual(status, 0, text)
-        self.assertRegex(text, r"cylinder_on_block +2 +2 +0 +0 +0 +0 +0 +0 ")
+        self.assertRegex(text, r"cylinder_on_block +2 +2 +0 +0 +0 +0 +0 +0 +0 ")
         self.assertEqual(self.run_it("--family", SOUND[0], "--scenes", "2"), (status, text))
         self.assertFalse((self.directory / "kept").exists())
 

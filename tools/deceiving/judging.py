@@ -94,20 +94,32 @@ def read_zones(answer, values, path):
 
 
 def solve(program, folder, jobs, seconds):
-    """Answers by name, of (name, scene, twin) run as one process; the decks stay in the folder."""
+    """Answers by name, of (name, scene, twin) run as one process, or where that breaks one by one; the decks stay in the folder."""
     numbers = {}
     for name, scene, twin in jobs:
         text, numbers[name] = deck(scene, twin)
         (folder / f"{name}.dat").write_text(text)
     out = folder / "out"
     out.mkdir(exist_ok=True)
+    broken, said = run(program, folder, [name for name, _, _ in jobs], seconds)
+    answers = {}
+    for name, scene, twin in jobs:
+        if broken:
+            end, said = run(program, folder, [name], seconds)
+        answers[name] = read(scene, twin, numbers[name], out, name, said)
+        if broken and end:
+            answers[name] = Answer("broken", end)
+    return answers
+
+
+def run(program, folder, names, seconds):
+    """How the process broke, None if it did not; and the lines it wrote on standard error."""
     try:
-        run = subprocess.run([program, *(f"{name}.dat" for name, _, _ in jobs), "-o", "out", "--tables", "all", "--quiet"], cwd=folder,
-                             capture_output=True, text=True, timeout=seconds)
-        said = run.stderr.splitlines()
+        ended = subprocess.run([program, *(f"{name}.dat" for name in names), "-o", "out", "--tables", "all", "--quiet"], cwd=folder,
+                               capture_output=True, text=True, timeout=seconds)
     except subprocess.TimeoutExpired:
-        said = [f"{name}.dat: no end within {seconds:.0f} s" for name, _, _ in jobs]
-    return {name: read(scene, twin, numbers[name], out, name, said) for name, scene, twin in jobs}
+        return f"no end within {seconds:.0f} s", []
+    return (None if 0 <= ended.returncode < 5 else f"exit status {ended.returncode}"), ended.stderr.splitlines()
 
 
 def off(one, other):
@@ -135,7 +147,7 @@ def differences(one, other):
     found = []
     if not scale:
         return found
-    energy = 2.0 * (one.energy_error ** 2 + other.energy_error ** 2)
+    energy = 3.0 * (one.energy_error ** 2 + other.energy_error ** 2)
     allowed = max(CLOSE, energy)
     part = max((math.hypot(a[0] - b[0], a[1] - b[1]) for a, b in zip(one.resultant, other.resultant)), default=0.0) / scale
     found.append(("resultant", part, part / allowed))
@@ -234,7 +246,7 @@ def twins_of(scene, pick):
 
 @dataclass
 class Fault:
-    kind: str    # twin, figure, through
+    kind: str    # broken, twin, figure, through
     of: str      # name of the deck
     words: str
 
@@ -285,7 +297,8 @@ class Judge:
         jobs = [("base", scene, Twin("base")), ("finer", finer, Twin("finer"))] + [(twin.name, scene, twin) for twin in equal + other]
         answers = solve(self.program, folder, jobs, self.seconds)
         base, fine = answers["base"], answers["finer"]
-        faults = [Fault("twin", twin.name, words) for twin in equal for words in [same(base, answers[twin.name])] if words]
+        faults = [Fault("broken", name, answer.message) for name, answer in answers.items() if answer.word == "broken"]
+        faults += [Fault("twin", twin.name, words) for twin in equal for words in [same(base, answers[twin.name])] if words]
         if base.valid:
             for of in ["finer"] + [twin.name for twin in other]:
                 words = answers[of].valid and (unlike(base, answers[of]) or of == "once" and unlike_pressure(base, answers[of]))
