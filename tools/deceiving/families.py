@@ -646,3 +646,61 @@ def rings(pick, n):
     d.press(body, body.line((right, 1.0), (left, 1.0)), gap + 0.02, right - left)
     d.either(body.line((left, profile(left)), (right, profile(right))), floor.line((2.0, 0.0), (0.0, 0.0)))
     return d.scene
+
+
+@family
+def flush(pick, n):
+    """Bodies of one width, or wider by a hair at either end."""
+    d = Draw(pick, n)
+    left, right = (pick.choice([0.0, 0.0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3, 0.03]) * pick.choice([-1.0, 1.0]) for _ in range(2))
+    floor = base(d, -1.0, 1.1)
+    body = d.slave()
+    a, b = -1.0 + left, 1.1 + right
+    cells(body, [a, b], [0.0, 0.7], d.h_slave, d.h_slave)
+    d.press(body, body.line((b, 0.7), (a, 0.7)), d.strain, 2.0)
+    further = pick.random() < 0.3
+    own = body.line((a, 0.7), (b, 0.7)) if further else body.line((a, 0.0), (b, 0.0))
+    d.either(own, floor.line((1.1, -1.0), (-1.0, -1.0)) if pick.random() < 0.2 else floor.line((1.1, 0.0), (-1.0, 0.0)))
+    return d.scene
+
+
+@family
+def shrink_fit(pick, n):
+    """A disc in a ring too narrow for it; whole outlines that conform."""
+    d = Draw(pick, n, h=(0.15, 0.4))
+    over, outer = pick.choice([0.001, 0.005, 0.02]), pick.uniform(1.5, 2.5)
+    body = d.slave()
+    c = disc(body, (0.0, 0.0), 1.0, d.h_slave)
+    x = d.scene.nodes
+    d.scene.hold([k for k in body.at.values() if max(map(abs, x[k])) <= 0.5 * c + 1e-9])
+    ring = d.master()
+    turns = number_of(1.57, d.h_master)
+    for k in range(4):
+        ring.patch(lambda s, t: ((1 - over + (outer - 1 + over) * s) * math.cos(math.pi * (k + t) / 2),
+                                 (1 - over + (outer - 1 + over) * s) * math.sin(math.pi * (k + t) / 2)),
+                   number_of(outer - 1, max(d.h_master, 0.25)), turns)
+    d.scene.hold(ring.line((outer * math.sqrt(0.5), -outer * math.sqrt(0.5)), (outer, 0.0)))
+    d.either(body.line((1.0, 0.0)), ring.line((1.0 - over, 0.0)), 0.4)
+    return d.scene
+
+
+@family
+def half_of_it(pick, n):
+    """Half of a symmetric scene: lines end on the line of symmetry, at a tip, on a flat or on an arc."""
+    d = Draw(pick, n, h=(0.12, 0.35))
+    kind = pick.choice(["flat", "round", "tip", "hollow"])
+    floor = base(d, 0.0, 1.7)
+    d.scene.hold(floor.line((0.0, 0.0), (0.0, -1.0))[:-1], "1")
+    body = d.slave()
+    half, gap = pick.uniform(0.5, 1.0), pick.choice([0.0, 0.01])
+    slope = math.tan(math.radians(pick.choice([5, 15, 25, 40])))
+
+    def profile(x):
+        return gap + {"flat": 0.0, "round": nose(1.5)(x), "tip": slope * x, "hollow": 0.1 * slope * (half - x)}[kind]
+    top = max(profile(0.0), profile(half)) + 0.6
+    profiled(body, [0.0, half], top, profile, d.h_slave, d.h_slave)
+    d.scene.hold(body.line((0.0, top), (0.0, profile(0.0)))[1:], "1")
+    d.sway = 0.0
+    d.press(body, body.line((half, top), (0.0, top)), gap + 0.02, half)
+    d.either(body.line((0.0, profile(0.0)), (half, profile(half))), floor.line((1.7, 0.0), (0.0, 0.0)), 0.4)
+    return d.scene
