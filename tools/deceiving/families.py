@@ -520,8 +520,9 @@ def stack(pick, n):
         y += height
         upper = body.line((b, y), (a, y))
         if k < count - 1:   # between walls, and free to come down
+            wall = d.scene.corners(body.line((a, y), (a, y - height)))
             d.scene.hold(body.line((a, y), (a, y - height)), "1")
-            d.scene.free.append((upper[0], "2"))
+            d.scene.free.append((wall[(len(wall) - 1) // n // 2 * n], "2"))
     d.press(body, upper, d.strain * y, b - a)
     return d.scene
 
