@@ -681,7 +681,7 @@ def shrink_fit(pick, n):
                                  (1 - over + (outer - 1 + over) * s) * math.sin(math.pi * (k + t) / 2)),
                    number_of(outer - 1, max(d.h_master, 0.25)), turns)
     d.scene.hold(ring.line((outer * math.sqrt(0.5), -outer * math.sqrt(0.5)), (outer, 0.0)))
-    d.either(body.line((1.0, 0.0)), ring.line((1.0 - over, 0.0)), 0.4)
+    d.either(body.line((math.sqrt(0.5), math.sqrt(0.5))), ring.line((1.0 - over, 0.0)), 0.4)
     return d.scene
 
 
