@@ -374,7 +374,7 @@ def far_travel(pick, n):
     profiled(body, xs, top, profile, d.h_slave, d.h_slave)
     if soft:
         body.young = d.young * 1e-2
-    d.force = False
+    d.force, d.sway = False, 0.0   # a slide by more than a side is beyond linear kinematics
     d.press(body, body.line((half, top), (-half, top)), gap + pick.choice([0.05, 0.3]), half)
     d.either(body.line((-half, profile(half)), (half, profile(half))), floor.line((1.7, 0.0), (-1.6, 0.0)), 0.3)
     return d.scene
