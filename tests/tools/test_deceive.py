@@ -17,9 +17,10 @@ import unittest
 sys.dont_write_bytecode = True
 TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
 sys.path.insert(0, str(TOOLS))
-from deceiving.families import FAMILIES, cells, disc  # noqa: E402
+from deceiving.families import FAMILIES  # noqa: E402
 from deceiving.judging import Fault, Judge, same, solve, through, unlike  # noqa: E402
 from deceiving.scenes import PLANE, RINGS, Scene, Twin, deck, lines_of  # noqa: E402
+from deceiving.shapes import cells, disc  # noqa: E402
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 SOUND = ("cylinder_on_block", 0)   # nothing is wrong with this scene
