@@ -1,0 +1,58 @@
+"""What families of random scenes share: what is drawn, how a body is pressed, a block to stand on."""
+from deceiving.scenes import PLANE, Scene
+from deceiving.shapes import cells
+
+FAMILIES = {}
+
+
+def family(function):
+    FAMILIES[function.__name__] = function
+    return function
+
+
+class Draw:
+    """A scene and what most families draw: kinds, moduli, sizes of elements (slave h, master h / ratio)."""
+
+    def __init__(self, pick, n, kinds=PLANE, ratios=(1.0, 1.0, 1.3, 2.0, 3.0, 5.0, 8.0, 0.75, 0.5, 0.33), h=(0.15, 0.5)):
+        self.pick = pick
+        self.kinds = [pick.choice(kinds)] * 2
+        if pick.random() < 0.3:
+            self.kinds[1] = pick.choice(kinds)
+        self.scene = Scene(n, 1.0, pick.choice(["STRAIN", "STRAIN", "STRESS"]), pick.random() < 0.3, pick.random() < 0.5)
+        self.ratio = pick.choice(ratios)
+        self.h = pick.uniform(*h)
+        self.young = pick.choice([1e3, 1e3, 2e5])
+        self.soft = pick.choice([1.0, 1.0, 0.3, 0.05, 10.0])
+        self.poisson = pick.choice([0.0, 0.3, 0.3, 0.45])
+        self.force = pick.random() < 0.4
+        self.sway = pick.choice([0.0, 0.0, 0.1, -0.3])
+        self.strain = pick.uniform(0.003, 0.02)
+        fine = max(self.h / max(self.ratio, 1e-9), 0.06)
+        self.h_slave, self.h_master = (self.h, fine) if self.ratio >= 1 else (max(self.h * self.ratio, 0.06), self.h)
+
+    def slave(self):
+        return self.scene.body(self.kinds[0], self.young * self.soft, self.poisson)
+
+    def master(self):
+        return self.scene.body(self.kinds[1], self.young, self.poisson)
+
+    def press(self, body, nodes, travel, width):
+        """A line of the body moves down by a travel (and aside), or under a force that gives strains as drawn."""
+        if self.force:
+            self.scene.platen(nodes, self.strain * min(body.young, self.young) * width)
+        else:
+            self.scene.hold(nodes, "12", (self.sway * travel, -travel))
+
+    def either(self, slave, master, turn=0.5):
+        """The two lines in contact, one of them the slave by chance."""
+        if self.pick.random() < turn:
+            slave, master = master, slave
+        self.scene.contact(slave, master)
+
+
+def base(draw, left, right, depth=1.0, hy=None, y=0.0):
+    """A block below y, held at its lower side; its upper side as a line."""
+    body = draw.master()
+    cells(body, [left, right], [y - depth, y], draw.h_master, hy or max(draw.h_master, depth / 5))
+    draw.scene.hold(body.line((left, y - depth), (right, y - depth)))
+    return body

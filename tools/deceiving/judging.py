@@ -1,0 +1,318 @@
+"""Random scenes and their twins are run, and what is said of them is held against each other."""
+import math
+import pathlib
+import random
+import subprocess
+import sys
+from dataclasses import dataclass, field
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from deceiving.families import FAMILIES  # noqa: E402
+from deceiving.scenes import Twin, deck  # noqa: E402
+from tables import rows, summary  # noqa: E402
+
+SAME = 1e-7      # what rounding leaves between twins, of the largest
+CLOSE = 0.05     # what a figure may be off without an estimate
+DEEP = 0.1       # of the largest displacement: how far bodies may pass through each other
+SMOOTH = math.radians(35.0)   # turns of an outline up to here may be those of a curve in chords
+LARGEST = 350    # nodes of a scene; larger ones are drawn again
+
+
+def number(text):
+    return float(text) if text else None
+
+
+@dataclass
+class Answer:
+    """What one run says, in the frame of the scene."""
+    word: str = "rejected"
+    message: str = ""
+    total: float = 0.0
+    energy_error: float = 0.0
+    resultant: list = field(default_factory=list)       # of contact on each body
+    displacement: list = field(default_factory=list)
+    reaction: list = field(default_factory=list)
+    approach: dict = field(default_factory=dict)        # place in scene.free -> value, estimate
+    p_max: tuple = (None, None)
+    half_width: tuple = (None, None)
+    pairs: int = 0
+
+    @property
+    def valid(self):
+        return self.word == "valid"
+
+
+def read(scene, twin, numbers, folder, name, said):
+    """The answer of deck `name`; `said` are the lines on standard error."""
+    answer = Answer()
+    own = [line for line in said if f"{name}.dat" in line]
+    answer.message = " / ".join(line.split(".dat", 1)[1].lstrip(":0123456789 ") for line in own)
+    try:
+        values = summary(folder / f"{name}.summary.csv")
+        nodes = {int(row["node"]): row for row in rows(folder / f"{name}.nodes.csv")}
+    except (OSError, KeyError):
+        return answer
+    answer.word = values.get("status", "none")
+    if len(nodes) < len(numbers):
+        return answer
+    answer.total = number(values.get("total_contact_force")) or 0.0
+    answer.energy_error = number(values.get("mesh_error_energy_norm")) or 0.0
+    answer.pairs = int(values.get("pairs_in_contact") or 0)
+    for k in numbers:
+        row = nodes[k]
+        answer.displacement.append(twin.back((float(row["ux"]), float(row["uy"]))))
+        answer.reaction.append(twin.back((float(row["rx"] or 0), float(row["ry"] or 0))))
+    forces = dict(scene.forces)
+    for body in scene.bodies:
+        sums = [0.0, 0.0]
+        for k in body.at.values():
+            for c in range(2):
+                sums[c] -= answer.reaction[k][c] + forces.get(k, (0.0, 0.0))[c]
+        answer.resultant.append(sums)
+    for place, (node, directions) in enumerate(scene.free):
+        answer.approach[place] = (answer.displacement[node][int(directions) - 1], estimate_of_approach(values, numbers[node]))
+    read_zones(answer, values, folder / f"{name}.zones.csv")
+    return answer
+
+
+def estimate_of_approach(values, node):
+    found = [number(value) for key, value in values.items() if key.startswith(f"mesh_error_approach_{node}_")]
+    return found[0] if found else None
+
+
+def read_zones(answer, values, path):
+    """Largest pressure of all, and the half-width of the zone that has it, with their estimates."""
+    try:
+        zones = [row for row in rows(path) if number(row["max_pressure"])]
+    except OSError:
+        return
+    if zones:
+        first = max(zones, key=lambda row: float(row["max_pressure"]))
+        k = first["zone"]
+        answer.p_max = (float(first["max_pressure"]), number(values.get(f"mesh_error_pressure_zone_{k}")))
+        answer.half_width = (number(first["half_width"]), number(values.get(f"mesh_error_half_width_zone_{k}")))
+
+
+def solve(program, folder, jobs, seconds):
+    """Answers by name, of (name, scene, twin) run as one process, or where that breaks one by one; the decks stay in the folder."""
+    numbers = {}
+    for name, scene, twin in jobs:
+        text, numbers[name] = deck(scene, twin)
+        (folder / f"{name}.dat").write_text(text)
+    out = folder / "out"
+    out.mkdir(exist_ok=True)
+    broken, said = run(program, folder, [name for name, _, _ in jobs], seconds)
+    answers = {}
+    for name, scene, twin in jobs:
+        if broken:
+            end, said = run(program, folder, [name], seconds)
+        answers[name] = read(scene, twin, numbers[name], out, name, said)
+        if broken and end:
+            answers[name] = Answer("broken", end)
+    return answers
+
+
+def run(program, folder, names, seconds):
+    """How the process broke, None if it did not; and the lines it wrote on standard error."""
+    try:
+        ended = subprocess.run([program, *(f"{name}.dat" for name in names), "-o", "out", "--tables", "all", "--quiet"], cwd=folder,
+                               capture_output=True, text=True, timeout=seconds)
+    except subprocess.TimeoutExpired:
+        return f"no end within {seconds:.0f} s", []
+    return (None if 0 <= ended.returncode < 5 else f"exit status {ended.returncode}"), ended.stderr.splitlines()
+
+
+def off(one, other):
+    """Largest difference of vectors, of the largest of them."""
+    scale = max((abs(c) for v in one + other for c in v), default=0.0)
+    return max((abs(a - b) for v, w in zip(one, other) for a, b in zip(v, w)), default=0.0) / scale if scale else 0.0
+
+
+def same(one, other):
+    """What is wrong with a rotated, mirrored, moved or renumbered twin; None if nothing."""
+    if one.word != other.word:
+        return f"{one.word}, twin {other.word}"
+    if not one.valid:
+        return None
+    u, r = off(one.displacement, other.displacement), off(one.reaction, other.reaction)
+    total = abs(one.total - other.total) / max(one.total, other.total, 1e-300)
+    if max(u, r, total) > SAME:
+        return f"displacements off by {u:.1e}, reactions {r:.1e}, total force {total:.1e}"
+    return None
+
+
+def differences(one, other):
+    """Figures that differ, as (name, of the scale, of what is allowed)."""
+    scale = max(one.total, other.total)
+    found = []
+    if not scale:
+        return found
+    energy = 3.0 * (one.energy_error ** 2 + other.energy_error ** 2)
+    allowed = max(CLOSE, energy)
+    part = max((math.hypot(a[0] - b[0], a[1] - b[1]) for a, b in zip(one.resultant, other.resultant)), default=0.0) / scale
+    found.append(("resultant", part, part / allowed))
+    part = abs(one.total - other.total) / scale
+    found.append(("total force", part, part / allowed))
+    for place in one.approach:
+        (a, e), (b, f) = one.approach[place], other.approach[place]
+        part = abs(a - b) / max(abs(a), abs(b), 1e-300)
+        covered = 0.0 if e is None or f is None else (e + f) / max(abs(a), abs(b), 1e-300)
+        found.append(("approach", part, part / max(CLOSE, covered)))
+    return found
+
+
+def estimates(one, other):
+    """Of p_max and half-width, where both give them with an estimate: does it cover what they differ by?"""
+    for (a, e), (b, f) in ((one.p_max, other.p_max), (one.half_width, other.half_width)):
+        if None not in (a, b, e, f):
+            yield abs(a - b) <= max(e + f, CLOSE * abs(b))
+
+
+def unlike(one, other):
+    """The worst figure off by more than allowed, as words; None if there is none."""
+    name, part, beyond = max(differences(one, other), key=lambda each: each[2], default=("", 0.0, 0.0))
+    return f"{name} off by {100 * part:.1f} %" if beyond > 1.0 else None
+
+
+def outlines(scene, answer):
+    """Each body's displaced outline as sides (a, b), and what its chords leave of smooth curves."""
+    place = [(x[0] + u[0], x[1] + u[1]) for x, u in zip(scene.nodes, answer.displacement)]
+    found = []
+    for body in scene.bodies:
+        sides = body.sides()
+        found.append([(a, b) for a, middle, c in sides.values() for a, b in ([(a, c)] if middle is None else [(a, middle), (middle, c)])])
+    return place, found
+
+
+def sagitta(x, sides):
+    """Largest height of a smooth curve over its chord, by the turn at nodes where that is less than 35 degrees."""
+    after, most = {a: b for a, b in sides}, 0.0
+    for a, b in sides:
+        c = after[b]
+        p, q = (x[b][0] - x[a][0], x[b][1] - x[a][1]), (x[c][0] - x[b][0], x[c][1] - x[b][1])
+        turn = abs(math.atan2(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]))
+        if turn < SMOOTH:
+            most = max(most, turn * max(math.hypot(*p), math.hypot(*q)) / 8)
+    return most
+
+
+def depth(point, place, sides):
+    """How deep a point lies within an outline; 0 outside."""
+    turns, least = 0, math.inf
+    for a, b in sides:
+        (ax, ay), (bx, by) = place[a], place[b]
+        if (ay > point[1]) != (by > point[1]) and point[0] < ax + (point[1] - ay) * (bx - ax) / (by - ay):
+            turns += 1
+        dx, dy = bx - ax, by - ay
+        t = min(1.0, max(0.0, ((point[0] - ax) * dx + (point[1] - ay) * dy) / (dx * dx + dy * dy)))
+        least = min(least, math.hypot(point[0] - ax - t * dx, point[1] - ay - t * dy))
+    return least if turns % 2 else 0.0
+
+
+def through(scene, answer):
+    """Where one body lies deepest inside another once displaced, beyond what chords explain: (depth, of what moved, place)."""
+    place, sides = outlines(scene, answer)
+    moved = max((math.hypot(*u) for u in answer.displacement), default=0.0)
+    worst = (0.0, 0.0, None)
+    for k, own in enumerate(sides):
+        for m, other in enumerate(sides):
+            if k == m:
+                continue
+            allowed = 3 * max(sagitta(scene.nodes, own), sagitta(scene.nodes, other))
+            xs, ys = [place[a][0] for a, _ in other], [place[a][1] for a, _ in other]
+            box = (min(xs), max(xs), min(ys), max(ys))
+            for a, b in own:
+                for t in (0.0, 0.5):
+                    p = tuple((1 - t) * place[a][c] + t * place[b][c] for c in range(2))
+                    if box[0] < p[0] < box[1] and box[2] < p[1] < box[3]:
+                        d = depth(p, place, other) - allowed
+                        if d > worst[0]:
+                            worst = (d, d / moved if moved else 0.0, p)
+    return worst
+
+
+def twins_of(scene, pick):
+    """Ways to write the same scene that must give the same, and those that are another model of it."""
+    angle = math.radians(pick.uniform(0.0, 360.0) if scene.turns() else 90.0 * pick.choice([1, 2, 3]))
+    far = [scene.size * pick.choice([-1e3, 1e3]) for _ in range(2)]
+    equal = [Twin("renumbered", mix=random.Random(pick.random())), Twin("reversed", reverse=True)]
+    if scene.rings:
+        equal += [Twin("moved", shift=(0.0, far[1]))]
+    else:
+        equal += [Twin("rotated", angle=angle), Twin("mirrored", mirror=True), Twin("moved", shift=far)]
+    other = [Twin("exchanged", exchange=True), Twin("split", split=(pick.choice([0, 1]), pick.uniform(0.2, 0.8)))]
+    return equal, other + [Twin("once", once=True)] * (scene.needed is not None)
+
+
+@dataclass
+class Fault:
+    kind: str    # broken, twin, figure, through
+    of: str      # name of the deck
+    words: str
+
+
+@dataclass
+class Verdict:
+    nodes: int
+    answers: dict
+    faults: list
+    covered: list    # of p_max and half-width
+
+    @property
+    def base(self):
+        return self.answers["base"]
+
+    def counts(self):
+        """What it adds to the table."""
+        kinds = {fault.kind: 1 for fault in self.faults}
+        return {"scenes": 1, "valid": self.base.valid, "refused": not self.base.valid, "wrong": bool(kinds), **kinds,
+                "finer": not self.base.valid and self.answers["finer"].valid, "estimates": len(self.covered),
+                "low": self.covered.count(False)}
+
+    def said(self):
+        words = "; ".join(f"{fault.of}: {fault.words}" for fault in self.faults)
+        if not self.base.valid:
+            words += f"{'; ' if words else ''}refused, {self.base.word}: {self.base.message[:200]}; finer {self.answers['finer'].word}"
+        return f"{self.nodes} nodes; {words or 'nothing'}"
+
+
+class Judge:
+    def __init__(self, program, seed, seconds):
+        self.program, self.seed, self.seconds = program, seed, seconds
+
+    def scenes(self, name, number):
+        """The scene as drawn, and three times finer."""
+        for again in range(1000):
+            def drawn(n):
+                return FAMILIES[name](random.Random(f"{self.seed} {name} {number} {again}"), n)
+
+            if len(drawn(1).nodes) <= LARGEST:
+                return drawn(1), drawn(3)
+        raise ValueError(f"{name}: no scene of at most {LARGEST} nodes")
+
+    def __call__(self, name, number, folder):
+        """The verdict on one scene, its decks left in the folder."""
+        scene, finer = self.scenes(name, number)
+        equal, other = twins_of(scene, random.Random(f"{self.seed} {name} {number} twins"))
+        jobs = [("base", scene, Twin("base")), ("finer", finer, Twin("finer"))] + [(twin.name, scene, twin) for twin in equal + other]
+        answers = solve(self.program, folder, jobs, self.seconds)
+        base, fine = answers["base"], answers["finer"]
+        faults = [Fault("broken", name, answer.message) for name, answer in answers.items() if answer.word == "broken"]
+        faults += [Fault("twin", twin.name, words) for twin in equal for words in [same(base, answers[twin.name])] if words]
+        if base.valid:
+            for of in ["finer"] + [twin.name for twin in other]:
+                words = answers[of].valid and (unlike(base, answers[of]) or of == "once" and unlike_pressure(base, answers[of]))
+                faults += [Fault("figure", of, words)] if words else []
+        for of, one in (("base", scene), ("finer", finer)):
+            if answers[of].valid:
+                _, part, place = through(one, answers[of])
+                if part > DEEP:
+                    faults.append(Fault("through", of, f"through by {100 * part:.0f} % of the largest displacement at {place[0]:.3f} {place[1]:.3f}"))
+        covered = list(estimates(base, fine)) if base.valid and fine.valid else []
+        return Verdict(len(scene.nodes), answers, faults, covered)
+
+
+def unlike_pressure(one, other):
+    """p_max of the same scene whose lines are named more than once, and once."""
+    (p, _), (q, _) = one.p_max, other.p_max
+    return f"p_max {p:.4g}, once {q:.4g}" if p and q and abs(p - q) > CLOSE * max(p, q) else None
