@@ -6,9 +6,9 @@ module epcont_model_lines
   use epcont_deck_card_kinds, only: card_blseg
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_boundary, only: find_boundary
   use epcont_model_elements, only: element_name
   use epcont_model_model, only: model_type, named_line
-  use epcont_model_outline, only: find_outline
   use epcont_model_reference, only: check_unique
   use epcont_model_side_boxes, only: new_boxed_line
   implicit none
@@ -46,7 +46,7 @@ contains
       ! Without sound elements there is no boundary to look at.
       sound = faults%error_count() == 0
       if (sound) then
-        model%outline = new_boxed_line(find_outline(model, deck%parameter_value('CORNER', 0.0_wp)))
+        model%outline = new_boxed_line(find_boundary(model, deck%parameter_value('CORNER', 0.0_wp)))
         allocate (starting(model%nodes), source=0)
         starting(model%outline%segment(1, :)) = [(i, i=1, size(model%outline%element))]
       end if
