@@ -123,11 +123,11 @@ contains
     real(wp) :: most
     integer :: k, s
 
-    if (.not. allocated(model%outline%element)) return
+    if (.not. allocated(model%boundary%element)) return
     do s = 1, size(sag)
       most = 0.0_wp
       do k = 1, 2
-        most = max(most, abs(angle([along(2, k, s), -along(1, k, s)], model%outline%normal(:, k, s))))
+        most = max(most, abs(angle([along(2, k, s), -along(1, k, s)], model%boundary%normal(:, k, s))))
       end do
       ! The angle between normal and side is half the turn.
       sag(s) = chord(s)*most/4.0_wp

@@ -47,6 +47,7 @@ contains
     ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load the scene.
     where (abs(model%x) < least_cause) model%x = 0.0_wp
     call build_pairs(deck, nodes, model, faults)
+    ! Lines are sides of the outlines, and only sound elements have outlines.
     if (faults%error_count() == 0) then
       call find_bodies(model)
       model%body_outline = find_outline(model)
