@@ -2,7 +2,8 @@
 !> what straight sides, displacements linear between nodes and linear kinematics leave open.
 !>
 !> A side of length h allows 3 (s + b + k), and as much again as CGAPs there say otherwise than the coordinates:
-!>     s = h theta/8          above its chord lies the smooth curve, to which gaps are measured; theta the turn at its ends
+!>     s = h theta/8          above its chord lies the smooth curve, to which gaps of pairs are measured; theta the turn
+!>                            at its ends. Where no pair joins the two bodies there is none
 !>     b = h |d theta|/8      what displacements add to that turn
 !>     k = d |w| + d**2 c/2   sliding by d along a side that turns by w, and has the curvature c
 !>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
@@ -36,12 +37,13 @@ module epcont_certificate_allowance
 contains
 
   !> What a side allows where another slides along it.
-  pure real(wp) function of(self, side, slide)
+  pure real(wp) function of(self, side, slide, paired)
     class(allowance_type), intent(in) :: self
     integer, intent(in) :: side
     real(wp), intent(in) :: slide   !! [length]
+    logical, intent(in) :: paired   !! pairs join the two there
 
-    of = factor*(self%sag(side) + self%bend(side) + abs(slide)*abs(self%turn(side)) &
+    of = factor*(merge(self%sag(side), 0.0_wp, paired) + self%bend(side) + abs(slide)*abs(self%turn(side)) &
                  + 0.5_wp*slide**2*self%curvature(side) &
                  + 0.5_wp*self%length(side)*max(abs(self%turn(side)), self%stretch(side))**2) + self%gap(side)
   end function of
@@ -118,22 +120,14 @@ contains
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: along(:, :, :), chord(:)
     real(wp), intent(inout) :: sag(:)
-    integer :: side_of(model%nodes)
     real(wp) :: most
-    integer :: i, k, s
+    integer :: k, s
 
-    if (.not. allocated(model%outline%element)) return
-    side_of = 0
-    do s = 1, model%body_outline%sides
-      side_of(model%body_outline%node(1, s)) = s
-    end do
-    do i = 1, size(model%outline%element)
-      s = side_of(model%outline%segment(1, i))
-      if (s == 0) cycle
-      if (model%body_outline%element(s) /= model%outline%element(i)) cycle
+    if (.not. allocated(model%boundary%element)) return
+    do s = 1, size(sag)
       most = 0.0_wp
       do k = 1, 2
-        most = max(most, abs(angle([along(2, k, s), -along(1, k, s)], model%outline%normal(:, k, i))))
+        most = max(most, abs(angle([along(2, k, s), -along(1, k, s)], model%boundary%normal(:, k, s))))
       end do
       ! The angle between normal and side is half the turn.
       sag(s) = chord(s)*most/4.0_wp

@@ -121,10 +121,8 @@ contains
     type(model_type), intent(in) :: model
     integer, intent(in) :: side
 
-    line = 0
-    if (.not. allocated(model%outline%element)) return   ! no card names one
     do line = size(model%line), 1, -1
-      if (has_side(model, model%outline%pick(model%line(line)%side), side)) return
+      if (any(model%line(line)%side == side)) return
     end do
   end function line_of
 
