@@ -16,6 +16,8 @@ module epcont_certificate_scene
 
   !> Sides turned [rad] or stretched by more than this are warned of.
   real(wp), parameter, public :: largest_change = 0.2_wp
+  !> Below this part of what is allowed, rounding chooses the place.
+  real(wp), parameter, public :: little = 0.01_wp
   !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths off the largest
   !! allowance counts.
   real(wp), parameter :: about = 1.5_wp
