@@ -3,7 +3,8 @@
 !>
 !> A side of length h allows 3 (s + b + k), and as much again as CGAPs there say otherwise than the coordinates:
 !>     s = h theta/8          above its chord lies the smooth curve, to which gaps of pairs are measured; theta the turn
-!>                            at its ends. Where no pair joins the two bodies there is none
+!>                            at its ends. Where no pair joins the two bodies, there is one at hollow sides alone: their
+!>                            chords lie before the curve, those of others behind it
 !>     b = h |d theta|/8      what displacements add to that turn
 !>     k = d |w| + d**2 c/2   sliding by d along a side that turns by w, and has the curvature c
 !>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
@@ -24,6 +25,7 @@ module epcont_certificate_allowance
   type :: allowance_type
     real(wp) :: least = 0.0_wp             !! between any two sides [length]
     real(wp), allocatable :: sag(:)        !! s [length] [sides]
+    logical, allocatable :: hollow(:)      !! the outline is concave at an end of the side, and smooth [sides]
     real(wp), allocatable :: bend(:)       !! b [length] [sides]
     real(wp), allocatable :: turn(:)       !! w, of the displaced side from that drawn [rad] [sides]
     real(wp), allocatable :: curvature(:)  !! c [1/length] [sides]
@@ -43,7 +45,7 @@ contains
     real(wp), intent(in) :: slide   !! [length]
     logical, intent(in) :: paired   !! pairs join the two there
 
-    of = factor*(merge(self%sag(side), 0.0_wp, paired) + self%bend(side) + abs(slide)*abs(self%turn(side)) &
+    of = factor*(merge(self%sag(side), 0.0_wp, paired .or. self%hollow(side)) + self%bend(side) + abs(slide)*abs(self%turn(side)) &
                  + 0.5_wp*slide**2*self%curvature(side) &
                  + 0.5_wp*self%length(side)*max(abs(self%turn(side)), self%stretch(side))**2) + self%gap(side)
   end function of
@@ -61,6 +63,7 @@ contains
     allocate (allowance%sag(n), allowance%bend(n), allowance%turn(n), allowance%curvature(n), allowance%stretch(n), &
               allowance%length(n), theta(n), source=0.0_wp)
     allocate (drawn(2, 2, n), now(2, 2, n))
+    allocate (allowance%hollow(n), source=.false.)
     moved = model%x + displacement
     associate (chord => allowance%length)
       do s = 1, n
@@ -78,6 +81,7 @@ contains
           do i = 1, 2
             associate (side => merge(s, next, i == 1))
               theta(side) = max(theta(side), abs(before))
+              allowance%hollow(side) = allowance%hollow(side) .or. before < 0.0_wp
               allowance%bend(side) = max(allowance%bend(side), chord(side)*added/8.0_wp)
             end associate
           end do
