@@ -56,7 +56,7 @@ class Trial:
         for test in json.loads(said)["tests"]:
             properties = {each["name"]: each["value"] for each in test["properties"]}
             labels = set(properties.get("LABELS", []))
-            if "command" in test and not labels & LABELS_LEFT_OUT and test["name"] not in NAMES_LEFT_OUT:
+            if shutil.which(test.get("command", [""])[0]) and not labels & LABELS_LEFT_OUT and test["name"] not in NAMES_LEFT_OUT:
                 self.tests[test["name"]] = test["command"], properties, labels
 
     def unit_tests(self, layers):
