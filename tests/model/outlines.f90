@@ -49,7 +49,7 @@ contains
     end if
   end function drawn
 
-  !> Points of a boundary that turns by some angles, counter-clockwise, between sides of some lengths; the first side leads to the left.
+  !> Points of a boundary that turns by some angles, counter-clockwise, between sides of some lengths; the first side leads left.
   pure function chain(turn, length) result(x)
     real(wp), intent(in) :: turn(:)      !! [degree]
     real(wp), intent(in) :: length(:)    !! one more than of turns
