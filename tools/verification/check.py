@@ -161,9 +161,10 @@ def pressure_error(scene, tables):
     """Largest pressure, recomputed from the forces, and the largest difference from the table."""
     rows = [tables.contact[name] for name in scene.pair]
     number = {name: k for k, name in enumerate(scene.pair)}
-    ours = pressures(scene.side, scene.x, scene.held, scene.leader, [(pair.node, pair.normal, list(pair.weights)) for pair in scene.pair.values()],
+    ours = pressures(scene.side, scene.x, scene.held, scene.leader, [(pair.node, pair.normal, pair.weights) for pair in scene.pair.values()],
                      [[number[name] for name in contact] for contact in scene.contacts],
-                     [float(row["force"]) for row in rows], [row["status"] == "touching" for row in rows])
+                     [float(row["force"]) for row in rows], [row["status"] == "touching" for row in rows],
+                     {number[name]: pair.stands_on for name, pair in scene.pair.items() if pair.stands_on})
     # A pressure that comes out below zero is not told.
     both = [(max(p or 0.0, 0.0), float(row["pressure"] or 0.0)) for p, row in zip(ours, rows)]
     return max((p for p, _ in both), default=0.0), max((abs(p - told) for p, told in both), default=0.0)
