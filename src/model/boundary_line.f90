@@ -12,8 +12,8 @@ module epcont_model_boundary_line
   private
   public :: boundary_line, facing_place, unit
 
-  !> Part of a side by which a point may stand beyond its end: rounding of coordinates in eight columns.
-  real(wp), parameter :: beyond = 1.0e-6_wp
+  !> Part of a side by which a point may stand beyond its end, more than the rounding of coordinates in eight columns.
+  real(wp), parameter, public :: beyond = 1.0e-5_wp
   !> A point so near to a node, as a part of the side, faces the node.
   real(wp), parameter :: at_node = 1.0e-9_wp
   !> Steps of Newton's method, which needs five, and the change that ends it.

@@ -15,7 +15,7 @@ module epcont_model_corners
   real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
   !> A turn below the first is smooth, one above the second a corner, whatever lies beside them. Neither is an angle that
   !! people draw: rounding must not decide.
-  real(wp), parameter :: always_smooth = 9.7_wp*degree, always_corner = 35.3_wp*degree
+  real(wp), parameter :: always_smooth = 4.7_wp*degree, always_corner = 35.3_wp*degree
   !> Turns that differ by less than this factor are those of one curve, its sides graded.
   real(wp), parameter :: alike = 1.0_wp/0.39_wp
   !> Turns that differ from PARAM CORNER by less are as large.
@@ -132,17 +132,19 @@ contains
     end if
   end function beside
 
-  !> Nodes within a curve: those on both sides turn as they do.
+  !> Nodes within a curve: those on both sides turn as they do, and are no corners.
   pure function is_inner(line, turn) result(inner)
     type(boundary_line), intent(in) :: line
     real(wp), intent(in) :: turn(:, :)
     logical :: inner(2, size(line%element))
+    real(wp) :: turns(2)
     integer :: end, i
 
     do i = 1, size(line%element)
       do end = 1, 2
+        turns = beside(line, turn, end, i)*sign(1.0_wp, turn(end, i))
         inner(end, i) = abs(turn(end, i)) < always_corner .and. &
-                        all(alike*beside(line, turn, end, i)*sign(1.0_wp, turn(end, i)) > abs(turn(end, i)))
+                        all(alike*turns > abs(turn(end, i)) .and. turns < always_corner)
       end do
     end do
   end function is_inner

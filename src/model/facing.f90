@@ -14,8 +14,8 @@ module epcont_model_facing
   !> Boundaries face each other whose normals' cosine is below this: a wall at a right angle to a floor does not face it,
   !> however rounding has turned the scene. (93 degrees: no angle that people draw.)
   real(wp), parameter :: against = -0.05_wp
-  !> Normals that differ by less (cosine) are those of one face.
-  real(wp), parameter, public :: same_face = 0.816_wp
+  !> Normals that differ by less (cosine) are those of one face: 10 degrees.
+  real(wp), parameter, public :: same_face = 0.985_wp
   !> Gaps that differ by less than this part of the search are equal: at a corner the better normal decides.
   real(wp), parameter :: equal = 1.0e-9_wp
   !> A gap below so many roundings of the coordinates is none.

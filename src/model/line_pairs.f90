@@ -3,6 +3,7 @@
 !> the master's nodes share in it comes from epcont_model_mortar.
 module epcont_model_line_pairs
   use epcont_base_kinds, only: wp
+  use epcont_model_boundary_line, only: beyond
   use epcont_model_facing, only: facing_type, find_facing, node_of, same_face
   use epcont_model_model, only: axisymmetric, line_contact, model_type
   use epcont_model_mortar, only: mortar_rows
@@ -11,8 +12,8 @@ module epcont_model_line_pairs
   private
   public :: faces_type, find_faces, forget_pairs, add_pairs
 
-  !> A place nearer to a node than this part of a side is the node's.
-  real(wp), parameter :: at_node = 1.0e-6_wp
+  !> A node's normals on the two lines differ by less (cosine) where it has a pair there: 35 degrees, of coarse curves.
+  real(wp), parameter :: opposite = 0.816_wp
 
   !> What nodes face.
   type :: faces_type
@@ -199,10 +200,10 @@ contains
 
     stands_at_node = .false.
     k = maxloc(place%place%share, dim=1)
-    if (place%place%share(k) < 1.0_wp - at_node) return
+    if (place%place%share(k) < 1.0_wp - beyond) return
     row = faces%row_of(k, place%segment)
     if (row == 0) return
-    stands_at_node = dot_product(faces%facing(row)%place%normal, place%place%normal) < -same_face
+    stands_at_node = dot_product(faces%facing(row)%place%normal, place%place%normal) < -opposite
   end function stands_at_node
 
   !> Forget the pairs of all contacts of lines.

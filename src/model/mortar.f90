@@ -9,7 +9,8 @@
 module epcont_model_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_model_facing, only: facing_type, find_nearest, looking_point, rise_of, same_face
+  use epcont_model_boundary_line, only: beyond
+  use epcont_model_facing, only: facing_type, find_nearest, looking_point, rise_of
   use epcont_model_model, only: line_contact
   use epcont_model_side_boxes, only: boxed_line
   implicit none
@@ -20,8 +21,10 @@ module epcont_model_mortar
   integer, parameter :: gauss_points = 3
   real(wp), parameter :: gauss_place(3) = 0.5_wp + 0.5_wp*[-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
   real(wp), parameter :: gauss_weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/18.0_wp
-  !> Pieces shorter than this part of a side, and weights below it, are rounding.
+  !> Weights below this are rounding.
   real(wp), parameter :: rounding = 1.0e-12_wp
+  !> Normals that differ by less (cosine) along a side may be those of one curve: 35 degrees.
+  real(wp), parameter :: one_curve = 0.816_wp
 
   !> Where gaps jump by more than this part of a side there is a step in the other line.
   real(wp), parameter :: step = 0.01_wp
@@ -107,7 +110,7 @@ contains
     do p = 1, points%count
       do k = 1, 3
         if (row(k) == 0) cycle
-        is_covered = dot_product(points%facing(p)%place%normal, facing(row(k))%place%normal) > same_face
+        is_covered = dot_product(points%facing(p)%place%normal, facing(row(k))%place%normal) > one_curve
         if (.not. is_covered) return
       end do
     end do
@@ -172,7 +175,7 @@ contains
     allocate (points%share(3, gauss_points*size(cut)), points%weight(gauss_points*size(cut)))
     allocate (points%facing(gauss_points*size(cut)), points%along(gauss_points*size(cut)))
     do i = 2, size(cut)
-      if (cut(i) - cut(i - 1) <= rounding) cycle
+      if (cut(i) - cut(i - 1) <= beyond) cycle   ! what lies beyond an end by so little is not beyond it
       do k = 1, gauss_points
         s = cut(i - 1) + (cut(i) - cut(i - 1))*gauss_place(k)
         points%count = points%count + 1
