@@ -12,12 +12,13 @@ from math import hypot
 
 from deck import DeckError, at, ids, real
 from kinds import solved
-from outline import cross, dot, outline, unit
+from outline import BEYOND, cross, dot, outline, unit
 
-#: Cosines: of normals that look against each other; of one face; of sides that are nearly parallel; of pieces without a corner between.
-AGAINST, SAME, PARALLEL, NO_CORNER = -0.05, 0.816, 0.94, 0.988
-#: Parts of a side: gaps' jump at a step; how far from a node obstacles are looked for; gaps below which there are none; a node's place.
-STEP, ASIDE, THIN, STANDS = 0.01, 1e-3, 1e-3, 1e-6
+#: Cosines: of normals that look against each other; of one face; of one curve; of sides that are nearly parallel; of pieces without a
+#: corner between.
+AGAINST, SAME, ONE_CURVE, PARALLEL, NO_CORNER = -0.05, 0.985, 0.816, 0.94, 0.988
+#: Parts of a side: gaps' jump at a step; how far from a node obstacles are looked for; gaps below which there are none.
+STEP, ASIDE, THIN = 0.01, 1e-3, 1e-3
 #: A curve's distance from its chord, of chord times turn; the part of the way that does not count at its ends.
 RISE, AT_END = 0.2, 0.01
 #: Gaps are equal, of the search; weights and areas are none; gaps are none, of the coordinates; the area a ring's corner has at least.
@@ -232,9 +233,9 @@ class Contact:
     def has(self, node, place):
         """Does it stand at a node with a pair there, or has it one?"""
         most = max(range(len(place.values)), key=lambda i: place.values[i])
-        if place.values[most] >= 1 - STANDS:
+        if place.values[most] >= 1 - BEYOND:
             row = self.of.get((id(place.segment), place.segment.nodes[most]))
-            if row is not None and dot(self.rows[row][1].normal, place.normal) < -SAME:
+            if row is not None and dot(self.rows[row][1].normal, place.normal) < -ONE_CURVE:
                 return True
         return any(name == node and alike(place, other) for name, other in self.tips)
 
@@ -243,7 +244,7 @@ def is_covered(segment, faced, pieces, points):
     """Does a side face the other line all along, and one face of it, without a step or a corner?"""
     if any(place is None or dot(place.normal, outward) >= -PARALLEL for *_, place, outward in points):
         return False
-    if any(dot(point[3].normal, place.normal) <= SAME for point in points for place in faced):
+    if any(dot(point[3].normal, place.normal) <= ONE_CURVE for point in points for place in faced):
         return False
     ends = [(faced[0].gap, None)]
     for low, high, seen in pieces:
@@ -342,9 +343,11 @@ def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g, told=None)
 
 
 def came_near(contacts, told, size):
-    """Look again for the pairs that are told and were not found."""
-    lacking = told - Counter(pair.node for contact in contacts for pair in contact.pairs)
+    """Look again for the pairs that are told and were not found; those at the limit of the search, as told, may be or not."""
+    found = Counter(pair.node for contact in contacts for pair in contact.pairs)
+    lacking, strange = told - found, found - told
     for k, contact in enumerate(contacts):
+        contact.pairs = [pair for pair in contact.pairs if pair.node not in strange or abs(pair.gap) < contact.reach * (1 - EQUAL)]
         slave, master = ({node for one in line.segments for node in one.nodes} for line in (contact.slave, contact.master))
         late = [(line, other, lacking.keys() & nodes) for line, other, nodes in
                 ((contact.slave, contact.master, slave), (contact.master, contact.slave, master))]

@@ -9,11 +9,11 @@ from math import atan2, copysign, degrees, hypot, pi
 from kinds import GAUSS, solved
 
 #: Degrees: turns below the first are smooth, above the second corners; PARAM CORNER is held to as nearly as the third.
-SMOOTH, CORNER, AS_LARGE = 9.7, 35.3, 1e-6
+SMOOTH, CORNER, AS_LARGE = 4.7, 35.3, 1e-6
 #: Neighbouring turns of one curve are not smaller than this part of each other.
 ALIKE = 0.39
-#: A point may stand beyond the end of a side by this part of it; nearer to a node it is at the node; shorter pieces are none.
-BEYOND, AT_NODE, PIECE = 1e-6, 1e-9, 1e-12
+#: A point may stand beyond the end of a side by this part of it, and shorter pieces are none; nearer to a node it is at the node.
+BEYOND, AT_NODE = 1e-5, 1e-9
 #: Roots are looked for between these places.
 FROM, TO = -0.1, 1.1
 
@@ -186,7 +186,7 @@ class Segment:
         """Between neighbouring cuts, (place, shape values, weight) of three Gauss points."""
         cuts = sorted([0.0, 1.0, *cuts])
         for low, high in zip(cuts, cuts[1:]):
-            if high - low > PIECE:
+            if high - low > BEYOND:
                 piece = []
                 for t, part in zip(*GAUSS):
                     s = low + t * (high - low)
@@ -252,7 +252,8 @@ def find_corners(segments, most):
     for one in segments:
         for end in (0, 1):
             turn = one.turn[end]
-            inner[one, end] = abs(turn) < CORNER and all(other * copysign(1.0, turn) > ALIKE * abs(turn) for *_, other in turns_beside(one, end))
+            inner[one, end] = abs(turn) < CORNER and all(ALIKE * abs(turn) < other * copysign(1.0, turn) < CORNER
+                                                         for *_, other in turns_beside(one, end))
     for one in segments:
         for end in (0, 1):
             turn = one.turn[end]

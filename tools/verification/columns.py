@@ -86,7 +86,7 @@ def check_elements(report, scene, tables, found, tolerance):
         stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
         noise = own.noise * stiffness + report.rounding * own.largest
         # A stress beyond yield, or before it in the last solve, is off its curve by what the iteration leaves.
-        loose = (told + report.rounding) * found.stress if own.plastic or own.edge < 10 * told else 0.0
+        loose = (told + report.rounding) * (own.scale(found.stress) + found.stress) if own.plastic or own.edge < 10 * told else 0.0
         for k, name in enumerate(("sx", "sy", "sz", "txy")):
             columns[name].append((element, own.stress[k], row[name], loose + noise + tolerance * abs(own.stress[k])))
         mean = [float(row[name]) for name in ("sx", "sy", "sz", "txy")]
