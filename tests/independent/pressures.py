@@ -169,12 +169,12 @@ def chains(sides, x, stands_on, feet):
 
 
 def divide(sides, x, pairs, own, group, stands_on, feet):
-    """Where nodes of the master stand on a side they share its area with the slave's: each piece belongs by halves to its ends. The sides."""
+    """Where nodes of the master stand on a side they share its area with the slave's: each piece belongs by halves to its ends. Of those
+    sides what is beside each pair."""
     at = {pairs[k][0]: k for k in reversed(group) if k not in stands_on}
     of_group = {k: nodes for k, nodes in stands_on.items() if k in group}
-    divided = set()
+    divided = {}
     for ends, order in chains(sides, x, of_group, feet):
-        divided.add(ends)
         a, b = sides[ends].nodes[:2]
         first = next(k for _, k, _ in order if k is not None)
         width = sum(share(sides[ends], x, pairs[first][1])) / hypot(x[b][0] - x[a][0], x[b][1] - x[a][1])
@@ -182,7 +182,10 @@ def divide(sides, x, pairs, own, group, stands_on, feet):
         for k, _ in run:
             if k is not None and (ends in own[k] or k in of_group):
                 own[k][ends] = 0.0
+        divided[ends] = {}
         for (one, p), (other, q) in zip(run, run[1:]):
+            divided[ends].setdefault(one, set()).add(other)
+            divided[ends].setdefault(other, set()).add(one)
             if one is not None and other is not None:
                 for k in (one, other):
                     own[k][ends] = own[k].get(ends, 0.0) + width * hypot(q[0] - p[0], q[1] - p[1]) / 2
@@ -209,17 +212,23 @@ def pressures(sides, x, held, leader, pairs, groups, forces, touching, stands_on
                 near = [at.get(node) for ends in own[k] for node in (sides[ends].nodes[2:] or sides[ends].nodes) if node != pairs[k][0]]
                 beside[k] = next((other for other in near if other is not None and said[other]), None)
                 touching[k] = said[k] or beside[k] is not None
-    divided = set().union(*(divide(sides, x, pairs, own, group, stands_on, feet) for group in groups))
+    divided = [divide(sides, x, pairs, own, group, stands_on, feet) for group in groups]
     found = [force / sum(area.values()) if sum(area.values()) > 0 else None for force, area in zip(forces, own)]
     ring = any(side.thickness is None for side in sides.values())
     place = [x[node] for node, _ in pairs]
     chord = [max((hypot(x[b][0] - x[a][0], x[b][1] - x[a][1]) for a, b in (sides[ends].nodes[:2] for ends in area)), default=0.0) for area in own]
     mirrored = [ends_here[k] and on_symmetry(node, n, others[k], x, held, leader, BESIDE * chord[k]) for k, (node, n) in enumerate(pairs)]
     axis = [ring and p[0] == 0.0 for p in place]
-    for group in groups:
+    for group, split in zip(groups, divided):
         at = {pairs[k][0]: k for k in reversed(group) if k not in stands_on}
         shared = {k: {ends for ends in own[k] if any(touching[at[node]] for node in sides[ends].nodes[2:] if node in at)} for k in group if k not in stands_on}
-        for chain in runs({ends: side for ends, side in sides.items() if ends not in divided}, {node: k for node, k in at.items() if touching[k]}, own):
+        for ends, beside_it in split.items():
+            for k in beside_it.keys() & shared.keys():
+                if any(other is not None and touching[other] for other in beside_it[k]):
+                    shared[k].add(ends)
+                else:
+                    shared[k].discard(ends)
+        for chain in runs({ends: side for ends, side in sides.items() if ends not in split}, {node: k for node, k in at.items() if touching[k]}, own):
             for k, pressure in Run(chain, own, forces, mirrored, axis, shared).pressures(place, ring):
                 found[k] = pressure
     for k, other in beside.items():

@@ -151,7 +151,7 @@ def check_zones(report, scene, tables, tolerance):
         cells = []
         for k, (own, row) in enumerate(zip(ours, told), 1):
             value = getattr(own, attribute)
-            value = "" if value is None else node_of(value)
+            value = "" if value is None or attribute == "peak" and value < 0.0 else node_of(value)
             small = math.fsum(abs(force[pair]) for pair in rank) if attribute == "force" else own.width
             cells.append((k, value, row[column], tolerance * abs(value) + report.rounding * small if isinstance(value, float) else 0.0))
         report.column(f"zones {column}", cells)

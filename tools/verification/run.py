@@ -10,10 +10,12 @@ COLUMNS = {
     "nodes": ("node", ["x", "y", "ux", "uy", "rx", "ry"], [], []),
     "elements": ("element", ["x", "y", "sx", "sy", "sz", "txy", "equivalent_stress", "equivalent_strain", "secant_modulus"], [], ["state"]),
     "contact": ("pair", ["ga", "gb", "x", "y", "nx", "ny", "initial_gap", "force", "gap"], ["pressure"], ["status"]),
-    "zones": ("zone", ["first_pair", "last_pair", "force", "max_pressure", "half_width_last_pair"], ["half_width"], []),
+    "zones": ("zone", ["first_pair", "last_pair", "force", "half_width_last_pair"], ["max_pressure", "half_width"], []),
     "history": ("iteration", ["pairs_in_contact", "plastic_elements", "pivots", "load_factor"], [], []),
 }
 #: Columns that only some versions have.
+#: Where no boundary belongs to the pairs that touch.
+NO_PRESSURE = "max_pressure", ""
 SAME_NORMAL = 1e-3   # of two pairs of a node: there is one of them too many
 SOME = {"elements": ["max_equivalent_stress"]}
 #: Keys of the summary that must be numbers.
@@ -44,7 +46,7 @@ class Tables:
                 raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
             if row["key"] in values:
                 raise TableFault(f"{path}:{line}: {row['key']} is there twice")
-            if row["key"] in FIGURES or row["key"].startswith("approach_"):
+            if row["key"] in FIGURES and (row["key"], row["value"]) != NO_PRESSURE or row["key"].startswith("approach_"):
                 number(row["value"], path, row["key"])
             values[row["key"]], units[row["key"]] = row["value"], row["unit"]
         return values, units

@@ -95,7 +95,7 @@ def measured(scene, beside, touching, force, pressure, run):
 
     def mirrored(name):
         pair = scene.pair[name]
-        return any((pair.node, c) in scene.held and abs(pair.normal[1 - c]) > UPRIGHT for c in (0, 1))
+        return not pair.stands_on and any((pair.node, c) in scene.held and abs(pair.normal[1 - c]) > UPRIGHT for c in (0, 1))
 
     def beyond(run):
         """How far behind the last pair the pressure ends, p**2 being linear; None where it does not fall."""
