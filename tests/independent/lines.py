@@ -88,10 +88,12 @@ class Line:
         against = min(dot(place.normal, eye.outward) for place in tied)
         tied = [place for place in tied if dot(place.normal, eye.outward) <= against + EQUAL]
         best = min(tied, key=lambda place: hypot(*(x + y - z for x, y, z in zip(eye.x, eye.along, at_place(place)))))
-        both = [place for place in tied if place.at_corner]
+        both = [place for place in tied if place.at_corner] if eye.at_corner and best.at_corner else []
+        if len(both) == 2:
+            found = [place for place in found if place not in both]
         others = [place for place in found if dot(place.normal, best.normal) <= SAME and abs(place.gap) <= abs(best.gap) + more]
         second = min(others, key=lambda place: abs(place.gap), default=None)
-        if eye.at_corner and len(both) == 2 and best.at_corner:   # none is the better one: between them
+        if len(both) == 2:   # none is the better one: between them
             mean = [both[0].normal[c] + both[1].normal[c] for c in (0, 1)]
             best.normal, best.gap = unit(mean), (both[0].gap + both[1].gap) / hypot(*mean)
         for place in (best, second):

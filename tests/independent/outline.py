@@ -227,13 +227,13 @@ def outline(sides, x, held, most):
 
 
 def mirror(one, end, held):
-    """Where the body is cut by a line of symmetry its outline goes on mirrored."""
+    """Where the body is cut by a line of symmetry, which is a corner without it, its outline goes on mirrored."""
     only = [[c for c in (0, 1) if (one.nodes[k], c) in held] for k in (-end, end - 1)]
     if len(only[0]) != 1 or only[1] == only[0]:
         return
     d, own = only[0][0], one.own(float(end))
     beyond = one.beside[end].own(1.0 - end)
-    if abs(own[1 - d]) < abs(own[d]) or abs(beyond[1 - d]) >= abs(beyond[d]):
+    if abs(own[1 - d]) < abs(own[d]) or abs(beyond[1 - d]) >= abs(beyond[d]) or abs(angle(own, beyond)) < CORNER:
         return
     other = [-own[c] if c == d else own[c] for c in (0, 1)]
     one.mirrored[end], one.turn[end] = True, angle(own, other) if end else angle(other, own)
