@@ -1,295 +1,360 @@
-"""Contact between boundary lines: which place of the master line each slave node faces, from roots of polynomials.
+"""Contact between boundary lines: what nodes of one face of the other, and what of its displacement counts for them.
 
-A side is a polynomial p(s), 0 <= s <= 1, with a polynomial normal n(s) along which slave nodes are seen; feet of a node x are
-the real roots of (x - p) x n. Above a straight side the smooth curve through its ends is a cubic that has their slopes.
-
-The master line's displacement is fitted on each slave side by the slave's shape functions, least squares; a slave node's gap is
-against the fits of its sides, averaged as their lengths (in rings areas) that belong to the node. Standard library only.
+Of all sides whose normals lead to a point and look against it, with no body between, the nearest counts; in a concave corner a second
+one too. The master line's displacement is fitted on each slave side that faces it all along by the slave's shape functions, least
+squares; a slave node's gap is against the fits of its sides, averaged as their lengths (in rings areas) that belong to the node. Sides
+that do not face it all along count at their nodes' own places, and there corners of the master have pairs of their own. Every side is
+looked at; standard library only.
 """
-from dataclasses import dataclass, field
-from math import cos, hypot, radians, sin
+from collections import Counter
+from dataclasses import dataclass
+from math import hypot
 
 from deck import DeckError, at, ids, real
-from kinds import GAUSS, solved
+from kinds import solved
+from outline import BEYOND, cross, dot, outline, unit
 
-BEND, HALF_BEND = cos(radians(35.0)), sin(radians(17.5))
-OUTSIDE, AT_NODE, EQUAL, ROUNDING = 1e-6, 1e-9, 1e-9, 1e-12
-#: Roots are looked for between these places.
-FROM, TO = -0.1, 1.1
-
-
-def value(p, s):
-    """Of a polynomial, its coefficients from the constant on."""
-    total = 0.0
-    for c in reversed(p):
-        total = total * s + c
-    return total
-
-
-def derived(p):
-    return [k * c for k, c in enumerate(p)][1:] or [0.0]
-
-
-def times(p, q):
-    found = [0.0] * (len(p) + len(q) - 1)
-    for i, a in enumerate(p):
-        for j, b in enumerate(q):
-            found[i + j] += a * b
-    return found
-
-
-def minus(p, q):
-    n = max(len(p), len(q))
-    return [a - b for a, b in zip(p + [0.0] * (n - len(p)), q + [0.0] * (n - len(q)))]
-
-
-def roots(p):
-    """Between FROM and TO: between neighbouring extremes there is one root or none."""
-    if len(p) == 1:
-        return []
-    places = [FROM, *roots(derived(p)), TO]
-    found = []
-    for low, high in zip(places, places[1:]):
-        at_low, at_high = value(p, low), value(p, high)
-        if at_low * at_high > 0 or at_low == 0 or low == high:
-            continue
-        s, slope = (low + high) / 2, derived(p)
-        for _ in range(100):
-            here = value(p, s)
-            if here == 0:
-                break
-            low, high = (s, high) if (here > 0) == (at_low > 0) else (low, s)
-            steep = value(slope, s)
-            step = s - here / steep if steep else low
-            step = step if low < step < high else (low + high) / 2
-            if abs(step - s) <= 3e-16:
-                break
-            s = step
-        found.append(s)
-    return found
-
-
-def unit(v):
-    length = hypot(*v)
-    return [v[0] / length, v[1] / length]
-
-
-def dot(a, b):
-    return a[0] * b[0] + a[1] * b[1]
+#: Cosines: of normals that look against each other; of one face; of one curve; of sides that are nearly parallel; of pieces without a
+#: corner between.
+AGAINST, SAME, ONE_CURVE, PARALLEL, NO_CORNER = -0.05, 0.985, 0.816, 0.94, 0.988
+#: Parts of a side: gaps' jump at a step; how far from a node obstacles are looked for; gaps below which there are none.
+STEP, ASIDE, THIN = 0.01, 1e-3, 1e-3
+#: A curve's distance from its chord, of chord times turn; the part of the way that does not count at its ends.
+RISE, AT_END = 0.2, 0.01
+#: Gaps are equal, of the search; weights and areas are none; gaps are none, of the coordinates; the area a ring's corner has at least.
+EQUAL, NOTHING, ROUNDING, AT_AXIS = 1e-9, 1e-12, 16 * 2.0 ** -52, 1e-3
+#: Search, of the longest side; further by this factor, where nothing is found.
+SEARCH, FURTHER = 2.0, 4.0
 
 
 @dataclass
-class Segment:
-    """A side in the sense in which its element lies to the left: its nodes in order, their reference places."""
-    nodes: list
+class Eye:
+    """Who looks: place, normal, way to the middle of its own side, how far its curve may be from that; `node`: its name, if it is one."""
     x: list
-    normal: list = field(default_factory=lambda: [None, None])   # unit, at the ends
-    upright: list = field(default_factory=lambda: [None, None])  # of an end on a line of symmetry: the normal within that line
+    outward: list
+    along: list
+    rise: float
+    node: object = None
+    at_corner: bool = False
 
-    def __post_init__(self):
-        n = len(self.nodes)
-        self.places = [k / (n - 1) for k in range(n)]
-        matrix = [[s ** p for p in range(n)] for s in self.places]
-        self.shape = list(zip(*solved(matrix, [[float(i == j) for j in range(n)] for i in range(n)])))
-        self.path = [list(column) for column in zip(*solved(matrix, self.x))]
-        self.tangent = [derived(p) for p in self.path]
-        along = [self.x[-1][c] - self.x[0][c] for c in (0, 1)]
-        self.chord = hypot(*along)
-        self.along = unit(along)
-        self.across = [self.along[1], -self.along[0]]
 
-    def own(self, s):
-        """Unit normal of the side's own curve."""
-        return unit([value(self.tangent[1], s), -value(self.tangent[0], s)])
+@dataclass
+class LinePair:
+    """Gap = initial + normal . (of `node` less the sum of `shares`). `stands_on`: of a pair of the master the nodes of the slave's side."""
+    node: object
+    shares: dict
+    normal: list
+    gap: float
+    stands_on: tuple = ()
 
-    def finish(self):
-        """The polynomials of the normal and of the rise above a straight side."""
-        long = [hypot(value(self.tangent[0], s), value(self.tangent[1], s)) for s in (0.0, 1.0)]
-        self.seen = [[long[0] * a, long[1] * b - long[0] * a] for a, b in zip(*self.normal)]
-        self.rise = [0.0]
-        if len(self.nodes) == 3:
-            return
-        slopes = [[-self.chord * dot(n, self.along) / dot(n, self.across)] for n in self.normal]
-        hermite = solved([[1, 0, 0, 0], [1, 1, 1, 1], [0, 1, 0, 0], [0, 1, 2, 3]], [[0.0], [0.0], *slopes])
-        self.rise = [row[0] for row in hermite]
 
-    def roots(self, x):
-        """The places s, on the side or a little beyond, whose normals lead to x."""
-        off = [minus([x[c]], self.path[c]) for c in (0, 1)]
-        return roots(minus(times(off[0], self.seen[1]), times(off[1], self.seen[0])))
-
-    def feet(self, x):
-        """(shape values, unit normal, gap) of each place that x faces."""
-        for s in self.roots(x):
-            if not -OUTSIDE <= s <= 1 + OUTSIDE:
-                continue
-            end = int(s > 0.5)
-            s = min(max(s, 0.0), 1.0)
-            node = min(self.places, key=lambda place: abs(place - s))
-            s = node if abs(s - node) <= AT_NODE else s
-            normal = unit((self.upright[end] or self.normal[end]) if s == end else [value(n, s) for n in self.seen])
-            off = [x[c] - value(self.path[c], s) for c in (0, 1)]
-            yield self.values(s), normal, dot(normal, off) - value(self.rise, s)
-
-    def values(self, s):
-        return [value(n, s) for n in self.shape]
-
-    def near(self, x, reach):
-        return all(abs(x[c] - (self.x[0][c] + self.x[-1][c]) / 2) <= reach + self.chord for c in (0, 1))
-
-    def points(self, cuts, ring):
-        """Of three Gauss points between neighbouring cuts: shape values, place on the smooth curve, outward normal, weight."""
-        cuts = sorted({0.0, 1.0, *(s for s in cuts if 0 <= s <= 1)})
-        for low, high in zip(cuts, cuts[1:]):
-            if high - low <= ROUNDING:
-                continue
-            for t, part in zip(*GAUSS):
-                s = low + t * (high - low)
-                on_side = [value(p, s) for p in self.path]
-                length = hypot(*(value(p, s) for p in self.tangent)) * part * (high - low)
-                rise = value(self.rise, s)
-                place = [on_side[c] + rise * self.across[c] for c in (0, 1)]
-                yield self.values(s), place, self.own(s), length * (on_side[0] if ring else 1.0)
+def eye_of(segment, k):
+    last = len(segment.nodes) - 1
+    x = segment.x[k]
+    to = segment.centre if k in (0, last) else [(segment.x[-1][c] + x[c]) / 2 for c in (0, 1)]
+    corner = k in (0, last) and segment.corner[k > 0] and not segment.mirrored[k > 0]
+    return Eye(x, segment.outward(k), [to[c] - x[c] for c in (0, 1)], RISE * segment.bend, segment.nodes[k], corner)
 
 
 class Line:
-    """Segments of a BLSEG in the sense that has the elements to the left, with their normals. `sides`: of the boundary, by their
-    ends; `held`: (node, direction)."""
+    """Some sides of the outline; `bodies`: all of it."""
 
-    def __init__(self, nodes, sides, x, held):
-        found, i = [], 0
-        while i < len(nodes) - 1:
-            step = 1 if frozenset(nodes[i:i + 2]) in sides else 2
-            if i + step >= len(nodes) or frozenset((nodes[i], nodes[i + step])) not in sides:
-                raise DeckError("a line leaves the boundary")
-            found.append((nodes[i], nodes[i + step]))
-            i += step
-        turned = {self.segment(sides, x, *ends)[1] for ends in found}
-        if len(turned) > 1:
-            raise DeckError("a line turns back")
-        if turned == {True}:
-            found = [ends[::-1] for ends in reversed(found)]
-        self.segments = [self.segment(sides, x, *ends)[0] for ends in found]
-        self.closed = nodes[0] == nodes[-1]
-        self.meet(held)
-        for segment in self.segments:
-            segment.finish()
+    def __init__(self, segments, bodies):
+        self.segments, self.bodies = segments, bodies
+        self.own = set(map(id, segments))
 
-    @staticmethod
-    def segment(sides, x, a, b):
-        """The side from a to b, and whether its element lies to the right of it."""
-        side = sides[frozenset((a, b))]
-        nodes = [a, *side.nodes[2:], b]
-        inner = [side.inner[c] - x[a][c] for c in (0, 1)]
-        along = [x[b][c] - x[a][c] for c in (0, 1)]
-        places = [[float(x[node][c]) for c in (0, 1)] for node in nodes]
-        return Segment(nodes, places), bool(along[0] * inner[1] < along[1] * inner[0])
+    def beside(self, segment, end):
+        """The side before or after, or None beyond the line."""
+        other = segment.beside[end]
+        return other if id(other) in self.own else None
 
-    def meet(self, held):
-        """Normals at the ends of the segments; those of corners last, for they may follow the other end."""
-        segments = self.segments
-        joints = list(zip(segments, segments[1:])) + ([(segments[-1], segments[0])] if self.closed else [])
-        for before, after in joints:
-            one, two = before.own(1.0), after.own(0.0)
-            if dot(one, two) >= BEND:
-                before.normal[1] = after.normal[0] = unit([one[c] * after.chord + two[c] * before.chord for c in (0, 1)])
-        if not self.closed:
-            for segment, end in ((segments[0], 0), (segments[-1], 1)):
-                n = segment.own(float(end))
-                directions = [c for c in (0, 1) if (segment.nodes[-end], c) in held]
-                if len(directions) != 1 or abs(n[1 - directions[0]]) < abs(n[directions[0]]):
-                    continue
-                across = n[directions[0]]
-                n[directions[0]] = 0.0
-                segment.upright[end] = unit(n)
-                if abs(across) <= HALF_BEND:
-                    segment.normal[end] = segment.upright[end]
-        for segment in segments:
-            known = list(segment.normal)
-            for end in (0, 1):
-                if known[end] is None:
-                    other, across = known[1 - end], segment.across
-                    mirror = len(segment.nodes) == 2 and other is not None
-                    segment.normal[end] = ([2 * dot(other, across) * across[c] - other[c] for c in (0, 1)] if mirror
-                                           else segment.own(float(end)))
-
-    def nodes(self):
-        """The nodes with their outward normals, at a corner between those of its sides."""
-        found = {}
-        for segment in self.segments:
-            for node, s in zip(segment.nodes, segment.places):
-                end = {0.0: 0, 1.0: 1}.get(s)
-                n, so_far = segment.own(s) if end is None else segment.normal[end], found.get(node, (0.0, 0.0))
-                found[node] = [so_far[0] + n[0], so_far[1] + n[1]]
-        return found
-
-    def face(self, x, outward, reach, but=None, like=None):
-        """(nodes of a side, shape values, normal, gap) where a place faces this line, or None: the nearest; of equally near ones
-        that which looks most against it; of those too, at a corner, that with a normal most like one given, or the first."""
-        found = [(abs(gap), dot(normal, outward), segment.nodes, values, normal, gap) for segment in self.segments
-                 if but not in segment.nodes and segment.near(x, reach)
-                 for values, normal, gap in segment.feet(x) if abs(gap) <= reach and dot(normal, outward) < 0]
+    def face(self, eye, reach):
+        """What is faced within reach: the best place, or None, and a second one, or None."""
+        more = min(reach, 2 * hypot(*eye.along))
+        order = sorted((hypot(*(a - b for a, b in zip(eye.x, one.centre))) - one.chord * (1 + 1e-9), k) for k, one in enumerate(self.segments))
+        found, nearest = [], reach
+        for least, k in order:
+            if least > min(reach, nearest + more):
+                break
+            place = self.candidate(self.segments[k], eye, reach)
+            if place:
+                found.append((k, place))
+                nearest = min(nearest, abs(place.gap))
         if not found:
+            return None, None
+        found = [place for _, place in sorted(found, key=lambda f: f[0])]
+        least = min(abs(place.gap) for place in found)
+        tied = [place for place in found if abs(place.gap) <= least + EQUAL * reach]
+        against = min(dot(place.normal, eye.outward) for place in tied)
+        tied = [place for place in tied if dot(place.normal, eye.outward) <= against + EQUAL]
+        best = min(tied, key=lambda place: hypot(*(x + y - z for x, y, z in zip(eye.x, eye.along, at_place(place)))))
+        both = [place for place in tied if place.at_corner] if eye.at_corner and best.at_corner else []
+        if len(both) == 2:
+            found = [place for place in found if place not in both]
+        others = [place for place in found if dot(place.normal, best.normal) <= SAME and abs(place.gap) <= abs(best.gap) + more]
+        second = min(others, key=lambda place: abs(place.gap), default=None)
+        if len(both) == 2:   # none is the better one: between them
+            mean = [both[0].normal[c] + both[1].normal[c] for c in (0, 1)]
+            best.normal, best.gap = unit(mean), (both[0].gap + both[1].gap) / hypot(*mean)
+        for place in (best, second):
+            if place and abs(place.gap) <= ROUNDING * max(map(abs, eye.x)):
+                place.gap = 0.0
+        return best, second
+
+    def candidate(self, segment, eye, reach):
+        """The place that an eye faces of a side, if nothing speaks against it."""
+        if eye.node in segment.nodes:
             return None
-        least = min(f[0] for f in found)
-        equal = [f for f in found if f[0] <= least + EQUAL * reach]
-        against = min(f[1] for f in equal) + EQUAL
-        corner = [f for f in equal if f[1] <= against and max(f[3]) == 1.0]
-        if len(corner) == 2:  # none is the better one: between them
-            both = [corner[0][4][c] + corner[1][4][c] for c in (0, 1)]
-            return corner[0][2], corner[0][3], unit(both), (corner[0][5] + corner[1][5]) / hypot(*both)
-        return max((f for f in equal if f[1] <= against), key=lambda f: dot(f[4], like) if like else 0.0)[2:]
+        place = segment.face(eye.x)
+        if place is None or abs(place.gap) > reach or dot(place.normal, eye.outward) >= AGAINST:
+            return None
+        if place.at_corner and not eye.at_corner:   # along the normal of the smooth boundary
+            place.gap, place.normal = -place.gap * dot(place.normal, eye.outward), [-v for v in eye.outward]
+        if place.gap < 0 and not self.goes_on(segment, eye, reach):
+            return None
+        return None if self.blocked(eye, place) else place
+
+    def goes_on(self, segment, eye, reach):
+        """Is there overlap along the eye's own side, too?"""
+        x = [eye.x[c] + ASIDE * eye.along[c] for c in (0, 1)]
+        if segment.face(x):
+            return True
+        for end in (0, 1):
+            other = self.beside(segment, end)
+            place = other.face(x) if other else None
+            if place and place.gap < reach and dot(place.normal, segment.own(0.5)) > SAME:
+                return True
+        return False
+
+    def blocked(self, eye, place):
+        """Does a body stand between?"""
+        own = 2 * hypot(*eye.along)
+        if abs(place.gap) <= THIN * min(place.segment.chord, own):
+            return False
+        start = max(eye.rise / abs(place.gap), AT_END)
+        end = max((RISE * place.segment.bend + ASIDE * own / 2) / abs(place.gap), AT_END)
+        if start + end >= 1:
+            return False
+        a = [eye.x[c] + ASIDE * eye.along[c] for c in (0, 1)]
+        way = [-place.gap * n for n in place.normal]
+        for one in self.bodies:
+            side = one.local[-1]
+            area = cross(way, side)
+            if area == 0.0:
+                continue
+            off = [one.x[0][c] - a[c] for c in (0, 1)]
+            if start < cross(off, side) / area < 1 - end and 0 <= cross(off, way) / area <= 1:
+                return True
+        return False
 
 
-def averages(ring, slave, master, faced, reach):
-    """Of each slave node that faces the master line: by master nodes the weights whose sum is 1."""
-    share = {node: [] for node in faced}
-    ends = [segment.x[end] for segment in master.segments for end in (0, -1)]
-    for segment in slave.segments:
-        points = list(segment.points([s for x in ends if segment.near(x, reach) for s in segment.roots(x)], ring))
-        seen = [master.face(place, outward, reach) for _, place, outward, _ in points]
-        if None in seen or any(node not in faced for node in segment.nodes):
-            fits = {node: dict(zip(*faced[node][:2])) for node in segment.nodes if node in faced}
-        else:
-            columns = sorted({node for side in seen for node in side[0]})
-            other = [[dict(zip(side[0], side[1])).get(node, 0.0) for node in columns] for side in seen]
-            # Least squares: its normal equations.
-            count = range(len(segment.nodes))
-            matrix = [[sum(w * n[i] * n[j] for n, _, _, w in points) for j in count] for i in count]
-            right = [[sum(p[3] * p[0][i] * line[m] for p, line in zip(points, other)) for m in range(len(columns))] for i in count]
-            fits = {node: dict(zip(columns, line)) for node, line in zip(segment.nodes, solved(matrix, right))}
-        whole = sum(p[3] for p in points)
-        for i, node in enumerate(segment.nodes):
-            if node in faced:
-                area = sum(p[3] * p[0][i] for p in points)
-                share[node].append((area if area > ROUNDING * whole else 0.0, fits[node]))
-    return {node: mean(found) for node, found in share.items()}
+def at_place(place):
+    return [sum(v * x[c] for v, x in zip(place.values, place.segment.x)) for c in (0, 1)]
+
+
+def alike(one, other):
+    return dot(one.normal, other.normal) > SAME
+
+
+class Contact:
+    """What the nodes of the slave face, within `reach`, of the master; `near`: nodes of the master that are said to have come near."""
+
+    def __init__(self, slave, master, ring, reach, near=()):
+        self.slave, self.master, self.ring, self.reach = slave, master, ring, reach
+        self.rows = []       # (node, what it faces)
+        self.of = {}         # the row of a node of a side
+        self.look_from_slave()
+        self.shares, self.covered = [[] for _ in self.rows], {}
+        for segment in slave.segments:
+            self.average(segment)
+        self.pairs = [LinePair(node, mean(share or [(1.0, place.weights())]), place.normal, place.gap)
+                      for (node, place), share in zip(self.rows, self.shares)]
+        self.look_from_master(near)
+
+    def look_from_slave(self):
+        seconds = []
+        for segment in self.slave.segments:
+            last = len(segment.nodes) - 1
+            for k, node in enumerate(segment.nodes):
+                other = self.slave.beside(segment, k > 0) if k in (0, last) else None
+                row = self.of.get((id(other), node))
+                if row is not None and other.normal[k == 0] == segment.normal[k > 0] and node not in [name for name, _ in seconds]:
+                    self.of[id(segment), node] = row
+                    continue
+                best, second = self.master.face(eye_of(segment, k), self.reach)
+                if best and row is not None and alike(best, self.rows[row][1]):
+                    self.of[id(segment), node] = row
+                elif best:
+                    self.of[id(segment), node] = len(self.rows)
+                    self.rows.append((node, best))
+                if second:
+                    seconds.append((node, second))
+        for node, place in seconds:
+            if not any(name == node and alike(place, other) for name, other in self.rows):
+                self.rows.append((node, place))
+
+    def average(self, segment):
+        """What the master's nodes share in the gaps of a slave side's nodes."""
+        rows = [self.of.get((id(segment), node)) for node in segment.nodes]
+        faced = [self.rows[row][1] for row in rows if row is not None]
+        within = self.reach
+        if len(faced) == len(rows):
+            within = min(within, max(2 * segment.chord, *(2 * abs(place.gap) for place in faced)))
+        cuts = [segment.cut_by(one.x[k], within) for one in self.master.segments for k in (0, -1)]
+        pieces = []
+        for low, high, piece in segment.pieces([s for s in cuts if s is not None], self.ring):
+            seen = []
+            for s, values, weight in piece:
+                along = [v / 2 for v in segment.towards(s)]
+                eye = Eye(segment.at(s), segment.own(s), along, RISE * segment.bend)
+                seen.append((s, values, weight, self.master.face(eye, self.reach)[0], eye.outward))
+            pieces.append((low, high, seen))
+        points = [point for *_, seen in pieces for point in seen]
+        covered = self.covered[id(segment)] = len(faced) == len(rows) and is_covered(segment, faced, pieces, points)
+        areas = [sum(point[2] * point[1][i] for point in points) for i in range(len(rows))]
+        if covered:
+            fits = fitted(points, len(rows))
+            areas = [max(area, AT_AXIS * sum(areas)) for area in areas]
+        for i, row in enumerate(rows):
+            if row is not None:
+                self.shares[row].append((areas[i], fits[i] if covered else self.rows[row][1].weights()))
+
+    def look_from_master(self, near):
+        """Corners of the master on sides of the slave that are not covered, and nodes that came near."""
+        self.tips = []
+        for segment in self.master.segments:
+            last = len(segment.nodes) - 1
+            for k, node in enumerate(segment.nodes):
+                if node in near or k in (0, last) and segment.tip[k > 0]:
+                    for place in self.slave.face(eye_of(segment, k), self.reach):
+                        if place and (node in near or not self.covered[id(place.segment)]) and not self.has(node, place):
+                            self.tips.append((node, place))
+        for node, place in self.tips:
+            self.pairs.append(LinePair(node, place.weights(), place.normal, place.gap, tuple(place.segment.nodes)))
+
+    def has(self, node, place):
+        """Does it stand at a node with a pair there, or has it one?"""
+        most = max(range(len(place.values)), key=lambda i: place.values[i])
+        if place.values[most] >= 1 - BEYOND:
+            row = self.of.get((id(place.segment), place.segment.nodes[most]))
+            if row is not None and dot(self.rows[row][1].normal, place.normal) < -ONE_CURVE:
+                return True
+        return any(name == node and alike(place, other) for name, other in self.tips)
+
+
+def is_covered(segment, faced, pieces, points):
+    """Does a side face the other line all along, and one face of it, without a step or a corner?"""
+    if any(place is None or dot(place.normal, outward) >= -PARALLEL for *_, place, outward in points):
+        return False
+    if any(dot(point[3].normal, place.normal) <= ONE_CURVE for point in points for place in faced):
+        return False
+    ends = [(faced[0].gap, None)]
+    for low, high, seen in pieces:
+        gaps = [[point[3].gap] for point in seen]
+        parabola = [row[0] for row in solved([[1.0, (s - low) / (high - low), ((s - low) / (high - low)) ** 2] for s, *_ in seen], gaps)]
+        ends += [(parabola[0], seen[0][3].normal), (sum(parabola), seen[-1][3].normal)]
+    ends.append((faced[-1].gap, None))
+    for (one, before), (other, after) in zip(ends[::2], ends[1::2]):
+        if abs(other - one) > STEP * segment.chord or before and after and dot(before, after) <= NO_CORNER:
+            return False
+    return True
+
+
+def fitted(points, count):
+    """Of each node of a side the weights of the other line's nodes, by the normal equations of least squares."""
+    seen = [point[3].weights() for point in points]
+    columns = sorted({node for weights in seen for node in weights})
+    matrix = [[sum(w * n[i] * n[j] for _, n, w, *_ in points) for j in range(count)] for i in range(count)]
+    right = [[sum(point[2] * point[1][i] * weights.get(node, 0.0) for point, weights in zip(points, seen)) for node in columns] for i in range(count)]
+    return [dict(zip(columns, row)) for row in solved(matrix, right)]
 
 
 def mean(found):
-    """Of [(area, values by name)]; where there is no area, at the axis of rings, of equals."""
-    if not any(area for area, _ in found):
+    """Of [(area, values by name)]; where there is no area, of equals."""
+    if not sum(area for area, _ in found) > 0:
         found = [(1.0, values) for _, values in found]
     whole, total = sum(area for area, _ in found), {}
     for area, values in found:
         for name, part in values.items():
             total[name] = total.get(name, 0.0) + area * part / whole
-    return total
+    return {name: part for name, part in total.items() if abs(part) > NOTHING}
 
 
-def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g, likely=None):
-    """Of each BCONP the list of (slave node, {master node: weight}, normal, gap). `name`: of the node of an id; `likely`: normals
-    by nodes, which decide between places that are equally good."""
-    lines = {int(card[1]): Line([name(g) for g in ids(card[2:])], sides, x, held) for card in deck.of("BLSEG")}
-    ring, found = any(side.thickness is None for side in sides.values()), []
-    for card in deck.of("BCONP"):
-        slave, master = lines[int(card[2])], lines[int(card[3])]
-        reach = real(parameter.get("SEARCH", ""), 2 * max(s.chord for s in slave.segments + master.segments))
-        faced = {node: master.face(x[node], outward, reach, node, (likely or {}).get(node))
-                 for node, outward in slave.nodes().items()}
-        faced = {node: face for node, face in faced.items() if face}
-        if not faced:
-            raise DeckError(f"BCONP {at(card, 1)} pairs nothing")
-        weights = averages(ring, slave, master, faced, reach)
-        found.append([(node, weights[node], face[2], face[3]) for node, face in faced.items()])
-    return found
+def line_of(nodes, found):
+    """The sides along a BLSEG, the body to the left."""
+    walked, i = [], 0
+    while i < len(nodes) - 1:
+        step = 1 if frozenset(nodes[i:i + 2]) in found else 2
+        ends = frozenset((nodes[i], nodes[min(i + step, len(nodes) - 1)]))
+        if i + step >= len(nodes) or ends not in found:
+            raise DeckError("a line leaves the boundary")
+        walked.append(found[ends])
+        i += step
+    forwards = {segment.nodes[0] == node for segment, node in zip(walked, corners_of(nodes, walked))}
+    if len(forwards) > 1:
+        raise DeckError("a line turns back")
+    return walked if forwards == {True} else walked[::-1]
+
+
+def corners_of(nodes, walked):
+    """Where each side of a line is entered."""
+    ends = {node for segment in walked for node in (segment.nodes[0], segment.nodes[-1])}
+    return [node for node in nodes if node in ends]
+
+
+def joined(contacts):
+    """Sets of contacts whose lines go on in each other, as lists of their numbers. `contacts`: (slave, master), lists of sides."""
+    def meet(one, other):
+        return bool(ends_of(one) & ends_of(other))
+
+    sets = []
+    for k, (slave, master) in enumerate(contacts):
+        with_it = [members for members in sets if any(
+            meet(slave, contacts[i][0]) and (set(map(id, slave)) & set(map(id, contacts[i][0])) or meet(master, contacts[i][1])) for i in members)]
+        sets = [members for members in sets if members not in with_it] + [sorted(sum(with_it, []) + [k])]
+    return sorted(sets)
+
+
+def ends_of(segments):
+    return {node for segment in segments for node in (segment.nodes[0], segment.nodes[-1])}
+
+
+def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g, told=None):
+    """Of each contact the list of its LinePairs. `held`: (node, direction), ties followed; `name`: of the node of an id; `told`: names of
+    nodes, as often as the program has pairs of them: they tell what came near as loads moved it."""
+    found = outline(sides, x, held, real(parameter.get("CORNER", ""), None)) if deck.of("BCONP") else {}
+    lines = {int(card[1]): line_of([name(g) for g in ids(card[2:])], found) for card in deck.of("BLSEG")} if found else {}
+    cards, contacts = deck.of("BCONP"), []
+    named = [(lines[int(card[2])], lines[int(card[3])]) for card in cards]
+    places = list(x.values()) if isinstance(x, dict) else list(x)
+    size = sum(max(p[c] for p in places) - min(p[c] for p in places) for c in (0, 1))
+    for members in joined(named):
+        slave, master = (Line(list({id(one): one for k in members for one in named[k][which]}.values()), list(found.values())) for which in (0, 1))
+        ring = sides[frozenset((slave.segments[0].nodes[0], slave.segments[0].nodes[-1]))].thickness is None
+        reach = real(parameter.get("SEARCH", ""), SEARCH * max(one.chord for one in slave.segments + master.segments))
+        contact = Contact(slave, master, ring, reach)
+        while not contact.pairs:
+            if reach > size:
+                raise DeckError(f"BCONP {at(cards[members[0]], 1)} pairs nothing")
+            reach *= FURTHER
+            contact = Contact(slave, master, ring, reach)
+        contacts.append(contact)
+    if told is not None:
+        came_near(contacts, Counter(told), size)
+    return [contact.pairs for contact in contacts]
+
+
+def came_near(contacts, told, size):
+    """Look again for the pairs that are told and were not found; those at the limit of the search, as told, may be or not."""
+    found = Counter(pair.node for contact in contacts for pair in contact.pairs)
+    lacking, strange = told - found, found - told
+    for k, contact in enumerate(contacts):
+        contact.pairs = [pair for pair in contact.pairs if pair.node not in strange or abs(pair.gap) < contact.reach * (1 - EQUAL)]
+        slave, master = ({node for one in line.segments for node in one.nodes} for line in (contact.slave, contact.master))
+        late = [(line, other, lacking.keys() & nodes) for line, other, nodes in
+                ((contact.slave, contact.master, slave), (contact.master, contact.slave, master))]
+        gaps = [abs(place.gap) for line, other, nodes in late for one in line.segments for i, node in enumerate(one.nodes) if node in nodes
+                for place in other.face(eye_of(one, i), size)[:1] if place]
+        if gaps:
+            reach = max(contact.reach, max(gaps) * (1 + EQUAL))
+            contacts[k] = Contact(contact.slave, contact.master, contact.ring, reach, late[1][2])

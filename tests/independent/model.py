@@ -206,13 +206,16 @@ class Model:
             found.append((int(card[1]), (a, b), n, gap, {a: -1.0, b: 1.0}))
         self.contacts = [range(len(found))]
         held = {(int(f) // 2, int(f) % 2) for f in np.flatnonzero(self.is_held)}
-        for contact in pairs_of_lines(self.deck, self.parameter, self.boundary, self.x, held, self.row.get):
+        everywhere = {(row, c) for row in range(len(self.node)) for c in (0, 1) if self.leader.get((row, c), (row, c)) in held}
+        self.stands_on = [()] * len(found)
+        for contact in pairs_of_lines(self.deck, self.parameter, self.boundary, self.x, everywhere, self.row.get):
             self.contacts.append(range(len(found), len(found) + len(contact)))
-            for slave, shares, n, gap in contact:
-                weights = {slave: 1.0, **{row: -share for row, share in shares.items()}}
-                found.append((self.node[slave], (max(shares, key=shares.get), slave), n, gap, weights))
+            for pair in contact:
+                weights = {pair.node: 1.0, **{row: -share for row, share in pair.shares.items()}}
+                found.append((self.node[pair.node], (max(pair.shares, key=pair.shares.get), pair.node), pair.normal, pair.gap, weights))
+                self.stands_on.append(pair.stands_on)
         self.held_directions = held
-        self.pair_nodes = [list(pair[4]) for pair in found]
+        self.pair_weights = [pair[4] for pair in found]
         self.pair = [pair[0] for pair in found]
         self.ends = [pair[1] for pair in found]
         self.normal = np.array([pair[2] for pair in found]).reshape(-1, 2)

@@ -151,31 +151,84 @@ def on_symmetry(node, n, others, x, held, leader, near):
     return guided(node) or any(guided(other) and abs(x[other][along] - x[node][along]) <= near for other in others)
 
 
-def pressures(sides, x, held, leader, pairs, groups, forces, touching):
-    """Pressure of each pair, None where it has no area. `pairs`: (node on a side, normal, all nodes of the pair); `held`: (node,
-    direction); `leader`: of each tied (node, direction); `groups`: the pair numbers of each contact."""
-    said, others, pairs = touching, [nodes for *_, nodes in pairs], [(node, n) for node, n, _ in pairs]
+def stands(x, weights, node):
+    """Where the node of a pair stands on the other line. `weights`: of all nodes of the pair."""
+    return [-sum(w * x[other][c] for other, w in weights.items() if other != node) for c in (0, 1)]
+
+
+def chains(sides, x, stands_on, feet):
+    """Of each slave's side that a node of the master stands on: its ends, and (node of the side, or None, and pair number of the master, or
+    None) in their order. `stands_on`: nodes of the side by pair number; `feet`: where that is."""
+    found = {}
+    for k, nodes in stands_on.items():
+        found.setdefault(frozenset((nodes[0], nodes[-1])), []).append(k)
+    for ends, tips in found.items():
+        a, b, *middle = sides[ends].nodes
+        order = [(node, None, x[node]) for node in (a, *middle, b)] + [(None, k, feet[k]) for k in tips]
+        yield ends, sorted(order, key=lambda one: sum((one[2][c] - x[a][c]) * (x[b][c] - x[a][c]) for c in (0, 1)))
+
+
+def divide(sides, x, pairs, own, group, stands_on, feet):
+    """Where nodes of the master stand on a side they share its area with the slave's: each piece belongs by halves to its ends. Of those
+    sides what is beside each pair."""
+    at = {pairs[k][0]: k for k in reversed(group) if k not in stands_on}
+    of_group = {k: nodes for k, nodes in stands_on.items() if k in group}
+    divided = {}
+    for ends, order in chains(sides, x, of_group, feet):
+        a, b = sides[ends].nodes[:2]
+        first = next(k for _, k, _ in order if k is not None)
+        width = sum(share(sides[ends], x, pairs[first][1])) / hypot(x[b][0] - x[a][0], x[b][1] - x[a][1])
+        run = [(at.get(node) if k is None else k, place) for node, k, place in order]
+        for k, _ in run:
+            if k is not None and (ends in own[k] or k in of_group):
+                own[k][ends] = 0.0
+        divided[ends] = {}
+        for (one, p), (other, q) in zip(run, run[1:]):
+            divided[ends].setdefault(one, set()).add(other)
+            divided[ends].setdefault(other, set()).add(one)
+            if one is not None and other is not None:
+                for k in (one, other):
+                    own[k][ends] = own[k].get(ends, 0.0) + width * hypot(q[0] - p[0], q[1] - p[1]) / 2
+    return divided
+
+
+def pressures(sides, x, held, leader, pairs, groups, forces, touching, stands_on=None):
+    """Pressure of each pair, None where it has no area. `pairs`: (node on a side, normal, weights of all nodes of the pair); `held`: (node,
+    direction); `leader`: of each tied (node, direction); `groups`: the pair numbers of each contact; `stands_on`: of pairs of the master the
+    nodes of the slave's side."""
+    stands_on = stands_on or {}
+    feet = {k: stands(x, pairs[k][2], pairs[k][0]) for k in stands_on}
+    said, others, pairs = touching, [list(weights) for *_, weights in pairs], [(node, n) for node, n, _ in pairs]
     own = areas(sides, x, pairs)
+    for k in stands_on:
+        own[k] = {}
     touching = list(said)
     beside, ends_here = {}, [False] * len(pairs)
     for group in groups:
-        at = {pairs[k][0]: k for k in reversed(group)}
+        at = {pairs[k][0]: k for k in reversed(group) if k not in stands_on}
         for k in group:
             ends_here[k] = sum(any(node in at for node in (sides[ends].nodes[2:] or sides[ends].nodes) if node != pairs[k][0]) for ends in own[k]) < 2
             if own[k] and not any(own[k].values()):
                 near = [at.get(node) for ends in own[k] for node in (sides[ends].nodes[2:] or sides[ends].nodes) if node != pairs[k][0]]
                 beside[k] = next((other for other in near if other is not None and said[other]), None)
                 touching[k] = said[k] or beside[k] is not None
+    divided = [divide(sides, x, pairs, own, group, stands_on, feet) for group in groups]
     found = [force / sum(area.values()) if sum(area.values()) > 0 else None for force, area in zip(forces, own)]
     ring = any(side.thickness is None for side in sides.values())
     place = [x[node] for node, _ in pairs]
     chord = [max((hypot(x[b][0] - x[a][0], x[b][1] - x[a][1]) for a, b in (sides[ends].nodes[:2] for ends in area)), default=0.0) for area in own]
     mirrored = [ends_here[k] and on_symmetry(node, n, others[k], x, held, leader, BESIDE * chord[k]) for k, (node, n) in enumerate(pairs)]
     axis = [ring and p[0] == 0.0 for p in place]
-    for group in groups:
-        at = {pairs[k][0]: k for k in reversed(group)}
-        shared = {k: {ends for ends in own[k] if any(touching[at[node]] for node in sides[ends].nodes[2:] if node in at)} for k in group}
-        for chain in runs(sides, {node: k for node, k in at.items() if touching[k]}, own):
+    for group, split in zip(groups, divided):
+        at = {pairs[k][0]: k for k in reversed(group) if k not in stands_on}
+        shared = {k: {ends for ends in own[k] if any(touching[at[node]] for node in sides[ends].nodes[2:] if node in at)} for k in group if k not in stands_on}
+        for ends, beside_it in split.items():
+            for k in beside_it.keys() & shared.keys():
+                if any(other is not None and touching[other] for other in beside_it[k]):
+                    shared[k].add(ends)
+                else:
+                    shared[k].discard(ends)
+        for chain in runs({ends: side for ends, side in sides.items() if ends not in split}, {node: k for node, k in at.items() if touching[k]}, own):
             for k, pressure in Run(chain, own, forces, mirrored, axis, shared).pressures(place, ring):
                 found[k] = pressure
     for k, other in beside.items():

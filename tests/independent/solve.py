@@ -210,8 +210,9 @@ def tables(problem, v, force, gap, touching):
     reaction = np.where(model.is_held, reaction, 0.0).reshape(-1, 2)
     u = u.reshape(-1, 2)
     within = {int(row) for members in model.members for row in members}
-    places = [(b if b in within else a, n, nodes) for (a, b), n, nodes in zip(model.ends, model.normal, model.pair_nodes)]
-    pressure = pressures(model.boundary, model.x, model.held_directions, model.leader, places, model.contacts, force, touching)
+    places = [(b if b in within else a, n, nodes) for (a, b), n, nodes in zip(model.ends, model.normal, model.pair_weights)]
+    pressure = pressures(model.boundary, model.x, model.held_directions, model.leader, places, model.contacts, force, touching,
+                         {k: nodes for k, nodes in enumerate(model.stands_on) if nodes})
     contact = []
     for k, pair in enumerate(model.pair):
         a, b = model.ends[k]

@@ -8,6 +8,7 @@ import math
 from deck import integer
 from verification.material import von_mises
 from verification.run import number
+from verification.scene import node_of
 from verification.zones import zones
 
 #: Of a sum that is taken in another order, over its largest term: in double precision, and of the tolerance of another one.
@@ -85,7 +86,7 @@ def check_elements(report, scene, tables, found, tolerance):
         stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
         noise = own.noise * stiffness + report.rounding * own.largest
         # A stress beyond yield, or before it in the last solve, is off its curve by what the iteration leaves.
-        loose = (told + report.rounding) * found.stress if own.plastic or own.edge < 10 * told else 0.0
+        loose = (told + report.rounding) * (own.scale(found.stress) + found.stress) if own.plastic or own.edge < 10 * told else 0.0
         for k, name in enumerate(("sx", "sy", "sz", "txy")):
             columns[name].append((element, own.stress[k], row[name], loose + noise + tolerance * abs(own.stress[k])))
         mean = [float(row[name]) for name in ("sx", "sy", "sz", "txy")]
@@ -146,11 +147,11 @@ def check_zones(report, scene, tables, tolerance):
         return
     rank = {pair: k for k, pair in enumerate(scene.pair)}
     for column, attribute in (("first_pair", "first"), ("last_pair", "last"), ("force", "force"), ("max_pressure", "peak"),
-                              ("width_last_pair", "width"), ("half_width", "half_width")):
+                              ("half_width_last_pair", "width"), ("half_width", "half_width")):
         cells = []
         for k, (own, row) in enumerate(zip(ours, told), 1):
             value = getattr(own, attribute)
-            value = "" if value is None else value
+            value = "" if value is None or attribute == "peak" and value < 0.0 else node_of(value)
             small = math.fsum(abs(force[pair]) for pair in rank) if attribute == "force" else own.width
             cells.append((k, value, row[column], tolerance * abs(value) + report.rounding * small if isinstance(value, float) else 0.0))
         report.column(f"zones {column}", cells)

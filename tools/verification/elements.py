@@ -15,8 +15,9 @@ def reference(name):
 def unit_strains(name, x, thickness, plane_stress):
     """[(volume, [(of ux, of uy) of each node])] of each point: strains xx, yy, zz, xy that a unit displacement gives."""
     kind, points = KINDS[name], []
+    apart = [[p[c] - x[0][c] for c in (0, 1)] for p in x]   # exact, far from the origin
     for value, by_a, by_b in reference(name):
-        xa, ya, xb, yb = (sum(s * p[c] for s, p in zip(slope, x)) for slope in (by_a, by_b) for c in (0, 1))
+        xa, ya, xb, yb = (sum(s * p[c] for s, p in zip(slope, apart)) for slope in (by_a, by_b) for c in (0, 1))
         twice = xa * yb - xb * ya
         radius = sum(v * p[0] for v, p in zip(value, x))
         depth = 2 * math.pi * radius if kind.ring else thickness

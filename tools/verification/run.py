@@ -10,11 +10,13 @@ COLUMNS = {
     "nodes": ("node", ["x", "y", "ux", "uy", "rx", "ry"], [], []),
     "elements": ("element", ["x", "y", "sx", "sy", "sz", "txy", "equivalent_stress", "equivalent_strain", "secant_modulus"], [], ["state"]),
     "contact": ("pair", ["ga", "gb", "x", "y", "nx", "ny", "initial_gap", "force", "gap"], ["pressure"], ["status"]),
-    "zones": ("zone", ["first_pair", "last_pair", "force", "max_pressure", "width_last_pair"], ["half_width"], []),
+    "zones": ("zone", ["first_pair", "last_pair", "force", "half_width_last_pair"], ["max_pressure", "half_width"], []),
     "history": ("iteration", ["pairs_in_contact", "plastic_elements", "pivots", "load_factor"], [], []),
 }
-#: Columns as other versions of the program call them, and those that only some have.
-RENAMED = {"half_width_last_pair": "width_last_pair"}
+#: Columns that only some versions have.
+#: Where no boundary belongs to the pairs that touch.
+NO_PRESSURE = "max_pressure", ""
+SAME_NORMAL = 1e-3   # of two pairs of a node: there is one of them too many
 SOME = {"elements": ["max_equivalent_stress"]}
 #: Keys of the summary that must be numbers.
 FIGURES = {"max_pressure", "total_contact_force", "max_equivalent_stress", "max_displacement", "equilibrium_residual", "smallest_force",
@@ -44,7 +46,7 @@ class Tables:
                 raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
             if row["key"] in values:
                 raise TableFault(f"{path}:{line}: {row['key']} is there twice")
-            if row["key"] in FIGURES or row["key"].startswith("approach_"):
+            if row["key"] in FIGURES and (row["key"], row["value"]) != NO_PRESSURE or row["key"].startswith("approach_"):
                 number(row["value"], path, row["key"])
             values[row["key"]], units[row["key"]] = row["value"], row["unit"]
         return values, units
@@ -54,7 +56,6 @@ class Tables:
         key, needed, may_be_empty, words = COLUMNS[name]
         path, found = self.path(name), {}
         for line, row in enumerate(tables.rows(path), 2):
-            row = {RENAMED.get(column, column): value for column, value in row.items()}
             if None in row or None in row.values():
                 raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
             some = [column for column in SOME.get(name, []) if column in row]
@@ -67,9 +68,10 @@ class Tables:
                 own = int(row[key])
             except ValueError:
                 raise TableFault(f"{path}:{line}: {key}: {row[key]!r} is no whole number") from None
-            if own in found:
+            others = [name for name in found if name == own or isinstance(name, tuple) and name[0] == own]
+            if others and (name != "contact" or any(same_normal(found[other], row) for other in others)):
                 raise TableFault(f"{path}:{line}: {key} {own} is there twice")
-            found[own] = row
+            found[(own, len(others) + 1) if others else own] = row
             self.unread[name] = [column for column in row if column not in (key, *needed, *may_be_empty, *words, *some)]
         return found
 
@@ -91,6 +93,10 @@ def told_tolerance(listing, least):
     """That of the certificate in a listing: single precision has a larger one."""
     found = re.search(r"(?m)^CERTIFICATE .*; tolerance +(\S+)\)", listing.read_text(encoding="latin-1"))
     return max(least, float(found[1])) if found else least
+
+
+def same_normal(one, other):
+    return math.hypot(float(one["nx"]) - float(other["nx"]), float(one["ny"]) - float(other["ny"])) < SAME_NORMAL
 
 
 def number(text, place, name):

@@ -17,16 +17,16 @@ class Section:
 
 class Pair:
     """Gap = initial + sum of weight * displacement . normal over its nodes. `node`: of the boundary side it lies on; `ends`: the nodes
-    that name it."""
+    that name it; `stands_on`: of a node of the master the nodes of the slave's side that it stands on."""
 
-    def __init__(self, initial, normal, weights, node, ends):
-        self.initial, self.normal, self.weights, self.node, self.ends = initial, normal, weights, node, ends
+    def __init__(self, initial, normal, weights, node, ends, stands_on=()):
+        self.initial, self.normal, self.weights, self.node, self.ends, self.stands_on = initial, normal, weights, node, ends, stands_on
 
 
 class Scene:
-    """`likely`: normals that the program found for slave nodes: they decide only between places that are equally good."""
+    """`told`: normals of the pairs that the program has, by their names: which of several pairs of a node is which, and what came near."""
 
-    def __init__(self, deck, likely=None):
+    def __init__(self, deck, told=None):
         self.deck = deck
         self.x = {int(c[1]): (real(at(c, 3)), real(at(c, 4))) for c in deck.of("GRID")}
         self.parameter = parameter = {c[1]: c[2] for c in deck.of("PARAM")}
@@ -44,7 +44,7 @@ class Scene:
                 self.element[int(c[1])] = (name, [int(g) for g in c[3:3 + len(kind.nodes)]], self.section[int(c[2] or c[1])])
         self.side = boundary([(KINDS[name], nodes, section.thickness) for name, nodes, section in self.element.values()], self.x)
         self.supports()
-        self.pairs(likely)
+        self.pairs(told)
         self.loads()
 
     def sections(self):
@@ -78,7 +78,7 @@ class Scene:
                 for digit in set(c[3]) & {"1", "2"}:
                     self.leader[node, int(digit) - 1] = (int(c[2]), int(digit) - 1)
 
-    def pairs(self, likely):
+    def pairs(self, told):
         frame = {0: (1.0, 0.0)}   # the basic system
         frame.update({int(c[1]): x_axis([real(at(c, i)) for i in range(3, 12)]) for c in self.deck.of("CORD2R")})
         given = {int(c[1]): real(at(c, 2)) for c in self.deck.of("PGAP")}
@@ -93,13 +93,31 @@ class Scene:
                 gap += along[0] * n[0] + along[1] * n[1]
             self.pair[int(c[1])] = Pair(gap, n, {a: -1.0, b: 1.0}, b if b in within else a, (a, b))
         self.contacts.append(list(self.pair))
-        for contact in pairs_of_lines(self.deck, self.parameter, self.side, self.x, self.held, likely=likely):
-            self.contacts.append([node for node, *_ in contact])
-            for node, shares, n, gap in contact:
-                if node in self.pair:
-                    raise DeckError(f"two pairs have id {node}")
-                self.pair[node] = Pair(gap, n, {node: 1.0, **{other: -share for other, share in shares.items()}}, node,
-                                       (max(shares, key=shares.get), node))
+        everywhere = {(node, c) for node in self.x for c in (0, 1) if self.leads(node, c) in self.held}
+        names = None if told is None else [node_of(pair) for pair in told if pair not in self.pair]
+        for contact in pairs_of_lines(self.deck, self.parameter, self.side, self.x, everywhere, told=names):
+            named = [(self.name(pair, told or {}), pair) for pair in contact]
+            self.contacts.append([name for name, _ in named])
+        rank = {name: k for k, name in enumerate(told or {})}
+        self.pair = {name: self.pair[name] for name in sorted(self.pair, key=lambda name: rank.get(name, len(rank)))}
+        for contact in self.contacts:
+            contact.sort(key=lambda name: rank.get(name, len(rank)))
+
+    def leads(self, *freedom):
+        """The freedom that one is tied to, itself if it is not."""
+        while self.leader.get(freedom, freedom) != freedom:
+            freedom = self.leader[freedom]
+        return freedom
+
+    def name(self, pair, told):
+        """The node; of several pairs of a node (node, number), as their normals are told."""
+        free = [name for name in told if node_of(name) == pair.node and name not in self.pair]
+        name = max(free, key=lambda name: sum(a * b for a, b in zip(told[name], pair.normal)), default=pair.node)
+        while name in self.pair:
+            name = (pair.node, 2 if name == pair.node else name[1] + 1)
+        self.pair[name] = Pair(pair.gap, pair.normal, {pair.node: 1.0, **{other: -share for other, share in pair.shares.items()}}, pair.node,
+                               (max(pair.shares, key=pair.shares.get), pair.node), pair.stands_on)
+        return name
 
     def loads(self):
         self.load = {}
@@ -121,6 +139,11 @@ class Scene:
 
     def add(self, node, i, value):
         self.load.setdefault((node, i), []).append(value)
+
+
+def node_of(name):
+    """Of the name of a pair of lines."""
+    return name[0] if isinstance(name, tuple) else name
 
 
 def x_axis(p):

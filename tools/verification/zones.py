@@ -1,7 +1,7 @@
 """Zones of contact from pairs that touch: neighbours along the boundary, runs, half-widths."""
 import math
 
-from pressures import ALONG, UPRIGHT
+from pressures import ALONG, UPRIGHT, chains, stands
 
 
 class Zone:
@@ -12,7 +12,7 @@ class Zone:
 
 
 def neighbours(scene):
-    """Of each pair the pairs beside it on the sides along its tangent, of the same contact."""
+    """Of each pair the pairs beside it on the sides along its tangent, of the same contact; those of the master's nodes stand between."""
     around = {}
     for side in scene.side.values():
         for node in side.nodes:
@@ -21,18 +21,40 @@ def neighbours(scene):
     for contact in scene.contacts:
         at = {}
         for name in contact:
-            at.setdefault(scene.pair[name].node, name)
+            if not scene.pair[name].stands_on:
+                at.setdefault(scene.pair[name].node, name)
         for name in contact:
             pair, own = scene.pair[name], []
-            for side in around.get(pair.node, []):
+            for side in around.get(pair.node, []) if not pair.stands_on else []:
                 a, b = side.nodes[:2]
                 along = [scene.x[b][c] - scene.x[a][c] for c in (0, 1)]
                 if abs(along[0] * pair.normal[0] + along[1] * pair.normal[1]) > ALONG * math.hypot(*along):
                     continue
                 beside = [a, b] if pair.node in side.nodes[2:] else [*side.nodes[2:], b if pair.node == a else a][:1]
                 own += [at.get(node) for node in beside]
-            found[name] = [other for other in own[:2] if other is not None]
-    return found
+            found[name] = own[:2]
+        insert_masters(scene, contact, at, found)
+    return {name: [other for other in others if other is not None] for name, others in found.items()}
+
+
+def insert_masters(scene, contact, at, found):
+    """Between neighbouring nodes of a slave's side come the pairs of the master's nodes that stand there."""
+    on = {name: scene.pair[name].stands_on for name in contact if scene.pair[name].stands_on}
+    feet = {name: stands(scene.x, scene.pair[name].weights, scene.pair[name].node) for name in on}
+    for _, order in chains(scene.side, scene.x, on, feet):
+        run = [at.get(node) if tip is None else tip for node, tip, _ in order]
+        fixed = [k for k, (_, tip, _) in enumerate(order) if tip is None]
+        for first, last in zip(fixed, fixed[1:]):
+            if last == first + 1:
+                continue
+            for k, step, beyond in ((first, 1, last), (last, -1, first)):
+                if run[k] is not None:
+                    own = found[run[k]]
+                    own += [None] * (2 - len(own))
+                    slot = own.index(run[beyond]) if run[beyond] in own else own.index(None) if None in own else 1
+                    own[slot] = run[k + step]
+            for k in range(first + 1, last):
+                found[run[k]] = [run[k - 1], run[k + 1]]
 
 
 def zones(scene, touching, force, pressure):
@@ -73,7 +95,7 @@ def measured(scene, beside, touching, force, pressure, run):
 
     def mirrored(name):
         pair = scene.pair[name]
-        return any((pair.node, c) in scene.held and abs(pair.normal[1 - c]) > UPRIGHT for c in (0, 1))
+        return not pair.stands_on and any((pair.node, c) in scene.held and abs(pair.normal[1 - c]) > UPRIGHT for c in (0, 1))
 
     def beyond(run):
         """How far behind the last pair the pressure ends, p**2 being linear; None where it does not fall."""
