@@ -182,11 +182,10 @@ class Contact:
                     self.of[id(segment), node] = row
                     continue
                 best, second = self.master.face(eye_of(segment, k), self.reach)
-                if best and row is not None and alike(best, self.rows[row][1]):
-                    self.of[id(segment), node] = row
-                elif best:
-                    self.of[id(segment), node] = len(self.rows)
-                    self.rows.append((node, best))
+                if best:   # round a corner each side has a row of its own
+                    like = [i for i, (name, place) in enumerate(self.rows) if name == node and alike(best, place)]
+                    self.of[id(segment), node] = like[0] if like else len(self.rows)
+                    self.rows += [] if like else [(node, best)]
                 if second:
                     seconds.append((node, second))
         for node, place in seconds:
