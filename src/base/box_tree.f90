@@ -23,12 +23,12 @@ module epcont_base_box_tree
 
 contains
 
-  !> The tree of boxes from `low` to `high`; there is one at least.
+  !> The tree of boxes from `low` to `high`.
   pure function new_box_tree(low, high) result(tree)
     real(wp), intent(in) :: low(:, :), high(:, :)   !! [length] [2, boxes]
     type(box_tree) :: tree
     integer, allocatable :: first(:), last(:), order(:)
-    integer :: axis, i, leaves, middle, n
+    integer :: axis, i, k, leaves, middle, n
     real(wp) :: extent(2)
 
     n = size(low, 2)
@@ -40,14 +40,15 @@ contains
     allocate (tree%item(2*leaves - 1), first(2*leaves - 1), last(2*leaves - 1), source=0)
     allocate (tree%low(2, 2*leaves - 1), source=huge(1.0_wp))
     allocate (tree%high(2, 2*leaves - 1), source=-huge(1.0_wp))
+    if (n == 0) return   ! a root that nothing meets
     first(1) = 1
     last(1) = n
     do i = 1, 2*leaves - 1
       if (first(i) == 0) cycle
-      associate (own => order(first(i):last(i)))
-        tree%low(:, i) = minval(low(:, own), dim=2)
-        tree%high(:, i) = maxval(high(:, own), dim=2)
-      end associate
+      do k = first(i), last(i)
+        tree%low(:, i) = min(tree%low(:, i), low(:, order(k)))
+        tree%high(:, i) = max(tree%high(:, i), high(:, order(k)))
+      end do
       if (first(i) == last(i)) then
         tree%item(i) = order(first(i))
         cycle

@@ -2,7 +2,9 @@
 !> what straight sides, displacements linear between nodes and linear kinematics leave open.
 !>
 !> A side of length h allows 3 (s + b + k), and as much again as CGAPs there say otherwise than the coordinates:
-!>     s = h theta/8          above its chord lies the smooth curve, to which gaps are measured; theta the turn at its ends
+!>     s = h theta/8          above its chord lies the smooth curve, to which gaps of pairs are measured; theta the turn
+!>                            at its ends. Where no pair joins the two bodies, there is one at hollow sides alone: their
+!>                            chords lie before the curve, those of others behind it
 !>     b = h |d theta|/8      what displacements add to that turn
 !>     k = d |w| + d**2 c/2   sliding by d along a side that turns by w, and has the curvature c
 !>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
@@ -23,6 +25,7 @@ module epcont_certificate_allowance
   type :: allowance_type
     real(wp) :: least = 0.0_wp             !! between any two sides [length]
     real(wp), allocatable :: sag(:)        !! s [length] [sides]
+    logical, allocatable :: hollow(:)      !! the outline is concave at an end of the side, and smooth [sides]
     real(wp), allocatable :: bend(:)       !! b [length] [sides]
     real(wp), allocatable :: turn(:)       !! w, of the displaced side from that drawn [rad] [sides]
     real(wp), allocatable :: curvature(:)  !! c [1/length] [sides]
@@ -36,12 +39,13 @@ module epcont_certificate_allowance
 contains
 
   !> What a side allows where another slides along it.
-  pure real(wp) function of(self, side, slide)
+  pure real(wp) function of(self, side, slide, paired)
     class(allowance_type), intent(in) :: self
     integer, intent(in) :: side
     real(wp), intent(in) :: slide   !! [length]
+    logical, intent(in) :: paired   !! pairs join the two there
 
-    of = factor*(self%sag(side) + self%bend(side) + abs(slide)*abs(self%turn(side)) &
+    of = factor*(merge(self%sag(side), 0.0_wp, paired .or. self%hollow(side)) + self%bend(side) + abs(slide)*abs(self%turn(side)) &
                  + 0.5_wp*slide**2*self%curvature(side) &
                  + 0.5_wp*self%length(side)*max(abs(self%turn(side)), self%stretch(side))**2) + self%gap(side)
   end function of
@@ -59,6 +63,7 @@ contains
     allocate (allowance%sag(n), allowance%bend(n), allowance%turn(n), allowance%curvature(n), allowance%stretch(n), &
               allowance%length(n), theta(n), source=0.0_wp)
     allocate (drawn(2, 2, n), now(2, 2, n))
+    allocate (allowance%hollow(n), source=.false.)
     moved = model%x + displacement
     associate (chord => allowance%length)
       do s = 1, n
@@ -76,6 +81,7 @@ contains
           do i = 1, 2
             associate (side => merge(s, next, i == 1))
               theta(side) = max(theta(side), abs(before))
+              allowance%hollow(side) = allowance%hollow(side) .or. before < 0.0_wp
               allowance%bend(side) = max(allowance%bend(side), chord(side)*added/8.0_wp)
             end associate
           end do
@@ -118,22 +124,14 @@ contains
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: along(:, :, :), chord(:)
     real(wp), intent(inout) :: sag(:)
-    integer :: side_of(model%nodes)
     real(wp) :: most
-    integer :: i, k, s
+    integer :: k, s
 
-    if (.not. allocated(model%outline%element)) return
-    side_of = 0
-    do s = 1, model%body_outline%sides
-      side_of(model%body_outline%node(1, s)) = s
-    end do
-    do i = 1, size(model%outline%element)
-      s = side_of(model%outline%segment(1, i))
-      if (s == 0) cycle
-      if (model%body_outline%element(s) /= model%outline%element(i)) cycle
+    if (.not. allocated(model%boundary%element)) return
+    do s = 1, size(sag)
       most = 0.0_wp
       do k = 1, 2
-        most = max(most, abs(angle([along(2, k, s), -along(1, k, s)], model%outline%normal(:, k, i))))
+        most = max(most, abs(angle([along(2, k, s), -along(1, k, s)], model%boundary%normal(:, k, s))))
       end do
       ! The angle between normal and side is half the turn.
       sag(s) = chord(s)*most/4.0_wp

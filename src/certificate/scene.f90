@@ -16,6 +16,8 @@ module epcont_certificate_scene
 
   !> Sides turned [rad] or stretched by more than this are warned of.
   real(wp), parameter, public :: largest_change = 0.2_wp
+  !> Below this part of what is allowed, rounding chooses the place.
+  real(wp), parameter, public :: little = 0.01_wp
   !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths off the largest
   !! allowance counts.
   real(wp), parameter :: about = 1.5_wp
@@ -137,6 +139,7 @@ contains
     type(scene_type), intent(inout) :: scene
     type(near_place) :: before, place
     real(wp) :: allowed, depth, slide, x(2)
+    logical :: joined
 
     x = search%now%at(side, s)
     if (search%now%side_tree(part)%away(1, x) > 0.0_wp) return
@@ -145,12 +148,14 @@ contains
     if (.not. place%inside) return
     depth = place%distance
     slide = slide_of(model, search, side, s, place)
-    allowed = search%allowance%least + own_allowance(model, search, side, s, slide) &
-              + own_allowance(model, search, place%side, place%s, slide)
+    joined = is_joined(model, search, side, place%side)
+    allowed = search%allowance%least + own_allowance(model, search, side, s, slide, joined) &
+              + own_allowance(model, search, place%side, place%s, slide, joined)
     if (depth <= more*allowed*scene%inside%ratio) return
     if (depth > allowed) then
-      allowed = search%allowance%least + allowance_about(search, model%body_outline%part(side), x, about*depth, side, slide) &
-                + allowance_about(search, part, x, about*depth, place%side, slide)
+      allowed = search%allowance%least &
+                + allowance_about(search, model%body_outline%part(side), x, about*depth, side, slide, joined) &
+                + allowance_about(search, part, x, about*depth, place%side, slide, joined)
       if (.not. allocated(search%drawn%x)) search%drawn = new_outline_shape(model%body_outline, model%x)
       before = search%drawn%nearest(part, search%drawn%at(side, s))
       if (before%inside .and. .not. is_paired(model, search, side, place%side)) then
@@ -175,6 +180,18 @@ contains
                   is_mate(search%mate, outline%node(:, other), outline%part(side))
     end associate
   end function is_paired
+
+  !> The same, or at the sides beside them: pairs end with lines, the smooth curve one side later.
+  pure logical function is_joined(model, search, side, other)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side, other
+
+    associate (before => model%body_outline%before, after => model%body_outline%after)
+      is_joined = is_paired(model, search, side, other) .or. &
+                  is_paired(model, search, before(side), before(other)) .or. is_paired(model, search, after(side), after(other))
+    end associate
+  end function is_joined
 
   !> How far a point of a side has slid along the place that it is near to [length].
   pure real(wp) function slide_of(model, search, side, s, place) result(slide)
@@ -204,35 +221,37 @@ contains
   end function slide_of
 
   !> What a side allows, and at a node also the one with which it shares that [length].
-  pure real(wp) function own_allowance(model, search, side, s, slide) result(allowed)
+  pure real(wp) function own_allowance(model, search, side, s, slide, joined) result(allowed)
     type(model_type), intent(in) :: model
     type(search_type), intent(in) :: search
     integer, intent(in) :: side
     real(wp), intent(in) :: s, slide
+    logical, intent(in) :: joined
 
-    allowed = search%allowance%of(side, slide)
-    if (s <= 0.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%before(side), slide))
-    if (s >= 1.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%after(side), slide))
+    allowed = search%allowance%of(side, slide, joined)
+    if (s <= 0.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%before(side), slide, joined))
+    if (s >= 1.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%after(side), slide, joined))
   end function own_allowance
 
   !> The most that sides of a part within a distance of a point allow, and one of them at least [length].
-  pure real(wp) function allowance_about(search, part, x, distance, side, slide) result(allowed)
+  pure real(wp) function allowance_about(search, part, x, distance, side, slide, joined) result(allowed)
     type(search_type), intent(in) :: search
     integer, intent(in) :: part
     real(wp), intent(in) :: x(2), distance
     integer, intent(in) :: side
     real(wp), intent(in) :: slide
+    logical, intent(in) :: joined
     type(near_place) :: place
     integer, allocatable :: near(:)
     integer :: k, n, other
 
-    allowed = search%allowance%of(side, slide)
+    allowed = search%allowance%of(side, slide, joined)
     allocate (near(16))
     call search%now%side_tree(part)%meeting(x - distance, x + distance, near, n)
     do k = 1, n
       other = search%now%outline%first(part) + near(k) - 1
       place = search%now%near_side(other, x)
-      if (place%distance <= distance) allowed = max(allowed, search%allowance%of(other, slide))
+      if (place%distance <= distance) allowed = max(allowed, search%allowance%of(other, slide, joined))
     end do
   end function allowance_about
 
@@ -291,8 +310,8 @@ contains
         if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. 2.0_wp*place%distance > norm2(now%chord(side))) cycle
         if (.not. now%is_inside(place, x)) cycle
         slide = slide_of(model, search, side, s, place)
-        allowed = search%allowance%least + own_allowance(model, search, side, s, slide) &
-                  + own_allowance(model, search, other, place%s, slide)
+        allowed = search%allowance%least + own_allowance(model, search, side, s, slide, joined=.true.) &
+                  + own_allowance(model, search, other, place%s, slide, joined=.true.)
         if (place%distance <= more*allowed*scene%itself%ratio) cycle
         ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
         associate (a => model%x(:, node(1, other)), b => model%x(:, node(2, other)))
@@ -346,12 +365,12 @@ contains
         if (abs(cross_product(x - place%x, model%normal(:, k))) > gap) cycle
         s = merge(0.5_wp, 0.0_wp, model%body_outline%node(3, side_of(b)) == b)
         slide = slide_of(model, search, side_of(b), s, place)
-        allowed = search%allowance%least + own_allowance(model, search, side_of(b), s, slide) &
-                  + own_allowance(model, search, place%side, place%s, slide)
+        allowed = search%allowance%least + own_allowance(model, search, side_of(b), s, slide, joined=.true.) &
+                  + own_allowance(model, search, place%side, place%s, slide, joined=.true.)
         if (gap <= more*allowed*scene%apart%ratio) cycle
         if (gap > allowed) allowed = search%allowance%least &
-                                     + allowance_about(search, part(b), x, about*place%distance, side_of(b), slide) &
-                                     + allowance_about(search, part(a), x, about*place%distance, place%side, slide)
+                                     + allowance_about(search, part(b), x, about*place%distance, side_of(b), slide, .true.) &
+                                     + allowance_about(search, part(a), x, about*place%distance, place%side, slide, .true.)
         if (gap <= more*allowed*scene%apart%ratio) cycle
         scene%apart = overlap_place(gap/allowed, gap, allowed, x, side_of(b), place%side)
         scene%pair = k

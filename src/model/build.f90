@@ -47,6 +47,11 @@ contains
     ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load the scene.
     where (abs(model%x) < least_cause) model%x = 0.0_wp
     call build_pairs(deck, nodes, model, faults)
+    ! Lines are sides of the outlines, and only sound elements have outlines.
+    if (faults%error_count() == 0) then
+      call find_bodies(model)
+      model%body_outline = find_outline(model)
+    end if
     call build_lines(deck, nodes, model, faults)
     call build_line_contacts(deck, model, faults)
     call build_controls(deck, model, faults)
@@ -54,9 +59,7 @@ contains
       call faults%add_error(place_type(), 'the deck has no elements', 'CTRIA3 cards')
     if (faults%error_count() > 0) return
     call check_pairs(deck, model, faults)
-    call find_bodies(model)
     call find_travels(model)
-    model%body_outline = find_outline(model)
     call warn_of_lying_together(deck, model, faults)
   end subroutine build_model
 

@@ -123,7 +123,7 @@ contains
         cycle
       end if
       if (found%place%at_corner .and. .not. from%at_corner) call press_corner(from, found%place)
-      if (found%place%gap < 0.0_wp) then
+      if (found%place%gap < -max(equal*search, roundings*maxval(abs(from%x)))) then
         if (.not. goes_on(line, sides(k), from, search)) cycle
       end if
       if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) cycle
@@ -168,7 +168,7 @@ contains
       if (second%place%found) then   ! of the same face as the one that is best now?
         if (dot_product(second%place%normal, best%place%normal) > same_face) second = facing_type()
       end if
-    else if (abs(found%place%gap) <= abs(best%place%gap) + equal*search .and. from%at_corner) then
+    else if (from%at_corner .and. are_equal(from, search, found, best)) then
       call take_mean(found%place, best%place)
     end if
     if (dot_product(other%place%normal, best%place%normal) > same_face) return
@@ -203,6 +203,16 @@ contains
       away = norm2(matmul(line%x(:, :, face%segment), face%place%share) - from%x - from%along)
     end function away
   end function is_better
+
+  !> Are two faces as near, and look as much against the point's own boundary?
+  pure logical function are_equal(from, search, one, other)
+    type(looking_point), intent(in) :: from
+    real(wp), intent(in) :: search
+    type(facing_type), intent(in) :: one, other
+
+    are_equal = abs(abs(one%place%gap) - abs(other%place%gap)) <= equal*search .and. &
+                abs(dot_product(one%place%normal - other%place%normal, from%outward)) <= equal
+  end function are_equal
 
   !> Of two sides that a corner faces equally well at their corner none is the better one: between their normals.
   pure subroutine take_mean(other, place)

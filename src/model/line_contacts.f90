@@ -128,9 +128,9 @@ contains
     logical, allocatable :: on(:)
 
     overlap = a == b
-    if (overlap .or. .not. allocated(model%outline%element)) return
+    if (overlap .or. .not. allocated(model%boundary%element)) return
     if (are_apart(model, a, b)) return
-    allocate (on(size(model%outline%element)), source=.false.)
+    allocate (on(size(model%boundary%element)), source=.false.)
     on(model%line(a)%side) = .true.
     overlap = any(on(model%line(b)%side))
   end function overlap
@@ -144,8 +144,8 @@ contains
     meet = a == b
     if (meet .or. are_apart(model, a, b)) return
     allocate (on(model%nodes), source=.false.)
-    on([model%outline%segment(:2, model%line(a)%side)]) = .true.
-    meet = any(on([model%outline%segment(:2, model%line(b)%side)]))
+    on([model%boundary%segment(:2, model%line(a)%side)]) = .true.
+    meet = any(on([model%boundary%segment(:2, model%line(b)%side)]))
   end function meet
 
   !> Do the boxes round two lines, of many that there may be, tell that they do not meet?
@@ -188,8 +188,8 @@ contains
     contact%bconp = nint(deck%card(card_bconp)%value(1, cards))
     contact%slave_id = model%line(once(line(1, cards)))%id
     contact%master_id = model%line(once(line(2, cards)))%id
-    contact%slave = new_boxed_line(model%outline%pick(sides_of(model, once(line(1, cards)))))
-    contact%master = new_boxed_line(model%outline%pick(sides_of(model, once(line(2, cards)))))
+    contact%slave = new_boxed_line(model%boundary%pick(sides_of(model, once(line(1, cards)))))
+    contact%master = new_boxed_line(model%boundary%pick(sides_of(model, once(line(2, cards)))))
     contact%search = deck%parameter_value('SEARCH', default_search*max(contact%slave%longest(), contact%master%longest()))
     allocate (contact%came_near(0))
   end subroutine set_lines
@@ -237,7 +237,7 @@ contains
 
     most = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
     do
-      call find_faces(contact, model%outline, faces)
+      call find_faces(contact, model%boundary, faces)
       call add_pairs(faces, model, contact)
       if (contact%last >= contact%first) exit
       if (contact%search > most) then

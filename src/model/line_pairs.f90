@@ -235,9 +235,9 @@ contains
 
     n = size(faces%node)
     allocate (covered(size(contact%slave%element)))
-    call mortar_rows(contact, model%outline, faces%row_of, faces%facing, &
+    call mortar_rows(contact, model%boundary, faces%row_of, faces%facing, &
                      model%kinematics(model%section(contact%slave%element(1))) == axisymmetric, start, node, weight, covered)
-    call find_tips(contact, model%outline, covered, faces)
+    call find_tips(contact, model%boundary, covered, faces)
     tips = size(faces%tip)
     contact%stands_on = contact%slave%segment(:, faces%on%segment)
     do i = 1, tips

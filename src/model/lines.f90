@@ -1,4 +1,4 @@
-!> Boundary lines from BLSEG: sides of the outline, end to end.
+!> Boundary lines from BLSEG: sides of the bodies' outlines, end to end.
 module epcont_model_lines
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index
@@ -6,9 +6,9 @@ module epcont_model_lines
   use epcont_deck_card_kinds, only: card_blseg
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_boundary, only: find_boundary
   use epcont_model_elements, only: element_name
   use epcont_model_model, only: model_type, named_line
-  use epcont_model_outline, only: find_outline
   use epcont_model_reference, only: check_unique
   use epcont_model_side_boxes, only: new_boxed_line
   implicit none
@@ -46,9 +46,9 @@ contains
       ! Without sound elements there is no boundary to look at.
       sound = faults%error_count() == 0
       if (sound) then
-        model%outline = new_boxed_line(find_outline(model, deck%parameter_value('CORNER', 0.0_wp)))
+        model%boundary = new_boxed_line(find_boundary(model, deck%parameter_value('CORNER', 0.0_wp)))
         allocate (starting(model%nodes), source=0)
-        starting(model%outline%segment(1, :)) = [(i, i=1, size(model%outline%element))]
+        starting(model%boundary%segment(1, :)) = [(i, i=1, size(model%boundary%element))]
       end if
       do i = 1, blseg%count
         model%line(i)%id = nint(blseg%value(1, i))
@@ -218,7 +218,7 @@ contains
     allocate (line%side(size(walk%element)))
     do i = 1, size(walk%element)
       k = starting(walk%side(1, i))
-      do while (model%outline%element(k) /= walk%element(i) .or. any(model%outline%segment(:, k) /= walk%side(:, i)))
+      do while (model%boundary%element(k) /= walk%element(i) .or. any(model%boundary%segment(:, k) /= walk%side(:, i)))
         k = k - 1   ! the only one, but where boundaries meet in a node
       end do
       line%side(i) = k

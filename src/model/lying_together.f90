@@ -19,6 +19,7 @@ module epcont_model_lying_together
   !> A node and the one of another body at its place.
   type :: twin_type
     integer :: node = 0, other = 0
+    integer :: count = 0   !! of those of its two bodies, at the first of them
   end type twin_type
 
 contains
@@ -29,33 +30,38 @@ contains
     type(model_type), intent(in) :: model
     type(diagnostics), intent(inout) :: faults
     type(twin_type), allocatable :: twin(:)
-    integer :: counted, i, k
+    integer, allocatable :: first(:)   ! of an earlier body, with each other one
+    integer :: i
 
     twin = find_twins(model)
     associate (part => model%body_outline%part_of)
+      allocate (first(model%body_outline%parts), source=0)
+      do i = 1, size(twin)   ! one earlier body after the other
+        associate (k => first(part(twin(i)%other)))
+          if (k == 0) then
+            k = i
+          else if (part(twin(k)%node) /= part(twin(i)%node)) then
+            k = i
+          end if
+          twin(k)%count = twin(k)%count + 1
+        end associate
+      end do
       do i = 1, size(twin)
-        if (twin(i)%node == 0) cycle
-        counted = 0
-        do k = i, size(twin)
-          if (twin(k)%node == 0) cycle
-          if (part(twin(k)%node) /= part(twin(i)%node) .or. part(twin(k)%other) /= part(twin(i)%other)) cycle
-          counted = counted + 1
-          if (k > i) twin(k)%node = 0
-        end do
-        call warn(twin(i)%node, twin(i)%other)
+        if (twin(i)%count > 0) call warn(twin(i))
       end do
     end associate
 
   contains
 
-    subroutine warn(node, other)
-      integer, intent(in) :: node, other
+    subroutine warn(twin)
+      type(twin_type), intent(in) :: twin
       character(len=:), allocatable :: others
 
       others = ''
-      if (counted > 1) others = '; so do '//text_of(counted - 1)//' more of these two bodies'
-      call faults%add_warning(deck%place(card_grid, node, 1), deck%identity(card_grid, node)//': lies where GRID '// &
-                              text_of(model%node_id(other))//' of another body does, and no pair joins the two'//others, &
+      if (twin%count > 1) others = '; so do '//text_of(twin%count - 1)//' more of these two bodies'
+      call faults%add_warning(deck%place(card_grid, twin%node, 1), deck%identity(card_grid, twin%node)// &
+                              ': lies where GRID '//text_of(model%node_id(twin%other))// &
+                              ' of another body does, and no pair joins the two'//others, &
                               'a CGAP, lines with a BCONP between them, or one GRID for both')
     end subroutine warn
   end subroutine warn_of_lying_together

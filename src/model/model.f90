@@ -76,7 +76,7 @@ module epcont_model_model
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
-    type(boxed_line) :: outline                 !! sides of all boundaries, where lines are in contact
+    type(boxed_line) :: boundary                !! sides of the bodies' outlines, by the same numbers, with normals; where lines are
     type(named_line), allocatable :: line(:)
     type(line_contact), allocatable :: line_contact(:)
     integer, allocatable :: body(:)             !! of each node [nodes]

@@ -46,8 +46,8 @@ contains
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
         if (allocated(displacement)) then
-          call widen(contact, model%outline, displacement, size_of_scene, entered)
-          call look_from_master(contact, model%outline, displacement, holds, size_of_scene, entered)
+          call widen(contact, model%boundary, displacement, size_of_scene, entered)
+          call look_from_master(contact, model%boundary, displacement, holds, size_of_scene, entered)
         else if (size(contact%left_out) > 0 .and. contact%search < size_of_scene) then
           contact%search = size_of_scene
           contact%is_wider = .true.
@@ -59,7 +59,7 @@ contains
     before = model%pairs
     call forget_pairs(model)
     do c = 1, size(model%line_contact)
-      call find_faces(model%line_contact(c), model%outline, faces)
+      call find_faces(model%line_contact(c), model%boundary, faces)
       call add_pairs(faces, model, model%line_contact(c))
     end do
     entered = model%pairs > before

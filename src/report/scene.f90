@@ -2,7 +2,7 @@
 module epcont_report_scene
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
-  use epcont_certificate_scene, only: largest_change, overlap_place, scene_type
+  use epcont_certificate_scene, only: largest_change, little, overlap_place, scene_type
   use epcont_model_boundary_line, only: boundary_line
   use epcont_model_elements, only: element_name
   use epcont_model_mates, only: find_mates, is_mate
@@ -121,10 +121,8 @@ contains
     type(model_type), intent(in) :: model
     integer, intent(in) :: side
 
-    line = 0
-    if (.not. allocated(model%outline%element)) return   ! no card names one
     do line = size(model%line), 1, -1
-      if (has_side(model, model%outline%pick(model%line(line)%side), side)) return
+      if (any(model%line(line)%side == side)) return
     end do
   end function line_of
 
@@ -187,7 +185,6 @@ contains
     subroutine list_ratio(name, place)
       character(len=*), intent(in) :: name
       type(overlap_place), intent(in) :: place
-      real(wp), parameter :: little = 0.01_wp
       character(len=:), allocatable :: text
 
       text = right('< '//short_real(little), 13)

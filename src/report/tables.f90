@@ -5,6 +5,7 @@ module epcont_report_tables
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_certificate_certificate, only: certificate_type
+  use epcont_certificate_scene, only: little, overlap_place
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: new_text_file, text_file
@@ -71,10 +72,8 @@ contains
       call put('stress_off_curve_limit', certificate%off_curve_limit, '')
       call put('energy_balance', certificate%energy, '')
       if (certificate%scene%looked_through) then
-        call put('largest_penetration', certificate%scene%inside%depth, 'length')
-        call put('allowed_penetration', certificate%scene%inside%allowed, 'length')
-        call put('largest_pressed_gap', certificate%scene%apart%depth, 'length')
-        call put('allowed_pressed_gap', certificate%scene%apart%allowed, 'length')
+        call put_place('penetration', certificate%scene%inside)
+        call put_place('pressed_gap', certificate%scene%apart)
       end if
       call put('condition', answer%condition, '')
       call put('load_factor', answer%load_factor, '')
@@ -86,6 +85,15 @@ contains
     call file%finish(error)
 
   contains
+
+    !> A depth and what is allowed there; 0 where it is so little that rounding chooses the place.
+    subroutine put_place(name, place)
+      character(len=*), intent(in) :: name
+      type(overlap_place), intent(in) :: place
+
+      call put('largest_'//name, merge(place%depth, 0.0_wp, place%ratio >= little), 'length')
+      call put('allowed_'//name, merge(place%allowed, 0.0_wp, place%ratio >= little), 'length')
+    end subroutine put_place
 
     subroutine put(key, value, unit)
       character(len=*), intent(in) :: key, unit

@@ -15,7 +15,7 @@ REJECTED = ROOT / "input" / "faults" / "no_suport.dat"
 
 # Misbehaves as the names of the decks say; else it is the program itself.
 FAKE = """#!/bin/sh
-[ "$1" = --version ] && exec {program} --version
+[ "$1" = --version ] && exec "{program}" --version
 out=; before=; for word; do [ "$before" = -o ] && out=$word; before=$word; done
 for deck; do
   [ "$deck" = -o ] && break
@@ -30,12 +30,12 @@ for deck; do
     *silent*) exit 0 ;;
     *strange*) exit 77 ;;
     *chatter*) i=0; while [ $i -lt 20000 ]; do echo "a line of chatter $i"; i=$((i+1)); done >&2; exit 2 ;;
-    *cut*) {program} "$@"; sed -i '/^ACCURACY/,$d' "$out/$(basename "$deck" .dat).lst"; exit 0 ;;
-    *full*) {program} "$@"; rm "$out/$(basename "$deck" .dat).contact.csv"; echo "contact.csv: cannot be written" >&2; exit 3 ;;
-    *lies*) {program} "$@"; exit 1 ;;
+    *cut*) "{program}" "$@"; sed -i '/^ACCURACY/,$d' "$out/$(basename "$deck" .dat).lst"; exit 0 ;;
+    *full*) "{program}" "$@"; rm "$out/$(basename "$deck" .dat).contact.csv"; echo "contact.csv: cannot be written" >&2; exit 3 ;;
+    *lies*) "{program}" "$@"; exit 1 ;;
   esac
 done
-exec {program} "$@"
+exec "{program}" "$@"
 """
 
 

@@ -313,7 +313,7 @@ class Resumed(Case):
         self.assertEqual(["a.dat", "b.dat", "c_rejected.dat", "d_segfault.dat"], self.again(1))
 
     def test_another_version_runs(self):
-        self.fake.write_text(self.fake.read_text().replace(f"exec {PROGRAM} --version", "{ echo epcont 9.9; exit 0; }", 1))
+        self.fake.write_text(self.fake.read_text().replace(f'exec "{PROGRAM}" --version', "{ echo epcont 9.9; exit 0; }", 1))
         self.assertEqual(5, len(self.again(1)))
 
     def test_another_build_of_the_version_runs(self):

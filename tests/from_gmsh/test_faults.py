@@ -279,7 +279,7 @@ class Mistakes(unittest.TestCase):
                 ("deck", "two.geo", 'two.geo is no scene: that is a .toml, with mesh = "NAME.geo" (input/README.md, "From Gmsh")')):
             run = subprocess.run([TOOLS / tool, name], cwd=self.place, capture_output=True, text=True, check=False)
             self.assertEqual(run.returncode, 3, run.stderr)
-            self.assertRegex(run.stderr, rf"^\S*tools/{tool}: {re.escape(said)}\n$")
+            self.assertRegex(run.stderr, rf"^.*tools/{tool}: {re.escape(said)}\n$")
 
     def test_garbage(self):
         """Files that are nothing like what they should be."""

@@ -15,6 +15,7 @@ module two_blocks
     real(wp) :: pressure = 10.0_wp         !! on top
     character(len=8) :: poisson = ''       !! of both, if given
     logical :: stuck = .false.             !! the lower block's base holds sideways too
+    real(wp) :: gap = 0.0_wp               !! by which the upper block is drawn above the lower one
     real(wp) :: stretch = 1.0_wp           !! of the columns: the last is wider than the first by this factor
   end type blocks_type
 
@@ -155,7 +156,7 @@ contains
     if (which == 1) then
       height = part*(1.0_wp + blocks%rise*across)
     else
-      height = 2.0_wp*part + (1.0_wp - part)*(1.0_wp + blocks%rise*across)
+      height = 2.0_wp*part + (1.0_wp - part)*(1.0_wp + blocks%rise*across) + blocks%gap
     end if
   end function height
 end module two_blocks

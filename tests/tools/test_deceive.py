@@ -167,7 +167,7 @@ class Judging(Case):
 
     def test_a_run_that_crashes_takes_no_other_with_it(self):
         path = self.directory / "crasher"
-        path.write_text(f"#!/bin/sh\ncase $* in *moved.dat*) kill -SEGV $$;; esac\nexec {PROGRAM} \"$@\"\n")
+        path.write_text(f"#!/bin/sh\ncase $* in *moved.dat*) kill -SEGV $$;; esac\nexec \"{PROGRAM}\" \"$@\"\n")
         path.chmod(0o755)
         self.assertEqual(self.faults(str(path)), [("broken", "moved"), ("twin", "moved")])
 

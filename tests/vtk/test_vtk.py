@@ -185,16 +185,21 @@ class Values(Case):
         self.assertLessEqual(set(data["zone"]), set(range(len(zones) + 1)))
 
     def check_lines(self, grid, whole):
-        """Lines follow sides of elements, each once; every pair is on one, or a vertex."""
-        along = set()
+        """Lines follow sides of elements, each once, or lead to a node of another body that stands on one; every pair is on a line,
+        or a vertex."""
+        along, body = set(), {}
         for _, points in whole["cells"]:
             nodes = [whole["point_data"]["node_id"][point] for point in points]
             corners = nodes[:3] if len(nodes) == 6 else nodes
+            joined = set(nodes).union(*(body.get(node, ()) for node in nodes))
+            body.update(dict.fromkeys(joined, joined))
             for ends, middle in sides(corners, nodes[3:] if len(nodes) == 6 else []):
                 along |= {frozenset((end, middle)) for end in ends} if middle else {ends}
         drawn = [frozenset(points) for kind, points in grid["cells"] if kind == LINE]
         self.assertEqual(len(drawn), len(set(drawn)))
-        self.assertLessEqual({frozenset(self.at[point] for point in ends) for ends in drawn}, along)
+        between = {frozenset(self.at[point] for point in ends) for ends in drawn} - along
+        for one, other in between:
+            self.assertNotIn(other, body[one])
         alone = [points[0] for kind, points in grid["cells"] if kind == VERTEX]
         self.assertEqual(len(grid["cells"]), len(drawn) + len(alone))
         self.assertEqual(set(range(len(self.at))), {point for ends in drawn for point in ends} | set(alone))

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""What touches what: small scenes that were once answered wrongly (touching/*.dat), against closed forms, finer meshes, and their twins.
+
+E = 1000 and nu = .3 or 0 in plane strain; right values were computed with everything nine times finer, lines both ways.
+"""
+import pathlib
+import re
+import unittest
+
+import scenes  # noqa: F401  (the path to scene)
+
+import scene
+
+FOLDER = pathlib.Path(__file__).resolve().parent / "touching"
+EXACT = 1e-9
+
+#: Scene, figure, what is right, and by which part it may be missed: what so coarse a mesh leaves.
+FIGURES = [
+    ("patch_slave_split", "total", 20.0, EXACT), ("patch_slave_split", "p_max", 10.0, EXACT), ("patch_slave_split", "p_min", 10.0, EXACT),
+    ("patch_master_split", "total", 20.0, EXACT), ("patch_master_split", "p_max", 10.0, EXACT), ("patch_master_split", "p_min", 10.0, EXACT),
+    ("patch_two_masters", "total", 20.0, EXACT), ("patch_two_masters", "p_max", 10.0, EXACT), ("patch_two_masters", "p_min", 10.0, EXACT),
+    ("line_twice", "p_max", 10.0, EXACT), ("pen_minimal", "approach", -0.0156, 0.07), ("rigid_prescribed_rc4", "total", 0.0, EXACT),
+    ("vee_no_node_faces", "total", 5.0 * 1.25 ** 0.5, EXACT),      # a wedge of slope 1/2 under 5
+    ("wall_as_floor", "total", 13.26, 0.02), ("wall_as_floor_whole", "total", 13.26, 0.02), ("two_feet", "total", 13.0, 0.05),
+    ("step_half_covered", "total", 5.55, 0.08), ("block_corner_between_floor_nodes", "total", 12.85, 0.06),
+    ("corner_between_floor_nodes_moved", "total", 9.96, 0.08), ("edge_on_edge_3", "approach", -0.0191, 0.02),
+    ("flanks_through_bodies", "total", 2.78, 0.07), ("thin_whole_outlines", "total", 9.533, 1e-3),
+    ("overhang_by_a_hair", "total", 24.53, 1e-4), ("twice_slave", "p_max", 12.0966, 1e-5),
+]
+
+#: The same but for how it is written or how it lies.
+TWINS = [
+    ("wall_as_floor", "wall_as_floor_rot37", EXACT), ("wall_as_floor_whole", "wall_as_floor_whole_rot37", EXACT),
+    ("two_feet", "two_feet_rot10", EXACT), ("step_half_covered", "step_half_covered_rot37", EXACT),
+    ("step_half_covered", "step_half_covered_split", EXACT), ("flanks_through_bodies", "flanks_not_named", EXACT),
+    ("mirror_corner_base", "mirror_corner_mirrored", EXACT), ("mirror_chamfer_base", "mirror_chamfer_mirrored", EXACT),
+    ("twice_slave", "twice_part", EXACT), ("twice_slave", "twice_longer", EXACT), ("twice_slave", "twice_master", EXACT),
+    ("twice_slave", "twice_masterpart", EXACT), ("overhang_none", "overhang_by_a_hair", 1e-4),
+]
+
+#: Slave and master exchanged: the same within what the mesh leaves.
+EXCHANGED = [
+    ("block_corner_between_floor_nodes", 1e-3), ("wall_as_floor", 0.02), ("two_feet", 0.07), ("step_half_covered", 0.01),
+    ("corner_between_floor_nodes_moved", 0.01), ("flanks_through_bodies", EXACT), ("thin_whole_outlines", 0.01),
+    ("chamfer15_master", 0.02), ("chamfer30_master", 0.02), ("mirror_chamfer_base", 0.02), ("mirror_corner_base", 1e-6),
+    ("teeth_through_block", EXACT), ("narrow_punch_between_nodes", EXACT), ("vee_no_node_faces", EXACT), ("overhang_none", EXACT),
+    ("patch_slave_split", EXACT), ("patch_master_split", EXACT),
+]
+
+
+class Touching(unittest.TestCase):
+
+    def figures(self, name, change=lambda text: text):
+        """Of a scene that is valid."""
+        result = scene.solve(change((FOLDER / f"{name}.dat").read_text()))
+        self.assertEqual((result.status, result.summary["status"]), (0, "valid"), result.message)
+        pressures = [pair["pressure"] for pair in result.table("contact") if pair["status"].startswith("touching")]
+        figures = {"total": result.summary["total_contact_force"], "p_max": result.summary.get("max_pressure"), "p_min": min(pressures, default=None)}
+        figures.update(approach=result.approach[0] if result.approach else 0.0)
+        return figures
+
+    def near(self, one, other, part):
+        self.assertLessEqual(abs(one - other), part * max(abs(other), 1e-30), f"{one!r} where {other!r} was expected")
+
+    def test_figures(self):
+        for name, figure, right, part in FIGURES:
+            with self.subTest(scene=name, figure=figure):
+                self.near(self.figures(name)[figure], right, part)
+
+    def test_twins(self):
+        for name, other, part in TWINS:
+            with self.subTest(scene=name, twin=other):
+                one, two = self.figures(name), self.figures(other)
+                for figure in ("total", "p_max", "approach"):
+                    self.near(two[figure], one[figure], part)
+
+    def test_exchanged(self):
+        for name, part in EXCHANGED:
+            with self.subTest(scene=name):
+                other = self.figures(name, lambda text: re.sub(r"BCONP,(\d+),(\d+),(\d+)", r"BCONP,\1,\3,\2", text))
+                one = self.figures(name)
+                figure = "approach" if one["approach"] else "total"
+                self.near(other[figure], one[figure], part)
+
+    def test_wall_that_no_line_names(self):
+        """The block is pushed into a wall that is in no line: not certified, and what would mend it."""
+        result = scene.solve((FOLDER / "wall_not_in_line.dat").read_text())
+        self.assertEqual(result.status, 4)
+        self.assertIn("bodies pass through each other: the body of GRID 15 lies 0.01348 deep in that of GRID 1, at -0.01296 0.1206 on side",
+                      result.message)
+        self.assertIn("What may mend it: a BLSEG along side", result.message)
+
+    def test_lines_in_two_contacts(self):
+        result = scene.solve((FOLDER / "twice_both.dat").read_text())
+        self.assertEqual(result.status, 2)
+        self.assertIn("BCONP 2: its lines are those of BCONP 1: forces would be shared between the two", result.message)
+
+
+if __name__ == "__main__":
+    unittest.main()

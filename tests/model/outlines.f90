@@ -1,0 +1,67 @@
+!> Boundaries drawn from points, without elements behind them.
+module outlines
+  use epcont_base_kinds, only: wp
+  use epcont_model_boundary_line, only: boundary_line
+  use epcont_model_corners, only: find_normals
+  implicit none
+  private
+  public :: drawn, chain, degree
+
+  real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
+
+contains
+
+  !> Straight sides through points, walked with the body to the left.
+  function drawn(x, closed, angle, held) result(line)
+    real(wp), intent(in) :: x(:, :)                 !! [2, points]
+    logical, intent(in), optional :: closed         !! the last point is followed by the first
+    real(wp), intent(in), optional :: angle         !! of PARAM CORNER [degree]
+    integer, intent(in), optional :: held(:, :)     !! directions in which ends of sides are held [2, sides]
+    type(boundary_line) :: line
+    real(wp) :: corner
+    logical :: ring
+    integer, allocatable :: none(:, :)
+    integer :: i, n, points
+
+    ring = .false.
+    if (present(closed)) ring = closed
+    corner = 0.0_wp
+    if (present(angle)) corner = angle
+    points = size(x, 2)
+    n = merge(points, points - 1, ring)
+    allocate (line%segment(3, n), none(2, n), source=0)
+    allocate (line%x(2, 3, n), source=0.0_wp)
+    allocate (line%neighbour(2, n))
+    line%element = [(i, i=1, n)]
+    do i = 1, n
+      line%segment(:2, i) = [i, mod(i, points) + 1]
+      line%x(:, :2, i) = x(:, line%segment(:2, i))
+      line%neighbour(:, i) = [i - 1, mod(i + 1, n + 1)]
+    end do
+    if (ring) then
+      line%neighbour(1, 1) = n
+      line%neighbour(2, n) = 1
+    end if
+    if (present(held)) then
+      call find_normals(line, held, corner)
+    else
+      call find_normals(line, none, corner)
+    end if
+  end function drawn
+
+  !> Points of a boundary that turns by some angles, counter-clockwise, between sides of some lengths; the first side leads left.
+  pure function chain(turn, length) result(x)
+    real(wp), intent(in) :: turn(:)      !! [degree]
+    real(wp), intent(in) :: length(:)    !! one more than of turns
+    real(wp) :: x(2, size(length) + 1)
+    real(wp) :: along
+    integer :: i
+
+    x(:, 1) = 0.0_wp
+    along = 180.0_wp*degree
+    do i = 1, size(length)
+      x(:, i + 1) = x(:, i) + length(i)*[cos(along), sin(along)]
+      if (i <= size(turn)) along = along + turn(i)*degree
+    end do
+  end function chain
+end module outlines

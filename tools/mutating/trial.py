@@ -1,0 +1,129 @@
+"""A copy of the project, its build without optimisation, and its tests, one after the other."""
+import hashlib
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+
+#: Tests of tools, documents and packages say nothing of an answer.
+LABELS_LEFT_OUT = {"tools", "vtk", "package", "app", "from_gmsh", "round_trip"}
+NAMES_LEFT_OUT = {"faults", "fuzzed_decks"}
+
+
+def end(process):
+    """A test with all that it has started."""
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+class Trial:
+    def __init__(self, root, place, longest):
+        self.root, self.tree, self.folder, self.place = root, place / "tree", place / "build", place
+        self.longest = longest                       # seconds of a test that is worth its time
+        self.baseline, self.tests = {}, {}
+
+    def copy(self):
+        """The tree as it is, restored where a mutant was left behind; what has not changed keeps its time."""
+        listed = subprocess.run(["git", "-C", self.root, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+                                check=True, capture_output=True, text=True).stdout
+        wanted = [pathlib.Path(name) for name in listed.split("\0") if name and (self.root / name).is_file()]
+        for name in wanted:
+            new, old = self.root / name, self.tree / name
+            if not old.exists() or new.read_bytes() != old.read_bytes():
+                old.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(new, old)
+        for path in [path for path in self.tree.rglob("*") if path.is_file() and path.relative_to(self.tree) not in set(wanted)]:
+            path.unlink()
+        digest = hashlib.sha256()
+        for name in sorted(wanted):
+            digest.update(str(name).encode() + (self.tree / name).read_bytes())
+        return digest.hexdigest()
+
+    def configure(self):
+        generator = ["-G", "Ninja"] if shutil.which("ninja") and not (self.folder / "Makefile").exists() else []
+        subprocess.run(["cmake", "-S", self.tree, "-B", self.folder, *generator, "-DCMAKE_BUILD_TYPE=Plain", "-DCMAKE_Fortran_FLAGS=-O0"],
+                       check=True, stdout=subprocess.DEVNULL)
+
+    def build(self, *targets):
+        command = ["cmake", "--build", self.folder, *(["--target", *targets] if targets else [])]
+        return subprocess.run(command, capture_output=True).returncode == 0
+
+    def find_tests(self):
+        said = subprocess.run(["ctest", "--test-dir", self.folder, "--show-only=json-v1"], check=True, capture_output=True, text=True).stdout
+        for test in json.loads(said)["tests"]:
+            properties = {each["name"]: each["value"] for each in test["properties"]}
+            labels = set(properties.get("LABELS", []))
+            if shutil.which(test.get("command", [""])[0]) and not labels & LABELS_LEFT_OUT and test["name"] not in NAMES_LEFT_OUT:
+                self.tests[test["name"]] = test["command"], properties, labels
+
+    def unit_tests(self, layers):
+        """Programs of tests of these layers."""
+        return [name for name, (command, _, labels) in self.tests.items() if labels & layers and pathlib.Path(command[0]).name == name]
+
+    def run(self, name, seconds):
+        """Does a test pass, and in how many seconds?"""
+        command, properties, _ = self.tests[name]
+        environment = dict(os.environ, **dict(each.split("=", 1) for each in properties.get("ENVIRONMENT", [])))
+        begun = time.monotonic()
+        process = subprocess.Popen(command, cwd=properties.get("WORKING_DIRECTORY"), env=environment, start_new_session=True,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            passed = process.wait(seconds) == 0
+        except subprocess.TimeoutExpired:
+            end(process)
+            passed = False
+        except BaseException:
+            end(process)
+            raise
+        return passed, time.monotonic() - begun
+
+    def take_baseline(self, digest, tell):
+        """Which tests pass, and how long they take, before anything is changed; from a file where the tree is that of the file."""
+        file = self.place / "baseline.json"
+        if file.exists():
+            kept = json.loads(file.read_text())
+            if kept["digest"] == digest and kept["longest"] == self.longest:
+                self.baseline = kept["seconds"]
+                return
+        for name in self.tests:
+            passed, seconds = self.run(name, self.longest)
+            if passed:
+                self.baseline[name] = seconds
+            else:
+                tell(f"left out: {name} " + ("takes too long" if seconds > self.longest else "fails without a mutant"))
+        file.write_text(json.dumps({"digest": digest, "longest": self.longest, "seconds": self.baseline}))
+
+    def order(self, layers, kills):
+        """Tests that fail soonest first: by how likely (those of the layer, those that killed others like it), by time."""
+        def worth(name):
+            likely = (1.0 if self.tests[name][2] & layers else 0.1) + kills.get(name, 0)
+            return likely / (self.baseline[name] + 0.05)
+        return sorted(self.baseline, key=worth, reverse=True)
+
+    def judge(self, mutant, layers, kills, seconds):
+        """What becomes of a mutant: (verdict, test that killed it, or how many passed)."""
+        path = self.tree / mutant.path
+        source = path.read_text()
+        path.write_text(mutant.applied(source))
+        try:
+            near = self.unit_tests(layers)
+            if not self.build("epcont", *near):
+                return "does not compile", ""
+            built, passed, begun = {*near}, 0, time.monotonic()
+            units = {*self.unit_tests({label for _, _, labels in self.tests.values() for label in labels})}
+            for name in self.order(layers, kills):
+                if time.monotonic() - begun > seconds:
+                    break
+                if name in units and name not in built:
+                    built = units
+                    if not self.build():
+                        return "does not compile", ""
+                if not self.run(name, 5.0 + 10.0 * self.baseline[name])[0]:
+                    return "killed", name
+                passed += 1
+            return "survived", f"{passed} tests"
+        finally:
+            path.write_text(source)
