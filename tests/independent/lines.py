@@ -110,7 +110,7 @@ class Line:
             return None
         if place.at_corner and not eye.at_corner:   # along the normal of the smooth boundary
             place.gap, place.normal = -place.gap * dot(place.normal, eye.outward), [-v for v in eye.outward]
-        if place.gap < 0 and not self.goes_on(segment, eye, reach):
+        if place.gap < -max(EQUAL * reach, ROUNDING * max(map(abs, eye.x))) and not self.goes_on(segment, eye, reach):
             return None
         return None if self.blocked(eye, place) else place
 
