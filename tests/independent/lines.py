@@ -110,7 +110,7 @@ class Line:
             return None
         if place.at_corner and not eye.at_corner:   # along the normal of the smooth boundary
             place.gap, place.normal = -place.gap * dot(place.normal, eye.outward), [-v for v in eye.outward]
-        if place.gap < 0 and not self.goes_on(segment, eye, reach):
+        if place.gap < -max(EQUAL * reach, ROUNDING * max(map(abs, eye.x))) and not self.goes_on(segment, eye, reach):
             return None
         return None if self.blocked(eye, place) else place
 
@@ -182,11 +182,10 @@ class Contact:
                     self.of[id(segment), node] = row
                     continue
                 best, second = self.master.face(eye_of(segment, k), self.reach)
-                if best and row is not None and alike(best, self.rows[row][1]):
-                    self.of[id(segment), node] = row
-                elif best:
-                    self.of[id(segment), node] = len(self.rows)
-                    self.rows.append((node, best))
+                if best:   # round a corner each side has a row of its own
+                    like = [i for i, (name, place) in enumerate(self.rows) if name == node and alike(best, place)]
+                    self.of[id(segment), node] = like[0] if like else len(self.rows)
+                    self.rows += [] if like else [(node, best)]
                 if second:
                     seconds.append((node, second))
         for node, place in seconds:

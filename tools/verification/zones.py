@@ -1,7 +1,7 @@
 """Zones of contact from pairs that touch: neighbours along the boundary, runs, half-widths."""
 import math
 
-from pressures import ALONG, UPRIGHT, chains, stands
+from pressures import ALONG, BESIDE, chains, on_symmetry, stands
 
 
 class Zone:
@@ -12,12 +12,13 @@ class Zone:
 
 
 def neighbours(scene):
-    """Of each pair the pairs beside it on the sides along its tangent, of the same contact; those of the master's nodes stand between."""
+    """Of each pair the pairs beside it on the sides along its tangent, of the same contact; those of the master's nodes stand between. And
+    the pairs on lines of symmetry at which a line ends."""
     around = {}
     for side in scene.side.values():
         for node in side.nodes:
             around.setdefault(node, []).append(side)
-    found = {}
+    found, mirrored = {}, set()
     for contact in scene.contacts:
         at = {}
         for name in contact:
@@ -33,8 +34,12 @@ def neighbours(scene):
                 beside = [a, b] if pair.node in side.nodes[2:] else [*side.nodes[2:], b if pair.node == a else a][:1]
                 own += [at.get(node) for node in beside]
             found[name] = own[:2]
+            longest = max((math.dist(*(scene.x[end] for end in side.nodes[:2])) for side in around.get(pair.node, [])), default=0.0)
+            if not pair.stands_on and sum(other is not None for other in own[:2]) < 2 and \
+                    on_symmetry(pair.node, pair.normal, pair.weights, scene.x, scene.held, scene.leader, BESIDE * longest):
+                mirrored.add(name)
         insert_masters(scene, contact, at, found)
-    return {name: [other for other in others if other is not None] for name, others in found.items()}
+    return {name: [other for other in others if other is not None] for name, others in found.items()}, mirrored
 
 
 def insert_masters(scene, contact, at, found):
@@ -57,9 +62,10 @@ def insert_masters(scene, contact, at, found):
                 found[run[k]] = [run[k - 1], run[k + 1]]
 
 
-def zones(scene, touching, force, pressure):
-    """The runs of touching pairs in the order of the deck; all arguments by the name of a pair."""
-    beside = neighbours(scene)
+def zones(scene, touching, force, pressure, told=()):
+    """The runs of touching pairs in the order of the deck; all arguments by the name of a pair. `told`: nodes at the ends of runs: where one that
+    goes round begins is free."""
+    beside, mirrored = neighbours(scene)
     linked = {name: set() for name in scene.pair}
     for name, others in beside.items():
         for other in others:
@@ -75,7 +81,10 @@ def zones(scene, touching, force, pressure):
             front = [other for each in front for other in linked[each] if other not in reached and not reached.add(other)]
         done |= reached
         run = walk(beside, touching, walk(beside, touching, name)[-1])
-        found.append(measured(scene, beside, touching, force, pressure, run if rank[run[0]] <= rank[run[-1]] else run[::-1]))
+        run = run if rank[run[0]] <= rank[run[-1]] else run[::-1]
+        if len(run) > 2 and run[0] in beside[run[-1]]:
+            run = next((way for way in turned(run) if (scene.pair[way[0]].ends[1], scene.pair[way[-1]].ends[1]) in told), run)
+        found.append(measured(scene, beside, mirrored, touching, force, pressure, run))
     return found
 
 
@@ -89,13 +98,16 @@ def walk(beside, touching, start):
         seen.add(following)
 
 
-def measured(scene, beside, touching, force, pressure, run):
+def turned(run):
+    """All ways round a closed run."""
+    for k in range(len(run)):
+        way = run[k:] + run[:k]
+        yield from (way, way[::-1])
+
+
+def measured(scene, beside, mirrored, touching, force, pressure, run):
     def apart(a, b):
         return math.dist(scene.x[scene.pair[a].node], scene.x[scene.pair[b].node])
-
-    def mirrored(name):
-        pair = scene.pair[name]
-        return not pair.stands_on and any((pair.node, c) in scene.held and abs(pair.normal[1 - c]) > UPRIGHT for c in (0, 1))
 
     def beyond(run):
         """How far behind the last pair the pressure ends, p**2 being linear; None where it does not fall."""
@@ -108,8 +120,8 @@ def measured(scene, beside, touching, force, pressure, run):
 
     length = math.fsum(apart(a, b) for a, b in zip(run, run[1:]))
     ends = [beyond(run[::-1]), beyond(run)]
-    if mirrored(run[0]) != mirrored(run[-1]):
-        part, ends = 1.0, ends[1:] if mirrored(run[0]) else ends[:1]
+    if (run[0] in mirrored) != (run[-1] in mirrored):
+        part, ends = 1.0, ends[1:] if run[0] in mirrored else ends[:1]
     else:
         part = 0.5
     half_width = part * (length + sum(ends)) if None not in ends else None
