@@ -84,7 +84,7 @@ class Generator(unittest.TestCase):
         """All layers that decide an answer."""
         mutate = load()
         self.assertEqual({path.split("/")[1] for path in mutate.sources()},
-                         {"contact", "model", "certificate", "plasticity", "flexibility", "accuracy", "report"})
+                         {"contact", "model", "certificate", "plasticity", "flexibility", "accuracy", "report", "result"})
 
 
 class Judged(Trial):
