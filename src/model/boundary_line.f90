@@ -175,7 +175,7 @@ contains
     if (.not. found) return
     ! Not by boxes: how a scene is turned must not decide.
     call self%at(segment, s, share, x, tangent)
-    found = norm2(point - x) <= distance
+    found = norm2(point - x) <= distance*(1.0_wp + at_node)
   end subroutine foot
 
   !> Shape functions, place on the smooth curve and tangent at a place of a side.

@@ -91,6 +91,8 @@ contains
       do end = 1, 2
         associate (d => held(end, i))
           if (d == 0 .or. held(3 - end, i) == d) cycle
+          ! A cut meets the side at a corner; on a curve the next side may look like one from 45 degrees on.
+          if (line%neighbour(end, i) > 0 .and. abs(turn(end, i)) < always_corner) cycle
           own = line%own_normal(i, real(end - 1, wp))
           if (abs(own(3 - d)) < abs(own(d)) .or. .not. is_cut(line, i, end, d)) cycle
           line%mirrored(end, i) = .true.

@@ -117,7 +117,7 @@ contains
       if (any(line%segment(:, sides(k)) == from%node) .and. from%node > 0) cycle
       found%segment = sides(k)
       found%place = line%face(sides(k), from%x)
-      if (.not. found%place%found .or. abs(found%place%gap) > search) cycle
+      if (.not. found%place%found .or. abs(found%place%gap) > search*(1.0_wp + equal)) cycle
       if (dot_product(found%place%normal, from%outward) >= against) then
         best%same_way = best%same_way .or. dot_product(found%place%normal, from%outward) > -against
         cycle
@@ -170,6 +170,7 @@ contains
       end if
     else if (from%at_corner .and. are_equal(from, search, found, best)) then
       call take_mean(found%place, best%place)
+      return
     end if
     if (dot_product(other%place%normal, best%place%normal) > same_face) return
     if (second%place%found) then

@@ -63,8 +63,8 @@ contains
           if (.not. face%place%found) then
             left = left + 1
             faces%left_out(:, left) = [s, which]
-          else if (beside > 0 .and. is_like(faces%facing(max(beside, 1)))) then
-            faces%row_of(which, s) = beside
+          else if (row_like(beside) > 0) then
+            faces%row_of(which, s) = row_like(beside)
           else
             n = n + 1
             faces%facing(n) = face
@@ -91,12 +91,22 @@ contains
       if (.not. is_new) is_new = contact%slave%neighbour(which, s) > s
     end function is_new
 
-    !> Round a corner each side has a pair of its own.
-    pure logical function is_like(other)
-      type(facing_type), intent(in) :: other
+    !> The row that the node has for the same face, where it has one: round a corner each side has a pair of its own. Sides that
+    !! meet in a hinge are not neighbours.
+    pure integer function row_like(beside)
+      integer, intent(in) :: beside   !! the row from the side beside it; 0: none
 
-      is_like = dot_product(face%place%normal, other%place%normal) > same_face
-    end function is_like
+      row_like = beside
+      if (beside == 0 .and. which < 3) then
+        if (contact%slave%neighbour(which, s) == 0) row_like = findloc(faces%node(:n), slave_node(), dim=1)
+      end if
+      if (row_like == 0) return
+      if (dot_product(face%place%normal, faces%facing(row_like)%place%normal) <= same_face) row_like = 0
+    end function row_like
+
+    pure integer function slave_node()
+      slave_node = contact%slave%segment(which, s)
+    end function slave_node
 
     pure logical function has_second(row)
       integer, intent(in) :: row

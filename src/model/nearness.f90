@@ -36,6 +36,7 @@ contains
     integer :: before, c, k
     type(faces_type) :: faces
     logical, allocatable :: holds(:)   !! nodes that stand on the other line [nodes]
+    logical :: wider
 
     entered = .false.
     if (.not. allocated(model%line_contact)) return
@@ -46,8 +47,10 @@ contains
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
         if (allocated(displacement)) then
-          call widen(contact, model%boundary, displacement, size_of_scene, entered)
-          call look_from_master(contact, model%boundary, displacement, holds, size_of_scene, entered)
+          call widen(contact, model%boundary, displacement, holds, size_of_scene, wider)
+          ! What the slave's nodes will hold off is not the master's.
+          if (.not. wider) call look_from_master(contact, model%boundary, displacement, holds, size_of_scene, entered)
+          entered = entered .or. wider
         else if (size(contact%left_out) > 0 .and. contact%search < size_of_scene) then
           contact%search = size_of_scene
           contact%is_wider = .true.
@@ -65,12 +68,14 @@ contains
     entered = model%pairs > before
   end subroutine enter_nodes_that_came_near
 
-  !> Search farther where nodes of the slave, left out so far, pass through the master.
-  subroutine widen(contact, obstacles, displacement, size_of_scene, entered)
+  !> Search farther where nodes of the slave, left out so far, pass through the master, or stand beside one that touches: what the
+  !! nodes of a side share is known only where all of them have pairs.
+  subroutine widen(contact, obstacles, displacement, holds, size_of_scene, wider)
     type(line_contact), intent(inout) :: contact
     type(boxed_line), intent(in) :: obstacles
     real(wp), intent(in) :: displacement(:, :), size_of_scene
-    logical, intent(inout) :: entered
+    logical, intent(in) :: holds(:)
+    logical, intent(out) :: wider
     type(facing_type) :: face
     real(wp) :: search
     integer :: i
@@ -80,14 +85,15 @@ contains
       associate (side => contact%left_out(1, i), which => contact%left_out(2, i))
         face = find_nearest(contact%master, obstacles, node_of(contact%slave, side, which), size_of_scene)
         if (.not. face%place%found) cycle
-        if (gap_of(contact%slave%segment(which, side), contact%master, face, displacement) >= -least*size_of_scene) cycle
+        if (gap_of(contact%slave%segment(which, side), contact%master, face, displacement) >= -least*size_of_scene .and. &
+            .not. any(holds(pack(contact%slave%segment(:, side), contact%slave%segment(:, side) > 0)))) cycle
         search = max(search, further*abs(face%place%gap))
       end associate
     end do
-    if (search <= contact%search) return
+    wider = search > contact%search
+    if (.not. wider) return
     contact%search = search
     contact%is_wider = .true.
-    entered = .true.
   end subroutine widen
 
   !> Nodes of the master that pass through sides of the slave by more than what these leave open between their nodes.

@@ -61,128 +61,105 @@ contains
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
     type(contact_line), intent(inout) :: line
-    integer, allocatable :: chain(:)
+    integer, allocatable :: run(:)
     logical :: done(contact%last - contact%first_of_master + 1)
-    integer :: k, part(2), side(3)
+    integer :: i, k
 
-    done = .false.
     do k = 1, size(done)
+      done(k) = .false.
+      do i = 1, k - 1
+        done(k) = done(k) .or. all(contact%stands_on(:, i) == contact%stands_on(:, k))
+      end do
       if (done(k)) cycle
-      side = contact%stands_on(:, k)
-      call part_of_side(model, side, contact%first_of_master - 1 + k, part)
-      call chain_on(model, contact, k, part, done, chain)
-      call link(model, contact, side, part, chain, line)
+      run = run_on(model, contact, contact%stands_on(:, k), line)
+      call link(model, contact, contact%stands_on(:, k), run, line)
     end do
   end subroutine insert_masters
 
-  !> Where the node of a pair of the master stands on the slave [length].
-  pure function foot_of(model, pair) result(x)
+  !> Where a pair stands on the slave [length].
+  pure function foot_of(model, contact, line, pair) result(x)
     type(model_type), intent(in) :: model
+    type(line_contact), intent(in) :: contact
+    type(contact_line), intent(in) :: line
     integer, intent(in) :: pair
     real(wp) :: x(2)
 
+    x = model%x(:, line%node(pair))
+    if (pair < contact%first_of_master) return
     associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)   ! behind the node itself
       x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
     end associate
   end function foot_of
 
-  !> The two neighbouring nodes of a side between which the node of a pair of the master stands.
-  pure subroutine part_of_side(model, side, pair, part)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: side(3), pair
-    integer, intent(out) :: part(2)
-
-    part = side(:2)
-    if (side(3) == 0) return
-    associate (along => model%x(:, side(2)) - model%x(:, side(1)))
-      if (dot_product(foot_of(model, pair) - model%x(:, side(3)), along) < 0.0_wp) then
-        part = side([1, 3])
-      else
-        part = side([3, 2])
-      end if
-    end associate
-  end subroutine part_of_side
-
-  !> The pairs that stand between the same two nodes as pair k of the master, in their order.
-  pure subroutine chain_on(model, contact, k, part, done, chain)
+  !> The pairs along a side of the slave, of its nodes and of the master's, from its start on.
+  pure function run_on(model, contact, side, line) result(run)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
-    integer, intent(in) :: k, part(2)
-    logical, intent(inout) :: done(:)
-    integer, allocatable, intent(out) :: chain(:)
-    integer :: i, j, other(2), pair
+    integer, intent(in) :: side(3)
+    type(contact_line), intent(in) :: line
+    integer, allocatable :: run(:)
+    integer :: j, k, pair
 
-    allocate (chain(0))
-    do i = k, size(done)
-      if (any(contact%stands_on(:, i) /= contact%stands_on(:, k))) cycle
-      pair = contact%first_of_master - 1 + i
-      call part_of_side(model, contact%stands_on(:, i), pair, other)
-      if (any(other /= part)) cycle
-      done(i) = .true.
-      do j = 1, size(chain)
-        if (away(chain(j)) > away(pair)) exit
+    allocate (run(0))
+    do k = contact%first, contact%last
+      pair = k
+      if (k < contact%first_of_master) then
+        if (.not. any(side == line%node(k))) cycle
+        if (findloc(line%node(contact%first:k), line%node(k), dim=1) < k - contact%first + 1) cycle   ! a second one
+      else if (any(contact%stands_on(:, k - contact%first_of_master + 1) /= side)) then
+        cycle
+      end if
+      do j = 1, size(run)
+        if (away(run(j)) > away(pair)) exit
       end do
-      chain = [chain(:j - 1), pair, chain(j:)]
+      run = [run(:j - 1), pair, run(j:)]
     end do
 
   contains
 
-    !> From the first of the two nodes.
+    !> From the start of the side.
     pure real(wp) function away(pair)
       integer, intent(in) :: pair
 
-      away = norm2(foot_of(model, pair) - model%x(:, part(1)))
+      away = norm2(foot_of(model, contact, line, pair) - model%x(:, side(1)))
     end function away
-  end subroutine chain_on
+  end function run_on
 
-  !> Neighbours and areas of the pairs from one node of the slave to the next, with those that stand between.
-  pure subroutine link(model, contact, side, part, chain, line)
+  !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of the side has no pair,
+  !! the pieces at its end belong to none.
+  pure subroutine link(model, contact, side, run, line)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
-    integer, intent(in) :: side(3), part(2), chain(:)
+    integer, intent(in) :: side(3), run(:)
     type(contact_line), intent(inout) :: line
-    integer, allocatable :: run(:)
     real(wp) :: half, width
     integer :: element, i, k
 
-    run = [pair_at(part(1)), chain, pair_at(part(2))]
     element = contact%slave%element(findloc(contact%slave%segment(1, :), side(1), dim=1))
-    width = area(model, element, side, model%normal(:, chain(1)))/norm2(model%x(:, side(2)) - model%x(:, side(1)))
-    do i = 1, 2
-      associate (pair => run(merge(1, size(run), i == 1)), beyond => run(merge(size(run), 1, i == 1)), &
-                 next => chain(merge(1, size(chain), i == 1)))
-        if (pair == 0) cycle
+    width = area(model, element, side, model%normal(:, run(size(run))))/norm2(model%x(:, side(2)) - model%x(:, side(1)))
+    do i = 1, size(run)
+      associate (pair => run(i))
+        if (pair >= contact%first_of_master) cycle
         if (is_along(model, side, model%normal(:, pair))) &
-          line%tributary(pair) = line%tributary(pair) - share(model, element, side, part(i), model%normal(:, pair))
-        k = slot_of(line%neighbour(:, pair), beyond)
-        line%neighbour(k, pair) = next
-        line%part(k, pair) = 0.0_wp
+          line%tributary(pair) = line%tributary(pair) - share(model, element, side, line%node(pair), model%normal(:, pair))
+        if (line%middle(pair)) then
+          line%neighbour(:, pair) = 0
+          line%part(:, pair) = 0.0_wp
+          line%middle(pair) = .false.   ! no node between two others any more
+        else
+          do k = 1, 2
+            if (.not. any(run == line%neighbour(k, pair)) .or. line%neighbour(k, pair) == 0) cycle
+            line%neighbour(k, pair) = 0
+            line%part(k, pair) = 0.0_wp
+          end do
+        end if
       end associate
     end do
     do i = 1, size(run) - 1
-      if (any(run([i, i + 1]) == 0)) cycle
-      half = 0.5_wp*width*norm2(place(i + 1) - place(i))
+      half = 0.5_wp*width*norm2(foot_of(model, contact, line, run(i + 1)) - foot_of(model, contact, line, run(i)))
       call add_piece(run(i), run(i + 1), half, line)
       call add_piece(run(i + 1), run(i), half, line)
     end do
-
-  contains
-
-    pure integer function pair_at(node)
-      integer, intent(in) :: node
-
-      pair_at = findloc(line%node(contact%first:contact%first_of_master - 1), node, dim=1)
-      if (pair_at > 0) pair_at = contact%first - 1 + pair_at
-    end function pair_at
-
-    !> On the slave.
-    pure function place(i) result(x)
-      integer, intent(in) :: i
-      real(wp) :: x(2)
-
-      x = model%x(:, line%node(run(i)))
-      if (i > 1 .and. i < size(run)) x = foot_of(model, run(i))
-    end function place
   end subroutine link
 
   !> Where a pair stands among another's neighbours, or an empty place.
