@@ -107,7 +107,7 @@ class Edits(Case):
                 words = f"{deck.name} {table}, row {rows[k][0]}, {rows[0][column]}: {old} -> {rows[k][column]}\n{text}"
                 self.assertNotIn("Traceback", text, words)
                 if status == 0:
-                    last = table != "history" or "but of its last row" not in " ".join(unread) or k < len(rows) - 1
+                    last = name not in ("pairs_in_contact", "plastic_elements", "load_factor") or table != "history" or k < len(rows) - 1
                     self.assertTrue(last and any(name in line for line in unread), words)
                 found, named = found + (status != 0), named + (status == 0)
         self.assertGreater(found, 2 * named)
@@ -135,13 +135,14 @@ class Wholesale(Case):
 
     def test_stresses_doubled(self):
         def doubled(rows):
-            return [rows[0]] + [[*row[:3], *(repr(2 * float(value)) for value in row[3:8]), *row[8:]] for row in rows[1:]]
+            last = 1 + rows[0].index("max_equivalent_stress")
+            return [rows[0]] + [[*row[:3], *(repr(2 * float(value)) for value in row[3:last]), *row[last:]] for row in rows[1:]]
         self.wrong("elements", doubled, r"(?m)^elements sx .*WRONG$", r"(?m)^equilibrium_residual .*WRONG$", r"(?m)^max_equivalent_stress .*WRONG$")
 
     def test_a_row_twice_or_too_many(self):
         for table, key, row in (("nodes", "node", 7), ("elements", "element", 7), ("contact", "pair", 2), ("zones", "zone", 1), ("history", "iteration", 2)):
             self.wrong(table, lambda rows: [*rows, rows[row]], rf"hertz44\.{table}\.csv:\d+: {key} \d+ is there twice", status=2)
-        self.wrong("summary", lambda rows: [*rows, rows[2]], r"hertz44.summary.csv:\d+: max_pressure is there twice", status=2)
+        self.wrong("summary", lambda rows: [*rows, *(row for row in rows if row[0] == "max_pressure")], r"hertz44.summary.csv:\d+: max_pressure is there twice", status=2)
         for table, key in (("nodes", "node"), ("elements", "element"), ("contact", "pair")):
             self.wrong(table, lambda rows: [*rows, ["77777", *rows[1][1:]]], f"{key} 77777 is not in the deck: the table of another one", status=2)
         self.wrong("zones", lambda rows: [*rows, ["2", *rows[1][1:]]], r"(?m)^zones +1 +2  WRONG$")
@@ -162,11 +163,11 @@ class Wholesale(Case):
         def widened(rows):
             return [[*rows[0], "largest_stress"]] + [[*row, "1.5"] for row in rows[1:]]
         rows = self.rows(HERTZ, "elements")
-        self.assertRegex(self.spoilt(HERTZ, "elements", widened(rows))[1], "(?m)^not read: elements.csv largest_stress$")
+        self.assertRegex(self.spoilt(HERTZ, "elements", widened(rows))[1], "(?m)^not read: elements.csv (.*, )?largest_stress$")
         rows = self.rows(HERTZ, "summary")
-        status, text = self.spoilt(HERTZ, "summary", [*rows, ["warnings", "BCONP 1: a word", ""], ["penetration", "1.0E-3", "length"]])
+        status, text = self.spoilt(HERTZ, "summary", [*rows, ["remarks", "BCONP 1: a word", ""], ["penetration", "1.0E-3", "length"]])
         self.assertEqual(0, status, text)
-        self.assertRegex(text, "(?m)^not read: summary.csv factorizations, condition, .*, weak_pairs, warnings, penetration$")
+        self.assertRegex(text, "(?m)^not read: summary.csv .*factorizations, .*condition, .*, weak_pairs, remarks, penetration$")
         self.assertRegex(text, "(?m)^not read: hertz44.lst$")
 
     def test_quiet(self):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from deck import integer
 from kinds import KINDS
 from pressures import pressures
-from verification.elements import strain_of, unit_strains
+from verification.elements import places, strain_of, unit_strains
 from verification.material import respond, von_mises
 
 # Names of the figures in the summary; the key on the left is ours.
@@ -33,6 +33,7 @@ class Element:
     limit: float     # yield stress, or None
     equivalent: float
     peak: float      # largest equivalent stress of a point
+    at: list         # places of the points, with their equivalent stresses
     total: float
     secant: float
     plastic: bool
@@ -85,7 +86,8 @@ def recompute_element(scene, tables, element, moved):
     steepest = max(abs(v) for _, unit in points for of in unit for each in of for v in each)
     equivalent = [von_mises(stress) for stress in stresses]
     on_curve = [von_mises(stress) for stress, _, _ in found]
-    result = Element(own, change, on_curve, section.points[1][1] if section.points else None, mean(equivalent), max(equivalent), mean(total for _, total, _ in found), mean(secant for _, _, secant in found),
+    result = Element(own, change, on_curve, section.points[1][1] if section.points else None, mean(equivalent), max(equivalent),
+                     list(zip(places(name, [scene.x[node] for node in nodes]), equivalent)), mean(total for _, total, _ in found), mean(secant for _, _, secant in found),
                      any(total > limit for _, total, _ in found), min(abs(total / limit - 1.0) for _, total, _ in found),
                      ROUNDINGS * steepest * max(abs(v) for pair in moved for v in pair),
                      max(abs(v) for stress in stresses for v in stress), len(points))

@@ -18,6 +18,7 @@ LIKE = 8.0
 UNITS = {"status": "", "max_pressure": "force/length2", "total_contact_force": "force", "pairs_in_contact": "", "plastic_elements": "",
          "iterations": "", "pivots": "", "max_equivalent_stress": "force/length2", "max_displacement": "length", "equilibrium_residual": "",
          "smallest_force": "force", "smallest_gap": "length", "largest_force_gap_product": "force*length", "stress_off_curve": "",
+         "max_equivalent_stress_element": "", "max_equivalent_stress_x": "length", "max_equivalent_stress_y": "length",
          "curve_tolerance": "", "stress_off_curve_limit": "", "energy_balance": "", "load_factor": ""}
 #: Figures that are rounding in a valid answer: held to their tolerance, not digit by digit.
 BOUNDS = ("equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "energy_balance", "stress_off_curve_limit")
@@ -95,6 +96,12 @@ def check_elements(report, scene, tables, found, tolerance):
         if "max_equivalent_stress" in row:
             peak = ours if own.points == 1 else own.peak
             columns.setdefault("max_equivalent_stress", []).append((element, peak, row["max_equivalent_stress"], allowed + tolerance * peak))
+        if "max_x" in row:
+            # Of points that are as high, but for what is known of their stresses, either.
+            highest = [place for place, value in own.at if value >= own.peak - 2 * (allowed + tolerance * own.peak)]
+            place = min(highest, key=lambda place: math.dist(place, (float(row["max_x"]), float(row["max_y"]))))
+            for c, name in enumerate(("max_x", "max_y")):
+                columns.setdefault(name, []).append((element, place[c], row[name], report.rounding * max(abs(p[c]) for p in places)))
         columns["equivalent_strain"].append((element, own.total, row["equivalent_strain"], own.noise + tolerance * own.total))
         part = own.noise / own.total if own.total else 0.0
         columns["secant_modulus"].append((element, own.secant, row["secant_modulus"], own.secant * (tolerance + part * (own.plastic or own.edge < part))))
@@ -180,6 +187,7 @@ def check_summary(report, scene, tables, found, tolerance):
         told = summary.get(key, "missing")
         good = told == str(ours) if isinstance(ours, int) else told != "missing" and abs(number(told, tables.path("summary"), key) - ours) <= tolerance * ours
         report.line(key, ours, told, good)
+    check_highest(report, tables, tolerance)
     if tables.history:
         last = tables.history[max(tables.history)]
         for key in ("pairs_in_contact", "plastic_elements"):
@@ -202,6 +210,19 @@ def check_summary(report, scene, tables, found, tolerance):
         if unit is not None and tables.units[key] != unit:
             report.line(f"unit of {key}", unit, tables.units[key], False)
     report.line("status", "valid", summary.get("status", "missing"), summary.get("status") == "valid")
+
+
+def check_highest(report, tables, tolerance):
+    """The element with the largest stress, of equals either, and where in it that is."""
+    if not any("max_x" in own for own in tables.elements.values()):
+        return
+    told = tables.summary.get("max_equivalent_stress_element", "missing")
+    row = tables.elements.get(int(told) if told.isdigit() else None, {})
+    highest = max(float(own.get("max_equivalent_stress", 0.0)) for own in tables.elements.values())
+    report.line("max_equivalent_stress_element", highest, told, float(row.get("max_equivalent_stress", "nan")) >= highest * (1 - tolerance))
+    for c in "xy":
+        key = f"max_equivalent_stress_{c}"
+        report.line(key, float(row.get(f"max_{c}", "nan")), tables.summary.get(key, "missing"), row.get(f"max_{c}") == tables.summary.get(key))
 
 
 def not_read(tables):

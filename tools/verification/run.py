@@ -17,7 +17,7 @@ COLUMNS = {
 #: Where no boundary belongs to the pairs that touch.
 NO_PRESSURE = "max_pressure", ""
 SAME_NORMAL = 1e-3   # of two pairs of a node: there is one of them too many
-SOME = {"elements": ["max_equivalent_stress"]}
+SOME = {"elements": ["max_equivalent_stress", "max_x", "max_y"]}
 #: Keys of the summary that must be numbers.
 FIGURES = {"max_pressure", "total_contact_force", "max_equivalent_stress", "max_displacement", "equilibrium_residual", "smallest_force",
            "smallest_gap", "largest_force_gap_product", "stress_off_curve", "curve_tolerance", "stress_off_curve_limit", "energy_balance", "load_factor"}
