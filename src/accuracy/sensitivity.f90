@@ -2,7 +2,8 @@
 !>
 !> On the pairs in contact the forces are R = -M g + ..., with M = F^-1 - F^-1 A (A'F^-1 A)^-1 A'F^-1. Errors dF and dg move them by
 !> M (dF R + dg), at most |M| (|dF| |R| + |dg|): a bound that no change of units alters (Skeel 1979). Its largest entry is the
-!> 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs are few, else estimated from a few products (Hager 1984).
+!> 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs are few, else estimated from a few products (Hager 1984;
+!> Higham 1988).
 module epcont_accuracy_sensitivity
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, respond
@@ -63,14 +64,17 @@ contains
     norm = 0.0_wp
     do product = 1, most_products
       y = d*forces_under(basis, x)
-      if (sum(abs(y)) <= norm) return
+      if (sum(abs(y)) <= norm) exit
       norm = sum(abs(y))
       turned = forces_under(basis, d*sign(1.0_wp, y))
       k = maxloc(abs(turned), dim=1)
-      if (abs(turned(k)) <= dot_product(turned, x)) return
+      if (abs(turned(k)) <= dot_product(turned, x)) exit
       x = 0.0_wp
       x(k) = 1.0_wp
     end do
+    ! Where all pairs are alike that stays at the start: forces of alternating sign are looked at, too.
+    x = [(merge(1.0_wp, -1.0_wp, mod(k, 2) == 0)*(1.0_wp + (k - 1.0_wp)/(size(d) - 1.0_wp)), k=1, size(d))]
+    norm = max(norm, sum(abs(d*forces_under(basis, x)))/(1.5_wp*size(d)))
   end function largest_change
 
   !> M g.

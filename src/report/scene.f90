@@ -89,7 +89,6 @@ contains
         text = 'shorter sides of both lines there'
         if (has_side(model, contact%master, place%side)) &
           text = 'SLAVE and MASTER of BCONP '//text_of(contact%bconp(1))//' exchanged, or '//text
-        if (contact%nodes_left_out > 0) text = 'PARAM SEARCH above '//short_real(contact%search)//', or '//text
       end associate
     else if (all(lines > 0)) then
       text = 'a BCONP between BLSEG '//text_of(model%line(lines(1))%id)//' and BLSEG '//text_of(model%line(lines(2))%id)
