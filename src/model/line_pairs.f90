@@ -63,8 +63,8 @@ contains
           if (.not. face%place%found) then
             left = left + 1
             faces%left_out(:, left) = [s, which]
-          else if (row_like(beside) > 0) then
-            faces%row_of(which, s) = row_like(beside)
+          else if (row_like(contact, s, which, beside, face, faces, n) > 0) then
+            faces%row_of(which, s) = row_like(contact, s, which, beside, face, faces, n)
           else
             n = n + 1
             faces%facing(n) = face
@@ -91,23 +91,6 @@ contains
       if (.not. is_new) is_new = contact%slave%neighbour(which, s) > s
     end function is_new
 
-    !> The row that the node has for the same face, where it has one: round a corner each side has a pair of its own. Sides that
-    !! meet in a hinge are not neighbours.
-    pure integer function row_like(beside)
-      integer, intent(in) :: beside   !! the row from the side beside it; 0: none
-
-      row_like = beside
-      if (beside == 0 .and. which < 3) then
-        if (contact%slave%neighbour(which, s) == 0) row_like = findloc(faces%node(:n), slave_node(), dim=1)
-      end if
-      if (row_like == 0) return
-      if (dot_product(face%place%normal, faces%facing(row_like)%place%normal) <= same_face) row_like = 0
-    end function row_like
-
-    pure integer function slave_node()
-      slave_node = contact%slave%segment(which, s)
-    end function slave_node
-
     pure logical function has_second(row)
       integer, intent(in) :: row
 
@@ -124,6 +107,24 @@ contains
     if (which == 3) return
     if (contact%slave%neighbour(which, side) > 0) row = row_of(3 - which, contact%slave%neighbour(which, side))
   end function row_beside
+
+  !> The row that a node has for the same face, 0 where it has none: round a corner each side has a pair of its own. Sides that
+  !! meet in a hinge are not neighbours.
+  pure integer function row_like(contact, side, which, beside, face, faces, rows) result(row)
+    type(line_contact), intent(in) :: contact
+    integer, intent(in) :: side, which
+    integer, intent(in) :: beside            !! the row from the side beside it; 0: none
+    type(facing_type), intent(in) :: face
+    type(faces_type), intent(in) :: faces
+    integer, intent(in) :: rows              !! so far
+
+    row = beside
+    if (row == 0 .and. which < 3) then
+      if (contact%slave%neighbour(which, side) == 0) row = findloc(faces%node(:rows), contact%slave%segment(which, side), dim=1)
+    end if
+    if (row == 0) return
+    if (dot_product(face%place%normal, faces%facing(row)%place%normal) <= same_face) row = 0
+  end function row_like
 
   !> Second faces, in concave corners, become rows but where the node has one like them: its other side faces the same.
   pure subroutine take_seconds(node, face, n, faces)

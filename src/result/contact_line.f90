@@ -136,7 +136,8 @@ contains
     integer :: element, i, k
 
     element = contact%slave%element(findloc(contact%slave%segment(1, :), side(1), dim=1))
-    width = area(model, element, side, model%normal(:, run(size(run))))/norm2(model%x(:, side(2)) - model%x(:, side(1)))
+    i = findloc(run >= contact%first_of_master, .true., dim=1)   ! whose normal is the side's
+    width = area(model, element, side, model%normal(:, run(i)))/norm2(model%x(:, side(2)) - model%x(:, side(1)))
     do i = 1, size(run)
       associate (pair => run(i))
         if (pair >= contact%first_of_master) cycle
