@@ -4,7 +4,7 @@ module epcont_analysis
   use epcont_base_kinds, only: wp
   use epcont_base_stopwatch, only: stage_accuracy, stage_certificate, stage_stresses
   use epcont_certificate_certificate, only: certificate_type, certify
-  use epcont_certificate_scene, only: little, look_through
+  use epcont_certificate_scene, only: look_through
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_model_controls, only: precision_double
@@ -102,9 +102,6 @@ contains
                  answer%contact%force, certificate, answer%rounding_error)
     if (answer%converged .and. certificate%valid) &
       certificate%scene = look_through(model, answer%displacement, answer%contact%force)
-    associate (inside => certificate%scene%inside)
-      answer%penetration = merge(inside%depth, 0.0_wp, inside%ratio >= little)
-    end associate
     call watch%lap(stage_certificate)
   end subroutine evaluate
 

@@ -213,8 +213,7 @@ contains
         end associate
       end associate
     end do
-    ! Bodies that lie in each other between their nodes have come too near by as much.
-    accuracy%approach(motion) = weights%product*abs(short) + end_error + answer%penetration
+    accuracy%approach(motion) = weights%product*abs(short) + end_error
   end subroutine assess_approach
 
   !> Force of a pair over the depth of its elements [force/length].

@@ -34,7 +34,6 @@ module epcont_result_answer
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
     type(locking_type) :: locking                    !! of three-node elements
     type(gradient_type) :: gradient                  !! of displacements that are not small
-    real(wp) :: penetration = 0.0_wp                 !! how deep bodies lie in each other, at most [length]
     integer :: precision = precision_double          !! of the factors
     integer :: asked_precision = precision_double    !! that did not do, where it is another one
     real(wp) :: rounding_error = 0.0_wp              !! of displacements, strains and forces, relative: what single precision left
