@@ -35,7 +35,7 @@ class Whole(Case):
         (self.place / "list.csv").write_text("deck,+a\n=1+1.dat,@SUM(1)\nb.dat,-1.5\n")
         self.run_it(0, "--list", "list.csv", "-o", "out")
         rows = self.table()
-        self.assertEqual([("'=1+1.dat", "'@SUM(1)"), ("b.dat", "-1.5")], [(row["deck"], row["'+a"]) for row in rows])
+        self.assertEqual([("./=1+1.dat", "'@SUM(1)"), ("b.dat", "-1.5")], [(row["deck"], row["'+a"]) for row in rows])
 
     def test_a_row_a_deck_in_the_order_of_the_list(self):
         self.decks("b.dat", "a.dat", "c_rejected.dat")
@@ -70,7 +70,7 @@ class Whole(Case):
         summary = dict(line.split(",")[:2] for line in (self.place / "out" / "a.summary.csv").read_text().splitlines())
         row = self.table()[0]
         self.assertEqual("stress off the curve", row["certificate"])
-        self.assertAlmostEqual(float(summary["stress_off_curve"]) / 0.1, float(row["certificate_part"]), delta=1e-3)
+        self.assertAlmostEqual(float(summary["stress_off_curve"]) / 0.1, float(row["certificate_part"]), delta=5e-3)   # two digits
 
     def test_memory_of_a_large_deck(self):
         deck = self.deck("a.dat", ROOT / "input" / "pin_in_hole" / "pin_in_hole.dat")
