@@ -34,6 +34,8 @@ INSTEAD = [
     (r"tools/batch (.*--slurm.*|--collect .*)", "tools/batch --help", "wants Slurm; tests/slurm/run does it"),
     (r"tools/bench .*", "sh -n tools/bench && grep add_argument tools/benchmark/bench.py", "installs packages; minutes"),
     (r"tools/fuzz --decks \d+ (.*)", r"tools/fuzz --decks 40 \1", "minutes; the ctest `fuzzed_decks` runs more"),
+    (r"tools/deceive --scenes .*", "tools/deceive --help", "an hour or more"),
+    (r"tools/mutate --(mutants|only|again).*", "tools/mutate --help", "hours; builds"),
     (r"tools/fuzz --minutes .*", "tools/fuzz --decks 4 --program build/release/epcont", "minutes; builds the preset sanitize"),
     (r"tools/paraview .*", "sh -n tools/paraview && python3 tools/paraviews.py --help", "wants ParaView; the ctest `vtk_paraview` runs it"),
     (r"tools/make_venv \w+", "sh -n tools/make_venv", "fetches packages; the ctest `tools_make_venv` runs it"),
