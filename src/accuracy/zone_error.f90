@@ -11,7 +11,7 @@ module epcont_accuracy_zone_error
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
-  use epcont_result_contact_line, only: contact_line
+  use epcont_result_contact_line, only: contact_line, distance
   use epcont_result_zones, only: contact_zone
   implicit none
   private
@@ -140,14 +140,6 @@ contains
       s(k) = s(k - 1) + distance(model, line, pairs(k), pairs(k - 1))
     end do
   end function places
-
-  pure real(wp) function distance(model, line, a, b)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    integer, intent(in) :: a, b
-
-    distance = norm2(model%x(:, line%node(a)) - model%x(:, line%node(b)))
-  end function distance
 
   !> Distance from the end of a zone to the first open pair; 0: there is none, the end is the last candidate.
   pure real(wp) function to_first_open(model, line, touching, last) result(far)

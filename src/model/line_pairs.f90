@@ -51,7 +51,7 @@ contains
           which = in_turn(turn)
           if (slave%segment(which, s) == 0) cycle
           beside = row_beside(contact, faces%row_of, s, which)
-          if (beside > 0 .and. which < 3) then
+          if (beside > 0) then
             if (all(slave%normal(:, which, s) == slave%normal(:, 3 - which, slave%neighbour(which, s))) .and. &
                 .not. has_second(beside)) then   ! looked at from the side beside it
               faces%row_of(which, s) = beside
@@ -63,13 +63,14 @@ contains
           if (.not. face%place%found) then
             left = left + 1
             faces%left_out(:, left) = [s, which]
-          else if (row_like(contact, s, which, beside, face, faces, n) > 0) then
-            faces%row_of(which, s) = row_like(contact, s, which, beside, face, faces, n)
           else
-            n = n + 1
-            faces%facing(n) = face
-            faces%node(n) = slave%segment(which, s)
-            faces%row_of(which, s) = n
+            faces%row_of(which, s) = row_like(contact, s, which, beside, face, faces, n)
+            if (faces%row_of(which, s) == 0) then
+              n = n + 1
+              faces%facing(n) = face
+              faces%node(n) = slave%segment(which, s)
+              faces%row_of(which, s) = n
+            end if
           end if
           if (.not. second%place%found) cycle
           seconds = seconds + 1
@@ -250,11 +251,11 @@ contains
                      model%kinematics(model%section(contact%slave%element(1))) == axisymmetric, start, node, weight, covered)
     call find_tips(contact, model%boundary, covered, faces)
     tips = size(faces%tip)
-    contact%stands_on = contact%slave%segment(:, faces%on%segment)
+    contact%stands_on = faces%on%segment
     do i = 1, tips
       do k = 1, 3
         if (faces%on(i)%place%share(k) == 0.0_wp) cycle
-        node = [node, contact%stands_on(k, i)]
+        node = [node, contact%slave%segment(k, contact%stands_on(i))]
         weight = [weight, faces%on(i)%place%share(k)]
       end do
       start = [start, size(node) + 1]

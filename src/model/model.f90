@@ -32,7 +32,7 @@ module epcont_model_model
     real(wp) :: search = 0.0_wp           !! how far away a side may be [length]
     integer :: first = 1, last = 0        !! its pairs: of the slave's nodes, and from the next one on
     integer :: first_of_master = 1        !! those of the master's nodes, most of them corners
-    integer, allocatable :: stands_on(:, :)   !! the side of the slave at each of the latter: its nodes [3, pairs of the master]
+    integer, allocatable :: stands_on(:)  !! the side of the slave at each of the latter [pairs of the master]
     integer, allocatable :: left_out(:, :)    !! sides of the slave that face nothing at a node: which, which node [2, any]
     integer :: nodes_left_out = 0             !! nodes of the slave without a pair
     integer, allocatable :: came_near(:)      !! nodes of the master that have a pair since they came near as loads moved them

@@ -12,7 +12,7 @@ module epcont_plasticity_iteration
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: numbering_type
-  use epcont_plasticity_iteration_error, only: error_estimator
+  use epcont_plasticity_iteration_error, only: error_estimator, ratio
   use epcont_plasticity_linear_scene, only: linear_scene, new_linear_scene
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_newton, only: newton_method
@@ -258,14 +258,6 @@ contains
     now%yielded = count(yielded)
     now%residual = off
   end subroutine measure
-
-  !> a/b, 0 where both are 0; finite.
-  pure real(wp) function ratio(a, b)
-    real(wp), intent(in) :: a, b
-
-    ratio = 0.0_wp
-    if (a > 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
-  end function ratio
 
   !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than the tolerance.
   !! Where nothing has yielded, the first solve was exact; and where stresses are on their curves

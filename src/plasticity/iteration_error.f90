@@ -9,7 +9,7 @@ module epcont_plasticity_iteration_error
   use epcont_plasticity_state, only: scene_state
   implicit none
   private
-  public :: error_estimator
+  public :: error_estimator, ratio
 
   type :: error_estimator
     ! The last g, with its contact forces, and the last g - x.

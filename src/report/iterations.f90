@@ -11,6 +11,9 @@ module epcont_report_iterations
   private
   public :: list_iterations, list_iteration_error
 
+  !> Stresses so many times theirs off the curve have run away: how far, rounding decides.
+  real(wp), parameter :: run_away = 10.0_wp
+
 contains
 
   !> One line a solve, and what is to be known of the yielding.
@@ -26,7 +29,7 @@ contains
     do k = 1, size(answer%history)
       associate (now => answer%history(k))
         call file%line(right(text_of(now%iteration), 10)//column_number(now%load_factor, 1.0_wp)// &
-                       right(rounding_number(now%change), 13)//right(rounding_number(now%residual), 15)// &
+                       right(rounding_number(now%change), 13)//right(curve_text(now%residual), 15)// &
                        right(text_of(now%touching), 10)//right(text_of(now%yielded), 10)//right(text_of(now%pivots), 10))
       end associate
     end do
@@ -44,6 +47,15 @@ contains
       call file%line('  the strain fell as the load grew, and went back along the curve (elastic unloading is not modelled): '// &
                      named(model, answer%unloaded, answer%first_unloaded))
   end subroutine list_iterations
+
+  !> Distance of stresses from their curve.
+  pure function curve_text(residual) result(text)
+    real(wp), intent(in) :: residual
+    character(len=:), allocatable :: text
+
+    text = '> '//text_of(nint(run_away))
+    if (residual <= run_away) text = rounding_number(residual)
+  end function curve_text
 
   !> A number of elements, and one of them.
   pure function named(model, count, first) result(text)

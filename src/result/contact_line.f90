@@ -3,11 +3,12 @@ module epcont_result_contact_line
   use epcont_base_edge, only: edge_point, edge_point_count, edge_points
   use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: sorted_order
   use epcont_model_model, only: line_contact, model_type
   use epcont_result_symmetry, only: is_on_symmetry
   implicit none
   private
-  public :: contact_line, find_contact_line, shared, in_contact
+  public :: contact_line, find_contact_line, distance, shared, in_contact
 
   !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's corner's too.
   real(wp), parameter :: along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp)
@@ -61,20 +62,46 @@ contains
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
     type(contact_line), intent(inout) :: line
-    integer, allocatable :: run(:)
-    logical :: done(contact%last - contact%first_of_master + 1)
-    integer :: i, k
+    integer, allocatable :: order(:), pair_at(:)
+    integer :: first, last
 
-    do k = 1, size(done)
-      done(k) = .false.
-      do i = 1, k - 1
-        done(k) = done(k) .or. all(contact%stands_on(:, i) == contact%stands_on(:, k))
-      end do
-      if (done(k)) cycle
-      run = run_on(model, contact, contact%stands_on(:, k), line)
-      call link(model, contact, contact%stands_on(:, k), run, line)
+    if (contact%last < contact%first_of_master) return
+    pair_at = first_pair_at(model, contact%first, contact%first_of_master - 1, line)
+    order = sorted_order(contact%stands_on)
+    last = 0
+    do while (last < size(order))
+      first = last + 1
+      associate (side => contact%stands_on(order(first)))
+        do last = first, size(order) - 1
+          if (contact%stands_on(order(last + 1)) /= side) exit
+        end do
+        call link(model, contact, side, run_on(model, contact, side, pair_at, order(first:last), line), line)
+      end associate
     end do
   end subroutine insert_masters
+
+  !> Of a range of pairs the first at each node, 0 where there is none. [nodes]
+  pure function first_pair_at(model, first, last, line) result(pair_at)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: first, last
+    type(contact_line), intent(in) :: line
+    integer, allocatable :: pair_at(:)
+    integer :: pair
+
+    allocate (pair_at(model%nodes), source=0)
+    do pair = last, first, -1
+      pair_at(line%node(pair)) = pair
+    end do
+  end function first_pair_at
+
+  !> Between the places of two pairs [length].
+  pure real(wp) function distance(model, line, a, b)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    integer, intent(in) :: a, b
+
+    distance = norm2(model%x(:, line%node(a)) - model%x(:, line%node(b)))
+  end function distance
 
   !> Where a pair stands on the slave [length].
   pure function foot_of(model, contact, line, pair) result(x)
@@ -92,27 +119,26 @@ contains
   end function foot_of
 
   !> The pairs along a side of the slave, of its nodes and of the master's, from its start on.
-  pure function run_on(model, contact, side, line) result(run)
+  pure function run_on(model, contact, side, pair_at, masters, line) result(run)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
-    integer, intent(in) :: side(3)
+    integer, intent(in) :: side
+    integer, intent(in) :: pair_at(:)   !! the slave's pair at each node, 0: none [nodes]
+    integer, intent(in) :: masters(:)   !! which of the master's pairs stand on the side
     type(contact_line), intent(in) :: line
-    integer, allocatable :: run(:)
-    integer :: j, k, pair
+    integer, allocatable :: pairs(:), run(:)
+    integer :: i, j
 
+    associate (node => contact%slave%segment(:, side))
+      pairs = [pair_at(pack(node, node > 0)), contact%first_of_master - 1 + masters]
+    end associate
+    pairs = pack(pairs, pairs > 0)
     allocate (run(0))
-    do k = contact%first, contact%last
-      pair = k
-      if (k < contact%first_of_master) then
-        if (.not. any(side == line%node(k))) cycle
-        if (findloc(line%node(contact%first:k), line%node(k), dim=1) < k - contact%first + 1) cycle   ! a second one
-      else if (any(contact%stands_on(:, k - contact%first_of_master + 1) /= side)) then
-        cycle
-      end if
+    do i = 1, size(pairs)
       do j = 1, size(run)
-        if (away(run(j)) > away(pair)) exit
+        if (away(run(j)) > away(pairs(i))) exit
       end do
-      run = [run(:j - 1), pair, run(j:)]
+      run = [run(:j - 1), pairs(i), run(j:)]
     end do
 
   contains
@@ -121,21 +147,23 @@ contains
     pure real(wp) function away(pair)
       integer, intent(in) :: pair
 
-      away = norm2(foot_of(model, contact, line, pair) - model%x(:, side(1)))
+      away = norm2(foot_of(model, contact, line, pair) - model%x(:, contact%slave%segment(1, side)))
     end function away
   end function run_on
 
   !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of the side has no pair,
   !! the pieces at its end belong to none.
-  pure subroutine link(model, contact, side, run, line)
+  pure subroutine link(model, contact, segment, run, line)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
-    integer, intent(in) :: side(3), run(:)
+    integer, intent(in) :: segment   !! the side
+    integer, intent(in) :: run(:)
     type(contact_line), intent(inout) :: line
     real(wp) :: half, width
-    integer :: element, i, k
+    integer :: element, i, k, side(3)
 
-    element = contact%slave%element(findloc(contact%slave%segment(1, :), side(1), dim=1))
+    element = contact%slave%element(segment)
+    side = contact%slave%segment(:, segment)
     i = findloc(run >= contact%first_of_master, .true., dim=1)   ! whose normal is the side's
     width = area(model, element, side, model%normal(:, run(i)))/norm2(model%x(:, side(2)) - model%x(:, side(1)))
     do i = 1, size(run)
@@ -194,10 +222,7 @@ contains
     real(wp) :: longest, own
     integer :: e, i, k, pair, side(3)
 
-    allocate (pair_at(model%nodes), source=0)
-    do pair = last, first, -1
-      pair_at(line%node(pair)) = pair
-    end do
+    pair_at = first_pair_at(model, first, last, line)
     do pair = first, last
       associate (node => line%node(pair), n => model%normal(:, pair))
         longest = 0.0_wp

@@ -3,7 +3,7 @@ module epcont_result_zones
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_model_model, only: model_type
-  use epcont_result_contact_line, only: contact_line
+  use epcont_result_contact_line, only: contact_line, distance
   implicit none
   private
   public :: contact_zone, find_zones
@@ -107,14 +107,6 @@ contains
       run = [run, next]
     end do
   end function run_from
-
-  pure real(wp) function distance(model, line, a, b)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    integer, intent(in) :: a, b
-
-    distance = norm2(model%x(:, line%node(a)) - model%x(:, line%node(b)))
-  end function distance
 
   !> How far beyond the last pair of a run the pressure vanishes: near the edge p**2 is linear. Not beyond the
   !! first open pair; not at all where that end is the last candidate, or the pressure does not fall towards it.
