@@ -3,12 +3,12 @@ module epcont_model_line_contacts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_sorting, only: id_index
-  use epcont_base_text, only: short_real, text_of
+  use epcont_base_text, only: text_of
   use epcont_deck_card_kinds, only: card_bconp, card_blseg
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_model_boundary_line, only: boundary_line
   use epcont_model_line_pairs, only: add_pairs, faces_type, find_faces
+  use epcont_model_line_warnings, only: warn_of_both_ways, warn_of_finer_slave, warn_of_overlap
   use epcont_model_model, only: line_contact, model_type
   use epcont_model_reference, only: check_unique, index_of_ids, resolve
   use epcont_model_side_boxes, only: new_boxed_line
@@ -20,11 +20,6 @@ module epcont_model_line_contacts
   real(wp), parameter :: default_search = 2.0_wp
   !> If nothing is found, within this many times as much, again and again, until more than the scene is looked through.
   real(wp), parameter :: widening = 4.0_wp
-  !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off by 3 % and more.
-  real(wp), parameter :: finer = 1.3_wp
-  !> Gaps of curves over sides that are chords are exact to this part of how high the curves rise above them; and coordinates
-  !> have so many digits where a card has eight columns.
-  real(wp), parameter :: curve_error = 0.01_wp, digits = 1.0e-7_wp
 
 contains
 
@@ -51,6 +46,7 @@ contains
       call set_lines(deck, model, line, pack_of(number, c), model%line_contact(c))
       call find_pairs(deck, minloc(abs(number - c), dim=1), model, model%line_contact(c), faults)
     end do
+    if (faults%error_count() == 0) call warn_of_both_ways(deck, number, model, faults)
   end subroutine build_line_contacts
 
   !> Members of a set, in their order.
@@ -267,86 +263,4 @@ contains
     end if
     call faults%add_error(deck%place(card_bconp, i, 1), what, remedy)
   end subroutine add_nothing_faced
-
-  !> Pressures are carried by the slave's nodes. Where these are closer than the nodes of the master, whose sides bend
-  !! at nodes alone, they show its facets. Looked at where the lines are nearest to each other.
-  subroutine warn_of_finer_slave(deck, i, model, contact, faces, faults)
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: i
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    type(faces_type), intent(in) :: faces
-    type(diagnostics), intent(inout) :: faults
-    real(wp) :: nearest, sides(2)
-    integer :: k, row, s
-
-    associate (slave => contact%slave, master => contact%master)
-      nearest = minval(faces%facing%place%gap)
-      sides = 0.0_wp
-      do s = 1, size(slave%element)
-        if (is_rigid(slave%segment(:2, s))) cycle
-        do k = 1, 2
-          row = faces%row_of(k, s)
-          if (row == 0) cycle
-          associate (facing => faces%facing(row))
-            if (facing%place%gap > nearest + slave%chord_length(s)) cycle
-            if (is_rigid(master%segment(:2, facing%segment))) cycle
-            sides = sides + [slave%chord_length(s)/merge(2, 1, slave%segment(3, s) > 0), &
-                             master%chord_length(facing%segment)/merge(2, 1, master%segment(3, facing%segment) > 0)]
-          end associate
-        end do
-      end do
-    end associate
-    if (sides(1)*finer >= sides(2)) return
-    call faults%add_warning(deck%place(card_bconp, i, 2), deck%identity(card_bconp, i)//': sides of the slave line are '// &
-                            short_real(sides(2)/sides(1))//' times shorter than those that they face: pressures will show these'// &
-                            ' as facets', 'SLAVE and MASTER exchanged, or lines of about the same fineness')
-
-  contains
-
-    !> A side whose ends are held, or move as one, does not bend at all.
-    pure logical function is_rigid(node)
-      integer, intent(in) :: node(2)
-      logical :: held(2, 2)
-      integer :: c, n
-
-      held = reshape([((model%held(c, model%leader(c, node(n))), c=1, 2), n=1, 2)], [2, 2])
-      is_rigid = all(held(:, 1) .and. held(:, 2) .or. model%leader(:, node(1)) == model%leader(:, node(2)))
-    end function is_rigid
-  end subroutine warn_of_finer_slave
-
-  !> One warning for all overlaps: shrink fits have many. What curves over chords, and cards of eight columns, leave is none.
-  subroutine warn_of_overlap(deck, i, model, contact, faults)
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: i
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: others
-    integer :: deepest, overlaps
-    real(wp) :: least
-
-    least = digits*maxval(abs(contact%slave%x)) + curve_error*(largest_rise(contact%slave) + largest_rise(contact%master))
-    associate (gap => model%initial_gap(contact%first:contact%last))
-      overlaps = count(gap < -least)
-      if (overlaps == 0) return
-      deepest = contact%first - 1 + minloc(gap, dim=1)
-    end associate
-    others = ''
-    if (overlaps > 1) others = '; '//text_of(overlaps)//' nodes overlap'
-    call faults%add_warning(deck%place(card_bconp, i, 1), deck%identity(card_bconp, i)//': the initial gap at GRID '// &
-                            text_of(model%pair_id(deepest))//' is '//short_real(model%initial_gap(deepest))//others, &
-                            'gaps of 0.0 or more, unless a fit is meant')
-  end subroutine warn_of_overlap
-
-  !> How high the curves over a line's sides rise above its chords, at most [length].
-  pure real(wp) function largest_rise(line)
-    class(boundary_line), intent(in) :: line
-    integer :: i
-
-    largest_rise = 0.0_wp
-    do i = 1, size(line%element)
-      largest_rise = max(largest_rise, line%chord_length(i)*norm2(line%normal(:, 2, i) - line%normal(:, 1, i))/8.0_wp)
-    end do
-  end function largest_rise
 end module epcont_model_line_contacts
