@@ -14,8 +14,6 @@ module epcont_model_boundary_line
 
   !> Part of a side by which a point may stand beyond its end, more than the rounding of coordinates in eight columns.
   real(wp), parameter, public :: beyond = 1.0e-5_wp
-  !> A point so near to a node, as a part of the side, faces the node.
-  real(wp), parameter :: at_node = 1.0e-9_wp
   !> Steps of Newton's method, which needs five, and the change that ends it.
   integer, parameter :: most_steps = 30
   real(wp), parameter :: converged = 1.0e-14_wp
@@ -129,9 +127,9 @@ contains
     call find_foot(self, segment, point, s, found)
     if (.not. found .or. s < -beyond .or. s > 1.0_wp + beyond) return
     place%found = .true.
-    if (s <= at_node) then
+    if (s <= beyond) then
       call face_end(self, segment, 1, point, place)
-    else if (s >= 1.0_wp - at_node) then
+    else if (s >= 1.0_wp - beyond) then
       call face_end(self, segment, 2, point, place)
     else
       place%share = values(curved, s)
@@ -175,7 +173,7 @@ contains
     if (.not. found) return
     ! Not by boxes: how a scene is turned must not decide.
     call self%at(segment, s, share, x, tangent)
-    found = norm2(point - x) <= distance*(1.0_wp + at_node)
+    found = norm2(point - x) <= distance*(1.0_wp + beyond)
   end subroutine foot
 
   !> Shape functions, place on the smooth curve and tangent at a place of a side.
@@ -224,7 +222,7 @@ contains
       found = abs(step) <= converged*max(1.0_wp, abs(s))
       if (found) return
     end do
-    found = abs(step) <= at_node
+    found = abs(step) <= beyond
   end subroutine find_foot
 
   !> Coordinates of a side's nodes from its start: far from the origin they are exact differences.

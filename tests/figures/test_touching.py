@@ -36,6 +36,7 @@ TWINS = [
     ("mirror_corner_base", "mirror_corner_mirrored", EXACT), ("mirror_chamfer_base", "mirror_chamfer_mirrored", EXACT),
     ("twice_slave", "twice_part", EXACT), ("twice_slave", "twice_longer", EXACT), ("twice_slave", "twice_master", EXACT),
     ("twice_slave", "twice_masterpart", EXACT), ("overhang_none", "overhang_by_a_hair", 1e-4),
+    ("corner_on_corner", "corner_beside_it", 1e-6), ("corner_on_corner", "corner_behind_it", 1e-6),   # by 1e-9
 ]
 
 #: Slave and master exchanged: the same within what the mesh leaves.
@@ -44,7 +45,7 @@ EXCHANGED = [
     ("corner_between_floor_nodes_moved", 0.01), ("flanks_through_bodies", EXACT), ("thin_whole_outlines", 0.01),
     ("chamfer15_master", 0.02), ("chamfer30_master", 0.02), ("mirror_chamfer_base", 0.02), ("mirror_corner_base", 1e-6),
     ("teeth_through_block", EXACT), ("narrow_punch_between_nodes", EXACT), ("vee_no_node_faces", EXACT), ("overhang_none", EXACT),
-    ("patch_slave_split", EXACT), ("patch_master_split", EXACT),
+    ("patch_slave_split", EXACT), ("patch_master_split", EXACT), ("corner_on_corner", 1e-6), ("corner_beside_it", 1e-6),
 ]
 
 
