@@ -3,6 +3,7 @@ module epcont_result_contact_line
   use epcont_base_edge, only: edge_point, edge_point_count, edge_points
   use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
+  use epcont_base_partition, only: new_partition, partition
   use epcont_base_sorting, only: sorted_order
   use epcont_model_model, only: line_contact, model_type
   use epcont_result_symmetry, only: is_on_symmetry
@@ -12,6 +13,9 @@ module epcont_result_contact_line
 
   !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's corner's too.
   real(wp), parameter :: along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp)
+
+  !> A pair of the master stands at the place of one that is nearer than this part of the way from node to node.
+  real(wp), parameter :: close = 0.22_wp
 
   !> A corner of a curved ring on the axis has no area but for rounding and curvature: less than this part of its side's.
   real(wp), parameter, public :: no_area = 1.0e-3_wp
@@ -26,6 +30,9 @@ module epcont_result_contact_line
     logical, allocatable :: middle(:)       !! the middle node of an edge [pairs]
     integer, allocatable :: node(:)         !! of the boundary at each pair: B, or A where B has no elements [pairs]
     logical, allocatable :: mirrored(:)     !! the line ends at the pair, on a line of symmetry [pairs]
+    !> The place that a pair stands at: one for those so near to each other that the force is divided between them by chance. Not
+    !! allocated where none are. [pairs]
+    integer, allocatable :: place(:)
   end type contact_line
 
 contains
@@ -34,6 +41,7 @@ contains
   pure function find_contact_line(model) result(line)
     type(model_type), intent(in) :: model
     type(contact_line) :: line
+    type(partition) :: places
     integer :: c, last, pair
 
     allocate (line%tributary(model%pairs), source=0.0_wp)
@@ -51,17 +59,21 @@ contains
     last = model%pairs
     if (size(model%line_contact) > 0) last = model%line_contact(1)%first - 1
     call find_edges(model, 1, last, line)
+    places = new_partition(model%pairs)
     do c = 1, size(model%line_contact)
       call find_edges(model, model%line_contact(c)%first, model%line_contact(c)%first_of_master - 1, line)
-      call insert_masters(model, model%line_contact(c), line)
+      call insert_masters(model, model%line_contact(c), line, places)
     end do
+    call places%numbers(line%place, last)
+    if (last == model%pairs) deallocate (line%place)
   end function find_contact_line
 
   !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with them.
-  pure subroutine insert_masters(model, contact, line)
+  pure subroutine insert_masters(model, contact, line, places)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
     type(contact_line), intent(inout) :: line
+    type(partition), intent(inout) :: places
     integer, allocatable :: order(:), pair_at(:)
     integer :: first, last
 
@@ -75,7 +87,7 @@ contains
         do last = first, size(order) - 1
           if (contact%stands_on(order(last + 1)) /= side) exit
         end do
-        call link(model, contact, side, run_on(model, contact, side, pair_at, order(first:last), line), line)
+        call link(model, contact, side, run_on(model, contact, side, pair_at, order(first:last), line), line, places)
       end associate
     end do
   end subroutine insert_masters
@@ -153,13 +165,14 @@ contains
 
   !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of the side has no pair,
   !! the pieces at its end belong to none.
-  pure subroutine link(model, contact, segment, run, line)
+  pure subroutine link(model, contact, segment, run, line, places)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
     integer, intent(in) :: segment   !! the side
     integer, intent(in) :: run(:)
     type(contact_line), intent(inout) :: line
-    real(wp) :: half, width
+    type(partition), intent(inout) :: places
+    real(wp) :: half, spacing, width
     integer :: element, i, k, side(3)
 
     element = contact%slave%element(segment)
@@ -184,8 +197,11 @@ contains
         end if
       end associate
     end do
+    spacing = contact%slave%chord_length(segment)/merge(2, 1, side(3) > 0)
     do i = 1, size(run) - 1
-      half = 0.5_wp*width*norm2(foot_of(model, contact, line, run(i + 1)) - foot_of(model, contact, line, run(i)))
+      half = norm2(foot_of(model, contact, line, run(i + 1)) - foot_of(model, contact, line, run(i)))
+      if (half < close*spacing) call places%join(run(i), run(i + 1))
+      half = 0.5_wp*width*half
       call add_piece(run(i), run(i + 1), half, line)
       call add_piece(run(i + 1), run(i), half, line)
     end do

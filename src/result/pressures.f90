@@ -50,10 +50,37 @@ contains
       call sum_up(model, line, touching, force, run)
       call derive(model, line, run, pressure)
     end do
+    call level(line, force, pressure)
     do pair = 1, model%pairs
       if (line%tributary(pair) <= 0.0_wp) call complete(line, touching, force, pair, pressure)
     end do
   end function pair_pressures
+
+  !> Pairs at one place have one pressure.
+  pure subroutine level(line, force, pressure)
+    type(contact_line), intent(in) :: line
+    real(wp), intent(in) :: force(:)
+    real(wp), intent(inout) :: pressure(:)
+    real(wp), allocatable :: area(:), sum(:)
+    integer, allocatable :: pairs(:)
+    integer :: k
+
+    if (.not. allocated(line%place)) return
+    allocate (area(maxval(line%place)), sum(maxval(line%place)), source=0.0_wp)
+    allocate (pairs(maxval(line%place)), source=0)
+    do k = 1, size(force)
+      associate (at => line%place(k))
+        area(at) = area(at) + line%tributary(k)
+        sum(at) = sum(at) + force(k)
+        pairs(at) = pairs(at) + 1
+      end associate
+    end do
+    do k = 1, size(force)
+      associate (at => line%place(k))
+        if (pairs(at) > 1 .and. force(k) > 0.0_wp .and. area(at) > 0.0_wp) pressure(k) = sum(at)/area(at)
+      end associate
+    end do
+  end subroutine level
 
   !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is at most where the
   !! corner has opened, which it does where pressures rise away from the axis.

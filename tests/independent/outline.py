@@ -14,7 +14,7 @@ SMOOTH, CORNER, AS_LARGE = 4.7, 35.3, 1e-6
 #: Neighbouring turns of one curve are not smaller than this part of each other.
 ALIKE = 0.39
 #: A point may stand beyond the end of a side by this part of it, and shorter pieces are none; nearer to a node it is at the node.
-BEYOND, AT_NODE = 1e-5, 1e-9
+BEYOND = 1e-5
 #: Roots are looked for between these places.
 FROM, TO = -0.1, 1.1
 
@@ -158,7 +158,7 @@ class Segment:
         s = self.root(x)
         if s is None or not -BEYOND <= s <= 1 + BEYOND:
             return None
-        end = 0 if s <= AT_NODE else 1 if s >= 1 - AT_NODE else None
+        end = 0 if s <= BEYOND else 1 if s >= 1 - BEYOND else None
         if end is not None:
             k = end * (len(self.nodes) - 1)
             normal = self.upright[end] or self.normal[end]

@@ -6,6 +6,8 @@ a node. Where the run ends on a line of symmetry it goes on mirrored; at the axi
 that is even in the radius is smooth in the area. A run that closes goes on with itself. Where contact ends, the outermost corner
 and middle keep force over area; what that corner bears belongs to the run alone, unless the next middle touches too.
 
+Pairs of the master nearer to another than CLOSE of the way from node to node stand at one place with it, and have the pressure of both.
+
 A corner on the axis of rings has no area. It counts as touching where the middle beside it touches, and has that middle's pressure where
 its run has no three corners; it is told only where it touches itself.
 """
@@ -16,6 +18,7 @@ from boundary import side_points
 ALONG, NO_AREA, UPRIGHT = sqrt(0.5) * (1 + 1e-6), 1e-3, 0.9
 AROUND_MIDDLE, AROUND_CORNER, LEAST, LEAST_AT_AXIS = 4, 5, 4, 3
 BESIDE = 1e-3
+CLOSE = 0.22
 
 
 def share(side, x, n):
@@ -170,10 +173,10 @@ def chains(sides, x, stands_on, feet):
 
 def divide(sides, x, pairs, own, group, stands_on, feet):
     """Where nodes of the master stand on a side they share its area with the slave's: each piece belongs by halves to its ends. Of those
-    sides what is beside each pair."""
+    sides what is beside each pair; and the pairs that stand at one place, by twos."""
     at = {pairs[k][0]: k for k in reversed(group) if k not in stands_on}
     of_group = {k: nodes for k, nodes in stands_on.items() if k in group}
-    divided = {}
+    divided, close = {}, []
     for ends, order in chains(sides, x, of_group, feet):
         a, b = sides[ends].nodes[:2]
         first = next(k for _, k, _ in order if k is not None)
@@ -187,9 +190,24 @@ def divide(sides, x, pairs, own, group, stands_on, feet):
             divided[ends].setdefault(one, set()).add(other)
             divided[ends].setdefault(other, set()).add(one)
             if one is not None and other is not None:
+                piece = hypot(q[0] - p[0], q[1] - p[1])
                 for k in (one, other):
-                    own[k][ends] = own[k].get(ends, 0.0) + width * hypot(q[0] - p[0], q[1] - p[1]) / 2
-    return divided
+                    own[k][ends] = own[k].get(ends, 0.0) + width * piece / 2
+                if piece < CLOSE * hypot(x[b][0] - x[a][0], x[b][1] - x[a][1]) / (len(sides[ends].nodes) - 1):
+                    close.append((one, other))
+    return divided, close
+
+
+def level(close, own, forces, found):
+    """Pairs at one place that bear something get the pressure of all of them."""
+    place = {}
+    for pair in close:
+        both = place.setdefault(pair[0], {pair[0]}) | place.setdefault(pair[1], {pair[1]})
+        place.update(dict.fromkeys(both, both))
+    for k, members in place.items():
+        area = sum(sum(own[member].values()) for member in members)
+        if forces[k] > 0.0 and area > 0.0:
+            found[k] = sum(forces[member] for member in members) / area
 
 
 def pressures(sides, x, held, leader, pairs, groups, forces, touching, stands_on=None):
@@ -212,7 +230,7 @@ def pressures(sides, x, held, leader, pairs, groups, forces, touching, stands_on
                 near = [at.get(node) for ends in own[k] for node in (sides[ends].nodes[2:] or sides[ends].nodes) if node != pairs[k][0]]
                 beside[k] = next((other for other in near if other is not None and said[other]), None)
                 touching[k] = said[k] or beside[k] is not None
-    divided = [divide(sides, x, pairs, own, group, stands_on, feet) for group in groups]
+    divided, close = zip(*(divide(sides, x, pairs, own, group, stands_on, feet) for group in groups)) if groups else ((), ())
     found = [force / sum(area.values()) if sum(area.values()) > 0 else None for force, area in zip(forces, own)]
     ring = any(side.thickness is None for side in sides.values())
     place = [x[node] for node, _ in pairs]
@@ -231,6 +249,7 @@ def pressures(sides, x, held, leader, pairs, groups, forces, touching, stands_on
         for chain in runs({ends: side for ends, side in sides.items() if ends not in split}, {node: k for node, k in at.items() if touching[k]}, own):
             for k, pressure in Run(chain, own, forces, mirrored, axis, shared).pressures(place, ring):
                 found[k] = pressure
+    level([pair for pairs_at in close for pair in pairs_at], own, forces, found)
     for k, other in beside.items():
         if other is not None and found[k] is None:
             found[k] = found[other]
