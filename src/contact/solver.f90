@@ -13,6 +13,9 @@ module epcont_contact_solver
   private
   public :: solve_contact
 
+  !> What holds a motion by less than this part of the largest force, the digits of a deck do.
+  real(wp), parameter :: weak = 1.0e-8_wp
+
 contains
 
   !> Find forces, gaps and motions of a contact problem, or why there are none.
@@ -114,6 +117,7 @@ contains
     pressed = state%force > zero
     solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
     call share_equally(scaled, solution%indeterminate, state%force)
+    pressed = state%force > weak*maxval([state%force, 1.0_wp])
     solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)
     call restore_units(scaled, state%force, state%gap, state%approach, solution)
   end subroutine settle

@@ -102,7 +102,8 @@ contains
     if (alike) alike = all(abs(problem%flexibility(:, i) - problem%flexibility(:, k)) <= zero)
   end function are_alike
 
-  !> Motions that the pressed pairs do not hold and that no idle touching pair blocks in both directions.
+  !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions: they do where their
+  !! forces, none of them a pull, would carry a load along the motion either way.
   pure function find_free_motions(problem, touching, pressed) result(free)
     type(scaled_problem), intent(in) :: problem
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
@@ -116,9 +117,10 @@ contains
     idle = pack([(k, k=1, size(pressed))], touching .and. .not. pressed)
     loose = null_space(problem%motion(holding, :), null_tolerance)
     closing = matmul(problem%motion(idle, :), loose)
-    do j = 1, size(loose, 2)
-      if (any(closing(:, j) > null_tolerance) .and. any(closing(:, j) < -null_tolerance)) cycle
-      free = free .or. abs(loose(:, j)) > null_tolerance
+    do j = 1, size(free)
+      if (all(abs(loose(j, :)) <= null_tolerance)) cycle
+      free(j) = .not. can_carry(closing, loose(j, :))
+      if (.not. free(j)) free(j) = .not. can_carry(closing, -loose(j, :))
     end do
   end function find_free_motions
 end module epcont_contact_uniqueness
