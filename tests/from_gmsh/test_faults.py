@@ -62,6 +62,8 @@ SCENE = [
     ("plane strain", "planar", ['kind: is the text "planar"', 'one of: plane strain, plane stress, ring, such as kind = "plane strain"']),
     ('strain"', "strain", ["line 3, column 21: is no TOML: Illegal character '\\n'", FORM]),
     ("E = 210000.0", "E = 210,0", ["line 7, column 8: is no TOML: Expected newline or end of document after a statement", FORM]),
+    ("E = 210000.0", "E = 210000.", ["line 7: is no TOML: 210000.", "digits on both sides of the point: 210000.0"]),
+    ("E = 210000.0", "E = -.5e3", ["line 7: is no TOML: -.5e3", "digits on both sides of the point: -0.5e3"]),
     ("[load]", "[load", ["line 18, column 6: is no TOML: Expected ']' at the end of a table declaration", FORM]),
     ("floor.y = 0", "floor.y = 0\nfloor.y = 0", ["line 15, column 12: is no TOML: Cannot overwrite a value", FORM]),
     ("two.geo", "tow.geo", ["mesh: there is no file tow.geo beside the scene", "one of: two.geo"]),

@@ -115,15 +115,30 @@ def positive(value):
     return value > 0.0
 
 
+def text_of(path):
+    return path.read_text(encoding="utf-8-sig")
+
+
+def bare_point(text):
+    """Line and number of the first that begins or ends with its point, as decks have them and TOML does not; None."""
+    found = re.search(r"^[^#\"'\n]*?[=,\[][ \t]*([-+]?(?:\d+\.(?!\d)|\.\d+)(?:[eE][-+]?\d+)?)", text, re.MULTILINE)
+    return found and (text.count("\n", 0, found.start(1)) + 1, found[1])
+
+
 def load(path, faults):
     """The tables of the file."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(text_of(path))
     except FileNotFoundError:
         faults.add("scene", "there is no such file", f"TOML files beside it: {listed(sorted(p.name for p in path.parent.glob('*.toml')))}")
     except (OSError, UnicodeDecodeError) as error:
         faults.add("scene", f"cannot be read: {error}", "a file of text in UTF-8")
     except (ValueError, RecursionError) as error:   # TOMLDecodeError, or a number or a nesting beyond all measure
+        bare = bare_point(text_of(path))
+        if bare:
+            whole = re.sub(r"\.(?!\d)", ".0", re.sub(r"(?<!\d)\.", "0.", bare[1]))
+            faults.add(f"line {bare[0]}", f"is no TOML: {bare[1]}", f"digits on both sides of the point: {whole}")
+            raise Rejected from error
         match = re.fullmatch(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", str(error), re.DOTALL)
         place = f"line {match[2]}, column {match[3]}" if match and match[2] else "end of the file"
         faults.add(place, f"is no TOML: {match[1] if match else error}",
