@@ -105,6 +105,8 @@ def nominal_load(scene):
         return stiff * scene.flat ** 2 / (4.0 * scene.radius) * ((math.pi - 2 * angle) / (2 * scene.flat ** 2) - 1 / math.tan(angle))
     if scene.family == "sharp punch":
         return stiff / scene.radius
+    if scene.family == "stack":   # slender: more would bend it by what is not small
+        return stiff / scene.radius / 250.0
     return math.pi / 8.0 * stiff * curvature
 
 
@@ -119,12 +121,12 @@ def known(level):
     return Fineness((34.0, 17.0)[level], (1.14, 1.28)[level], 1.0, 0.37, 1.0, 0.0, 0)
 
 
-def places(step, core, end, growth, shift=0.0):
-    """From 0 to the end: even steps in the core, the first one shifted, then growing ones."""
+def places(step, core, end, growth, shift=0.0, most=math.inf):
+    """From 0 to the end: even steps in the core, the first one shifted, then growing ones, up to the longest."""
     count = max(2, math.ceil(core / step - shift))
     found = [0.0] + [step * (k + shift) for k in range(1, count + 1)]
     while found[-1] < end:
-        step *= growth
+        step = min(step * growth, max(step, most))
         found.append(found[-1] + step)
     if len(found) > 2 and end - found[-2] < 0.5 * step:
         found.pop(-2)
@@ -141,7 +143,8 @@ def body(scene, which, mesh, xs, element):
     chance = random.Random(mesh.seed + which)
     step = scene.width / mesh.pairs * (1.0 if which == 0 else 1.0 / mesh.finer)
     deep = scene.deep[which]
-    ys = with_halves(places(step * mesh.stretch, step, deep, mesh.growth))
+    most = scene.wide[which] if scene.family == "stack" else math.inf   # a column bends: no element is longer than half of its width
+    ys = with_halves(places(step * mesh.stretch, step, deep, mesh.growth, most=most))
     xs = with_halves(xs)
     up = 1 if which == 0 else -1
     moved = {(i, j): tuple(chance.uniform(-mesh.jitter, mesh.jitter) for _ in range(2)) for j in range(2, len(ys) - 1, 2) for i in range(2, len(xs) - 1, 2)}
