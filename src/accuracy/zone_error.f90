@@ -104,7 +104,8 @@ contains
     if (error%unbounded .or. .not. error%resolved) return
     off = [off_parabola(s, p, mirrored, peak, spacing, error%resolution), abs(largest - stress_pressure(error%peak))]
     error%pressure = weights%parabola*off(1) + weights%stress*off(2) + weights%smaller*minval(off) &
-                     + (weights%spacing*error%resolution + weights%pressure_energy*energy)*largest
+                     + ((weights%spacing + weights%square*error%resolution)*error%resolution &
+                        + weights%pressure_energy*energy)*largest
     if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
 
