@@ -51,6 +51,8 @@ module epcont_accuracy_accuracy
   !> A force on one pair is one on a contact narrower than a side: by each three times finer mesh the bodies come nearer by this
   !! times the force over depth and modulus, (2/pi) log 3 of the half-plane.
   real(wp), parameter :: finer = 0.7_wp
+  !> Pairs up to which a zone is too narrow to tell where its contact begins.
+  integer, parameter :: narrow = 2
   !> A part of the products of elements that may not be trusted to cancel.
   real(wp), parameter :: uncertain = 1.0_wp/3.0_wp
 
@@ -127,8 +129,8 @@ contains
                                                    sum(accuracy%element)), accuracy)
     if (.not. carried) return
 
-    accuracy%total_force = 0.0_wp   ! where loads alone make it
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
+    accuracy%total_force = 0.0_wp   ! where loads alone make it
     do j = 1, size(moved)
       associate (off => error_along(model, line, answer, table, unit_force(:, moved(j)), along(:, j), accuracy))
         if (moved(j) > motions%count) then
@@ -220,26 +222,27 @@ contains
         ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says nothing of one.
         if (.not. zone%unbounded) short = short - weights%between*between*sum(force)
         end_error = end_error + weights%end*between*sum(abs(force))   ! of a tilt of either sign: the ends count, not the sum
-        if (size(force) == 1) end_error = end_error + abs(force(1))*narrow(model, line, answer, table, zone)
+        if (size(force) <= narrow) end_error = end_error + sum(abs(force))*too_near(model, line, answer, table, zone, size(force))
       end associate
     end do
     error = weights%product*max(abs(short), uncertain*product(2)) + end_error
   end function error_along
 
-  !> What contact on one pair alone says too little: how much nearer the bodies come on a three times finer mesh, and how high a
-  !! smooth gap may bulge between this pair and the next, where contact truly begins [length].
-  pure real(wp) function narrow(model, line, answer, table, zone)
+  !> What contact on one pair says too little: how much nearer the bodies come on a three times finer mesh, and how high a smooth
+  !! gap may bulge between this pair and the next, where contact truly begins; of two pairs, half of that between them [length].
+  pure real(wp) function too_near(model, line, answer, table, zone, pairs)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     type(patch_table), intent(in) :: table
     type(zone_error), intent(in) :: zone
+    integer, intent(in) :: pairs
 
-    associate (pair => zone%peak)
-      narrow = finer*surface_compliance(model, table, pair)*force_of_depth(model, table, pair, answer%contact%force(pair))
-      if (.not. zone%unbounded) narrow = narrow + gap_bulge(model, line, pair)   ! a tip is where contact begins
-    end associate
-  end function narrow
+    too_near = 0.0_wp
+    if (.not. zone%unbounded) too_near = gap_bulge(model, line, zone%peak)/pairs   ! a tip is where contact begins
+    if (pairs == 1) too_near = too_near + finer*surface_compliance(model, table, zone%peak)* &
+                               force_of_depth(model, table, zone%peak, answer%contact%force(zone%peak))
+  end function too_near
 
   !> Force of a pair over the depth of its elements [force/length].
   pure real(wp) function force_of_depth(model, table, pair, force)
