@@ -131,18 +131,34 @@ contains
 
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
     accuracy%total_force = 0.0_wp   ! where loads alone make it
-    do j = 1, size(moved)
-      associate (off => error_along(model, line, answer, table, unit_force(:, moved(j)), along(:, j), accuracy))
-        if (moved(j) > motions%count) then
-          accuracy%total_force = merge(off, 0.0_wp, off > no_error*sum(answer%contact%force))
-        else
-          accuracy%approach(moved(j)) = off
-          accuracy%approach_unbounded(moved(j)) = is_point_load(model, motions, table, moved(j))
-        end if
-      end associate
-    end do
+    call assess_motions(model, motions, line, answer, table, unit_force(:, moved), along, moved, accuracy)
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
   end subroutine assess
+
+  !> Approaches, and the total contact force, which comes behind them.
+  pure subroutine assess_motions(model, motions, line, answer, table, unit_force, along, moved, accuracy)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(in) :: answer
+    type(patch_table), intent(in) :: table
+    real(wp), intent(in) :: unit_force(:, :)   !! contact forces under each unit load [pairs, moved]
+    real(wp), intent(in) :: along(:, :)        !! products of errors [energy] [2, moved]
+    integer, intent(in) :: moved(:)
+    type(accuracy_type), intent(inout) :: accuracy
+    real(wp) :: off
+    integer :: j
+
+    do j = 1, size(moved)
+      off = error_along(model, line, answer, table, unit_force(:, j), along(:, j), accuracy)
+      if (moved(j) > motions%count) then
+        accuracy%total_force = merge(off, 0.0_wp, off > no_error*sum(answer%contact%force))
+      else
+        accuracy%approach(moved(j)) = off
+        accuracy%approach_unbounded(moved(j)) = is_point_load(model, motions, table, moved(j))
+      end if
+    end do
+  end subroutine assess_motions
 
   !> a/b, 0 where a is 0.
   pure real(wp) function part(a, b)
