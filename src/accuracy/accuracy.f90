@@ -3,10 +3,11 @@
 module epcont_accuracy_accuracy
   use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
   use epcont_accuracy_discretisation, only: error_products, stored_energy
+  use epcont_accuracy_limits, only: gap_bulge
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
-  use epcont_accuracy_unit_motion, only: unit_forces, unit_strains
+  use epcont_accuracy_unit_motion, only: closing_forces, unit_forces, unit_strains
   use epcont_accuracy_weights, only: estimate_weights, weights_of
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
@@ -42,6 +43,7 @@ module epcont_accuracy_accuracy
     logical :: pressure_unbounded = .false.        !! it grows with every finer mesh
     real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
     logical, allocatable :: approach_unbounded(:)  !! it grows with every finer mesh [motions]
+    real(wp) :: total_force = -1.0_wp              !! error of the total contact force; negative: unknown [force]
     type(contact_sensitivity) :: sensitivity
     logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
   end type accuracy_type
@@ -49,6 +51,10 @@ module epcont_accuracy_accuracy
   !> A force on one pair is one on a contact narrower than a side: by each three times finer mesh the bodies come nearer by this
   !! times the force over depth and modulus, (2/pi) log 3 of the half-plane.
   real(wp), parameter :: finer = 0.7_wp
+  !> Pairs up to which a zone is too narrow to tell where its contact begins.
+  integer, parameter :: narrow = 2
+  !> A part of the products of elements that may not be trusted to cancel.
+  real(wp), parameter :: uncertain = 1.0_wp/3.0_wp
 
 contains
 
@@ -64,9 +70,9 @@ contains
     type(material_type), allocatable :: material(:)
     real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)   !! of the answer, then of some unit loads [4, any, 1 + loads]
     real(wp), allocatable :: product(:, :)                      !! [energy] [elements, 1 + loads]
-    real(wp), allocatable :: along(:)                           !! what it is of all elements [energy] [moved]
-    real(wp), allocatable :: unit_force(:, :)                   !! contact forces under unit loads [pairs, motions]
-    integer, allocatable :: moved(:)                            !! motions that unit loads say something of
+    real(wp), allocatable :: along(:, :)                        !! of all elements, and of each without its sign [energy] [2, moved]
+    real(wp), allocatable :: unit_force(:, :)                   !! contact forces of unit loads, closing gaps [pairs, motions + 1]
+    integer, allocatable :: moved(:)                            !! those of them that say something
     type(scaled_problem) :: problem
     type(contact_basis) :: basis
     logical :: carried, pressed
@@ -78,12 +84,14 @@ contains
     if (carried) then
       problem = scale_problem(run%scene%problem)
       basis = new_basis(problem, answer%contact%force > 0.0_wp)
-      unit_force = unit_forces(problem, basis, motions%count)
-      moved = pack([(j, j=1, motions%count)], any(unit_force /= 0.0_wp, dim=1) .and. .not. answer%contact%motion_free)
+      unit_force = reshape([unit_forces(problem, basis, motions%count), closing_forces(problem, basis)], &
+                           [model%pairs, motions%count + 1])
+      moved = pack([(j, j=1, motions%count + 1)], &
+                   any(unit_force /= 0.0_wp, dim=1) .and. [.not. answer%contact%motion_free, .true.])
     end if
     table = new_patch_table(model)
     material = section_materials(model)
-    allocate (along(size(moved)))
+    allocate (along(2, size(moved)))
     associate (volume => run%scene%operator%volume)
       do first = 1, max(1, size(moved)), loads_at_once
         loads = min(loads_at_once, size(moved) - first + 1)
@@ -94,7 +102,7 @@ contains
         end do
         smooth = recover_strains(model, table, volume, strain)
         product = error_products(model, table, material, volume, strain, smooth)
-        along(first:first + loads - 1) = sum(product(:, 2:), dim=1)
+        along(:, first:first + loads - 1) = reshape([(sum(product(:, 1 + j)), sum(abs(product(:, 1 + j))), j=1, loads)], [2, loads])
         deallocate (strain)
       end do
       accuracy%element = product(:, 1)
@@ -107,6 +115,7 @@ contains
     else
       accuracy%energy_norm = 0.0_wp
       accuracy%element = 0.0_wp
+      along = 0.0_wp
     end if
     allocate (accuracy%approach(motions%count), accuracy%approach_unbounded(motions%count), accuracy%weak(model%pairs))
     accuracy%approach = -1.0_wp
@@ -121,11 +130,35 @@ contains
     if (.not. carried) return
 
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
-    do j = 1, size(moved)
-      call assess_approach(model, motions, answer, table, moved(j), unit_force(:, moved(j)), along(j), accuracy)
-    end do
+    accuracy%total_force = 0.0_wp   ! where loads alone make it
+    call assess_motions(model, motions, line, answer, table, unit_force(:, moved), along, moved, accuracy)
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
   end subroutine assess
+
+  !> Approaches, and the total contact force, which comes behind them.
+  pure subroutine assess_motions(model, motions, line, answer, table, unit_force, along, moved, accuracy)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(in) :: answer
+    type(patch_table), intent(in) :: table
+    real(wp), intent(in) :: unit_force(:, :)   !! contact forces under each unit load [pairs, moved]
+    real(wp), intent(in) :: along(:, :)        !! products of errors [energy] [2, moved]
+    integer, intent(in) :: moved(:)
+    type(accuracy_type), intent(inout) :: accuracy
+    real(wp) :: off
+    integer :: j
+
+    do j = 1, size(moved)
+      off = error_along(model, line, answer, table, unit_force(:, j), along(:, j), accuracy)
+      if (moved(j) > motions%count) then
+        accuracy%total_force = merge(off, 0.0_wp, off > no_error*sum(answer%contact%force))
+      else
+        accuracy%approach(moved(j)) = off
+        accuracy%approach_unbounded(moved(j)) = is_point_load(model, motions, table, moved(j))
+      end if
+    end do
+  end subroutine assess_motions
 
   !> a/b, 0 where a is 0.
   pure real(wp) function part(a, b)
@@ -181,40 +214,51 @@ contains
     accuracy%pressure_unbounded = accuracy%zone(z)%unbounded
   end subroutine assess_zones
 
-  !> An approach: the product of the errors of the scene and of its answer to a unit load along the motion, signed, with what
-  !! contact at nodes alone lets the bodies come too near.
-  pure subroutine assess_approach(model, motions, answer, table, motion, unit_force, product, accuracy)
+  !> Error of an approach, or of the total contact force: the product of the errors of the scene and of its answer to a unit load
+  !! along the motion, or to closing gaps, signed, with what contact at nodes alone lets the bodies come too near.
+  pure real(wp) function error_along(model, line, answer, table, unit_force, product, accuracy) result(error)
     type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
+    type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     type(patch_table), intent(in) :: table
-    integer, intent(in) :: motion
     real(wp), intent(in) :: unit_force(:)   !! contact forces under the unit load [pairs]
-    real(wp), intent(in) :: product
-    type(accuracy_type), intent(inout) :: accuracy
+    real(wp), intent(in) :: product(2)      !! of all elements, and of each without its sign
+    type(accuracy_type), intent(in) :: accuracy
     real(wp) :: between, end_error, short
     type(estimate_weights) :: weights
     integer :: z
 
-    accuracy%approach_unbounded(motion) = is_point_load(model, motions, table, motion)
-    short = merge(product, 0.0_wp, accuracy%energy_norm > 0.0_wp)
+    short = product(1)
     end_error = 0.0_wp
     weights = weights_of(3, model%has_rings(), any(answer%plastic))   ! without a zone
     do z = 1, size(accuracy%zone)
-      associate (zone => accuracy%zone(z))
-        if (zone%peak == 0) cycle
+      associate (zone => accuracy%zone(z), force => unit_force(answer%zones(z)%pairs))
         weights = weights_of(zone%order, model%has_rings(), any(answer%plastic))
         between = answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length*surface_compliance(model, table, zone%peak)
-        associate (force => unit_force(answer%zones(z)%pairs))   ! of a tilt of either sign: the ends count, not the sum
-          short = short - weights%between*between*sum(force)
-          end_error = end_error + weights%end*between*sum(abs(force))
-          if (size(force) == 1) end_error = end_error + finer*abs(force(1))*surface_compliance(model, table, zone%peak)* &
-                                            force_of_depth(model, table, zone%peak, answer%contact%force(zone%peak))
-        end associate
+        ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says nothing of one.
+        if (.not. zone%unbounded) short = short - weights%between*between*sum(force)
+        end_error = end_error + weights%end*between*sum(abs(force))   ! of a tilt of either sign: the ends count, not the sum
+        if (size(force) <= narrow) end_error = end_error + sum(abs(force))*too_near(model, line, answer, table, zone, size(force))
       end associate
     end do
-    accuracy%approach(motion) = weights%product*abs(short) + end_error
-  end subroutine assess_approach
+    error = weights%product*max(abs(short), uncertain*product(2)) + end_error
+  end function error_along
+
+  !> What contact on one pair says too little: how much nearer the bodies come on a three times finer mesh, and how high a smooth
+  !! gap may bulge between this pair and the next, where contact truly begins; of two pairs, half of that between them [length].
+  pure real(wp) function too_near(model, line, answer, table, zone, pairs)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(in) :: answer
+    type(patch_table), intent(in) :: table
+    type(zone_error), intent(in) :: zone
+    integer, intent(in) :: pairs
+
+    too_near = 0.0_wp
+    if (.not. zone%unbounded) too_near = gap_bulge(model, line, zone%peak)/pairs   ! a tip is where contact begins
+    if (pairs == 1) too_near = too_near + finer*surface_compliance(model, table, zone%peak)* &
+                               force_of_depth(model, table, zone%peak, answer%contact%force(zone%peak))
+  end function too_near
 
   !> Force of a pair over the depth of its elements [force/length].
   pure real(wp) function force_of_depth(model, table, pair, force)

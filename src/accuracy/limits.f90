@@ -12,7 +12,7 @@ module epcont_accuracy_limits
   use epcont_result_contact_line, only: contact_line, shared
   implicit none
   private
-  public :: edge_pairs, has_tip
+  public :: edge_pairs, gap_bulge, has_tip
 
   !> A tip's curvature is so many times that of the nodes around it.
   real(wp), parameter :: alone = 4.0_wp
@@ -99,6 +99,24 @@ contains
     end do
     gap_bends = around >= 0.0_wp .and. curvature >= alone*around
   end function gap_bends
+
+  !> How far a smooth gap may fall below its values at a pair and beside it, by the most that it bends at one of them [length].
+  pure real(wp) function gap_bulge(model, line, pair)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    integer, intent(in) :: pair
+    real(wp) :: angle, curvature
+    integer :: k
+
+    gap_bulge = 0.0_wp
+    do k = 0, 2
+      associate (near => merge(pair, line%neighbour(max(k, 1), pair), k == 0))
+        if (near == 0) cycle
+        call bend_at(model, line, near, angle, curvature)
+        if (curvature > 0.0_wp) gap_bulge = max(gap_bulge, angle**2/curvature/8.0_wp)   ! an eighth of angle times spacing
+      end associate
+    end do
+  end function gap_bulge
 
   !> The pair behind one, seen from its neighbour; 0: none.
   pure integer function beyond(line, pair, from)

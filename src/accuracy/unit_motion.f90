@@ -1,5 +1,5 @@
-!> What the scene does under a unit load along each free motion, the pairs in contact held closed: what tells of an error
-!> anywhere how much of it arrives at the approach.
+!> What the scene does, the pairs in contact held closed, under a unit load along each free motion, and when all their gaps shrink
+!> by a unit of length: what tells of an error anywhere how much of it arrives at the approach, and at the total contact force.
 module epcont_accuracy_unit_motion
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, respond
@@ -10,7 +10,7 @@ module epcont_accuracy_unit_motion
   use epcont_plasticity_linear_scene, only: linear_scene
   implicit none
   private
-  public :: unit_forces, unit_strains
+  public :: closing_forces, unit_forces, unit_strains
 
 contains
 
@@ -33,7 +33,22 @@ contains
     force(basis%pairs, problem%kept) = carried
   end function unit_forces
 
-  !> Strains of those forces [4, points].
+  !> Contact forces when all gaps shrink by a unit of length [force/length] [pairs].
+  pure function closing_forces(problem, basis) result(force)
+    type(scaled_problem), intent(in) :: problem
+    type(contact_basis), intent(in) :: basis
+    real(wp), allocatable :: force(:)
+    real(wp), allocatable :: opening(:, :), load(:, :), carried(:, :), approach(:, :)
+
+    allocate (force(size(problem%gap)), source=0.0_wp)
+    if (.not. basis%sound) return
+    allocate (opening(size(basis%pairs), 1), source=-1.0_wp/problem%gap_unit)
+    allocate (load(size(problem%kept), 1), source=0.0_wp)
+    call respond(basis, opening, load, carried, approach)
+    force(basis%pairs) = carried(:, 1)*problem%force_unit
+  end function closing_forces
+
+  !> Strains of such forces [4, points].
   pure function unit_strains(model, numbering, scene, force) result(strain)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering

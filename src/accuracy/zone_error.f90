@@ -58,7 +58,7 @@ contains
     real(wp), allocatable :: s(:)     !! place of each of them, from the first on [length]
     integer, allocatable :: inward(:) !! in p and s, from one end on
     real(wp) :: off(2), beyond(2), largest, open, spacing, step, uncertain
-    logical :: cut_off, edge, mirrored(2)
+    logical :: cut_off, edge, ends, mirrored(2)   !! ends: an end of the zone is one of contact, not of the candidates
     integer :: e, k, n, peak
 
     n = size(zone%pairs)
@@ -66,15 +66,16 @@ contains
     peak = peak_of(p, line%tributary(zone%pairs))
     error%peak = zone%pairs(peak)
     largest = p(peak)
+    error%order = order_at(model, table, line%node(zone%first))
     if (largest <= 0.0_wp) return
     s = places(model, line, zone%pairs)
     mirrored = line%mirrored(zone%pairs([1, n]))
-    error%order = order_at(model, table, line%node(zone%first))
     weights = weights_of(error%order, model%has_rings(), any(answer%plastic))
     beyond = 0.0_wp
     uncertain = 0.0_wp
     edge = .false.
     cut_off = .false.
+    ends = .false.
     do e = 1, 2
       if (mirrored(e)) cycle
       inward = [(merge(k, n + 1 - k, e == 1), k=1, n)]
@@ -83,6 +84,7 @@ contains
         step = max(open, d(min(n, 2)))
         beyond(e) = vanishes(p(inward), d, open)
         uncertain = uncertain + weights%step*step
+        ends = ends .or. open > 0.0_wp
         if (open == 0.0_wp) edge = edge .or. any(p(inward(:min(n, edge_pairs(model, line, last)))) >= falls*largest)
         cut_off = cut_off .or. open > 0.0_wp .and. n > few .and. peak == inward(1)
       end associate
@@ -93,7 +95,7 @@ contains
                                                       + weights%width_energy*energy*zone%half_width
     spacing = 0.0_wp
     if (n > 1) spacing = (s(min(n, peak + 1)) - s(max(1, peak - 1)))/(min(n, peak + 1) - max(1, peak - 1))
-    if (n > 1 .and. maxval(p) - minval(p) <= uniform*largest) then
+    if (n > 1 .and. .not. ends .and. maxval(p) - minval(p) <= uniform*largest) then
       error%resolution = 0.0_wp
     else
       if (error%half_length > spacing .and. n > 1) error%resolution = spacing/error%half_length   ! of a single pair it stays 1
@@ -113,7 +115,7 @@ contains
   pure integer function peak_of(pressure, area) result(peak)
     real(wp), intent(in) :: pressure(:), area(:)
 
-    peak = maxloc(area, mask=pressure >= maxval(pressure)*(1.0_wp - rounding), dim=1)
+    peak = maxloc(area, mask=pressure >= maxval(pressure) - rounding*abs(maxval(pressure)), dim=1)
   end function peak_of
 
   !> Nodes of the first element at a node; of none: 3.

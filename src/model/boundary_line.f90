@@ -3,7 +3,7 @@
 !> Sides are walked with the body to the left, so that outward is to the right. Normals at the nodes come from the two
 !> sides that meet there, exact on a circle (epcont_model_corners); along a side they turn from one to the other, so that none
 !> is met twice and none left out. Where sides are chords, the boundary that is meant is the smooth curve through their ends:
-!> the gap is measured to it (a cubic over each chord) and not to the chord, whose facets would show in the pressures. Force
+!> the gap is measured to it (an arc over each chord) and not to the chord, whose facets would show in the pressures. Force
 !> and counterforce still lie on one line, through the chord.
 module epcont_model_boundary_line
   use epcont_base_geometry, only: cross_product
@@ -188,7 +188,7 @@ contains
     share = values(curved, s)
     x = matmul(self%x(:, :, segment), share)
     tangent = matmul(local(self, segment), slopes(curved, s))
-    if (.not. curved) x = x + rise(self, segment, s)*self%own_normal(segment, s)
+    if (.not. curved) x = x + rise(self, segment, s)*unit(scaled_normal(self, segment, s))
   end subroutine at
 
   !> The place of a side whose normal leads to a point.
@@ -250,20 +250,21 @@ contains
     normal = (1.0_wp - s)*length(1)*line%normal(:, 1, segment) + s*length(2)*line%normal(:, 2, segment)
   end function scaled_normal
 
-  !> How far the smooth curve rises outwards above the chord: the cubic with the normals at its ends [length].
+  !> How far along its normal the smooth curve rises above the chord: exactly where the normals at the ends are those of an arc
+  !! [length].
   pure real(wp) function rise(line, segment, s)
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: segment
     real(wp), intent(in) :: s
-    real(wp) :: across(2), along(2), slope(2)
-    integer :: k
+    real(wp) :: across(2), along(2), lean
 
     across = line%own_normal(segment, s)
     along = [-across(2), across(1)]
-    do k = 1, 2
-      slope(k) = -dot_product(line%normal(:, k, segment), along)/dot_product(line%normal(:, k, segment), across)
-    end do
-    rise = chord_length(line, segment)*s*(1.0_wp - s)*((1.0_wp - s)*slope(1) - s*slope(2))
+    ! An arc of radius r leans by asin(chord/(2 r)) at its ends, and is r - sqrt(r**2 - chord**2 s (1 - s)) above.
+    lean = s*dot_product(line%normal(:, 2, segment), along) - (1.0_wp - s)*dot_product(line%normal(:, 1, segment), along)
+    associate (w => s*(1.0_wp - s))
+      rise = 2.0_wp*chord_length(line, segment)*w*lean/(1.0_wp + sqrt(max(0.0_wp, 1.0_wp - 4.0_wp*w*lean**2)))
+    end associate
   end function rise
 
   !> Shape functions of start, end and middle.

@@ -88,6 +88,7 @@ contains
                          text_of(motions%component(k)), accuracy%approach(k), abs(answer%contact%approach(k)), &
                          accuracy%approach_unbounded(k))
     end do
+    call list_estimate(file, 'mesh: total contact force', accuracy%total_force, sum(answer%contact%force), .false.)
     call list_worst(file, model, accuracy)
   end subroutine list_discretisation
 

@@ -122,6 +122,7 @@ contains
       call put('mesh_error_approach_'//text_of(model%node_id(motions%node(k)))//'_'//text_of(motions%component(k)), &
                merge(-1.0_wp, accuracy%approach(k), accuracy%approach_unbounded(k)), 'length')
     end do
+    if (model%pairs > 0) call put('mesh_error_total_contact_force', accuracy%total_force, 'force')
     if (.not. accuracy%sensitivity%known) return
     call put('contact_amplification', accuracy%sensitivity%amplification, '')
     call put('rounding_error_force', max(accuracy%sensitivity%rounding, answer%rounding_error), '')

@@ -1,7 +1,7 @@
 """The outline of all bodies: the sides of one element alone, each with those before and after it, their curves and normals, and
 what is a corner. A side is a polynomial p(s), 0 <= s <= 1, walked with the body to the left, with a polynomial normal n(s); places
-that a point x faces are real roots of (x - p) x n. Above a straight side the smooth curve through its ends is a cubic that has
-their slopes. Standard library only.
+that a point x faces are real roots of (x - p) x n. Above a straight side lies a smooth curve through its ends, with the normals there:
+where these are those of a circle, its arc. Standard library only.
 """
 from dataclasses import dataclass
 from math import atan2, copysign, degrees, hypot, pi
@@ -136,15 +136,21 @@ class Segment:
         return self.normal[0] if k == 0 else self.normal[1] if k == len(self.nodes) - 1 else self.own(self.places[k])
 
     def finish(self):
-        """The polynomials of the normal and of the rise above a straight side."""
+        """The polynomials of the normal, and of its part along a straight side."""
         long = [hypot(*self.towards(s)) for s in (0.0, 1.0)]
         self.seen = [[long[0] * a, long[1] * b - long[0] * a] for a, b in zip(*self.normal)]
         self.bend = self.chord * hypot(*(b - a for a, b in zip(*self.normal)))
-        self.rise = [0.0]
-        if len(self.nodes) == 2:
-            slopes = [[-self.chord * dot(n, self.way) / dot(n, self.across)] for n in self.normal]
-            hermite = solved([[1, 0, 0, 0], [1, 1, 1, 1], [0, 1, 0, 0], [0, 1, 2, 3]], [[0.0], [0.0], *slopes])
-            self.rise = [row[0] for row in hermite]
+        lean = [dot(n, self.way) for n in self.normal]
+        self.lean = [-lean[0], lean[0] + lean[1]] if len(self.nodes) == 2 else [0.0]
+
+    def rise(self, s):
+        """How far along the normal the curve lies above a straight side: a circle that leans so has the radius chord / (2 lean)."""
+        lean = value(self.lean, s)
+        if abs(lean) < 1e-7:
+            return self.chord * s * (1 - s) * lean
+        radius = self.chord / (2 * lean)
+        deep = self.chord ** 2 * s * (1 - s)
+        return deep / (radius + copysign(max(0.0, radius ** 2 - deep) ** 0.5, radius))
 
     def root(self, x):
         """The place whose normal leads to x, on the side or a little beyond; of several the one nearest to where x stands on the chord."""
@@ -166,7 +172,7 @@ class Segment:
             return Place(self, values, normal, dot(normal, [x[c] - self.x[k][c] for c in (0, 1)]), self.corner[end] and not self.mirrored[end])
         normal = unit([value(n, s) for n in self.seen])
         off = [x[c] - self.x[0][c] - value(self.path[c], s) for c in (0, 1)]
-        return Place(self, self.values(s), normal, dot(normal, off) - value(self.rise, s), False)
+        return Place(self, self.values(s), normal, dot(normal, off) - self.rise(s), False)
 
     def cut_by(self, x, reach):
         """The place, from 0 to 1, that x within reach faces, or None."""
@@ -177,8 +183,8 @@ class Segment:
 
     def at(self, s):
         """On the smooth curve."""
-        rise = value(self.rise, s)
-        return [self.x[0][c] + value(self.path[c], s) + rise * self.across[c] for c in (0, 1)]
+        rise, normal = self.rise(s), unit([value(n, s) for n in self.seen])
+        return [self.x[0][c] + value(self.path[c], s) + rise * normal[c] for c in (0, 1)]
 
     def values(self, s):
         return [value(n, s) for n in self.shape]

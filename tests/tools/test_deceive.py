@@ -210,11 +210,14 @@ class Judging(Case):
         base, = self.solve(block(), Twin("base"))
         other, = self.solve(block(), Twin("base"))
         base.energy_error = other.energy_error = 0.0
+        base.total_error = other.total_error = 0.0
         other.total *= 1.04
         self.assertIsNone(unlike(base, other))
         other.total *= 1.04
         self.assertEqual(unlike(base, other), "total force off by 7.5 %")
-        other.energy_error = 0.2
+        other.energy_error = 0.2   # that of the total force is stated
+        self.assertEqual(unlike(base, other), "total force off by 7.5 %")
+        other.total_error = 0.08 * other.total
         self.assertIsNone(unlike(base, other))
 
 

@@ -28,6 +28,7 @@ class Answer:
     word: str = "rejected"
     message: str = ""
     total: float = 0.0
+    total_error: float | None = None
     energy_error: float = 0.0
     resultant: list = field(default_factory=list)       # of contact on each body
     displacement: list = field(default_factory=list)
@@ -56,6 +57,7 @@ def read(scene, twin, numbers, folder, name, said):
     if len(nodes) < len(numbers):
         return answer
     answer.total = number(values.get("total_contact_force")) or 0.0
+    answer.total_error = number(values.get("mesh_error_total_contact_force"))
     answer.energy_error = number(values.get("mesh_error_energy_norm")) or 0.0
     answer.pairs = int(values.get("pairs_in_contact") or 0)
     for k in numbers:
@@ -66,7 +68,8 @@ def read(scene, twin, numbers, folder, name, said):
     for body in scene.bodies:
         sums = [0.0, 0.0]
         for k in body.at.values():
-            for c in range(2):
+            # What holds a ring's node on the axis has no radius, and vanishes with the sides there.
+            for c in range(1 if scene.rings and scene.nodes[k][0] == 0.0 else 0, 2):
                 sums[c] -= answer.reaction[k][c] + forces.get(k, (0.0, 0.0))[c]
         answer.resultant.append(sums)
     for place, (node, directions) in enumerate(scene.free):
@@ -147,12 +150,12 @@ def differences(one, other):
     found = []
     if not scale:
         return found
-    energy = 3.0 * (one.energy_error ** 2 + other.energy_error ** 2)
-    allowed = max(CLOSE, energy)
+    total = 0.0 if None in (one.total_error, other.total_error) else (one.total_error + other.total_error) / scale
+    allowed = max(CLOSE, total, 3.0 * (one.energy_error ** 2 + other.energy_error ** 2))   # none is stated of what one body carries
     part = max((math.hypot(a[0] - b[0], a[1] - b[1]) for a, b in zip(one.resultant, other.resultant)), default=0.0) / scale
     found.append(("resultant", part, part / allowed))
     part = abs(one.total - other.total) / scale
-    found.append(("total force", part, part / allowed))
+    found.append(("total force", part, part / max(CLOSE, total)))
     for place in one.approach:
         (a, e), (b, f) = one.approach[place], other.approach[place]
         part = abs(a - b) / max(abs(a), abs(b), 1e-300)
