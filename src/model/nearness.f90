@@ -18,8 +18,9 @@ module epcont_model_nearness
   !> A node between those of the other line that stand on its own may pass through by so many times what chords of curves and
   !> of bent sides make.
   real(wp), parameter :: allowance = 3.0_wp
-  !> The two lines, not quite parallel, tell gaps by normals of their own: those of nodes that slide differ, by this much at most.
-  real(wp), parameter :: slide = 1.5_wp
+  !> The two lines, not quite parallel, tell gaps by normals of their own: what these make of nodes that slide, and of gaps that
+  !! close, differs by this much at most.
+  real(wp), parameter :: askew = 1.5_wp
   !> Search beyond what came near.
   real(wp), parameter :: further = 1.5_wp
 
@@ -104,7 +105,8 @@ contains
     logical, intent(in) :: holds(:)
     logical, intent(inout) :: entered
     type(facing_type) :: face(2)
-    real(wp) :: allowed
+    logical :: smooth
+    real(wp) :: allowed, angle
     integer :: i, k, which
 
     associate (slave => contact%slave, master => contact%master)
@@ -113,9 +115,12 @@ contains
           associate (node => master%segment(which, i))
             if (node == 0) cycle
             if (any(contact%came_near == node)) cycle
+            smooth = .not. master%corner(min(which, 2), i) .or. which == 3
             call find_facing(slave, obstacles, node_of(master, i, which), size_of_scene, face(1), face(2))
             do k = 1, 2
               if (.not. face(k)%place%found) cycle
+              ! Between nodes that all touch it is where the mesh has it; a pair of its own would be one too many.
+              if (smooth .and. all_hold(slave%segment(:, face(k)%segment), holds)) cycle
               allowed = least*size_of_scene
               if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
                 cycle   ! it has a pair
@@ -125,9 +130,10 @@ contains
               else
                 allowed = allowed + bend(slave, face(k)%segment, displacement)
               end if
-              if (.not. master%corner(min(which, 2), i) .or. which == 3) &
-                allowed = allowed + slide*slip_of(node, slave, face(k), displacement)* &
-                          norm2(face(k)%place%normal + master%outward(i, which))
+              if (smooth) then
+                angle = norm2(face(k)%place%normal + master%outward(i, which))
+                allowed = allowed + askew*angle*(slip_of(node, slave, face(k), displacement) + 0.5_wp*angle*abs(face(k)%place%gap))
+              end if
               if (gap_of(node, slave, face(k), displacement) >= -allowed) cycle
               contact%came_near = [contact%came_near, node]
               contact%search = max(contact%search, further*abs(face(k)%place%gap))
@@ -139,6 +145,14 @@ contains
       end do
     end associate
   end subroutine look_from_master
+
+  !> Do all nodes of a side stand on the other line?
+  pure logical function all_hold(nodes, holds)
+    integer, intent(in) :: nodes(3)
+    logical, intent(in) :: holds(:)   !! [nodes]
+
+    all_hold = all(holds(pack(nodes, nodes > 0)))
+  end function all_hold
 
   !> Does a node of a side, or of those beside it, stand on the other line? Then contact ends near by, between nodes.
   pure logical function is_held_off(line, side, holds)
