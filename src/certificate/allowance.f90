@@ -93,16 +93,19 @@ contains
     theta = 0.0_wp
     do way = 1, 2
       i = side
-      turn = 0.0_wp
+      turn = merge(self%arch(i), 0.0_wp, length > self%length(i))
+      theta = max(theta, abs(turn))
       covered = 0.0_wp
-      do while (covered < length)
+      do
         node = merge(self%beside(1, i), i, way == 1)   ! the side that ends there
         if (.not. self%smooth(node)) exit
         turn = turn + self%bend(node)
         theta = max(theta, abs(turn))
         covered = covered + self%length(i)
+        if (covered >= length) exit
         i = self%beside(way, i)
-        if (covered < length) turn = turn + self%arch(i)
+        turn = turn + self%arch(i)
+        theta = max(theta, abs(turn))
       end do
     end do
     bend = length*theta/8.0_wp
