@@ -20,6 +20,8 @@ module epcont_certificate_allowance
   real(wp), parameter :: factor = 3.0_wp
   !> Where no line says more, sides that turn by more than this meet at a corner.
   real(wp), parameter :: corner_angle = 35.0_wp*acos(-1.0_wp)/180.0_wp
+  !> Lengths that differ by this part are equal.
+  real(wp), parameter :: equal = 1.0e-6_wp
   !> The least that is allowed: as a part of the scene's extent, and in roundings of its coordinates.
   real(wp), parameter :: least_part = 1.0e-8_wp, roundings = 16.0_wp
 
@@ -93,8 +95,7 @@ contains
     theta = 0.0_wp
     do way = 1, 2
       i = side
-      turn = merge(self%arch(i), 0.0_wp, length > self%length(i))
-      theta = max(theta, abs(turn))
+      turn = 0.0_wp
       covered = 0.0_wp
       do
         node = merge(self%beside(1, i), i, way == 1)   ! the side that ends there
@@ -102,8 +103,8 @@ contains
         turn = turn + self%bend(node)
         theta = max(theta, abs(turn))
         covered = covered + self%length(i)
-        if (covered >= length) exit
         i = self%beside(way, i)
+        if (covered + self%length(i) > length*(1.0_wp + equal)) exit
         turn = turn + self%arch(i)
         theta = max(theta, abs(turn))
       end do
