@@ -104,12 +104,14 @@ contains
     end associate
   end subroutine find_chains
 
-  !> Is a side shorter than the one at whose end it begins, and leads back along it?
+  !> Is a side shorter than the one at whose end it begins, of another element, and leads back along it?
   pure logical function goes_back(model, side, beside)
     type(model_type), intent(in) :: model
     integer, intent(in) :: side, beside
     real(wp) :: a(2), b(2)
 
+    goes_back = model%body_outline%element(side) /= model%body_outline%element(beside)
+    if (.not. goes_back) return   ! a sliver
     associate (node => model%body_outline%node, x => model%x)
       a = x(:, node(2, side)) - x(:, node(1, side))
       b = x(:, node(2, beside)) - x(:, node(1, beside))
