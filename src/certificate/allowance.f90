@@ -5,8 +5,8 @@
 !>     s = h theta/8          above its chord lies the smooth curve, to which gaps of pairs are measured; theta the turn
 !>                            at its ends. Where no pair joins the two bodies, there is one at hollow sides alone: their
 !>                            chords lie before the curve, those of others behind it
-!>     b = H |d theta|/8      H the longer of the two sides that meet, d theta by how much displacements turn the outline along
-!>                            so much of it: of lines in contact it is over such a length that the gap is zero in the mean
+!>     b = H |d theta|/8      d theta by how much displacements turn the outline along H; that is h, or where both sides are of
+!>                            lines in contact the longer one: over such a length their gap is zero in the mean
 !>     k = d |w| + d**2 c/2   sliding by d along a side that turns by w, and has the curvature c
 !>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
 module epcont_certificate_allowance
@@ -28,7 +28,7 @@ module epcont_certificate_allowance
   !> How two sides meet.
   type :: meeting_type
     real(wp) :: slide = 0.0_wp      !! of a point of one along the other [length]
-    real(wp) :: longest = 0.0_wp    !! length of the longer one [length]
+    real(wp) :: longest = 0.0_wp    !! length of the longer one, where both are of lines in contact [length]
     logical :: joined = .false.     !! pairs join the two bodies there
   end type meeting_type
 
