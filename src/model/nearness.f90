@@ -18,8 +18,6 @@ module epcont_model_nearness
   !> A node between those of the other line that stand on its own may pass through by so many times what chords of curves and
   !> of bent sides make.
   real(wp), parameter :: allowance = 3.0_wp
-  !> Bent sides explain no more than this part of the largest displacement.
-  real(wp), parameter :: deep = 0.1_wp
   !> The two lines, not quite parallel, tell gaps by normals of their own: those of nodes that slide differ, by this much at most.
   real(wp), parameter :: slide = 1.5_wp
   !> Search beyond what came near.
@@ -34,7 +32,7 @@ contains
     real(wp), allocatable, intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     logical, allocatable, intent(in) :: touching(:)           !! [pairs]
     logical, intent(out) :: entered
-    real(wp) :: most, size_of_scene
+    real(wp) :: size_of_scene
     integer :: before, c, k
     type(faces_type) :: faces
     logical, allocatable :: holds(:)   !! nodes that stand on the other line [nodes]
@@ -45,16 +43,13 @@ contains
     if (size(model%line_contact) == 0) return
     size_of_scene = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
     allocate (holds(model%nodes), source=.false.)
-    if (allocated(displacement)) then
-      holds(model%pair_node(2, pack([(k, k=1, model%pairs)], touching))) = .true.
-      most = deep*maxval(norm2(displacement, dim=1))
-    end if
+    if (allocated(displacement)) holds(model%pair_node(2, pack([(k, k=1, model%pairs)], touching))) = .true.
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
         if (allocated(displacement)) then
           call widen(contact, model%boundary, displacement, holds, size_of_scene, wider)
           ! What the slave's nodes will hold off is not the master's.
-          if (.not. wider) call look_from_master(contact, model%boundary, displacement, holds, size_of_scene, most, entered)
+          if (.not. wider) call look_from_master(contact, model%boundary, displacement, holds, size_of_scene, entered)
           entered = entered .or. wider
         else if (size(contact%left_out) > 0 .and. contact%search < size_of_scene) then
           contact%search = size_of_scene
@@ -102,15 +97,14 @@ contains
   end subroutine widen
 
   !> Nodes of the master that pass through sides of the slave by more than what these leave open between their nodes.
-  subroutine look_from_master(contact, obstacles, displacement, holds, size_of_scene, most, entered)
+  subroutine look_from_master(contact, obstacles, displacement, holds, size_of_scene, entered)
     type(line_contact), intent(inout) :: contact
     type(boxed_line), intent(in) :: obstacles
     real(wp), intent(in) :: displacement(:, :), size_of_scene
     logical, intent(in) :: holds(:)
-    real(wp), intent(in) :: most   !! that bent sides explain [length]
     logical, intent(inout) :: entered
     type(facing_type) :: face(2)
-    real(wp) :: allowed, open(2)
+    real(wp) :: allowed
     integer :: i, k, which
 
     associate (slave => contact%slave, master => contact%master)
@@ -126,10 +120,10 @@ contains
               if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
                 cycle   ! it has a pair
               else if (is_held_off(slave, face(k)%segment, holds)) then
-                open = allowance*(openness(slave, face(k)%segment, displacement) + openness_at(master, i, which, displacement))
-                allowed = allowed + open(1) + min(open(2), most)
+                allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement) + &
+                                               openness_at(master, i, which, displacement))
               else
-                allowed = allowed + min(bend(slave, face(k)%segment, displacement), most)
+                allowed = allowed + bend(slave, face(k)%segment, displacement)
               end if
               if (.not. master%corner(min(which, 2), i) .or. which == 3) &
                 allowed = allowed + slide*slip_of(node, slave, face(k), displacement)* &
@@ -203,27 +197,25 @@ contains
   end function apart_of
 
   !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as it bends [length].
-  pure function openness(line, side, displacement) result(open)
+  pure real(wp) function openness(line, side, displacement)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
     real(wp), intent(in) :: displacement(:, :)
-    real(wp) :: open(2)
 
-    open(1) = line%chord_length(side)/4.0_wp*max(norm2(line%normal(:, 1, side) - line%own_normal(side, 0.0_wp)), &
-                                                 norm2(line%normal(:, 2, side) - line%own_normal(side, 1.0_wp)))
-    open(2) = bend(line, side, displacement)
+    openness = line%chord_length(side)/4.0_wp*max(norm2(line%normal(:, 1, side) - line%own_normal(side, 0.0_wp)), &
+                                                  norm2(line%normal(:, 2, side) - line%own_normal(side, 1.0_wp))) + &
+               bend(line, side, displacement)
   end function openness
 
-  !> The larger ones of the sides that meet in a node.
-  pure function openness_at(line, side, which, displacement) result(open)
+  !> The larger one of the sides that meet in a node.
+  pure real(wp) function openness_at(line, side, which, displacement)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side, which
     real(wp), intent(in) :: displacement(:, :)
-    real(wp) :: open(2)
 
-    open = openness(line, side, displacement)
+    openness_at = openness(line, side, displacement)
     if (which == 3) return
-    if (line%neighbour(which, side) > 0) open = max(open, openness(line, line%neighbour(which, side), displacement))
+    if (line%neighbour(which, side) > 0) openness_at = max(openness_at, openness(line, line%neighbour(which, side), displacement))
   end function openness_at
 
   !> How far a straight side is from the curve into which the boundary bends [length].
