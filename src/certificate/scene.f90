@@ -6,10 +6,11 @@
 module epcont_certificate_scene
   use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
-  use epcont_certificate_allowance, only: allowance_type, new_allowance
-  use epcont_model_mates, only: find_mates, is_mate
+  use epcont_certificate_allowance, only: meeting_type, new_allowance
+  use epcont_certificate_meeting, only: allowance_about, is_joined, is_paired, meeting_of, own_allowance, search_type
+  use epcont_model_mates, only: find_mates
   use epcont_model_model, only: model_type
-  use epcont_model_outline_shape, only: near_place, new_outline_shape, outline_shape
+  use epcont_model_outline_shape, only: near_place, new_outline_shape
   implicit none
   private
   public :: overlap_place, scene_type, look_through
@@ -18,6 +19,9 @@ module epcont_certificate_scene
   real(wp), parameter, public :: largest_change = 0.2_wp
   !> Below this part of what is allowed, rounding chooses the place.
   real(wp), parameter, public :: little = 0.01_wp
+  !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
+  !! though it be allowed.
+  real(wp), parameter :: told = 0.1_wp
   !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths off the largest
   !! allowance counts.
   real(wp), parameter :: about = 1.5_wp
@@ -37,6 +41,7 @@ module epcont_certificate_scene
     real(wp) :: x(2) = 0.0_wp      !! of the point that lies inside, displaced [length]
     integer :: side = 0            !! of the outlines, on which the point is; 0: there is no such place
     integer :: other = 0           !! the side of the other body that it is nearest to
+    logical :: moving = .false.    !! it is for slides and turns that most of the depth is allowed
   end type overlap_place
 
   type :: scene_type
@@ -45,23 +50,15 @@ module epcont_certificate_scene
     type(overlap_place) :: itself          !! deepest in its own body
     type(overlap_place) :: apart           !! the depth is that of a gap across which `pair` presses
     integer :: pair = 0
+    type(overlap_place) :: deep            !! deepest in another body, by what is told
+    type(overlap_place) :: wide            !! the same of a gap across which a pair presses
+    real(wp) :: moved = 0.0_wp             !! largest displacement [length]
     type(overlap_place) :: drawn           !! overlap as drawn, which no pair is to close: no fault, but told
     real(wp) :: change = 0.0_wp            !! largest turn [rad] or stretch of a side
     integer :: changed_side = 0            !! which one
   contains
     procedure :: sound
   end type scene_type
-
-  !> What is worked with.
-  type :: search_type
-    type(outline_shape) :: now, drawn      !! displaced; as drawn, made where it is asked for
-    type(allowance_type) :: allowance
-    real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
-    integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
-    integer, allocatable :: near(:), nearer(:)    !! room for what trees find
-    real(wp), allocatable :: crossing(:)   !! room for where a side crosses others
-    integer :: last = 1                    !! the side that was nearest to the point before: the next is not far from it
-  end type search_type
 
 contains
 
@@ -86,7 +83,15 @@ contains
     search%displacement = displacement
     search%now = new_outline_shape(model%body_outline, model%x + displacement)
     search%allowance = new_allowance(model, displacement)
+    scene%moved = maxval(norm2(displacement, dim=1))
+    search%told = search%allowance%least + told*scene%moved
     search%mate = find_mates(model)
+    allocate (search%in_line(model%body_outline%sides), source=.false.)
+    if (allocated(model%line)) then
+      do side = 1, size(model%line)
+        search%in_line(model%line(side)%side) = .true.
+      end do
+    end if
     allocate (search%near(16), search%nearer(16), search%crossing(16))
     do side = 1, model%body_outline%sides
       call look_at_side(model, search, side, scene)
@@ -137,123 +142,81 @@ contains
     real(wp), intent(in) :: s
     integer, intent(in) :: part
     type(scene_type), intent(inout) :: scene
-    type(near_place) :: before, place
-    real(wp) :: allowed, depth, slide, x(2)
-    logical :: joined
+    type(near_place) :: place
+    type(meeting_type) :: meeting
+    type(overlap_place) :: deep, inside
+    real(wp) :: x(2)
 
     x = search%now%at(side, s)
     if (search%now%side_tree(part)%away(1, x) > 0.0_wp) return
     place = search%now%nearest(part, x, search%last)
     search%last = place%side
     if (.not. place%inside) return
-    depth = place%distance
-    slide = slide_of(model, search, side, s, place)
-    joined = is_joined(model, search, side, place%side)
-    allowed = search%allowance%least + own_allowance(model, search, side, s, slide, joined) &
-              + own_allowance(model, search, place%side, place%s, slide, joined)
-    if (depth <= more*allowed*scene%inside%ratio) return
-    if (depth > allowed) then
-      allowed = search%allowance%least &
-                + allowance_about(search, model%body_outline%part(side), x, about*depth, side, slide, joined) &
-                + allowance_about(search, part, x, about*depth, place%side, slide, joined)
-      if (.not. allocated(search%drawn%x)) search%drawn = new_outline_shape(model%body_outline, model%x)
-      before = search%drawn%nearest(part, search%drawn%at(side, s))
-      if (before%inside .and. .not. is_paired(model, search, side, place%side)) then
-        if (before%distance > allowed .and. before%distance > more*scene%drawn%depth) &
-          scene%drawn = overlap_place(before%distance/allowed, before%distance, allowed, search%drawn%at(side, s), side, &
-                                      before%side)
-        depth = depth - before%distance
-      end if
-      if (depth <= more*allowed*scene%inside%ratio) return
+    meeting = meeting_of(model, search, side, s, place, is_joined(model, search, side, place%side))
+    inside = overlap_place(0.0_wp, place%distance, search%allowance%least + own_allowance(model, search, side, s, meeting) &
+                           + own_allowance(model, search, place%side, place%s, meeting), x, side, place%side)
+    deep = inside
+    call take_told(search, meeting, deep)
+    if (.not. (is_worse(inside, scene%inside) .or. deep%depth > deep%allowed .and. is_worse(deep, scene%deep))) return
+    if (inside%depth > inside%allowed) &
+      inside%allowed = search%allowance%least &
+                       + allowance_about(search, model%body_outline%part(side), x, about*place%distance, side, meeting) &
+                       + allowance_about(search, part, x, about*place%distance, place%side, meeting)
+    if (place%distance > min(inside%allowed, deep%allowed)) then
+      call take_drawn(model, search, s, inside, scene%drawn)
+      deep%depth = inside%depth
     end if
-    scene%inside = overlap_place(depth/allowed, depth, allowed, x, side, place%side)
+    call take_worse(inside, scene%inside)
+    if (deep%depth > deep%allowed) call take_worse(deep, scene%deep)
   end subroutine look_at_point
 
-  !> Does a pair join the two bodies at one of two sides?
-  pure logical function is_paired(model, search, side, other)
-    type(model_type), intent(in) :: model
+  !> Of a place where more or less is allowed: how much is not told.
+  pure subroutine take_told(search, meeting, place)
     type(search_type), intent(in) :: search
-    integer, intent(in) :: side, other
+    type(meeting_type), intent(in) :: meeting
+    type(overlap_place), intent(inout) :: place
 
-    associate (outline => model%body_outline)
-      is_paired = is_mate(search%mate, outline%node(:, side), outline%part(other)) .or. &
-                  is_mate(search%mate, outline%node(:, other), outline%part(side))
+    associate (allowance => search%allowance)
+      place%moving = 2.0_wp*(allowance%of_motion(place%side, meeting) + allowance%of_motion(place%other, meeting)) > place%allowed
+      place%allowed = search%told + allowance%of_drawing(place%side, meeting) + allowance%of_drawing(place%other, meeting)
     end associate
-  end function is_paired
+  end subroutine take_told
 
-  !> The same, or at the sides beside them: pairs end with lines, the smooth curve one side later.
-  pure logical function is_joined(model, search, side, other)
+  !> Is one place worse than another, by what is allowed there?
+  pure logical function is_worse(one, other)
+    type(overlap_place), intent(in) :: one, other
+
+    is_worse = one%depth > more*one%allowed*other%ratio
+  end function is_worse
+
+  !> Keep the worse of two places.
+  pure subroutine take_worse(found, worst)
+    type(overlap_place), intent(in) :: found
+    type(overlap_place), intent(inout) :: worst
+
+    if (.not. is_worse(found, worst)) return
+    worst = found
+    worst%ratio = found%depth/found%allowed
+  end subroutine take_worse
+
+  !> Take off the depth at a place what the bodies overlapped as drawn, if no pair is to close that.
+  pure subroutine take_drawn(model, search, s, inside, drawn)
     type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side, other
+    type(search_type), intent(inout) :: search
+    real(wp), intent(in) :: s                       !! along the side
+    type(overlap_place), intent(inout) :: inside
+    type(overlap_place), intent(inout) :: drawn     !! the deepest such overlap
+    type(near_place) :: before
 
-    associate (before => model%body_outline%before, after => model%body_outline%after)
-      is_joined = is_paired(model, search, side, other) .or. &
-                  is_paired(model, search, before(side), before(other)) .or. is_paired(model, search, after(side), after(other))
-    end associate
-  end function is_joined
-
-  !> How far a point of a side has slid along the place that it is near to [length].
-  pure real(wp) function slide_of(model, search, side, s, place) result(slide)
-    type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s
-    type(near_place), intent(in) :: place
-    real(wp) :: along(2)
-
-    along = search%now%tangent(place%side, place%s)
-    slide = dot_product(along, motion(side, s) - motion(place%side, place%s))/max(norm2(along), tiny(1.0_wp))
-
-  contains
-
-    !> Displacement of a place of a side.
-    pure function motion(side, s) result(u)
-      integer, intent(in) :: side
-      real(wp), intent(in) :: s
-      real(wp) :: u(2)
-
-      associate (node => model%body_outline%node(:, side), v => search%displacement)
-        u = (1.0_wp - s)*v(:, node(1)) + s*v(:, node(2))
-        if (node(3) > 0) u = u + 4.0_wp*s*(1.0_wp - s)*(v(:, node(3)) - 0.5_wp*(v(:, node(1)) + v(:, node(2))))
-      end associate
-    end function motion
-  end function slide_of
-
-  !> What a side allows, and at a node also the one with which it shares that [length].
-  pure real(wp) function own_allowance(model, search, side, s, slide, joined) result(allowed)
-    type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s, slide
-    logical, intent(in) :: joined
-
-    allowed = search%allowance%of(side, slide, joined)
-    if (s <= 0.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%before(side), slide, joined))
-    if (s >= 1.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%after(side), slide, joined))
-  end function own_allowance
-
-  !> The most that sides of a part within a distance of a point allow, and one of them at least [length].
-  pure real(wp) function allowance_about(search, part, x, distance, side, slide, joined) result(allowed)
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: part
-    real(wp), intent(in) :: x(2), distance
-    integer, intent(in) :: side
-    real(wp), intent(in) :: slide
-    logical, intent(in) :: joined
-    type(near_place) :: place
-    integer, allocatable :: near(:)
-    integer :: k, n, other
-
-    allowed = search%allowance%of(side, slide, joined)
-    allocate (near(16))
-    call search%now%side_tree(part)%meeting(x - distance, x + distance, near, n)
-    do k = 1, n
-      other = search%now%outline%first(part) + near(k) - 1
-      place = search%now%near_side(other, x)
-      if (place%distance <= distance) allowed = max(allowed, search%allowance%of(other, slide, joined))
-    end do
-  end function allowance_about
+    if (is_paired(model, search, inside%side, inside%other)) return
+    if (.not. allocated(search%drawn%x)) search%drawn = new_outline_shape(model%body_outline, model%x)
+    before = search%drawn%nearest(model%body_outline%part(inside%other), search%drawn%at(inside%side, s))
+    if (.not. before%inside) return
+    if (before%distance > inside%allowed .and. before%distance > more*drawn%depth) &
+      drawn = overlap_place(before%distance/inside%allowed, before%distance, inside%allowed, search%drawn%at(inside%side, s), &
+                            inside%side, before%side)
+    inside%depth = inside%depth - before%distance
+  end subroutine take_drawn
 
   !> Where the chord of a side crosses those of another part, ascending.
   pure subroutine find_crossings(search, side, part, crossings)
@@ -298,7 +261,8 @@ contains
     integer, intent(in) :: side, other
     type(scene_type), intent(inout) :: scene
     type(near_place) :: place
-    real(wp) :: allowed, drawn, s, slide, x(2)
+    type(meeting_type) :: meeting
+    real(wp) :: allowed, drawn, s, x(2)
     integer :: k
 
     associate (node => model%body_outline%node, now => search%now)
@@ -309,9 +273,9 @@ contains
         place = now%near_side(other, x)
         if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. 2.0_wp*place%distance > norm2(now%chord(side))) cycle
         if (.not. now%is_inside(place, x)) cycle
-        slide = slide_of(model, search, side, s, place)
-        allowed = search%allowance%least + own_allowance(model, search, side, s, slide, joined=.true.) &
-                  + own_allowance(model, search, other, place%s, slide, joined=.true.)
+        meeting = meeting_of(model, search, side, s, place, joined=.true.)
+        allowed = search%allowance%least + own_allowance(model, search, side, s, meeting) &
+                  + own_allowance(model, search, other, place%s, meeting)
         if (place%distance <= more*allowed*scene%itself%ratio) cycle
         ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
         associate (a => model%x(:, node(1, other)), b => model%x(:, node(2, other)))
@@ -344,7 +308,9 @@ contains
     real(wp), intent(in) :: force(:)
     type(scene_type), intent(inout) :: scene
     type(near_place) :: place
-    real(wp) :: allowed, gap, least, s, slide, x(2)
+    type(meeting_type) :: meeting
+    type(overlap_place) :: apart, wide
+    real(wp) :: gap, least, s, x(2)
     integer :: i, k, side_of(model%nodes)
 
     if (model%pairs == 0) return
@@ -364,16 +330,18 @@ contains
         ! What has slid off the other body's end has nothing before it along the normal.
         if (abs(cross_product(x - place%x, model%normal(:, k))) > gap) cycle
         s = merge(0.5_wp, 0.0_wp, model%body_outline%node(3, side_of(b)) == b)
-        slide = slide_of(model, search, side_of(b), s, place)
-        allowed = search%allowance%least + own_allowance(model, search, side_of(b), s, slide, joined=.true.) &
-                  + own_allowance(model, search, place%side, place%s, slide, joined=.true.)
-        if (gap <= more*allowed*scene%apart%ratio) cycle
-        if (gap > allowed) allowed = search%allowance%least &
-                                     + allowance_about(search, part(b), x, about*place%distance, side_of(b), slide, .true.) &
-                                     + allowance_about(search, part(a), x, about*place%distance, place%side, slide, .true.)
-        if (gap <= more*allowed*scene%apart%ratio) cycle
-        scene%apart = overlap_place(gap/allowed, gap, allowed, x, side_of(b), place%side)
-        scene%pair = k
+        meeting = meeting_of(model, search, side_of(b), s, place, joined=.true.)
+        apart = overlap_place(0.0_wp, gap, search%allowance%least + own_allowance(model, search, side_of(b), s, meeting) &
+                              + own_allowance(model, search, place%side, place%s, meeting), x, side_of(b), place%side)
+        wide = apart
+        call take_told(search, meeting, wide)
+        if (gap > wide%allowed) call take_worse(wide, scene%wide)
+        if (.not. is_worse(apart, scene%apart)) cycle
+        if (gap > apart%allowed) apart%allowed = search%allowance%least &
+                                 + allowance_about(search, part(b), x, about*place%distance, side_of(b), meeting) &
+                                 + allowance_about(search, part(a), x, about*place%distance, place%side, meeting)
+        if (is_worse(apart, scene%apart)) scene%pair = k
+        call take_worse(apart, scene%apart)
       end associate
     end do
   end subroutine look_at_pairs

@@ -27,23 +27,20 @@ contains
           if (line%segment(k, i) > 0) line%x(:, k, i) = model%x(:, line%segment(k, i))
         end do
       end do
-      call find_normals(line, reshape([(held_direction(model, line%segment(:2, i)), i=1, outline%sides)], [2, outline%sides]), &
+      call find_normals(line, reshape([(held_directions(model, line%segment(:2, i)), i=1, outline%sides)], [2, outline%sides]), &
                         angle)
     end associate
   end function find_boundary
 
-  !> The one direction in which each node, or what it is tied to, is held without the other; else 0.
-  pure function held_direction(model, node) result(direction)
+  !> The direction in which each node, or what it is tied to, is held: 0 none, 3 both.
+  pure function held_directions(model, node) result(direction)
     type(model_type), intent(in) :: model
     integer, intent(in) :: node(2)
     integer :: direction(2)
-    logical :: held(2)
     integer :: c, k
 
-    direction = 0
     do k = 1, 2
-      held = [(model%held(c, model%leader(c, node(k))), c=1, 2)]
-      if (count(held) == 1) direction(k) = findloc(held, .true., dim=1)
+      direction(k) = sum([(merge(c, 0, model%held(c, model%leader(c, node(k)))), c=1, 2)])
     end do
-  end function held_direction
+  end function held_directions
 end module epcont_model_boundary

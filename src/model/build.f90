@@ -13,6 +13,7 @@ module epcont_model_build
   use epcont_model_line_contacts, only: build_line_contacts
   use epcont_model_lines, only: build_lines
   use epcont_model_loads, only: build_loads
+  use epcont_model_hanging_nodes, only: warn_of_hanging_nodes
   use epcont_model_lying_together, only: warn_of_lying_together
   use epcont_model_mesh, only: build_nodes, build_sections
   use epcont_model_model, only: model_type
@@ -60,6 +61,7 @@ contains
     if (faults%error_count() > 0) return
     call check_pairs(deck, model, faults)
     call find_travels(model)
+    call warn_of_hanging_nodes(deck, model, faults)
     call warn_of_lying_together(deck, model, faults)
   end subroutine build_model
 

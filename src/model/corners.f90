@@ -20,13 +20,15 @@ module epcont_model_corners
   real(wp), parameter :: alike = 1.0_wp/0.39_wp
   !> Turns that differ from PARAM CORNER by less are as large.
   real(wp), parameter :: rounding = 1.0e-6_wp*degree
+  !> Held in x and y.
+  integer, parameter :: both = 3
 
 contains
 
   !> Normals at the ends of the sides, corners and lines of symmetry. A side's neighbours are known.
   pure subroutine find_normals(line, held, angle)
     type(boundary_line), intent(inout) :: line
-    integer, intent(in) :: held(:, :)     !! the one direction in which its start, its end is held; else 0 [2, sides]
+    integer, intent(in) :: held(:, :)     !! the direction in which its start, its end is held: 0 none, 3 both [2, sides]
     real(wp), intent(in) :: angle         !! turns above it are corners, others are not [degree]; 0: decided here
     real(wp) :: turn(2, size(line%element))
     logical :: inner(2, size(line%element))
@@ -90,11 +92,11 @@ contains
     do i = 1, size(line%element)
       do end = 1, 2
         associate (d => held(end, i))
-          if (d == 0 .or. held(3 - end, i) == d) cycle
+          if (d == 0 .or. d == both .or. held(3 - end, i) == d) cycle
           ! A cut meets the side at a corner; on a curve the next side may look like one from 45 degrees on.
           if (line%neighbour(end, i) > 0 .and. abs(turn(end, i)) < always_corner) cycle
           own = line%own_normal(i, real(end - 1, wp))
-          if (abs(own(3 - d)) < abs(own(d)) .or. .not. is_cut(line, i, end, d)) cycle
+          if (abs(own(3 - d)) < abs(own(d)) .or. .not. is_cut(line, held, i, end)) cycle
           line%mirrored(end, i) = .true.
           line%end_normal(3 - d, end, i) = sign(1.0_wp, own(3 - d))
           mirrored = own
@@ -106,16 +108,19 @@ contains
     end do
   end subroutine reflect
 
-  !> Does the body end there along a line across direction d? If nothing is known of what lies beyond, yes.
-  pure logical function is_cut(line, side, end, d)
+  !> Does the body end there along a line across the direction in which that end of a side is held? A node held by itself, to keep
+  !! a body from drifting, is no cut. If nothing is known of what lies beyond, yes.
+  pure logical function is_cut(line, held, side, end)
     type(boundary_line), intent(in) :: line
-    integer, intent(in) :: side, end, d
+    integer, intent(in) :: held(:, :), side, end
     real(wp) :: other(2)
 
     is_cut = line%neighbour(end, side) == 0
     if (is_cut) return
-    other = line%own_normal(line%neighbour(end, side), real(2 - end, wp))
-    is_cut = abs(other(3 - d)) < abs(other(d))
+    associate (d => held(end, side), next => line%neighbour(end, side))
+      other = line%own_normal(next, real(2 - end, wp))
+      is_cut = abs(other(3 - d)) < abs(other(d)) .and. any(held(end, next) == [d, both])
+    end associate
   end function is_cut
 
   !> The turns beside that at one end of a side: along the side, and along the one that it meets there.

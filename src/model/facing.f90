@@ -110,25 +110,34 @@ contains
     type(looking_point), intent(in) :: from
     real(wp), intent(in) :: search
     type(facing_type), intent(out) :: best, second
-    type(facing_type) :: found
-    integer :: k
+    type(facing_type), allocatable :: faces(:)
+    integer :: k, n
+    logical :: same_way
 
+    allocate (faces(4))
+    n = 0
+    same_way = .false.
     do k = 1, size(sides)
       if (any(line%segment(:, sides(k)) == from%node) .and. from%node > 0) cycle
-      found%segment = sides(k)
-      found%place = line%face(sides(k), from%x)
-      if (.not. found%place%found .or. abs(found%place%gap) > search*(1.0_wp + equal)) cycle
-      if (dot_product(found%place%normal, from%outward) >= against) then
-        best%same_way = best%same_way .or. dot_product(found%place%normal, from%outward) > -against
-        cycle
-      end if
-      if (found%place%at_corner .and. .not. from%at_corner) call press_corner(from, found%place)
-      if (found%place%gap < -max(equal*search, roundings*maxval(abs(from%x)))) then
-        if (.not. goes_on(line, sides(k), from, search)) cycle
-      end if
-      if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) cycle
-      call rank(line, from, search, found, best, second)
+      if (n == size(faces)) faces = [faces, faces]
+      associate (found => faces(n + 1))
+        found%segment = sides(k)
+        found%place = line%face(sides(k), from%x)
+        if (.not. found%place%found .or. abs(found%place%gap) > search*(1.0_wp + equal)) cycle
+        if (dot_product(found%place%normal, from%outward) >= against) then
+          same_way = same_way .or. dot_product(found%place%normal, from%outward) > -against
+          cycle
+        end if
+        if (found%place%at_corner .and. .not. from%at_corner) call press_corner(from, found%place)
+        if (found%place%gap < -max(equal*search, roundings*maxval(abs(from%x)))) then
+          if (.not. goes_on(line, sides(k), from, search)) cycle
+        end if
+        if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) cycle
+      end associate
+      n = n + 1
     end do
+    call rank(line, from, search, faces(:n), best, second)
+    best%same_way = same_way
   end subroutine look_at
 
   !> A corner is pressed along the normal of the smooth boundary that it touches.
@@ -142,41 +151,37 @@ contains
     place%gap = dot_product(place%normal, away)
   end subroutine press_corner
 
-  !> Put a face where it belongs: best, second or nowhere.
-  pure subroutine rank(line, from, search, found, best, second)
+  !> The best face, and the nearest of those that look another way.
+  pure subroutine rank(line, from, search, faces, best, second)
     type(boxed_line), intent(in) :: line
     type(looking_point), intent(in) :: from
     real(wp), intent(in) :: search
-    type(facing_type), intent(in) :: found
+    type(facing_type), intent(in) :: faces(:)
     type(facing_type), intent(inout) :: best, second
-    type(facing_type) :: other
-    logical :: same_way
+    logical :: taken(size(faces))   ! in the best one
+    integer :: k
 
-    if (.not. best%place%found) then
-      same_way = best%same_way
-      best = found
-      best%same_way = same_way
-      return
-    end if
-    other = found
-    if (is_better(line, from, search, other, best)) then
-      other = best
-      other%same_way = .false.
-      same_way = best%same_way
-      best = found
-      best%same_way = same_way
-      if (second%place%found) then   ! of the same face as the one that is best now?
-        if (dot_product(second%place%normal, best%place%normal) > same_face) second = facing_type()
+    do k = 1, size(faces)
+      if (.not. best%place%found) then
+        taken = .false.
+      else if (is_better(line, from, search, faces(k), best)) then
+        taken = .false.
+      else
+        taken(k) = from%at_corner .and. are_equal(from, search, faces(k), best)
+        if (taken(k)) call take_mean(faces(k)%place, best%place)
+        cycle
       end if
-    else if (from%at_corner .and. are_equal(from, search, found, best)) then
-      call take_mean(found%place, best%place)
-      return
-    end if
-    if (dot_product(other%place%normal, best%place%normal) > same_face) return
-    if (second%place%found) then
-      if (abs(second%place%gap) <= abs(other%place%gap)) return
-    end if
-    second = other
+      best = faces(k)
+      taken(k) = .true.
+    end do
+    do k = 1, size(faces)
+      if (taken(k)) cycle
+      if (dot_product(faces(k)%place%normal, best%place%normal) > same_face) cycle
+      if (second%place%found) then
+        if (abs(second%place%gap) <= abs(faces(k)%place%gap)) cycle
+      end if
+      second = faces(k)
+    end do
   end subroutine rank
 
   !> Is a face better than another? It is nearer; or as near, and looks more against the point's own boundary; or lies more

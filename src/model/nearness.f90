@@ -216,7 +216,8 @@ contains
     integer, intent(in) :: side
     real(wp), intent(in) :: displacement(:, :)
 
-    openness = line%chord_length(side)*norm2(line%normal(:, 2, side) - line%normal(:, 1, side))/8.0_wp + &
+    openness = line%chord_length(side)/4.0_wp*max(norm2(line%normal(:, 1, side) - line%own_normal(side, 0.0_wp)), &
+                                                  norm2(line%normal(:, 2, side) - line%own_normal(side, 1.0_wp))) + &
                bend(line, side, displacement)
   end function openness
 

@@ -10,7 +10,7 @@ module epcont_report_remarks
   use epcont_model_model, only: model_type
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: heading, newline, wrap
-  use epcont_report_scene, only: changed_text, drawn_text, itself_text
+  use epcont_report_scene, only: changed_text, deep_text, drawn_text, itself_text, wide_text
   use epcont_result_answer, only: answer_type
   use epcont_result_locking, only: high_poisson
   implicit none
@@ -48,6 +48,8 @@ contains
 
     call warn(itself_text(model, scene), remarks)
     call warn(drawn_text(model, scene), remarks)
+    call warn(deep_text(model, scene), remarks)
+    call warn(wide_text(model, scene), remarks)
     if (answer%gradient%part > 0.0_wp) then
       call warn(not_small(model, answer), remarks)
     else

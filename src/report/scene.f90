@@ -12,7 +12,7 @@ module epcont_report_scene
   use epcont_report_number, only: estimate_number
   implicit none
   private
-  public :: scene_fault, itself_text, drawn_text, changed_text, list_scene
+  public :: scene_fault, deep_text, wide_text, itself_text, drawn_text, changed_text, list_scene
 
 contains
 
@@ -146,6 +146,54 @@ contains
       ' deep, '//where_is(model, scene%itself)//', behind '//side_name(model, scene%itself%other)//'; '// &
       short_real(scene%itself%allowed)//' is allowed'
   end function itself_text
+
+  !> Bodies that lie in each other by much of what moves, allowed though it is; empty: none do.
+  pure function deep_text(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (scene%sound() .and. scene%deep%ratio > 1.0_wp) text = 'bodies lie in each other by '// &
+      part_of_moved(scene, scene%deep)//': '//inside(model, scene%deep)//'; '//coarse(model, scene%deep)
+  end function deep_text
+
+  !> The same of a gap across which a pair presses.
+  pure function wide_text(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (scene%sound() .and. scene%wide%ratio > 1.0_wp) text = 'a pair presses across a gap of '// &
+      part_of_moved(scene, scene%wide)//': '//where_is(model, scene%wide)//' is '//short_real(scene%wide%depth)//' off '// &
+      side_name(model, scene%wide%other)//'; '//coarse(model, scene%wide)
+  end function wide_text
+
+  !> A depth, of the largest displacement.
+  pure function part_of_moved(scene, place) result(text)
+    type(scene_type), intent(in) :: scene
+    type(overlap_place), intent(in) :: place
+    character(len=:), allocatable :: text
+
+    text = text_of(nint(100.0_wp*place%depth/scene%moved))//' % of the largest displacement, '//short_real(scene%moved)
+  end function part_of_moved
+
+  !> What would mend that: how long sides would be that leave no more than is not told. (Depths shrink with the sides at corners,
+  !! faster elsewhere.)
+  pure function coarse(model, place) result(text)
+    type(model_type), intent(in) :: model
+    type(overlap_place), intent(in) :: place
+    character(len=:), allocatable :: text
+    real(wp) :: longest
+
+    text = 'turns and slides there are not small'
+    if (place%moving) return
+    associate (node => model%body_outline%node(:2, [place%side, place%other]))
+      longest = maxval(norm2(model%x(:, node(2, :)) - model%x(:, node(1, :)), dim=1))
+    end associate
+    text = 'sides of about '//short_real(longest/place%ratio)//' there would leave 10 %'
+  end function coarse
 
   !> Bodies that overlap as drawn, and have no pair to close that; empty: none do.
   pure function drawn_text(model, scene) result(text)

@@ -14,6 +14,7 @@ from tables import rows, summary  # noqa: E402
 SAME = 1e-7      # what rounding leaves between twins, of the largest
 CLOSE = 0.05     # what a figure may be off without an estimate
 DEEP = 0.1       # of the largest displacement: how far bodies may pass through each other
+TOLD = "bodies lie in each other by"    # unless the program says so, and where
 SMOOTH = math.radians(35.0)   # turns of an outline up to here may be those of a curve in chords
 LARGEST = 350    # nodes of a scene; larger ones are drawn again
 
@@ -260,6 +261,7 @@ class Verdict:
     answers: dict
     faults: list
     covered: list    # of p_max and half-width
+    told: int        # answers that say themselves that bodies lie in each other
 
     @property
     def base(self):
@@ -269,7 +271,7 @@ class Verdict:
         """What it adds to the table."""
         kinds = {fault.kind: 1 for fault in self.faults}
         return {"scenes": 1, "valid": self.base.valid, "refused": not self.base.valid, "wrong": bool(kinds), **kinds,
-                "finer": not self.base.valid and self.answers["finer"].valid, "estimates": len(self.covered),
+                "told": self.told, "finer": not self.base.valid and self.answers["finer"].valid, "estimates": len(self.covered),
                 "low": self.covered.count(False)}
 
     def said(self):
@@ -306,13 +308,16 @@ class Judge:
             for of in ["finer"] + [twin.name for twin in other]:
                 words = answers[of].valid and (unlike(base, answers[of]) or of == "once" and unlike_pressure(base, answers[of]))
                 faults += [Fault("figure", of, words)] if words else []
+        told = 0
         for of, one in (("base", scene), ("finer", finer)):
             if answers[of].valid:
                 _, part, place = through(one, answers[of])
-                if part > DEEP:
+                if part > DEEP and TOLD in answers[of].message:
+                    told += 1
+                elif part > DEEP:
                     faults.append(Fault("through", of, f"through by {100 * part:.0f} % of the largest displacement at {place[0]:.3f} {place[1]:.3f}"))
         covered = list(estimates(base, fine)) if base.valid and fine.valid else []
-        return Verdict(len(scene.nodes), answers, faults, covered)
+        return Verdict(len(scene.nodes), answers, faults, covered, told)
 
 
 def unlike_pressure(one, other):
