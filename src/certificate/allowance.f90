@@ -25,6 +25,9 @@ module epcont_certificate_allowance
   !> The least that is allowed: as a part of the scene's extent, and in roundings of its coordinates.
   real(wp), parameter :: least_part = 1.0e-8_wp, roundings = 16.0_wp
 
+  !> Of a side's length: more than this a slide does not explain, however far it goes.
+  real(wp), parameter :: most_by_slide = 0.03_wp
+
   !> How two sides meet.
   type :: meeting_type
     real(wp) :: slide = 0.0_wp      !! of a point of one along the other [length]
@@ -70,7 +73,7 @@ contains
     type(meeting_type), intent(in) :: meeting
 
     associate (slide => abs(meeting%slide), turn => abs(self%turn(side)))
-      of_motion = factor*(slide*turn + 0.5_wp*slide**2*self%curvature(side) &
+      of_motion = factor*(min(slide*turn + 0.5_wp*slide**2*self%curvature(side), most_by_slide*self%length(side)) &
                           + 0.5_wp*self%length(side)*max(turn, self%stretch(side))**2)
     end associate
   end function of_motion

@@ -1,0 +1,90 @@
+!> What looking through a scene finds: places where bodies lie in each other, and which of two is the worse.
+module epcont_certificate_findings
+  use epcont_base_kinds, only: wp
+  implicit none
+  private
+  public :: overlap_place, beyond_place, scene_type, is_worse, take_deeper, take_worse
+
+  !> Of places that differ by less than this part the first counts: rounding decides nothing.
+  real(wp), parameter, public :: more = 1.0_wp + 1.0e-9_wp
+
+  !> Where a body lies in another, or in itself.
+  type :: overlap_place
+    real(wp) :: ratio = 0.0_wp     !! depth, of what is allowed
+    real(wp) :: depth = 0.0_wp     !! [length]
+    real(wp) :: allowed = 0.0_wp   !! [length]
+    real(wp) :: x(2) = 0.0_wp      !! of the point that lies inside, displaced [length]
+    integer :: side = 0            !! of the outlines, on which the point is; 0: there is no such place
+    integer :: other = 0           !! the side of the other body that it is nearest to
+    logical :: moving = .false.    !! it is for slides and turns that most of the depth is allowed
+  end type overlap_place
+
+
+  !> A node that is displaced beyond a line to which its body ends: the axis of rings, or a line of symmetry.
+  type :: beyond_place
+    real(wp) :: depth = 0.0_wp     !! [length]
+    real(wp) :: line = 0.0_wp      !! where the line is [length]
+    integer :: component = 1       !! 1: the line has one x, 2: it has one y
+    integer :: node = 0            !! 0: there is none
+  end type beyond_place
+
+  type :: scene_type
+    logical :: looked_through = .false.
+    type(overlap_place) :: inside          !! deepest in another body, by what is allowed
+    type(overlap_place) :: deepest         !! deepest in another body
+    type(overlap_place) :: itself          !! deepest in its own body
+    type(overlap_place) :: apart           !! the depth is that of a gap across which `pair` presses
+    type(overlap_place) :: widest          !! the widest of such gaps
+    integer :: pair = 0
+    type(overlap_place) :: beside          !! the depth is how far off the end of the other body a node stands on which
+    integer :: beside_pair = 0             !! this pair presses
+    type(overlap_place) :: slid            !! the depth is how far the sides of a pressed pair slid along each other
+    type(overlap_place) :: passed          !! deepest in another body on the way to where it comes out of it again
+    integer :: passing_node = 0            !! which passes
+    type(overlap_place) :: deep            !! deepest in another body, by what is told
+    type(overlap_place) :: wide            !! the same of a gap across which a pair presses
+    type(beyond_place) :: axis, mirror     !! farthest beyond the axis of rings, beyond a line of symmetry
+    real(wp) :: moved = 0.0_wp             !! largest displacement [length]
+    type(overlap_place) :: drawn           !! overlap as drawn, which no pair is to close: no fault, but told
+    real(wp) :: change = 0.0_wp            !! largest turn [rad] or stretch of a side
+    integer :: changed_side = 0            !! which one
+  contains
+    procedure :: sound
+  end type scene_type
+
+contains
+
+  !> Does no body lie in another or pass through one, and no force press where nothing is?
+  pure logical function sound(self)
+    class(scene_type), intent(in) :: self
+
+    sound = max(self%inside%ratio, self%apart%ratio, self%beside%ratio, self%passed%ratio) <= 1.0_wp .and. self%axis%node == 0
+  end function sound
+
+  !> Is one place worse than another, by what is allowed there?
+  pure logical function is_worse(one, other)
+    type(overlap_place), intent(in) :: one, other
+
+    is_worse = one%depth > more*one%allowed*other%ratio
+  end function is_worse
+
+  !> Keep the worse of two places.
+  pure subroutine take_worse(found, worst)
+    type(overlap_place), intent(in) :: found
+    type(overlap_place), intent(inout) :: worst
+
+    if (.not. is_worse(found, worst)) return
+    worst = found
+    worst%ratio = found%depth/found%allowed
+  end subroutine take_worse
+
+  !> Keep the deeper of two places.
+  pure subroutine take_deeper(found, deepest)
+    type(overlap_place), intent(in) :: found
+    type(overlap_place), intent(inout) :: deepest
+
+    if (found%depth <= more*deepest%depth) return
+    deepest = found
+    deepest%ratio = found%depth/found%allowed
+  end subroutine take_deeper
+end module epcont_certificate_findings

@@ -1,0 +1,209 @@
+!> What a scene is looked through with: the outlines displaced and as drawn, what they allow, and which parts pairs join.
+module epcont_certificate_search
+  use epcont_base_kinds, only: wp
+  use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
+  use epcont_certificate_findings, only: overlap_place
+  use epcont_model_mates, only: find_mates, is_mate
+  use epcont_model_model, only: model_type
+  use epcont_model_outline_shape, only: near_place, new_outline_shape, outline_shape
+  implicit none
+  private
+  public :: search_type, new_search, is_paired, is_joined, meeting_of, place_allowance, widen_allowance, take_told, &
+            note_crossing
+
+  !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
+  !! though it be allowed.
+  real(wp), parameter :: told = 0.1_wp
+  !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths off the largest
+  !! allowance counts.
+  real(wp), parameter :: about = 1.5_wp
+
+  !> What is worked with.
+  type :: search_type
+    type(outline_shape) :: now, drawn      !! displaced; as drawn, made where it is asked for
+    type(allowance_type) :: allowance
+    real(wp) :: moved = 0.0_wp             !! largest displacement [length]
+    real(wp) :: told = 0.0_wp              !! depths beyond this and the curves that were drawn are told [length]
+    real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
+    integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
+    integer, allocatable :: near(:), nearer(:)    !! room for what trees find
+    real(wp), allocatable :: crossing(:)   !! room for where a side crosses others
+    integer :: last = 1                    !! the side that was nearest to the point before: the next is not far from it
+  end type search_type
+
+
+contains
+
+  !> All but what is made where it is asked for.
+  pure function new_search(model, displacement) result(search)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    type(search_type) :: search
+
+    search%displacement = displacement
+    search%now = new_outline_shape(model%body_outline, model%x + displacement)
+    search%allowance = new_allowance(model, displacement)
+    search%moved = maxval(norm2(displacement, dim=1))
+    search%told = search%allowance%least + told*search%moved
+    search%mate = find_mates(model)
+    allocate (search%near(16), search%nearer(16), search%crossing(16))
+  end function new_search
+
+  !> Does a pair join the two bodies at one of two sides?
+  pure logical function is_paired(model, search, side, other)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side, other
+
+    associate (outline => model%body_outline)
+      is_paired = is_mate(search%mate, outline%node(:, side), outline%part(other)) .or. &
+                  is_mate(search%mate, outline%node(:, other), outline%part(side))
+    end associate
+  end function is_paired
+
+  !> The same, or at the sides beside them: pairs end with lines, the smooth curve one side later.
+  pure logical function is_joined(model, search, side, other)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side, other
+
+    associate (before => model%body_outline%before, after => model%body_outline%after)
+      is_joined = is_paired(model, search, side, other) .or. &
+                  is_paired(model, search, before(side), before(other)) .or. is_paired(model, search, after(side), after(other))
+    end associate
+  end function is_joined
+
+  !> How a point of a side meets the place that it is near to: it has slid along it.
+  pure type(meeting_type) function meeting_of(model, search, side, s, place, joined) result(meeting)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    type(near_place), intent(in) :: place
+    logical, intent(in) :: joined
+    real(wp) :: along(2)
+
+    meeting%joined = joined
+    meeting%longest = max(longest_at(model, search, side, s), longest_at(model, search, place%side, place%s))
+    along = search%now%tangent(place%side, place%s)
+    meeting%slide = dot_product(along, motion(side, s) - motion(place%side, place%s))/max(norm2(along), tiny(1.0_wp))
+
+  contains
+
+    !> Displacement of a place of a side.
+    pure function motion(side, s) result(u)
+      integer, intent(in) :: side
+      real(wp), intent(in) :: s
+      real(wp) :: u(2)
+
+      associate (node => model%body_outline%node(:, side), v => search%displacement)
+        u = (1.0_wp - s)*v(:, node(1)) + s*v(:, node(2))
+        if (node(3) > 0) u = u + 4.0_wp*s*(1.0_wp - s)*(v(:, node(3)) - 0.5_wp*(v(:, node(1)) + v(:, node(2))))
+      end associate
+    end function motion
+  end function meeting_of
+
+  !> Length of a side, or of the longer one of two that share a node [length].
+  pure real(wp) function longest_at(model, search, side, s) result(length)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+
+    length = search%allowance%length(side)
+    if (s <= 0.0_wp) length = max(length, search%allowance%length(model%body_outline%before(side)))
+    if (s >= 1.0_wp) length = max(length, search%allowance%length(model%body_outline%after(side)))
+  end function longest_at
+
+  !> What a side allows, and at a node also the one with which it shares that [length].
+  pure real(wp) function own_allowance(model, search, side, s, meeting) result(allowed)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    type(meeting_type), intent(in) :: meeting
+
+    allowed = search%allowance%of(side, meeting)
+    if (s <= 0.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%before(side), meeting))
+    if (s >= 1.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%after(side), meeting))
+  end function own_allowance
+
+  !> What is allowed at a place: where the two sides meet [length].
+  pure real(wp) function place_allowance(model, search, side, s, place, meeting) result(allowed)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    type(near_place), intent(in) :: place
+    type(meeting_type), intent(in) :: meeting
+
+    allowed = search%allowance%least + own_allowance(model, search, side, s, meeting) &
+              + own_allowance(model, search, place%side, place%s, meeting)
+  end function place_allowance
+
+  !> Allow what sides about a place allow, where more was found than the nearest two do.
+  pure subroutine widen_allowance(search, place, distance, meeting)
+    type(search_type), intent(in) :: search
+    type(overlap_place), intent(inout) :: place
+    real(wp), intent(in) :: distance   !! of the two sides there [length]
+    type(meeting_type), intent(in) :: meeting
+
+    if (place%depth <= place%allowed) return
+    associate (part => search%now%outline%part)
+      place%allowed = search%allowance%least &
+                      + allowance_about(search, part(place%side), place%x, about*distance, place%side, meeting) &
+                      + allowance_about(search, part(place%other), place%x, about*distance, place%other, meeting)
+    end associate
+  end subroutine widen_allowance
+
+  !> The most that sides of a part within a distance of a point allow, and one of them at least [length].
+  pure real(wp) function allowance_about(search, part, x, distance, side, meeting) result(allowed)
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: part
+    real(wp), intent(in) :: x(2), distance
+    integer, intent(in) :: side
+    type(meeting_type), intent(in) :: meeting
+    type(near_place) :: place
+    integer, allocatable :: near(:)
+    integer :: k, n, other
+
+    allowed = search%allowance%of(side, meeting)
+    allocate (near(16))
+    call search%now%side_tree(part)%meeting(x - distance, x + distance, near, n)
+    do k = 1, n
+      other = search%now%outline%first(part) + near(k) - 1
+      place = search%now%near_side(other, x)
+      if (place%distance <= distance) allowed = max(allowed, search%allowance%of(other, meeting))
+    end do
+  end function allowance_about
+
+  !> Of a place where more or less is allowed: how much is not told.
+  pure subroutine take_told(search, meeting, place)
+    type(search_type), intent(in) :: search
+    type(meeting_type), intent(in) :: meeting
+    type(overlap_place), intent(inout) :: place
+
+    associate (allowance => search%allowance)
+      place%moving = 2.0_wp*(allowance%of_motion(place%side, meeting) + allowance%of_motion(place%other, meeting)) > place%allowed
+      place%allowed = search%told + allowance%of_drawing(place%side, meeting) + allowance%of_drawing(place%other, meeting)
+    end associate
+  end subroutine take_told
+
+  !> Add one to the crossings that were found, which ascend.
+  pure subroutine note_crossing(search, s, crossings)
+    type(search_type), intent(inout) :: search
+    real(wp), intent(in) :: s
+    integer, intent(inout) :: crossings
+    integer :: i
+
+    if (crossings == size(search%crossing)) search%crossing = [search%crossing, search%crossing]
+    i = crossings
+    do while (i > 0)
+      if (search%crossing(i) <= s) exit
+      search%crossing(i + 1) = search%crossing(i)
+      i = i - 1
+    end do
+    search%crossing(i + 1) = s
+    crossings = crossings + 1
+  end subroutine note_crossing
+end module epcont_certificate_search
