@@ -10,7 +10,7 @@ module epcont_report_remarks
   use epcont_model_model, only: model_type
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: heading, newline, wrap
-  use epcont_report_scene, only: changed_text, deep_text, drawn_text, itself_text, wide_text
+  use epcont_report_scene, only: changed_text, deep_text, drawn_text, itself_text, mirror_text, slid_text, wide_text
   use epcont_result_answer, only: answer_type
   use epcont_result_locking, only: high_poisson
   implicit none
@@ -47,6 +47,7 @@ contains
     type(remarks_type), intent(inout) :: remarks
 
     call warn(itself_text(model, scene), remarks)
+    call warn(mirror_text(model, scene), remarks)
     call warn(drawn_text(model, scene), remarks)
     call warn(deep_text(model, scene), remarks)
     call warn(wide_text(model, scene), remarks)
@@ -55,6 +56,7 @@ contains
     else
       call warn(changed_text(model, scene), remarks)
     end if
+    call warn(slid_text(model, scene), remarks)
     if (answer%locking%elements > 0) call warn(plural(answer%locking%elements, 'three-node element')// &
       ' of nearly constant volume (Poisson''s ratio '//short_real(high_poisson)// &
       ' or more, as yielding has made it): too stiff; six-node elements or CQUAD4 would be right', remarks)

@@ -2,7 +2,7 @@
 module epcont_report_scene
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
-  use epcont_certificate_scene, only: largest_change, little, overlap_place, scene_type
+  use epcont_certificate_scene, only: beyond_place, largest_change, little, overlap_place, scene_type
   use epcont_model_boundary_line, only: boundary_line
   use epcont_model_elements, only: element_name
   use epcont_model_mates, only: find_mates, is_mate
@@ -12,7 +12,10 @@ module epcont_report_scene
   use epcont_report_number, only: estimate_number
   implicit none
   private
-  public :: scene_fault, deep_text, wide_text, itself_text, drawn_text, changed_text, list_scene
+  public :: scene_fault, deep_text, wide_text, itself_text, mirror_text, drawn_text, slid_text, changed_text, list_scene
+
+  !> Depths that differ by less than this part are one.
+  real(wp), parameter :: deeper = 1.001_wp
 
 contains
 
@@ -22,15 +25,65 @@ contains
     type(scene_type), intent(in) :: scene
     character(len=:), allocatable :: text
 
-    if (scene%inside%ratio >= scene%apart%ratio) then
+    if (scene%axis%node > 0) then
+      text = 'a ring is pressed to a radius below 0: '//beyond(model, scene%axis)// &
+             '; where displacements are small radii stay above 0'
+      return
+    end if
+    select case (maxloc([scene%inside%ratio, scene%apart%ratio, scene%beside%ratio, scene%passed%ratio], dim=1))
+    case (1)
       text = 'bodies pass through each other: '//inside(model, scene%inside)//'; '//short_real(scene%inside%allowed)// &
-             ' is allowed. What may mend it: '//remedy(model, scene%inside)
-    else
+             ' is allowed'//deepest(scene)//'. What may mend it: '//remedy(model, scene%inside)
+    case (2)
       text = 'pair '//text_of(model%pair_id(scene%pair))//' presses across a gap: '//where_is(model, scene%apart)//' is '// &
              short_real(scene%apart%depth)//' off '//side_name(model, scene%apart%other)//'; '// &
              short_real(scene%apart%allowed)//' is allowed. What may mend it: pairs of nodes, or lines, that face each other'
-    end if
+    case (3)
+      text = 'pair '//text_of(model%pair_id(scene%beside_pair))//' presses beside the other body: '// &
+             where_is(model, scene%beside)//' is '//short_real(scene%beside%depth)//' beside the end of '// &
+             side_name(model, scene%beside%other)//'; '//short_real(scene%beside%allowed)//' is allowed. What may mend it: '// &
+             'bodies drawn where they come to, or longer ones: contact is that of undeformed places'
+    case default
+      text = 'bodies pass through each other on their way: '//passing(model, scene)//'; '//short_real(scene%passed%allowed)// &
+             ' is allowed. What may mend it: '//remedy(model, scene%passed)// &
+             ', or loads and supports that move it another way'
+    end select
   end function scene_fault
+
+  !> Which node goes through which body, and how deep it is on its way.
+  pure function passing(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    associate (place => scene%passed)
+      text = 'GRID '//text_of(model%node_id(scene%passing_node))//' of the body of GRID '//first_node(model, place%side)// &
+             ' goes through that of GRID '//first_node(model, place%other)//', '//short_real(place%depth)//' deep at '// &
+             short_real(place%x(1))//' '//short_real(place%x(2))//', behind '//side_name(model, place%other)
+    end associate
+  end function passing
+
+  !> The deepest place, where it is not the one that is worst by what is allowed.
+  pure function deepest(scene) result(text)
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    text = ''
+    associate (place => scene%deepest)
+      if (place%depth > deeper*scene%inside%depth) text = ' (deepest, '//short_real(place%depth)//', they are at '// &
+        short_real(place%x(1))//' '//short_real(place%x(2))//', where '//short_real(place%allowed)//' is allowed)'
+    end associate
+  end function deepest
+
+  !> Where a node is that is beyond a line.
+  pure function beyond(model, place) result(text)
+    type(model_type), intent(in) :: model
+    type(beyond_place), intent(in) :: place
+    character(len=:), allocatable :: text
+
+    text = 'GRID '//text_of(model%node_id(place%node))//' comes '//short_real(place%depth)//' beyond '// &
+           merge('x', 'y', place%component == 1)//' = '//short_real(place%line)
+  end function beyond
 
   !> Which body lies where in which, and how deep.
   pure function inside(model, place) result(text)
@@ -185,15 +238,43 @@ contains
     type(model_type), intent(in) :: model
     type(overlap_place), intent(in) :: place
     character(len=:), allocatable :: text
-    real(wp) :: longest
 
     text = 'turns and slides there are not small'
-    if (place%moving) return
+    if (.not. place%moving) text = 'sides of about '//short_real(longest_side(model, place)/place%ratio)//' there would leave 10 %'
+  end function coarse
+
+  !> Sides that slide too far along each other where they press; empty: none do.
+  pure function slid_text(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (scene%slid%ratio > 1.0_wp) text = 'displacements are not small: bodies that press on each other slide by '// &
+      short_real(scene%slid%depth)//' along each other, '//where_is(model, scene%slid)//', where sides are '// &
+      short_real(longest_side(model, scene%slid))//' long; contact is that of undeformed places'
+  end function slid_text
+
+  !> Length of the longer of the two sides at a place, as drawn [length].
+  pure real(wp) function longest_side(model, place) result(longest)
+    type(model_type), intent(in) :: model
+    type(overlap_place), intent(in) :: place
+
     associate (node => model%body_outline%node(:2, [place%side, place%other]))
       longest = maxval(norm2(model%x(:, node(2, :)) - model%x(:, node(1, :)), dim=1))
     end associate
-    text = 'sides of about '//short_real(longest/place%ratio)//' there would leave 10 %'
-  end function coarse
+  end function longest_side
+
+  !> A body that passes a line at which it ends and is held; empty: none does.
+  pure function mirror_text(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (scene%mirror%node > 0) text = 'a body passes through its mirror image: '//beyond(model, scene%mirror)// &
+      ', to which its body is held; no harm where that is no line of symmetry'
+  end function mirror_text
 
   !> Bodies that overlap as drawn, and have no pair to close that; empty: none do.
   pure function drawn_text(model, scene) result(text)
@@ -224,10 +305,24 @@ contains
 
     if (scene%looked_through) then
       call list_ratio('bodies in each other, of what is allowed', scene%inside)
-      if (model%pairs > 0) call list_ratio('pressed across a gap, of what is allowed', scene%apart)
+      call list_larger('  deepest, of what is allowed there', scene%deepest, scene%inside)
+      if (scene%passed%side > 0) call list_ratio('  on their way through each other', scene%passed)
+      if (model%pairs > 0) then
+        call list_ratio('pressed across a gap, of what is allowed', scene%apart)
+        call list_larger('  widest, of what is allowed there', scene%widest, scene%apart)
+        if (scene%beside%ratio >= little) call list_ratio('  beside the other body', scene%beside)
+      end if
     end if
 
   contains
+
+    !> The largest depth, where it is not that of the worst place.
+    subroutine list_larger(name, largest, worst)
+      character(len=*), intent(in) :: name
+      type(overlap_place), intent(in) :: largest, worst
+
+      if (largest%ratio >= little .and. largest%depth > deeper*worst%depth) call list_ratio(name, largest)
+    end subroutine list_larger
 
     subroutine list_ratio(name, place)
       character(len=*), intent(in) :: name

@@ -72,8 +72,8 @@ contains
       call put('stress_off_curve_limit', certificate%off_curve_limit, '')
       call put('energy_balance', certificate%energy, '')
       if (certificate%scene%looked_through) then
-        call put_place('penetration', certificate%scene%inside)
-        call put_place('pressed_gap', certificate%scene%apart)
+        call put_places('penetration', certificate%scene%deepest, certificate%scene%inside)
+        call put_places('pressed_gap', certificate%scene%widest, certificate%scene%apart)
       end if
       call put('condition', answer%condition, '')
       call put('load_factor', answer%load_factor, '')
@@ -86,14 +86,15 @@ contains
 
   contains
 
-    !> A depth and what is allowed there; 0 where it is so little that rounding chooses the place.
-    subroutine put_place(name, place)
+    !> The largest depth, the one that is worst by what is allowed, and that; 0 where it is so little that rounding chooses the place.
+    subroutine put_places(name, largest, worst)
       character(len=*), intent(in) :: name
-      type(overlap_place), intent(in) :: place
+      type(overlap_place), intent(in) :: largest, worst
 
-      call put('largest_'//name, merge(place%depth, 0.0_wp, place%ratio >= little), 'length')
-      call put('allowed_'//name, merge(place%allowed, 0.0_wp, place%ratio >= little), 'length')
-    end subroutine put_place
+      call put('largest_'//name, merge(largest%depth, 0.0_wp, largest%ratio >= little), 'length')
+      call put('worst_'//name, merge(worst%depth, 0.0_wp, worst%ratio >= little), 'length')
+      call put('allowed_worst_'//name, merge(worst%allowed, 0.0_wp, worst%ratio >= little), 'length')
+    end subroutine put_places
 
     subroutine put(key, value, unit)
       character(len=*), intent(in) :: key, unit
