@@ -16,7 +16,7 @@ module epcont_certificate_pressed
   real(wp), parameter :: pressing = 1.0e-6_wp
   !> Sides that slide by less than this part of the longer one carry what they carried where they were drawn; so do bodies that
   !! slide by less than that part of the smaller one. A node may stand as far beside the other body as that.
-  real(wp), parameter :: part_of_side = 0.25_wp, part_of_body = 0.02_wp
+  real(wp), parameter :: part_of_side = 0.25_wp, part_of_body = 0.05_wp
 
 contains
 

@@ -20,10 +20,14 @@ module epcont_certificate_way
   !! between them. Else it cuts a corner, and only by more than a side is that told from what a path does that is not straight.
   real(wp), parameter :: opposite = -0.5_wp
 
+  !> A body of which a side turns [rad] or is stretched by more than this has no way that is straight, and no shape on it.
+  real(wp), parameter :: shapeless = 1.0_wp
+
   !> How each part moves as a whole, and the outlines on the way.
   type :: ways_type
     real(wp), allocatable :: mean(:, :)    !! displacement of each part [length] [2, parts]
     real(wp), allocatable :: spread(:)     !! what its nodes' differ by from that [length] [parts]
+    logical, allocatable :: straight(:)    !! it keeps a shape on its way [parts]
     type(box_tree) :: part_tree            !! where each part is on its way
     type(outline_shape) :: between         !! some sides, as far on their way as was asked last
   end type ways_type
@@ -49,6 +53,7 @@ contains
     if (model%body_outline%parts < 2) return
     ways = new_ways(model, search)
     do side = 1, model%body_outline%sides
+      if (.not. ways%straight(model%body_outline%part(side))) cycle
       do k = 1, 3, 2
         associate (node => model%body_outline%node(k, side))
           if (node == 0) cycle
@@ -58,7 +63,8 @@ contains
           call ways%part_tree%meeting(min(walker%from, to), max(walker%from, to), search%near, n)
         end associate
         do b = 1, n
-          if (search%near(b) /= model%body_outline%part(side)) call look_at_way(model, search, ways, walker, search%near(b), scene)
+          if (search%near(b) == model%body_outline%part(side) .or. .not. ways%straight(search%near(b))) cycle
+          call look_at_way(model, search, ways, walker, search%near(b), scene)
         end do
       end do
     end do
@@ -73,10 +79,12 @@ contains
     integer :: p, s
 
     associate (outline => model%body_outline)
-      allocate (ways%mean(2, outline%parts), ways%spread(outline%parts), low(2, outline%parts), high(2, outline%parts))
+      allocate (ways%mean(2, outline%parts), ways%spread(outline%parts), ways%straight(outline%parts))
+      allocate (low(2, outline%parts), high(2, outline%parts))
       do p = 1, outline%parts
         associate (u => search%displacement(:, outline%node(1, outline%first(p):outline%first(p + 1) - 1)), &
                    tree => search%now%side_tree(p))
+          ways%straight(p) = .true.
           ways%mean(:, p) = 0.5_wp*(minval(u, dim=2) + maxval(u, dim=2))
           ways%spread(p) = 0.0_wp
           low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))
@@ -86,7 +94,8 @@ contains
         high(:, p) = max(high(:, p), search%now%side_tree(p)%high(:, 1))
       end do
       do s = 1, outline%sides
-        associate (p => outline%part(s), u => search%displacement)
+        associate (p => outline%part(s), u => search%displacement, allowance => search%allowance)
+          if (max(abs(allowance%turn(s)), allowance%stretch(s)) > shapeless) ways%straight(p) = .false.
           ways%spread(p) = max(ways%spread(p), norm2(u(:, outline%node(1, s)) - ways%mean(:, p)))
           if (outline%node(3, s) > 0) ways%spread(p) = max(ways%spread(p), norm2(u(:, outline%node(3, s)) - ways%mean(:, p)))
         end associate

@@ -1,7 +1,8 @@
 !> Pairs that cannot do what pairs are for: found before solving, and warned of.
 module epcont_model_pair_checks
+  use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: short_real, text_of
   use epcont_deck_card_kinds, only: card_bconp, card_cgap
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
@@ -19,7 +20,7 @@ module epcont_model_pair_checks
 
 contains
 
-  !> Warn of pairs that point the wrong way, and of those that can neither open nor close.
+  !> Warn of pairs that point the wrong way, that do not lie opposite each other, and that can neither open nor close.
   subroutine check_pairs(deck, model, faults)
     type(deck_type), intent(in) :: deck
     type(model_type), intent(in) :: model
@@ -40,6 +41,7 @@ contains
                                 'GA and GB exchanged, or the x-axis of CID turned round')
       end associate
     end do
+    call warn_of_sideways(deck, model, last, faults)
     call warn_of_held(deck, model, card_cgap, 1, 1, last, faults)
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
@@ -48,6 +50,40 @@ contains
       end associate
     end do
   end subroutine check_pairs
+
+  !> One warning for all CGAPs whose two nodes, both of bodies, lie farther apart across the normal than a side there is long.
+  subroutine warn_of_sideways(deck, model, last, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: last
+    type(diagnostics), intent(inout) :: faults
+    real(wp) :: side(model%nodes), sideways(last)
+    character(len=:), allocatable :: others
+    integer :: far, i
+
+    side = 0.0_wp
+    do i = 1, model%body_outline%sides
+      associate (node => model%body_outline%node(:, i))
+        associate (ends => node(:merge(3, 2, node(3) > 0)))
+          side(ends) = max(side(ends), norm2(model%x(:, node(2)) - model%x(:, node(1))))
+        end associate
+      end associate
+    end do
+    do i = 1, last
+      associate (a => model%pair_node(1, i), b => model%pair_node(2, i))
+        sideways(i) = abs(cross_product(model%x(:, b) - model%x(:, a), model%normal(:, i)))
+        if (min(side(a), side(b)) == 0.0_wp .or. sideways(i) <= max(side(a), side(b))) sideways(i) = 0.0_wp
+      end associate
+    end do
+    if (all(sideways == 0.0_wp)) return
+    far = maxloc(sideways, dim=1)
+    others = ''
+    if (count(sideways > 0.0_wp) > 1) others = '; so do '//text_of(count(sideways > 0.0_wp) - 1)//' more'
+    call faults%add_warning(deck%place(card_cgap, far, 4), deck%identity(card_cgap, far)//': GA and GB lie '// &
+                            short_real(sideways(far))//' apart along the contact, more than a side there ('// &
+                            short_real(maxval(side(model%pair_node(:, far))))//')'//others, &
+                            'nodes that lie opposite each other, or BLSEG lines with a BCONP between them')
+  end subroutine warn_of_sideways
 
   !> Outward normal of the boundary at a node; zero inside a body, and where there is none.
   pure function boundary_normal(model, node) result(normal)
