@@ -65,7 +65,7 @@ contains
     found%other = place%side
     slid = found
     slid%depth = abs(meeting%slide)
-    slid%allowed = small_slide(search, found, meeting)
+    slid%allowed = small_slide(search, found)
     call take_worse(slid, scene%slid)
     if (place%inside) return
 
@@ -105,13 +105,13 @@ contains
   end subroutine look_at_gap
 
   !> How far sides may slide along each other and be where they were drawn [length].
-  pure real(wp) function small_slide(search, place, meeting) result(small)
+  pure real(wp) function small_slide(search, place) result(small)
     type(search_type), intent(in) :: search
     type(overlap_place), intent(in) :: place
-    type(meeting_type), intent(in) :: meeting
 
-    associate (part => search%now%outline%part)
-      small = max(part_of_side*meeting%longest, part_of_body*min(extent(part(place%side)), extent(part(place%other))))
+    associate (part => search%now%outline%part, length => search%allowance%length)
+      small = max(part_of_side*max(length(place%side), length(place%other)), &
+                  part_of_body*min(extent(part(place%side)), extent(part(place%other))))
     end associate
 
   contains

@@ -25,6 +25,7 @@ module epcont_certificate_search
     real(wp) :: moved = 0.0_wp             !! largest displacement [length]
     real(wp) :: told = 0.0_wp              !! depths beyond this and the curves that were drawn are told [length]
     real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
+    logical, allocatable :: in_line(:)     !! sides of lines [sides]
     integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
     integer, allocatable :: near(:), nearer(:)    !! room for what trees find
     real(wp), allocatable :: crossing(:)   !! room for where a side crosses others
@@ -39,6 +40,7 @@ contains
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     type(search_type) :: search
+    integer :: line
 
     search%displacement = displacement
     search%now = new_outline_shape(model%body_outline, model%x + displacement)
@@ -46,6 +48,12 @@ contains
     search%moved = maxval(norm2(displacement, dim=1))
     search%told = search%allowance%least + told*search%moved
     search%mate = find_mates(model)
+    allocate (search%in_line(model%body_outline%sides), source=.false.)
+    if (allocated(model%line)) then
+      do line = 1, size(model%line)
+        search%in_line(model%line(line)%side) = .true.
+      end do
+    end if
     allocate (search%near(16), search%nearer(16), search%crossing(16))
   end function new_search
 
@@ -81,10 +89,11 @@ contains
     real(wp), intent(in) :: s
     type(near_place), intent(in) :: place
     logical, intent(in) :: joined
-    real(wp) :: along(2)
+    real(wp) :: along(2), long(2)
 
     meeting%joined = joined
-    meeting%longest = max(longest_at(model, search, side, s), longest_at(model, search, place%side, place%s))
+    long = [longest_at(model, search, side, s), longest_at(model, search, place%side, place%s)]
+    if (all(long > 0.0_wp)) meeting%longest = maxval(long)
     along = search%now%tangent(place%side, place%s)
     meeting%slide = dot_product(along, motion(side, s) - motion(place%side, place%s))/max(norm2(along), tiny(1.0_wp))
 
@@ -103,16 +112,18 @@ contains
     end function motion
   end function meeting_of
 
-  !> Length of a side, or of the longer one of two that share a node [length].
+  !> Length of a side of a line, or of the longer one of two that share a node; 0: of no line [length].
   pure real(wp) function longest_at(model, search, side, s) result(length)
     type(model_type), intent(in) :: model
     type(search_type), intent(in) :: search
     integer, intent(in) :: side
     real(wp), intent(in) :: s
+    integer :: sides(2)
 
-    length = search%allowance%length(side)
-    if (s <= 0.0_wp) length = max(length, search%allowance%length(model%body_outline%before(side)))
-    if (s >= 1.0_wp) length = max(length, search%allowance%length(model%body_outline%after(side)))
+    sides = side
+    if (s <= 0.0_wp) sides(2) = model%body_outline%before(side)
+    if (s >= 1.0_wp) sides(2) = model%body_outline%after(side)
+    length = maxval(merge(search%allowance%length(sides), 0.0_wp, search%in_line(sides)))
   end function longest_at
 
   !> What a side allows, and at a node also the one with which it shares that [length].

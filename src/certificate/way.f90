@@ -221,7 +221,8 @@ contains
       if (ends(i)%inside) found%depth = min(found%depth, place%distance - ends(i)%distance)
     end do
     if (found%depth <= found%allowed) return
-    if (dot_product(along(ends(1)), along(ends(2))) > opposite .and. within <= meeting%longest) return
+    if (dot_product(along(ends(1)), along(ends(2))) > opposite .and. &
+        within <= max(search%allowance%length(walker%side), search%allowance%length(place%side))) return
     found%x = walker%from + middle*walker%motion
     found%side = walker%side
     found%other = place%side
