@@ -8,7 +8,7 @@ module epcont_certificate_way
   use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
-  use epcont_certificate_findings, only: overlap_place, scene_type, take_worse
+  use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_worse
   use epcont_certificate_search, only: is_joined, meeting_of, note_crossing, place_allowance, search_type
   use epcont_model_model, only: model_type
   use epcont_model_outline_shape, only: near_place, outline_shape
@@ -16,9 +16,9 @@ module epcont_certificate_way
   private
   public :: look_at_ways
 
-  !> Faces by which a node enters and leaves look against each other beyond this angle (cosine): it passes through what is
+  !> Faces by which a node enters and leaves look against each other, within 26 degrees (cosine): it passes through what is
   !! between them. Else it cuts a corner, and only by more than a side is that told from what a path does that is not straight.
-  real(wp), parameter :: opposite = -0.5_wp
+  real(wp), parameter :: opposite = -0.9_wp
 
   !> A body of which a side turns [rad] or is stretched by more than this has no way that is straight, and no shape on it.
   real(wp), parameter :: shapeless = 1.0_wp
@@ -226,7 +226,7 @@ contains
     found%x = walker%from + middle*walker%motion
     found%side = walker%side
     found%other = place%side
-    if (found%depth > found%allowed*scene%passed%ratio) scene%passing_node = walker%node
+    if (is_worse(found, scene%passed)) scene%passing_node = walker%node
     call take_worse(found, scene%passed)
 
   contains
