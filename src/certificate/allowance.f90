@@ -7,7 +7,7 @@
 !>                            chords lie before the curve, those of others behind it
 !>     b = H |d theta|/8      d theta by how much displacements turn the outline along H; that is h, or where both sides are of
 !>                            lines in contact the longer one: over such a length their gap is zero in the mean
-!>     k = d |w| + d**2 c/2   sliding by d along a side that turns by w, and has the curvature c
+!>     k = d |w| + d**2 c/2   sliding by d along a side that turns by w, and has the curvature c: up to h/10, however far it slides
 !>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
 module epcont_certificate_allowance
   use epcont_base_geometry, only: cross_product
@@ -26,7 +26,7 @@ module epcont_certificate_allowance
   real(wp), parameter :: least_part = 1.0e-8_wp, roundings = 16.0_wp
 
   !> Of a side's length: more than this a slide does not explain, however far it goes.
-  real(wp), parameter :: most_by_slide = 0.03_wp
+  real(wp), parameter :: most_by_slide = 0.1_wp
 
   !> How two sides meet.
   type :: meeting_type

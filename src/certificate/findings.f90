@@ -40,7 +40,7 @@ module epcont_certificate_findings
     integer :: beside_pair = 0             !! this pair presses
     type(overlap_place) :: slid            !! the depth is how far the sides of a pressed pair slid along each other
     type(overlap_place) :: passed          !! deepest in another body on the way to where it comes out of it again
-    integer :: passing_node = 0            !! which passes
+    integer :: passing_node = 0            !! which passes; 0: the element at that side
     type(overlap_place) :: deep            !! deepest in another body, by what is told
     type(overlap_place) :: wide            !! the same of a gap across which a pair presses
     type(beyond_place) :: axis, mirror     !! farthest beyond the axis of rings, beyond a line of symmetry

@@ -10,8 +10,8 @@ module epcont_certificate_scene
   use epcont_certificate_beyond, only: farthest_beyond_axis, farthest_beyond_mirror
   use epcont_certificate_findings, only: beyond_place, is_worse, more, overlap_place, scene_type, take_deeper, take_worse
   use epcont_certificate_pressed, only: look_at_pairs
-  use epcont_certificate_search, only: is_joined, is_paired, meeting_of, new_search, note_crossing, place_allowance, search_type, &
-                                       take_told, widen_allowance
+  use epcont_certificate_search, only: is_joined, is_paired, meeting_of, middle_of, new_search, note_crossing, place_allowance, &
+                                       search_type, take_told, widen_allowance
   use epcont_certificate_way, only: look_at_ways
   use epcont_model_model, only: model_type
   use epcont_model_outline_shape, only: near_place, new_outline_shape
@@ -155,33 +155,11 @@ contains
     real(wp) :: x(2)
 
     if (point%in_element) then
-      associate (element => model%body_outline%element(point%side))
-        associate (node => model%connectivity(:model%corners(element), element))
-          x = sum(model%x(:, node) + search%displacement(:, node), dim=2)/size(node)
-        end associate
-      end associate
+      x = middle_of(model, point%side, model%x) + middle_of(model, point%side, search%displacement)
     else
       x = search%now%at(point%side, point%s)
     end if
   end function now_at
-
-  !> Where it was drawn.
-  pure function drawn_at(model, search, point) result(x)
-    type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
-    type(point_type), intent(in) :: point
-    real(wp) :: x(2)
-
-    if (point%in_element) then
-      associate (element => model%body_outline%element(point%side))
-        associate (node => model%connectivity(:model%corners(element), element))
-          x = sum(model%x(:, node), dim=2)/size(node)
-        end associate
-      end associate
-    else
-      x = search%drawn%at(point%side, point%s)
-    end if
-  end function drawn_at
 
   !> Take off the depth at a place what the bodies overlapped as drawn, if no pair is to close that.
   pure subroutine take_drawn(model, search, point, inside, drawn)
@@ -195,7 +173,11 @@ contains
 
     if (is_paired(model, search, inside%side, inside%other)) return
     if (.not. allocated(search%drawn%x)) search%drawn = new_outline_shape(model%body_outline, model%x)
-    x = drawn_at(model, search, point)
+    if (point%in_element) then
+      x = middle_of(model, point%side, model%x)
+    else
+      x = search%drawn%at(point%side, point%s)
+    end if
     before = search%drawn%nearest(model%body_outline%part(inside%other), x)
     if (.not. before%inside) return
     if (before%distance > inside%allowed .and. before%distance > more*drawn%depth) &

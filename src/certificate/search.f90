@@ -8,7 +8,7 @@ module epcont_certificate_search
   use epcont_model_outline_shape, only: near_place, new_outline_shape, outline_shape
   implicit none
   private
-  public :: search_type, new_search, is_paired, is_joined, meeting_of, place_allowance, widen_allowance, take_told, &
+  public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, place_allowance, widen_allowance, take_told, &
             note_crossing
 
   !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
@@ -199,6 +199,18 @@ contains
       place%allowed = search%told + allowance%of_drawing(place%side, meeting) + allowance%of_drawing(place%other, meeting)
     end associate
   end subroutine take_told
+
+  !> Middle of the element that a side is of, or what a field has there.
+  pure function middle_of(model, side, field) result(mean)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side
+    real(wp), intent(in) :: field(:, :)   !! coordinates, or displacements [length] [2, nodes]
+    real(wp) :: mean(2)
+
+    associate (element => model%body_outline%element(side))
+      mean = sum(field(:, model%connectivity(:model%corners(element), element)), dim=2)/model%corners(element)
+    end associate
+  end function middle_of
 
   !> Add one to the crossings that were found, which ascend.
   pure subroutine note_crossing(search, s, crossings)

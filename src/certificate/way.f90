@@ -9,7 +9,7 @@ module epcont_certificate_way
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
   use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_worse
-  use epcont_certificate_search, only: is_joined, meeting_of, note_crossing, place_allowance, search_type
+  use epcont_certificate_search, only: is_joined, meeting_of, middle_of, note_crossing, place_allowance, search_type
   use epcont_model_model, only: model_type
   use epcont_model_outline_shape, only: near_place, outline_shape
   implicit none
@@ -32,7 +32,7 @@ module epcont_certificate_way
     type(outline_shape) :: between         !! some sides, as far on their way as was asked last
   end type ways_type
 
-  !> A node, and the side that begins at it or has it as its middle.
+  !> A node, and the side that begins at it or has it as its middle; 0: the middle of that side's element.
   type :: walker_type
     integer :: node = 0, side = 0
     real(wp) :: s = 0.0_wp
@@ -41,34 +41,50 @@ module epcont_certificate_way
 
 contains
 
-  !> The paths of all nodes of the outlines.
+  !> The paths of all nodes of the outlines, and of a point within each part: of two bodies with one outline no node goes inside.
   pure subroutine look_at_ways(model, search, scene)
     type(model_type), intent(in) :: model
     type(search_type), intent(inout) :: search
     type(scene_type), intent(inout) :: scene
     type(ways_type) :: ways
-    type(walker_type) :: walker
-    integer :: b, k, n, side
+    integer :: k, part, side
 
     if (model%body_outline%parts < 2) return
     ways = new_ways(model, search)
-    do side = 1, model%body_outline%sides
-      if (.not. ways%straight(model%body_outline%part(side))) cycle
-      do k = 1, 3, 2
-        associate (node => model%body_outline%node(k, side))
-          if (node == 0) cycle
-          walker = walker_type(node, side, merge(0.5_wp, 0.0_wp, k == 3), model%x(:, node), search%displacement(:, node))
-        end associate
-        associate (to => walker%from + walker%motion)
-          call ways%part_tree%meeting(min(walker%from, to), max(walker%from, to), search%near, n)
-        end associate
-        do b = 1, n
-          if (search%near(b) == model%body_outline%part(side) .or. .not. ways%straight(search%near(b))) cycle
-          call look_at_way(model, search, ways, walker, search%near(b), scene)
+    do part = 1, model%body_outline%parts
+      if (.not. ways%straight(part)) cycle
+      do side = model%body_outline%first(part), model%body_outline%first(part + 1) - 1
+        do k = 1, 3, 2
+          associate (node => model%body_outline%node(k, side))
+            if (node == 0) cycle
+            call walk(model, search, ways, walker_type(node, side, merge(0.5_wp, 0.0_wp, k == 3), model%x(:, node), &
+                                                       search%displacement(:, node)), scene)
+          end associate
         end do
       end do
+      side = model%body_outline%first(part)
+      call walk(model, search, ways, walker_type(0, side, 0.5_wp, middle_of(model, side, model%x), &
+                                                 middle_of(model, side, search%displacement)), scene)
     end do
   end subroutine look_at_ways
+
+  !> The path of one node, past all parts that it comes near to.
+  pure subroutine walk(model, search, ways, walker, scene)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(inout) :: search
+    type(ways_type), intent(inout) :: ways
+    type(walker_type), intent(in) :: walker
+    type(scene_type), intent(inout) :: scene
+    integer :: b, n
+
+    associate (from => walker%from, to => walker%from + walker%motion)
+      call ways%part_tree%meeting(min(from, to), max(from, to), search%near, n)
+    end associate
+    do b = 1, n
+      if (search%near(b) == model%body_outline%part(walker%side) .or. .not. ways%straight(search%near(b))) cycle
+      call look_at_way(model, search, ways, walker, search%near(b), scene)
+    end do
+  end subroutine walk
 
   !> How the parts move.
   pure function new_ways(model, search) result(ways)

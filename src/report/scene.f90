@@ -57,7 +57,9 @@ contains
     character(len=:), allocatable :: text
 
     associate (place => scene%passed)
-      text = 'GRID '//text_of(model%node_id(scene%passing_node))//' of the body of GRID '//first_node(model, place%side)// &
+      text = element_name(model, model%body_outline%element(place%side))
+      if (scene%passing_node > 0) text = 'GRID '//text_of(model%node_id(scene%passing_node))
+      text = text//' of the body of GRID '//first_node(model, place%side)// &
              ' goes through that of GRID '//first_node(model, place%other)//', '//short_real(place%depth)//' deep at '// &
              short_real(place%x(1))//' '//short_real(place%x(2))//', behind '//side_name(model, place%other)
     end associate
