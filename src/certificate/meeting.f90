@@ -1,18 +1,28 @@
-!> How sides of displaced outlines meet, and what they allow there.
+!> What a scene is looked through with: the outlines displaced and as drawn, how their sides meet, and what these allow there.
 module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
-  use epcont_certificate_allowance, only: allowance_type, meeting_type
-  use epcont_model_mates, only: is_mate
+  use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
+  use epcont_certificate_findings, only: overlap_place
+  use epcont_model_mates, only: find_mates, is_mate
   use epcont_model_model, only: model_type
-  use epcont_model_outline_shape, only: near_place, outline_shape
+  use epcont_model_outline_shape, only: near_place, new_outline_shape, outline_shape
   implicit none
   private
-  public :: search_type, allowance_about, is_joined, is_paired, meeting_of, own_allowance
+  public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, place_allowance, widen_allowance, take_told, &
+            note_crossing
+
+  !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
+  !! though it be allowed.
+  real(wp), parameter :: told = 0.1_wp
+  !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths off the largest
+  !! allowance counts.
+  real(wp), parameter :: about = 1.5_wp
 
   !> What is worked with.
   type :: search_type
     type(outline_shape) :: now, drawn      !! displaced; as drawn, made where it is asked for
     type(allowance_type) :: allowance
+    real(wp) :: moved = 0.0_wp             !! largest displacement [length]
     real(wp) :: told = 0.0_wp              !! depths beyond this and the curves that were drawn are told [length]
     real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
     logical, allocatable :: in_line(:)     !! sides of lines [sides]
@@ -22,7 +32,30 @@ module epcont_certificate_meeting
     integer :: last = 1                    !! the side that was nearest to the point before: the next is not far from it
   end type search_type
 
+
 contains
+
+  !> All but what is made where it is asked for.
+  pure function new_search(model, displacement) result(search)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    type(search_type) :: search
+    integer :: line
+
+    search%displacement = displacement
+    search%now = new_outline_shape(model%body_outline, model%x + displacement)
+    search%allowance = new_allowance(model, displacement)
+    search%moved = maxval(norm2(displacement, dim=1))
+    search%told = search%allowance%least + told*search%moved
+    search%mate = find_mates(model)
+    allocate (search%in_line(model%body_outline%sides), source=.false.)
+    if (allocated(model%line)) then
+      do line = 1, size(model%line)
+        search%in_line(model%line(line)%side) = .true.
+      end do
+    end if
+    allocate (search%near(16), search%nearer(16), search%crossing(16))
+  end function new_search
 
   !> Does a pair join the two bodies at one of two sides?
   pure logical function is_paired(model, search, side, other)
@@ -106,6 +139,34 @@ contains
     if (s >= 1.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%after(side), meeting))
   end function own_allowance
 
+  !> What is allowed at a place: where the two sides meet [length].
+  pure real(wp) function place_allowance(model, search, side, s, place, meeting) result(allowed)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    type(near_place), intent(in) :: place
+    type(meeting_type), intent(in) :: meeting
+
+    allowed = search%allowance%least + own_allowance(model, search, side, s, meeting) &
+              + own_allowance(model, search, place%side, place%s, meeting)
+  end function place_allowance
+
+  !> Allow what sides about a place allow, where more was found than the nearest two do.
+  pure subroutine widen_allowance(search, place, distance, meeting)
+    type(search_type), intent(in) :: search
+    type(overlap_place), intent(inout) :: place
+    real(wp), intent(in) :: distance   !! of the two sides there [length]
+    type(meeting_type), intent(in) :: meeting
+
+    if (place%depth <= place%allowed) return
+    associate (part => search%now%outline%part)
+      place%allowed = search%allowance%least &
+                      + allowance_about(search, part(place%side), place%x, about*distance, place%side, meeting) &
+                      + allowance_about(search, part(place%other), place%x, about*distance, place%other, meeting)
+    end associate
+  end subroutine widen_allowance
+
   !> The most that sides of a part within a distance of a point allow, and one of them at least [length].
   pure real(wp) function allowance_about(search, part, x, distance, side, meeting) result(allowed)
     type(search_type), intent(in) :: search
@@ -126,4 +187,46 @@ contains
       if (place%distance <= distance) allowed = max(allowed, search%allowance%of(other, meeting))
     end do
   end function allowance_about
+
+  !> Of a place where more or less is allowed: how much is not told.
+  pure subroutine take_told(search, meeting, place)
+    type(search_type), intent(in) :: search
+    type(meeting_type), intent(in) :: meeting
+    type(overlap_place), intent(inout) :: place
+
+    associate (allowance => search%allowance)
+      place%moving = 2.0_wp*(allowance%of_motion(place%side, meeting) + allowance%of_motion(place%other, meeting)) > place%allowed
+      place%allowed = search%told + allowance%of_drawing(place%side, meeting) + allowance%of_drawing(place%other, meeting)
+    end associate
+  end subroutine take_told
+
+  !> Middle of the element that a side is of, or what a field has there.
+  pure function middle_of(model, side, field) result(mean)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side
+    real(wp), intent(in) :: field(:, :)   !! coordinates, or displacements [length] [2, nodes]
+    real(wp) :: mean(2)
+
+    associate (element => model%body_outline%element(side))
+      mean = sum(field(:, model%connectivity(:model%corners(element), element)), dim=2)/model%corners(element)
+    end associate
+  end function middle_of
+
+  !> Add one to the crossings that were found, which ascend.
+  pure subroutine note_crossing(search, s, crossings)
+    type(search_type), intent(inout) :: search
+    real(wp), intent(in) :: s
+    integer, intent(inout) :: crossings
+    integer :: i
+
+    if (crossings == size(search%crossing)) search%crossing = [search%crossing, search%crossing]
+    i = crossings
+    do while (i > 0)
+      if (search%crossing(i) <= s) exit
+      search%crossing(i + 1) = search%crossing(i)
+      i = i - 1
+    end do
+    search%crossing(i + 1) = s
+    crossings = crossings + 1
+  end subroutine note_crossing
 end module epcont_certificate_meeting

@@ -10,7 +10,7 @@ module epcont_certificate_scene
   use epcont_certificate_beyond, only: farthest_beyond_axis, farthest_beyond_mirror
   use epcont_certificate_findings, only: beyond_place, is_worse, more, overlap_place, scene_type, take_deeper, take_worse
   use epcont_certificate_pressed, only: look_at_pairs
-  use epcont_certificate_search, only: is_joined, is_paired, meeting_of, middle_of, new_search, note_crossing, place_allowance, &
+  use epcont_certificate_meeting, only: is_joined, is_paired, meeting_of, middle_of, new_search, note_crossing, place_allowance, &
                                        search_type, take_told, widen_allowance
   use epcont_certificate_way, only: look_at_ways
   use epcont_model_model, only: model_type

@@ -9,7 +9,7 @@ module epcont_certificate_way
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
   use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_worse
-  use epcont_certificate_search, only: is_joined, meeting_of, middle_of, note_crossing, place_allowance, search_type
+  use epcont_certificate_meeting, only: is_joined, meeting_of, middle_of, note_crossing, place_allowance, search_type
   use epcont_model_model, only: model_type
   use epcont_model_outline_shape, only: near_place, outline_shape
   implicit none
