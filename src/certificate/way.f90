@@ -1,5 +1,5 @@
-!> Bodies that pass through each other on their way, though they are apart where they come to: nodes go straight from where they were
-!> drawn to where they are, as those of the other outline do, and may enter it and come out again.
+!> Bodies that pass through each other on their way, though they are apart where they come to: nodes go straight from where they
+!> were drawn to where they are, as those of the other outline do, and may enter it and come out again.
 !>
 !> A path is looked at in a frame that moves with the other body as a whole. There that body's sides are about where they are
 !> displaced, so its tree of boxes tells which of them the path meets, and nothing is built anew.

@@ -14,8 +14,8 @@ module epcont_report_scene
   private
   public :: scene_fault, deep_text, wide_text, itself_text, mirror_text, drawn_text, slid_text, changed_text, list_scene
 
-  !> Depths that differ by less than this part are one.
-  real(wp), parameter :: deeper = 1.001_wp
+  !> Depths that differ by less than this part are not told apart.
+  real(wp), parameter :: deeper = 1.1_wp
 
 contains
 

@@ -72,8 +72,8 @@ contains
       call put('stress_off_curve_limit', certificate%off_curve_limit, '')
       call put('energy_balance', certificate%energy, '')
       if (certificate%scene%looked_through) then
-        call put_places('penetration', certificate%scene%deepest, certificate%scene%inside)
-        call put_places('pressed_gap', certificate%scene%widest, certificate%scene%apart)
+        call write_places(file, 'penetration', certificate%scene%deepest, certificate%scene%inside)
+        call write_places(file, 'pressed_gap', certificate%scene%widest, certificate%scene%apart)
       end if
       call put('condition', answer%condition, '')
       call put('load_factor', answer%load_factor, '')
@@ -86,16 +86,6 @@ contains
 
   contains
 
-    !> The largest depth, the one that is worst by what is allowed, and that; 0 where it is so little that rounding chooses the place.
-    subroutine put_places(name, largest, worst)
-      character(len=*), intent(in) :: name
-      type(overlap_place), intent(in) :: largest, worst
-
-      call put('largest_'//name, merge(largest%depth, 0.0_wp, largest%ratio >= little), 'length')
-      call put('worst_'//name, merge(worst%depth, 0.0_wp, worst%ratio >= little), 'length')
-      call put('allowed_worst_'//name, merge(worst%allowed, 0.0_wp, worst%ratio >= little), 'length')
-    end subroutine put_places
-
     subroutine put(key, value, unit)
       character(len=*), intent(in) :: key, unit
       real(wp), intent(in) :: value
@@ -103,6 +93,27 @@ contains
       call file%line(key//','//full_number(value)//','//unit)
     end subroutine put
   end subroutine write_summary
+
+  !> The largest depth, the one that is worst by what is allowed, and that; 0 where it is so little that rounding chooses the
+  !! place.
+  subroutine write_places(file, name, largest, worst)
+    type(text_file), intent(in) :: file
+    character(len=*), intent(in) :: name
+    type(overlap_place), intent(in) :: largest, worst
+
+    call put('largest_', merge(largest%depth, 0.0_wp, largest%ratio >= little))
+    call put('worst_', merge(worst%depth, 0.0_wp, worst%ratio >= little))
+    call put('allowed_worst_', merge(worst%allowed, 0.0_wp, worst%ratio >= little))
+
+  contains
+
+    subroutine put(which, value)
+      character(len=*), intent(in) :: which
+      real(wp), intent(in) :: value
+
+      call file%line(which//name//','//full_number(value)//',length')
+    end subroutine put
+  end subroutine write_places
 
   !> What the figures are worth; empty where an error is not known: the figure is unbounded, or not resolved.
   subroutine write_accuracy(file, model, motions, answer, accuracy)
