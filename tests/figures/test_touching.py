@@ -92,6 +92,16 @@ class Touching(unittest.TestCase):
                       result.message)
         self.assertIn("What may mend it: a BLSEG along side", result.message)
 
+    def test_ways(self):
+        """A block is moved through a plate, and exactly into another; one is moved off the ledge that it stands on."""
+        for name, words in [("through_a_plate", "bodies pass through each other on their way: "),
+                            ("into_its_own_outline", "bodies pass through each other"),
+                            ("slid_off_a_ledge", "pair 69 presses beside the other body: at 4.100 0.9996 on side")]:
+            with self.subTest(scene=name):
+                result = scene.solve((FOLDER / f"{name}.dat").read_text())
+                self.assertEqual((result.status, result.summary["status"]), (4, "not certified"))
+                self.assertIn(words, result.message)
+
     def test_lines_in_two_contacts(self):
         result = scene.solve((FOLDER / "twice_both.dat").read_text())
         self.assertEqual(result.status, 2)
