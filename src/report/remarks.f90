@@ -67,6 +67,9 @@ contains
       ' strained beyond the last point of the table, whose last slope goes on', remarks)
     if (answer%unloaded > 0) call warn(plural(answer%unloaded, 'element')// &
       ' unloaded after yielding: the theory takes them back along the curve, not along the elastic line', remarks)
+    if (any(answer%contact%indeterminate)) call warn('the forces of '// &
+      plural(count(answer%contact%indeterminate), 'pair')//' are one choice of many, and so are their pressures: pairs at one'// &
+      ' place, or parts that cannot bend (`force not unique` in CONTACT)', remarks)
     do k = 1, motions%count
       if (.not. answer%contact%motion_free(k)) cycle
       remarks%notes = remarks%notes + 1

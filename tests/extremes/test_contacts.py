@@ -172,7 +172,7 @@ class Many(Extremes):
             deck = punch()
             deck.parameter("RULE", rule)
             for k in range(1, 9, 2):
-                deck.pair(80001 + k, 70001 + k, 1 + k, (k - 4)**2/256.0)
+                deck.floor([1 + k], [(k - 4)**2/256.0], first=80001 + k)
             result = self.valid(deck)
             for k in range(9):
                 twin = result.pairs.get(80001 + k)
