@@ -43,10 +43,8 @@ contains
     call file%line('warnings,'//text_of(remarks%warnings)//',')
     call file%line('notes,'//text_of(remarks%notes)//',')
     if (outcome%has_answer) then
-      if (model%pairs > 0) then
+      if (model%pairs > 0) &
         call file%line('max_pressure,'//known_number(answer%largest_pressure())//',force/length2')
-        call file%line('max_pressure_is,'//limit_of_largest(answer, accuracy)//',')
-      end if
       do k = 1, motions%count
         call put('approach_'//text_of(model%node_id(motions%node(k)))//'_'//text_of(motions%component(k)), &
                  answer%contact%approach(k), 'length')
@@ -105,7 +103,7 @@ contains
     end subroutine put
   end subroutine write_summary
 
-  !> What the figures are worth; empty where an error is not known: the figure is unbounded, or not resolved.
+  !> What the figures are worth; empty where an error is not known: `max_pressure_is` unbounded, or not resolved.
   subroutine write_accuracy(file, model, motions, answer, accuracy)
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
@@ -115,7 +113,10 @@ contains
     integer :: k
 
     call put('mesh_error_energy_norm', accuracy%energy_norm, '')
-    if (model%pairs > 0) call put('mesh_error_max_pressure', accuracy%max_pressure, 'force/length2')
+    if (model%pairs > 0) then
+      call file%line('max_pressure_is,'//limit_of_largest(answer, accuracy)//',')
+      call put('mesh_error_max_pressure', accuracy%max_pressure, 'force/length2')
+    end if
     do k = 1, size(accuracy%zone)
       call put('mesh_error_pressure_zone_'//text_of(k), accuracy%zone(k)%pressure, 'force/length2')
       call put('mesh_error_half_width_zone_'//text_of(k), accuracy%zone(k)%half_width, 'length')

@@ -162,7 +162,9 @@ class Many(Extremes):
                 result = self.valid(deck)
                 self.near(sum(result.force), sum(once.force))
                 self.near(result.force, [0.375/copies]*2*copies)
-                self.assertEqual(result.listing.count("force not unique"), 2*copies)
+                self.assertEqual(result.listing.count(", force not unique"), 2*copies)
+                self.assertIn(f"scene.dat: warning: the forces of {2*copies} pairs are one choice of many, and so are their pressures: pairs at "
+                                 "one place, or parts that cannot bend (`force not unique` in CONTACT)\n", result.message)
 
     def test_every_second_pair_twice(self):
         for rule in ("CONRY", "BLOCK"):
