@@ -1,6 +1,7 @@
 !> One deck from file to results.
 module epcont_app_driver
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use epcont_accuracy_accuracy, only: accuracy_type
   use epcont_analysis, only: analyse
   use epcont_app_arguments, only: arguments_type, stem_of
   use epcont_app_console, only: print_text
@@ -22,6 +23,7 @@ module epcont_app_driver
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_report_file, only: file_lock, lock_files, unlock_files
+  use epcont_report_limit, only: limit_of_largest, reason_of
   use epcont_report_motions, only: report_motion_faults
   use epcont_report_number, only: column_number, known_column
   use epcont_report_outcome, only: judge, outcome_type
@@ -127,7 +129,8 @@ contains
       else
         run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
         status = run%outcome%status
-        if (run%outcome%has_answer) call remark_answer(run%model, run%answer, run%certificate%scene, run%remarks)
+        if (run%outcome%has_answer) &
+          call remark_answer(run%model, run%motions, run%answer, run%certificate%scene, run%remarks)
         call write_results(run, output_stem(path, arguments), arguments%all_tables, arguments%vtk, error)
         written = .true.
         call watch%lap(stage_writing)
@@ -140,7 +143,7 @@ contains
     else
       call tell(shown(path)//': ', run%remarks%of_answer)
       if (len(run%outcome%sentence) > 0) write (error_unit, '(a)') shown(path)//': '//run%outcome%sentence
-      call say(arguments, one_line(shown(stem_of(path)), run%answer, run%outcome), status)
+      call say(arguments, one_line(shown(stem_of(path)), run%answer, run%accuracy, run%outcome), status)
     end if
   end subroutine solve_deck
 
@@ -203,17 +206,21 @@ contains
     call watch%lap(stage_plan)
   end subroutine make_plan
 
-  !> Stem, status, largest pressure, first approach.
-  pure function one_line(stem, answer, outcome) result(text)
+  !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh shows, that too.
+  pure function one_line(stem, answer, accuracy, outcome) result(text)
     character(len=*), intent(in) :: stem
     type(answer_type), intent(in) :: answer
+    type(accuracy_type), intent(in) :: accuracy
     type(outcome_type), intent(in) :: outcome
-    character(len=:), allocatable :: text
+    character(len=:), allocatable :: limit, text
 
     text = stem//'  '//outcome%word
     if (.not. outcome%has_answer) return
-    if (size(answer%pressure) > 0) &
+    if (size(answer%pressure) > 0) then
       text = text//'  p_max'//known_column(answer%largest_pressure(), 0.0_wp)
+      limit = limit_of_largest(answer, accuracy)
+      if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
+    end if
     if (size(answer%contact%approach) > 0) &
       text = text//'  approach'//column_number(answer%contact%approach(1), 0.0_wp)
   end function one_line

@@ -12,6 +12,9 @@ module epcont_material_curve
   private
   public :: material_type, curve_value, section_materials
 
+  !> A strain is beyond the last point of a table by more than this part of it.
+  real(wp), parameter :: rounding = 1.0e-9_wp
+
   !> The material of a section.
   type :: material_type
     real(wp) :: young = 1.0_wp              !! E [stress]
@@ -97,7 +100,7 @@ contains
     if (e <= self%deviatoric(1)) return
     point%yielded = .true.
     k = segment(self%deviatoric, e)
-    point%beyond = self%ends .and. k == size(self%deviatoric)
+    if (self%ends) point%beyond = e > self%deviatoric(size(self%deviatoric))*(1.0_wp + rounding)
     if (self%paper_ratio) then
       call find_paper_secant(self, k, e, point%total, secant)
       point%modulus = self%young/(self%young/secant - self%young*self%shift)  ! (2-5)

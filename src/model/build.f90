@@ -22,6 +22,7 @@ module epcont_model_build
   use epcont_model_reference, only: check_unique, index_of_ids
   use epcont_model_supports, only: build_references, build_supports, build_ties
   use epcont_model_travel, only: find_travels
+  use epcont_model_twice, only: refuse_pairs_twice, warn_of_elements_twice
   implicit none
   private
   public :: build_model
@@ -59,6 +60,8 @@ contains
     if (model%elements == 0 .and. faults%error_count() == 0) &
       call faults%add_error(place_type(), 'the deck has no elements', 'CTRIA3 cards')
     if (faults%error_count() > 0) return
+    call refuse_pairs_twice(deck, model, faults)
+    call warn_of_elements_twice(deck, model, faults)
     call check_pairs(deck, model, faults)
     call find_travels(model)
     call warn_of_hanging_nodes(deck, model, faults)

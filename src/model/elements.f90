@@ -3,17 +3,17 @@ module epcont_model_elements
   use epcont_base_geometry, only: cross_product, polygon_area
   use epcont_base_incidence, only: new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_base_sorting, only: id_index
+  use epcont_base_sorting, only: id_index, sorted_order
   use epcont_base_text, only: short_real, text_of
   use epcont_deck_card_kinds, only: card_cquad4, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_grid, card_pshell, &
-                                    card_psolid
+                                    card_psolid, card_spc, card_spc1
   use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_model_model, only: axisymmetric, model_type
   use epcont_model_reference, only: index_of_ids, resolve
   implicit none
   private
-  public :: build_elements, check_axis, element_cards, element_name
+  public :: build_elements, check_axis, element_cards, element_name, element_place
 
   !> The cards of elements, in the order in which they are read.
   integer, parameter :: element_cards(5) = [card_ctria3, card_ctria6, card_cquad4, card_ctrax3, card_ctrax6]
@@ -219,10 +219,11 @@ contains
     type(deck_type), intent(in) :: deck
     type(model_type), intent(in) :: model
     type(diagnostics), intent(inout) :: faults
-    logical, allocatable :: in_ring(:)
+    logical, allocatable :: in_ring(:), loose(:)
+    character(len=:), allocatable :: others
     integer :: e, i
 
-    allocate (in_ring(model%nodes), source=.false.)
+    allocate (in_ring(model%nodes), loose(model%nodes), source=.false.)
     do e = 1, model%elements
       if (model%section(e) == 0 .or. any(model%connectivity(:model%order(e), e) == 0)) cycle
       if (model%kinematics(model%section(e)) == axisymmetric) in_ring(model%connectivity(:model%order(e), e)) = .true.
@@ -232,12 +233,68 @@ contains
       if (model%x(1, i) < 0.0_wp) then
         call faults%add_error(deck%place(card_grid, i, 3), deck%identity(card_grid, i)// &
                               ': belongs to a ring and lies at a negative radius', 'X1 of at least 0.0: x is the radius')
-      else if (model%x(1, i) == 0.0_wp .and. .not. model%held(1, model%leader(1, i))) then
-        call faults%add_error(deck%place(card_grid, i, 3), deck%identity(card_grid, i)// &
-                              ': lies on the axis of rings and could leave it', 'direction 1 held by SPC1')
+      else
+        loose(i) = model%x(1, i) == 0.0_wp .and. .not. model%held(1, model%leader(1, i))
       end if
     end do
+    if (.not. any(loose)) return
+    i = findloc(loose, .true., dim=1)
+    others = ''
+    if (count(loose) > 1) others = '; so could '//text_of(count(loose) - 1)//' more'
+    call faults%add_error(deck%place(card_grid, i, 3), deck%identity(card_grid, i)// &
+                          ': lies on the axis of rings and could leave it'//others, &
+                          'direction 1 held: '//holding_cards(deck, pack(model%node_id, loose)))
   end subroutine check_axis
+
+  !> The SPC1 cards, in free field, that hold some nodes in direction 1.
+  pure function holding_cards(deck, ids) result(text)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: ids(:)
+    character(len=:), allocatable :: text, item
+    integer, parameter :: most_fields = 6   ! of a line with SPC1, its set and directions
+    integer, allocatable :: id(:)
+    integer :: fields, from, set, to
+
+    set = deck%spc
+    if (set == 0 .and. deck%card(card_spc1)%count > 0) set = nint(deck%card(card_spc1)%value(1, 1))
+    if (set == 0 .and. deck%card(card_spc)%count > 0) set = nint(deck%card(card_spc)%value(1, 1))
+    id = ids(sorted_order(ids))
+    text = ''
+    fields = most_fields
+    from = 1
+    do while (from <= size(id))
+      to = from
+      do while (to < size(id))
+        if (id(to + 1) /= id(to) + 1) exit
+        to = to + 1
+      end do
+      item = ','//text_of(id(from))
+      if (to > from + 1) item = item//',THRU,'//text_of(id(to))
+      fields = fields + merge(3, 1, to > from + 1)
+      if (fields > most_fields) then
+        if (len(text) > 0) text = text//' and '
+        text = text//'SPC1,'//text_of(max(set, 1))//',1'
+        fields = merge(3, 1, to > from + 1)
+      end if
+      text = text//item
+      from = merge(to + 1, from + 1, to > from + 1)
+    end do
+  end function holding_cards
+
+  !> Where the card of an element stands.
+  function element_place(deck, e) result(place)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: e
+    type(place_type) :: place
+    integer :: c, i
+
+    i = e
+    do c = 1, size(element_cards) - 1
+      if (i <= deck%card(element_cards(c))%count) exit
+      i = i - deck%card(element_cards(c))%count
+    end do
+    place = deck%place(element_cards(c), i, 1)
+  end function element_place
 
   !> The card and the id of an element, as messages name it.
   pure function element_name(model, e) result(name)

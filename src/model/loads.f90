@@ -4,7 +4,7 @@ module epcont_model_loads
   use epcont_base_geometry, only: turned
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index, new_id_index
-  use epcont_base_text, only: short_real
+  use epcont_base_text, only: short_real, text_of
   use epcont_deck_card_kinds, only: card_force, card_ploadx1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
@@ -26,7 +26,8 @@ contains
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
     type(id_index) :: elements
-    integer :: element, i, k, node(2), set, side
+    character(len=:), allocatable :: which
+    integer :: element, first_inside, i, inside, k, node(2), other, set, side
 
     allocate (model%load(2, model%nodes), source=0.0_wp)
     call chosen_set(deck, [card_force, card_ploadx1], deck%load, deck%load_place, 'LOAD', faults, set)
@@ -45,6 +46,7 @@ contains
         model%load(:, node(1)) = model%load(:, node(1)) + force%value(k - 1, i)*along_axes(force%value(k:k + 1, i))
       end do
       if (pressure%count > 0) elements = new_id_index(model%element_id)
+      inside = 0
       do i = 1, pressure%count
         call resolve(deck, card_ploadx1, i, 2, elements, 'element', faults, element)
         do k = 1, 2
@@ -59,10 +61,37 @@ contains
                                 'two neighbouring corners of the element')
         else if (model%section(element) > 0) then
           call add_pressure(pressure%value(3:4, i), pressure%value(pressure%column('THETA'), i), element, side, node(1), model)
+          other = behind(model, model%edge(element, side))
+          if (other == 0) cycle
+          inside = inside + 1
+          if (inside > 1) cycle
+          first_inside = i
+          which = element_name(model, element)//' and '//element_name(model, other)
         end if
       end do
+      if (inside == 0) return
+      if (inside > 1) which = which//'; so do '//text_of(inside - 1)//' more'
+      call faults%add_warning(deck%place(card_ploadx1, first_inside, pressure%column('GA')), &
+                              deck%identity(card_ploadx1, first_inside)//': presses inside a body, between '//which, &
+                              'a side that one element alone has')
     end associate
   end subroutine build_loads
+
+  !> The element on the other side of an element's side; 0: it is of the boundary.
+  pure integer function behind(model, ends) result(element)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: ends(3)   !! of the side, the element to the left
+    integer :: i, side, there(3)
+
+    do i = model%around%start(ends(1)), model%around%start(ends(1) + 1) - 1
+      element = model%around%group(i)
+      do side = 1, model%corners(element)
+        there = model%edge(element, side)
+        if (all(there(:2) == ends([2, 1]))) return
+      end do
+    end do
+    element = 0
+  end function behind
 
   !> Is a force not zero, but of a size that no field may give it?
   pure logical function out_of_reach(factor, direction)

@@ -1,11 +1,13 @@
 !> Pairs that cannot do what pairs are for: found before solving, and warned of.
 module epcont_model_pair_checks
   use epcont_base_geometry, only: cross_product
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
   use epcont_deck_card_kinds, only: card_bconp, card_cgap
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_elements, only: element_name
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -20,7 +22,8 @@ module epcont_model_pair_checks
 
 contains
 
-  !> Warn of pairs that point the wrong way, that do not lie opposite each other, and that can neither open nor close.
+  !> Warn of pairs that point the wrong way, that do not lie opposite each other, that can neither open nor close, and of
+  !! six-node sides with half of them.
   subroutine check_pairs(deck, model, faults)
     type(deck_type), intent(in) :: deck
     type(model_type), intent(in) :: model
@@ -49,6 +52,7 @@ contains
         call warn_of_held(deck, model, card_bconp, i, contact%first, contact%last, faults)
       end associate
     end do
+    call warn_of_half_sides(deck, model, faults)
   end subroutine check_pairs
 
   !> One warning for all CGAPs whose two nodes, both of bodies, lie farther apart across the normal than a side there is long.
@@ -84,6 +88,101 @@ contains
                             short_real(maxval(side(model%pair_node(:, far))))//')'//others, &
                             'nodes that lie opposite each other, or BLSEG lines with a BCONP between them')
   end subroutine warn_of_sideways
+
+  !> A six-node side presses by its middle, with two thirds of the force, and its ends: where some of these have no pair, the side
+  !! passes through what the others touch. A middle alone may be a point of support; two beside each other are none.
+  subroutine warn_of_half_sides(deck, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(in) :: model
+    type(diagnostics), intent(inout) :: faults
+    type(incidence) :: around         ! CGAPs at each node
+    logical, allocatable :: on_line(:)
+    integer :: c, first, half, s
+    logical :: at(3), beside(3)
+
+    if (deck%card(card_cgap)%count == 0 .or. all(model%order /= 6)) return
+    around = new_incidence(model%pair_node(:, :deck%card(card_cgap)%count), model%nodes)
+    allocate (on_line(model%nodes), source=.false.)
+    do c = 1, size(model%line_contact)
+      on_line(pack(model%line_contact(c)%slave%segment, model%line_contact(c)%slave%segment > 0)) = .true.
+      on_line(pack(model%line_contact(c)%master%segment, model%line_contact(c)%master%segment > 0)) = .true.
+    end do
+    half = 0
+    associate (outline => model%body_outline)
+      do s = 1, outline%sides
+        if (outline%node(3, s) == 0) cycle
+        if (on_line(outline%node(3, s)) .or. is_rigid(model, outline%node(:, s))) cycle
+        at = has_pair(model, around, outline%node(:, s))
+        if (at(3)) then
+          if (any(at(:2))) cycle
+          beside = has_pair(model, around, outline%node(:, outline%before(s))) .or. &
+                   has_pair(model, around, outline%node(:, outline%after(s)))
+          if (.not. beside(3)) cycle
+        else if (.not. all(at(:2))) then
+          cycle
+        end if
+        half = half + 1
+        if (half == 1) first = s
+      end do
+      if (half > 0) call warn(outline%node(:, first), outline%element(first))
+    end associate
+
+  contains
+
+    subroutine warn(node, element)
+      integer, intent(in) :: node(3), element
+      character(len=:), allocatable :: others, what
+      integer :: k
+
+      at = has_pair(model, around, node)
+      k = around%group(around%start(node(merge(3, 1, at(3)))))
+      if (at(3)) then
+        what = ' at its middle, GRID '//text_of(model%node_id(node(3)))//', and none at its ends'
+      else
+        what = ' at both ends and none at its middle, GRID '//text_of(model%node_id(node(3)))
+      end if
+      others = ''
+      if (half > 1) others = '; so it is with '//text_of(half - 1)//' more'
+      call faults%add_warning(deck%place(card_cgap, k, 1), deck%identity(card_cgap, k)//': a side of '// &
+                              element_name(model, element)//' has CGAPs'//what// &
+                              ': it will pass through what it touches, and the pressures are wrong'//others, &
+                              'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
+    end subroutine warn
+  end subroutine warn_of_half_sides
+
+  !> Have the nodes of a side a CGAP that presses on it?
+  pure function has_pair(model, around, node)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: node(3)
+    logical :: has_pair(3)
+    real(wp) :: along(2), across(2)
+    integer :: i, k
+
+    has_pair = .false.
+    if (node(3) == 0) return
+    along = model%x(:, node(2)) - model%x(:, node(1))
+    across = [along(2), -along(1)]/norm2(along)
+    do k = 1, 3
+      do i = around%start(node(k)), around%start(node(k) + 1) - 1
+        has_pair(k) = abs(dot_product(across, model%normal(:, around%group(i)))) >= same_way
+        if (has_pair(k)) exit
+      end do
+    end do
+  end function has_pair
+
+  !> Can a side not bend, since its nodes are held or move as one?
+  pure logical function is_rigid(model, node)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: node(3)
+    integer :: c, k
+
+    is_rigid = .true.
+    do c = 1, 2
+      is_rigid = is_rigid .and. (all([(model%held(c, model%leader(c, node(k))), k=1, 3)]) .or. &
+                                 all([(model%leader(c, node(k)) == model%leader(c, node(1)), k=2, 3)]))
+    end do
+  end function is_rigid
 
   !> Outward normal of the boundary at a node; zero inside a body, and where there is none.
   pure function boundary_normal(model, node) result(normal)

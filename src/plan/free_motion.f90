@@ -18,6 +18,9 @@ module epcont_plan_free_motion
   !> SUPORT freedoms that measure the motions with a condition above this are too close to each other.
   real(wp), parameter :: largest_condition = 1.0e6_wp
 
+  !> A part of a body that moves by less than this part of what moves most does not move.
+  real(wp), parameter :: moves = 1.0e-6_wp
+
   !> What can be wrong with the SUPORT freedoms of a body.
   integer, parameter, public :: motion_not_held = 1, motion_too_many = 2, motion_too_close = 3
 
@@ -25,6 +28,7 @@ module epcont_plan_free_motion
   type :: motion_fault
     integer :: kind = 0
     integer :: body = 0, node = 0             !! the body and its first node
+    integer :: moving = 0                     !! the first node of the parts that motions not held move
     integer :: motions = 0, references = 0    !! free motions, SUPORT freedoms
     integer, allocatable :: freedom(:, :)     !! node, component that would hold each motion not held [2, any]
     real(wp), allocatable :: direction(:, :)  !! motion of that node [2, any]
@@ -234,6 +238,7 @@ contains
       k = column(parts%of_node(nodes(i)))
       motion(2*i - 1, :) = matmul(parts%row(model, nodes(i), 1), loose(k + 1:k + 3, :))
       motion(2*i, :) = matmul(parts%row(model, nodes(i), 2), loose(k + 1:k + 3, :))
+      if (fault%moving == 0 .and. any(abs(loose(k + 1:k + 3, :)) > moves*maxval(abs(loose)))) fault%moving = nodes(i)
     end do
     do k = 1, m
       ! The first of those that move nearly as much as the largest, so that rounding does not choose.

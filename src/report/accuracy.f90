@@ -11,6 +11,7 @@ module epcont_report_accuracy
   use epcont_report_file, only: text_file
   use epcont_report_iterations, only: list_iteration_error
   use epcont_report_layout, only: figure, heading, right
+  use epcont_report_limit, only: not_resolved, reason_of, unbounded
   use epcont_report_number, only: column_number, estimate_number, rounding_number
   use epcont_report_precision, only: list_precision
   use epcont_report_wanted, only: list_wanted
@@ -23,8 +24,6 @@ module epcont_report_accuracy
 
   !> Pairs that are named.
   integer, parameter :: most_pairs = 8
-  character(len=*), parameter :: unbounded = '   unbounded: it grows with every finer mesh'
-  character(len=*), parameter :: not_resolved = '   not resolved: too few pairs where it is largest'
 
 contains
 
@@ -101,7 +100,7 @@ contains
     if (zone%resolved) then
       call list_estimate(file, 'mesh: largest pressure of zone '//text_of(z), zone%pressure, pressure, zone%unbounded)
     else
-      call figure(file, 'mesh: largest pressure of zone '//text_of(z), not_resolved)
+      call figure(file, 'mesh: largest pressure of zone '//text_of(z), reason_of(not_resolved))
     end if
     call list_estimate(file, 'mesh: half-width of zone '//text_of(z), zone%half_width, half_width, .false.)
   end subroutine list_zone
@@ -117,7 +116,7 @@ contains
 
     text = '0.0'
     if (without_end) then
-      call figure(file, name, unbounded)
+      call figure(file, name, reason_of(unbounded))
     else if (error >= 0.0_wp) then
       if (error > none*value) text = estimate_number(error)
       call figure(file, name, right(text, 13)//'   '//percent(error, value))

@@ -1,5 +1,6 @@
 !> The listing for people: ASCII, at most 132 columns, nothing in it that varies from run to run.
 module epcont_report_listing
+  use epcont_accuracy_accuracy, only: accuracy_type
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
@@ -12,6 +13,7 @@ module epcont_report_listing
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: figure, heading, right, wrap
+  use epcont_report_limit, only: limit_of_largest, reason_of
   use epcont_report_number, only: column_number, known_column, rounding_number
   use epcont_report_outcome, only: outcome_type
   use epcont_report_scene, only: list_scene
@@ -245,19 +247,21 @@ contains
   end function nearest_grid
 
   !> Summary and certificate.
-  subroutine list_summary(file, model, motions, answer, certificate, outcome)
+  subroutine list_summary(file, model, motions, answer, certificate, accuracy, outcome)
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     type(answer_type), intent(in) :: answer
     type(certificate_type), intent(in) :: certificate
+    type(accuracy_type), intent(in) :: accuracy
     type(outcome_type), intent(in) :: outcome
     real(wp) :: place(2)
     integer :: k
 
     call heading(file, 'SUMMARY')
     if (model%pairs > 0) then
-      call figure(file, 'largest pressure', known_column(answer%largest_pressure(), 0.0_wp))
+      call figure(file, 'largest pressure', known_column(answer%largest_pressure(), 0.0_wp)// &
+                  reason_of(limit_of_largest(answer, accuracy)))
       call figure(file, 'total contact force', column_number(sum(answer%contact%force), 0.0_wp))
       call figure(file, 'pairs in contact', right(text_of(count(answer%contact%touching)), 13))
     end if

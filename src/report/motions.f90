@@ -30,6 +30,10 @@ contains
         place = deck%place(card_grid, fault%node, 0)
         body = 'the body of GRID '//text_of(model%node_id(fault%node))
         if (fault%kind == motion_not_held) then
+          if (fault%moving /= fault%node) then
+            place = deck%place(card_grid, fault%moving, 0)
+            body = 'a part of '//body//', with GRID '//text_of(model%node_id(fault%moving))//','
+          end if
           call faults%add_error(place, body//' is free to move: '//motion_list(model, fault), &
                                 'hold it by SPC1, or solve for the motion by '//suport_card(model, fault))
         else if (fault%kind == motion_too_many) then

@@ -8,6 +8,7 @@ module epcont_report_remarks
   use epcont_deck_render, only: render_notes
   use epcont_deck_source, only: source
   use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: heading, newline, wrap
   use epcont_report_scene, only: changed_text, deep_text, drawn_text, itself_text, mirror_text, slid_text, wide_text
@@ -21,6 +22,7 @@ module epcont_report_remarks
     integer :: warnings = 0, notes = 0
     character(len=:), allocatable :: of_deck     !! in lines; of warnings the place is followed by `warning: `
     character(len=:), allocatable :: of_answer   !! in lines, each a warning
+    character(len=:), allocatable :: noted       !! notes of the answer, in lines
   end type remarks_type
 
   character(len=*), parameter :: warning = 'warning: '
@@ -37,14 +39,17 @@ contains
     remarks%notes = faults%note_count()
     remarks%of_deck = render_notes(faults, lines)
     remarks%of_answer = ''
+    remarks%noted = ''
   end function remarks_of_deck
 
   !> Add those of an answer: where its equations, solved as they are, are not those of the scene.
-  pure subroutine remark_answer(model, answer, scene, remarks)
+  pure subroutine remark_answer(model, motions, answer, scene, remarks)
     type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
     type(answer_type), intent(in) :: answer
     type(scene_type), intent(in) :: scene
     type(remarks_type), intent(inout) :: remarks
+    integer :: k
 
     call warn(itself_text(model, scene), remarks)
     call warn(mirror_text(model, scene), remarks)
@@ -64,6 +69,15 @@ contains
       ' strained beyond the last point of the table, whose last slope goes on', remarks)
     if (answer%unloaded > 0) call warn(plural(answer%unloaded, 'element')// &
       ' unloaded after yielding: the theory takes them back along the curve, not along the elastic line', remarks)
+    if (any(answer%contact%indeterminate)) call warn('the forces of '// &
+      plural(count(answer%contact%indeterminate), 'pair')//' are one choice of many, and so are their pressures: pairs at one'// &
+      ' place, or parts that cannot bend (`force not unique` in CONTACT)', remarks)
+    do k = 1, motions%count
+      if (.not. answer%contact%motion_free(k)) cycle
+      remarks%notes = remarks%notes + 1
+      remarks%noted = remarks%noted//'approach of GRID '//text_of(model%node_id(motions%node(k)))//' direction '// &
+                      text_of(motions%component(k))//': nothing resists or drives this motion: its value is a choice'//newline
+    end do
   end subroutine remark_answer
 
   !> Add a warning; an empty text is none.
@@ -100,7 +114,7 @@ contains
 
     if (remarks%warnings + remarks%notes == 0) return
     call heading(file, 'WARNINGS AND NOTES  ('//plural(remarks%warnings, 'warning')//', '//plural(remarks%notes, 'note')//')')
-    text = remarks%of_deck//remarks%of_answer
+    text = remarks%of_deck//remarks%of_answer//remarks%noted
     from = 1
     do while (from <= len(text))
       to = from + index(text(from:), newline) - 1

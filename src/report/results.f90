@@ -32,7 +32,7 @@ module epcont_report_results
     result_file('.lst', 'the listing, for people and for diffing: the same bytes on every run'), &
     result_file('.summary.csv', 'outcome, approaches, certificate and accuracy, in 17 digits like all tables'), &
     result_file('.contact.csv', 'pairs: place, normal, initial gap, force, pressure, gap, status'), &
-    result_file('.zones.csv', 'runs of touching pairs: force, largest pressure, half-width'), &
+    result_file('.zones.csv', 'runs of touching pairs: force, largest pressure and its limit, half-width'), &
     result_file('.history.csv', 'iterations: change, residual, pairs in contact, plastic elements'), &
     result_file('.nodes.csv', 'displacements and reactions; where the deck or --tables all asks for it'), &
     result_file('.elements.csv', 'stresses and states; where the deck or --tables all asks for it'), &
@@ -73,7 +73,7 @@ contains
         call write_summary(stem, model, run%motions, answer, run%certificate, run%accuracy, run%outcome, run%remarks, error)
       if (.not. run%outcome%has_answer) return
       if (.not. allocated(error)) call write_contact(stem, model, answer, error)
-      if (.not. allocated(error)) call write_zones(stem, model, answer%zones, error)
+      if (.not. allocated(error)) call write_zones(stem, model, answer, run%accuracy, error)
       if (.not. allocated(error)) call write_history(stem, answer, error)
       if (.not. allocated(error) .and. nodes) call write_nodes(stem, model, answer, error)
       if (.not. allocated(error) .and. elements) call write_elements(stem, model, answer, error)
@@ -116,7 +116,7 @@ contains
         end if
         if (nodes) call list_nodes(file, model, answer)
         if (elements) call list_elements(file, model, answer)
-        call list_summary(file, model, run%motions, answer, run%certificate, run%outcome)
+        call list_summary(file, model, run%motions, answer, run%certificate, run%accuracy, run%outcome)
         call list_accuracy(file, model, run%motions, answer, run%certificate, run%accuracy)
       end associate
     end if

@@ -9,11 +9,11 @@ module epcont_report_tables
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: new_text_file, text_file
+  use epcont_report_limit, only: limit_of_largest, limit_of_zone
   use epcont_report_number, only: full_number, known_number
   use epcont_report_outcome, only: outcome_type
   use epcont_report_remarks, only: remarks_type
   use epcont_result_answer, only: answer_type
-  use epcont_result_zones, only: contact_zone
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none
   private
@@ -115,7 +115,7 @@ contains
     end subroutine put
   end subroutine write_places
 
-  !> What the figures are worth; empty where an error is not known: the figure is unbounded, or not resolved.
+  !> What the figures are worth; empty where an error is not known: `max_pressure_is` unbounded, or not resolved.
   subroutine write_accuracy(file, model, motions, answer, accuracy)
     type(text_file), intent(in) :: file
     type(model_type), intent(in) :: model
@@ -125,7 +125,10 @@ contains
     integer :: k
 
     call put('mesh_error_energy_norm', accuracy%energy_norm, '')
-    if (model%pairs > 0) call put('mesh_error_max_pressure', accuracy%max_pressure, 'force/length2')
+    if (model%pairs > 0) then
+      call file%line('max_pressure_is,'//limit_of_largest(answer, accuracy)//',')
+      call put('mesh_error_max_pressure', accuracy%max_pressure, 'force/length2')
+    end if
     do k = 1, size(accuracy%zone)
       call put('mesh_error_pressure_zone_'//text_of(k), accuracy%zone(k)%pressure, 'force/length2')
       call put('mesh_error_half_width_zone_'//text_of(k), accuracy%zone(k)%half_width, 'length')
@@ -174,23 +177,27 @@ contains
   end subroutine write_contact
 
   !> One row a zone.
-  subroutine write_zones(stem, model, zones, error)
+  subroutine write_zones(stem, model, answer, accuracy, error)
     character(len=*), intent(in) :: stem
     type(model_type), intent(in) :: model
-    type(contact_zone), intent(in) :: zones(:)
+    type(answer_type), intent(in) :: answer
+    type(accuracy_type), intent(in) :: accuracy
     type(error_type), allocatable, intent(out) :: error
     type(text_file) :: file
     integer :: z
 
     call new_text_file(stem//'.zones.csv', file, error)
     if (allocated(error)) return
-    call file%line('zone,first_pair,last_pair,force,max_pressure,half_width_last_pair,half_width')
-    do z = 1, size(zones)
-      call file%line(text_of(z)//','//text_of(model%pair_id(zones(z)%first))//','// &
-                     text_of(model%pair_id(zones(z)%last))//','// &
-                     full_number(zones(z)%force)//','//known_number(zones(z)%max_pressure)//','// &
-                     full_number(zones(z)%half_width_pairs)//','//known_number(zones(z)%half_width))
-    end do
+    call file%line('zone,first_pair,last_pair,force,max_pressure,half_width_last_pair,half_width,max_pressure_is')
+    associate (zones => answer%zones)
+      do z = 1, size(zones)
+        call file%line(text_of(z)//','//text_of(model%pair_id(zones(z)%first))//','// &
+                       text_of(model%pair_id(zones(z)%last))//','// &
+                       full_number(zones(z)%force)//','//known_number(zones(z)%max_pressure)//','// &
+                       full_number(zones(z)%half_width_pairs)//','//known_number(zones(z)%half_width)//','// &
+                       limit_of_zone(answer, accuracy, z))
+      end do
+    end associate
     call file%finish(error)
   end subroutine write_zones
 

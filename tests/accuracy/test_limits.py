@@ -5,7 +5,10 @@ contact never are, on any mesh.
     test_limits.py PROGRAM
 """
 import itertools
+import pathlib
+import subprocess
 import sys
+import tempfile
 import unittest
 
 import chance
@@ -25,7 +28,14 @@ def said(family, element, pairs, touch, **more):
     scene.load = chance.nominal_load(scene)
     mesh = chance.Fineness(pairs, 1.3, 0.8 if touch == "exchanged" else 1.4, 0.4, 1.0, 0.0, 1)   # the slave is the coarser one
     summary, zones, listing = solve(PROGRAM, chance.make(scene, element, mesh))
-    return figures_of(summary, [max(zones, key=lambda zone: float(zone["max_pressure"]))], listing)["p"][2]
+    largest = max(zones, key=lambda zone: float(zone["max_pressure"]))
+    words = figures_of(summary, [largest], listing)["p"][2]
+    # The same is said beside the figure, in the summary of the listing and in the tables.
+    word = words.split(":")[0] if ":" in words else "bounded"
+    beside = next(line for line in listing.splitlines() if line.startswith("  largest pressure "))
+    if not (word == largest["max_pressure_is"] == summary["max_pressure_is"] and beside.endswith(words) == (word != "bounded")):
+        return f"{words!r} in ACCURACY, {beside!r}, {summary['max_pressure_is']!r} in the summary, {largest['max_pressure_is']!r} in the zones"
+    return words
 
 
 class Limits(unittest.TestCase):
@@ -57,6 +67,13 @@ class Limits(unittest.TestCase):
         for element in chance.PLANE:
             with self.subTest(element=element):
                 self.assertRegex(figures_of(*solve(PROGRAM, quads.layer_lines(11, element)))["p"][2], GIVEN)
+
+    def test_the_line_of_a_run(self):
+        with tempfile.TemporaryDirectory() as place:
+            for deck, words in (("flat_punch/flat_punch", r" \(unbounded\)"), ("hertz/hertz44_elastic", "")):
+                path = pathlib.Path(__file__).resolve().parents[2] / "input" / f"{deck}.dat"
+                run = subprocess.run([PROGRAM, path, "-o", place], capture_output=True, text=True, check=True)
+                self.assertRegex(run.stdout, rf"^{path.stem}  valid  p_max +\d\.\d{{5}}E[-+]\d\d{words}  approach +-\d\.\d{{5}}E[-+]\d\d\n$")
 
     def test_too_few_pairs(self):
         for element in chance.PLANE:

@@ -64,6 +64,12 @@ class Whole(Case):
         self.assertLess(float(row["certificate_part"]), 1)
         self.assertGreater(float(row["seconds"]), 0)
 
+    def test_a_pressure_without_limit(self):
+        self.decks("a.dat")
+        deck = self.deck("b.dat", ROOT / "input" / "flat_punch" / "flat_punch.dat")
+        self.run_it(0, "a.dat", deck, "-o", "out")
+        self.assertEqual(["bounded", "unbounded"], [row["p_max_is"] for row in self.table()])
+
     def test_the_worst_figure_is_held_against_its_own_tolerance(self):
         deck = self.deck("a.dat", ROOT / "input" / "hertz" / "hertz44.dat")
         self.run_it(0, deck, "-o", "out")

@@ -162,7 +162,9 @@ class Many(Extremes):
                 result = self.valid(deck)
                 self.near(sum(result.force), sum(once.force))
                 self.near(result.force, [0.375/copies]*2*copies)
-                self.assertEqual(result.listing.count("force not unique"), 2*copies)
+                self.assertEqual(result.listing.count(", force not unique"), 2*copies)
+                self.assertIn(f"scene.dat: warning: the forces of {2*copies} pairs are one choice of many, and so are their pressures: pairs at "
+                                 "one place, or parts that cannot bend (`force not unique` in CONTACT)\n", result.message)
 
     def test_every_second_pair_twice(self):
         for rule in ("CONRY", "BLOCK"):
@@ -172,7 +174,7 @@ class Many(Extremes):
             deck = punch()
             deck.parameter("RULE", rule)
             for k in range(1, 9, 2):
-                deck.pair(80001 + k, 70001 + k, 1 + k, (k - 4)**2/256.0)
+                deck.floor([1 + k], [(k - 4)**2/256.0], first=80001 + k)
             result = self.valid(deck)
             for k in range(9):
                 twin = result.pairs.get(80001 + k)

@@ -196,6 +196,16 @@ class Curves(Extremes):
                 result = self.valid(yielding(points, pressure, method="NEWTON"))
                 self.near(result.approach, [-0.5*(points[k - 1][0] + points[k][0])]*2, 1e-8)
 
+    def test_last_point(self):
+        """At it the table has not ended; a thousandth beyond it has."""
+        points = [(0.001, 1.0), (0.01, 1.4), (0.02, 1.5)]
+        for method in ("NEWTON", "MODSEC"):
+            at, beyond = (self.valid(yielding(points, pressure, method=method)) for pressure in (1.5, 1.501))
+            self.near(at.approach, [-0.02]*2, 1e-8)
+            self.assertEqual("", at.message)
+            self.assertEqual("scene.dat: warning: 2 elements strained beyond the last point of the table, whose last slope goes on\n",
+                             beyond.message)
+
     def test_flat_curve(self):
         """Below the yield stress it carries, at it and beyond it nothing says how far it goes."""
         flat = [(0.001, 1.0), (1.0, 1.0)]

@@ -76,7 +76,10 @@ class Supports(Extremes):
             deck.support(9, 2)
             result = self.valid(deck)
             self.near(result.force + result.approach, [0.0]*4, scale=1e-300)
-            self.assertIn("nothing resists or drives this motion", result.listing)
+            self.assertIn("WARNINGS AND NOTES  (0 warnings, 2 notes)\n"
+                          "  approach of GRID 1 direction 2: nothing resists or drives this motion: its value is a choice\n"
+                          "  approach of GRID 9 direction 2: nothing resists or drives this motion: its value is a choice\n\n", result.listing)
+            self.assertEqual((result.summary["warnings"], result.summary["notes"], result.message), (0.0, 2.0, ""))
         self.refused(plate(), 2, "SUPORT")
 
     def test_no_card_of_load(self):

@@ -6,7 +6,7 @@ import signal
 
 import tables
 
-COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "nodes", "p_max", "approach", "p_max_error",
+COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "nodes", "p_max", "p_max_is", "approach", "p_max_error",
            "certificate", "certificate_part", "warnings", "first_warning"]
 ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "singular stiffness", "contact not found", "ill-conditioned",
             "not certified"}   # words of a whole listing
@@ -79,7 +79,7 @@ def figures(listing, summary):
     nodes = re.search(r"^  (\d+) nodes?,", listing, re.MULTILINE)
     if nodes:
         found["nodes"] = nodes[1]
-    found["p_max"] = summary.get("max_pressure", "")
+    found["p_max"], found["p_max_is"] = summary.get("max_pressure", ""), summary.get("max_pressure_is", "")
     found["approach"] = next((value for key, value in summary.items() if key.startswith("approach_")), "")
     error, pressure = number(summary.get("mesh_error_max_pressure")), number(found["p_max"])
     if error is not None and pressure:

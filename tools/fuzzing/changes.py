@@ -206,7 +206,7 @@ class Changes:
                 one.data[5 - slot] = two.data[5 - slot]
 
     def contact_twice(self, deck):
-        """A pair again under another id: forces that are not unique."""
+        """A pair, or a contact of lines, again under another id: refused."""
         card = self.card(deck, "CGAP", "BCONP")
         if card:
             again = card.copy()
