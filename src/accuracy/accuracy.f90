@@ -244,7 +244,7 @@ contains
     real(wp), intent(in) :: unit_force(:)   !! contact forces under the unit load [pairs]
     real(wp), intent(in) :: product(2)      !! of all elements, and of each without its sign
     type(accuracy_type), intent(in) :: accuracy
-    real(wp) :: between, end_error, short
+    real(wp) :: at_end, between, end_error, short
     type(estimate_weights) :: weights
     integer :: z
 
@@ -254,10 +254,14 @@ contains
     do z = 1, size(accuracy%zone)
       associate (zone => accuracy%zone(z), force => unit_force(answer%zones(z)%pairs))
         weights = weights_of(zone%order, model%has_rings(), any(answer%plastic))
-        between = answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length*surface_compliance(model, table, zone%peak)
+        at_end = answer%zones(z)%max_pressure*zone%half_length*surface_compliance(model, table, zone%peak)
+        between = at_end*zone%resolution**2
+        at_end = at_end*zone%end_resolution**2
         ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says nothing of one.
         if (.not. zone%unbounded) short = short - weights%between*between*sum(force)
-        end_error = end_error + (weights%end*between + zone%wave_height)*sum(abs(force))   ! of a tilt of either sign: the ends count, not the sum
+        ! Of a tilt of either sign the ends count, not the sum. Waves are as high above as below the gap that is meant.
+        end_error = end_error + sum(abs(force))*(weights%end*at_end + &
+                                                 2.0_wp*zone%wave_height)
         if (size(force) <= narrow) end_error = end_error + sum(abs(force))*too_near(model, line, answer, table, zone, size(force))
       end associate
     end do

@@ -51,12 +51,14 @@ contains
 
     angle = 0.0_wp
     spacing = 0.0_wp
+    if (.not. bends(line, pair)) return
     call bend_at(model, line, pair, bend, curvature)
     beside = 0.0_wp
     near = 0
     do k = 1, 2
       associate (next => line%neighbour(k, pair))
         if (next == 0) cycle
+        if (.not. bends(line, next)) cycle
         call bend_at(model, line, next, bend, other)
         beside = beside + other
         near = near + 1
@@ -67,4 +69,12 @@ contains
     spacing = spacing/near
     angle = abs(curvature - beside/near)*spacing
   end subroutine alternating_bend
+
+  !> Does the line go on to both sides of a pair? Else nothing is known of its bend.
+  pure logical function bends(line, pair)
+    type(contact_line), intent(in) :: line
+    integer, intent(in) :: pair
+
+    bends = all(line%neighbour(:, pair) > 0) .or. line%mirrored(pair)
+  end function bends
 end module epcont_accuracy_waves

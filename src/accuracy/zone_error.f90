@@ -31,6 +31,8 @@ module epcont_accuracy_zone_error
   !> A pressure that is not below this part of the largest at an end does not fall towards it.
   real(wp), parameter :: falls = 0.5_wp
 
+  !> An element so many times deeper than its side is wide is not graded.
+  real(wp), parameter :: stretched = 1.5_wp
   !> Where flattening the waves of the gap takes so much of the largest pressure, that is a pressure of the waves.
   real(wp), parameter :: waves_alone = 0.5_wp
 
@@ -41,6 +43,7 @@ module epcont_accuracy_zone_error
     real(wp) :: pressure = -1.0_wp       !! of the largest pressure; negative: unbounded, or not resolved [stress]
     real(wp) :: half_width = -1.0_wp     !! negative: unknown [length]
     real(wp) :: resolution = 1.0_wp      !! spacing of the pairs over half of the zone's length
+    real(wp) :: end_resolution = 1.0_wp  !! the same of the larger spacing at its ends
     real(wp) :: half_length = 0.0_wp     !! of the zone, to where the pressure vanishes [length]
     real(wp) :: wave_height = 0.0_wp     !! of what its gap bends otherwise from pair to pair [length]
     integer :: order = 3                 !! nodes of the elements there
@@ -62,7 +65,7 @@ contains
     real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
     real(wp), allocatable :: s(:)     !! place of each of them, from the first on [length]
     integer, allocatable :: inward(:) !! in p and s, from one end on
-    real(wp) :: off(2), beyond(2), coarse, flattening, largest, open, spacing, step, uncertain
+    real(wp) :: off(2), beyond(2), coarse, flattening, largest, open, spacing, step, uncertain, widest
     logical :: closed, cut_off, edge, ends, mirrored(2)   !! ends: an end of the zone is one of contact, not of the candidates
     integer :: e, k, n, peak
 
@@ -78,6 +81,7 @@ contains
     weights = weights_of(error%order, model%has_rings(), any(answer%plastic))
     beyond = 0.0_wp
     uncertain = 0.0_wp
+    widest = 0.0_wp
     edge = .false.
     cut_off = .false.
     ends = .false.
@@ -90,6 +94,7 @@ contains
         step = max(open, d(min(n, 2)))
         beyond(e) = vanishes(p(inward), d, open)
         uncertain = uncertain + weights%step*step
+        widest = max(widest, step)
         ends = ends .or. open > 0.0_wp
         if (open == 0.0_wp) edge = edge .or. any(p(inward(:min(n, edge_pairs(model, line, last)))) >= falls*largest)
         cut_off = cut_off .or. open > 0.0_wp .and. n > few .and. peak == inward(1)
@@ -109,6 +114,8 @@ contains
       if (.not. edge) error%unbounded = has_tip(model, table, line, zone%pairs, largest)
       error%resolved = error%unbounded .or. n + count(mirrored)*(n - 1) >= few .and. .not. cut_off
     end if
+    error%end_resolution = error%resolution
+    if (error%resolution > 0.0_wp .and. widest > spacing) error%end_resolution = error%resolution*widest/spacing
     call find_waves(model, table, line, zone%pairs, flattening, error%wave_height)
     if (error%half_width >= 0.0_wp) error%half_width = error%half_width + flattening/largest*zone%half_width   ! the load is given
     if (flattening > waves_alone*largest .and. .not. error%unbounded) error%resolved = .false.
@@ -117,7 +124,7 @@ contains
     off = [off_parabola(s, p, mirrored, peak, spacing, error%resolution), abs(largest - stress_pressure(error%peak))]
     error%pressure = weights%parabola*off(1) + weights%stress*off(2) + weights%smaller*minval(off) + flattening &
                      + ((weights%spacing + weights%square*error%resolution)*error%resolution &
-                        + weights%graded*max(0.0_wp, coarse - error%resolution) &
+                        + weights%graded*max(0.0_wp, coarse - stretched*error%resolution) &
                         + weights%pressure_energy*energy)*largest
     if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
