@@ -32,7 +32,7 @@ module epcont_accuracy_zone_error
   real(wp), parameter :: falls = 0.5_wp
 
   !> An element so many times deeper than its side is wide is not graded.
-  real(wp), parameter :: stretched = 1.5_wp
+  real(wp), parameter :: stretched = 1.8_wp
   !> Where flattening the waves of the gap takes so much of the largest pressure, that is a pressure of the waves.
   real(wp), parameter :: waves_alone = 0.5_wp
 
