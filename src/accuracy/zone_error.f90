@@ -5,6 +5,7 @@
 !> half-width the spacing at its ends, and the energy. What each counts is measured (tests/accuracy). Where the pressure has no
 !> limit, or the zone too few pairs, nothing is said of it.
 module epcont_accuracy_zone_error
+  use epcont_accuracy_contact_stress, only: gives_way
   use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_patches, only: patch_table
   use epcont_accuracy_waves, only: find_waves
@@ -120,7 +121,9 @@ contains
     if (error%half_width >= 0.0_wp) error%half_width = error%half_width + flattening/largest*zone%half_width   ! the load is given
     if (flattening > waves_alone*largest .and. .not. error%unbounded) error%resolved = .false.
     if (error%unbounded .or. .not. error%resolved) return
-    coarse = max(s(n)/max(1, n - 1), depth_behind(model, table, error%peak))/max(spacing, error%half_length)
+    coarse = 0.0_wp   ! of an even pressure any spacing tells
+    if (error%resolution > 0.0_wp) &
+      coarse = max(s(n)/max(1, n - 1), depth_behind(model, table, error%peak))/max(spacing, error%half_length)
     off = [off_parabola(s, p, mirrored, peak, spacing, error%resolution), abs(largest - stress_pressure(error%peak))]
     error%pressure = weights%parabola*off(1) + weights%stress*off(2) + weights%smaller*minval(off) + flattening &
                      + ((weights%spacing + weights%square*error%resolution)*error%resolution &
@@ -129,7 +132,7 @@ contains
     if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
 
-  !> How far the elements at a pair reach into their bodies, by sides of two spacings where they have six nodes [length].
+  !> How far the elements at a pair that can be strained reach into their bodies; of six-node ones half [length].
   pure real(wp) function depth_behind(model, table, pair) result(depth)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
@@ -139,6 +142,7 @@ contains
     depth = 0.0_wp
     do k = 1, 2
       associate (node => model%pair_node(k, pair))
+        if (.not. gives_way(model, table, node)) cycle
         do i = table%around%start(node), table%around%start(node + 1) - 1
           e = table%around%group(i)
           associate (along => matmul(model%normal(:, pair), model%x(:, model%connectivity(:model%corners(e), e))))
