@@ -34,6 +34,9 @@ module epcont_accuracy_accuracy
   !> A part of the resultant at one node of the mesh from which on it is a point load.
   real(wp), parameter :: concentrated = 0.5_wp
 
+  !> Part of the energy that a mesh has at least for its errors to be measured by it.
+  real(wp), parameter :: least_energy = 0.5_wp
+
   type :: accuracy_type
     real(wp) :: energy_norm = 0.0_wp               !! error of the mesh over the size of the answer, in the energy norm
     real(wp), allocatable :: element(:)            !! square of each element's error [energy] [elements]
@@ -132,6 +135,7 @@ contains
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
     accuracy%total_force = 0.0_wp   ! where loads alone make it
     call assess_motions(model, motions, line, answer, table, unit_force(:, moved), along, moved, accuracy)
+    call widen_pressures(answer, accuracy)
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
   end subroutine assess
 
@@ -214,6 +218,22 @@ contains
     accuracy%pressure_unbounded = accuracy%zone(z)%unbounded
   end subroutine assess_zones
 
+  !> Pressures are as much off as the total force, where that is not given by loads: of uniform ones nothing else tells.
+  pure subroutine widen_pressures(answer, accuracy)
+    type(answer_type), intent(in) :: answer
+    type(accuracy_type), intent(inout) :: accuracy
+    real(wp) :: relative
+    integer :: z
+
+    relative = accuracy%total_force/sum(answer%contact%force)
+    do z = 1, size(accuracy%zone)
+      associate (pressure => accuracy%zone(z)%pressure)
+        if (pressure >= 0.0_wp) pressure = max(pressure, relative*answer%zones(z)%max_pressure)
+      end associate
+    end do
+    if (size(accuracy%zone) > 0) accuracy%max_pressure = accuracy%zone(maxloc(answer%zones%max_pressure, dim=1))%pressure
+  end subroutine widen_pressures
+
   !> Error of an approach, or of the total contact force: the product of the errors of the scene and of its answer to a unit load
   !! along the motion, or to closing gaps, signed, with what contact at nodes alone lets the bodies come too near.
   pure real(wp) function error_along(model, line, answer, table, unit_force, product, accuracy) result(error)
@@ -224,7 +244,7 @@ contains
     real(wp), intent(in) :: unit_force(:)   !! contact forces under the unit load [pairs]
     real(wp), intent(in) :: product(2)      !! of all elements, and of each without its sign
     type(accuracy_type), intent(in) :: accuracy
-    real(wp) :: between, end_error, short
+    real(wp) :: at_end, between, end_error, short
     type(estimate_weights) :: weights
     integer :: z
 
@@ -234,14 +254,19 @@ contains
     do z = 1, size(accuracy%zone)
       associate (zone => accuracy%zone(z), force => unit_force(answer%zones(z)%pairs))
         weights = weights_of(zone%order, model%has_rings(), any(answer%plastic))
-        between = answer%zones(z)%max_pressure*zone%resolution**2*zone%half_length*surface_compliance(model, table, zone%peak)
+        at_end = answer%zones(z)%max_pressure*zone%half_length*surface_compliance(model, table, zone%peak)
+        between = at_end*zone%resolution**2
+        at_end = at_end*zone%end_resolution**2
         ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says nothing of one.
         if (.not. zone%unbounded) short = short - weights%between*between*sum(force)
-        end_error = end_error + weights%end*between*sum(abs(force))   ! of a tilt of either sign: the ends count, not the sum
+        ! Of a tilt of either sign the ends count, not the sum. Waves are as high above as below the gap that is meant.
+        end_error = end_error + sum(abs(force))*(weights%end*at_end + &
+                                                 2.0_wp*zone%wave_height)
         if (size(force) <= narrow) end_error = end_error + sum(abs(force))*too_near(model, line, answer, table, zone, size(force))
       end associate
     end do
-    error = weights%product*max(abs(short), uncertain*product(2)) + end_error
+    ! What a mesh misses is measured by what it has: both errors are larger by as much as its energy is too small.
+    error = weights%product*max(abs(short), uncertain*product(2))/max(least_energy, 1.0_wp - accuracy%energy_norm**2)**2 + end_error
   end function error_along
 
   !> What contact on one pair says too little: how much nearer the bodies come on a three times finer mesh, and how high a smooth

@@ -7,7 +7,7 @@ module epcont_accuracy_contact_stress
   use epcont_model_model, only: model_type, plane_stress
   implicit none
   private
-  public :: smooth_pressures, surface_compliance
+  public :: gives_way, smooth_pressures, surface_compliance
 
   !> Of a side's nodes that share in a gap, those with stresses must have this part.
   real(wp), parameter :: least_weight = 0.5_wp

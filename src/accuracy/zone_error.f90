@@ -5,8 +5,10 @@
 !> half-width the spacing at its ends, and the energy. What each counts is measured (tests/accuracy). Where the pressure has no
 !> limit, or the zone too few pairs, nothing is said of it.
 module epcont_accuracy_zone_error
+  use epcont_accuracy_contact_stress, only: gives_way
   use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_patches, only: patch_table
+  use epcont_accuracy_waves, only: find_waves
   use epcont_accuracy_weights, only: estimate_weights, weights_of
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
@@ -30,6 +32,11 @@ module epcont_accuracy_zone_error
   !> A pressure that is not below this part of the largest at an end does not fall towards it.
   real(wp), parameter :: falls = 0.5_wp
 
+  !> An element so many times deeper than its side is wide is not graded.
+  real(wp), parameter :: stretched = 1.8_wp
+  !> Where flattening the waves of the gap takes so much of the largest pressure, that is a pressure of the waves.
+  real(wp), parameter :: waves_alone = 0.5_wp
+
   type :: zone_error
     integer :: peak = 0                  !! pair of the largest pressure
     logical :: unbounded = .false.       !! the pressure grows with every finer mesh: a tip, a sharp edge
@@ -37,7 +44,9 @@ module epcont_accuracy_zone_error
     real(wp) :: pressure = -1.0_wp       !! of the largest pressure; negative: unbounded, or not resolved [stress]
     real(wp) :: half_width = -1.0_wp     !! negative: unknown [length]
     real(wp) :: resolution = 1.0_wp      !! spacing of the pairs over half of the zone's length
+    real(wp) :: end_resolution = 1.0_wp  !! the same of the larger spacing at its ends
     real(wp) :: half_length = 0.0_wp     !! of the zone, to where the pressure vanishes [length]
+    real(wp) :: wave_height = 0.0_wp     !! of what its gap bends otherwise from pair to pair [length]
     integer :: order = 3                 !! nodes of the elements there
   end type zone_error
 
@@ -57,8 +66,8 @@ contains
     real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
     real(wp), allocatable :: s(:)     !! place of each of them, from the first on [length]
     integer, allocatable :: inward(:) !! in p and s, from one end on
-    real(wp) :: off(2), beyond(2), largest, open, spacing, step, uncertain
-    logical :: cut_off, edge, ends, mirrored(2)   !! ends: an end of the zone is one of contact, not of the candidates
+    real(wp) :: off(2), beyond(2), coarse, flattening, largest, open, spacing, step, uncertain, widest
+    logical :: closed, cut_off, edge, ends, mirrored(2)   !! ends: an end of the zone is one of contact, not of the candidates
     integer :: e, k, n, peak
 
     n = size(zone%pairs)
@@ -73,17 +82,20 @@ contains
     weights = weights_of(error%order, model%has_rings(), any(answer%plastic))
     beyond = 0.0_wp
     uncertain = 0.0_wp
+    widest = 0.0_wp
     edge = .false.
     cut_off = .false.
     ends = .false.
+    closed = is_closed(line, zone%pairs)
     do e = 1, 2
-      if (mirrored(e)) cycle
+      if (mirrored(e) .or. closed) cycle
       inward = [(merge(k, n + 1 - k, e == 1), k=1, n)]
       associate (last => zone%pairs(inward(1)), d => abs(s(inward) - s(inward(1))))
         open = to_first_open(model, line, answer%contact%touching, last)
         step = max(open, d(min(n, 2)))
         beyond(e) = vanishes(p(inward), d, open)
         uncertain = uncertain + weights%step*step
+        widest = max(widest, step)
         ends = ends .or. open > 0.0_wp
         if (open == 0.0_wp) edge = edge .or. any(p(inward(:min(n, edge_pairs(model, line, last)))) >= falls*largest)
         cut_off = cut_off .or. open > 0.0_wp .and. n > few .and. peak == inward(1)
@@ -103,13 +115,51 @@ contains
       if (.not. edge) error%unbounded = has_tip(model, table, line, zone%pairs, largest)
       error%resolved = error%unbounded .or. n + count(mirrored)*(n - 1) >= few .and. .not. cut_off
     end if
+    error%end_resolution = error%resolution
+    if (error%resolution > 0.0_wp .and. widest > spacing) error%end_resolution = error%resolution*widest/spacing
+    call find_waves(model, table, line, zone%pairs, flattening, error%wave_height)
+    if (error%half_width >= 0.0_wp) error%half_width = error%half_width + flattening/largest*zone%half_width   ! the load is given
+    if (flattening > waves_alone*largest .and. .not. error%unbounded) error%resolved = .false.
     if (error%unbounded .or. .not. error%resolved) return
+    coarse = 0.0_wp   ! of an even pressure any spacing tells
+    if (error%resolution > 0.0_wp) &
+      coarse = max(s(n)/max(1, n - 1), depth_behind(model, table, error%peak))/max(spacing, error%half_length)
     off = [off_parabola(s, p, mirrored, peak, spacing, error%resolution), abs(largest - stress_pressure(error%peak))]
-    error%pressure = weights%parabola*off(1) + weights%stress*off(2) + weights%smaller*minval(off) &
+    error%pressure = weights%parabola*off(1) + weights%stress*off(2) + weights%smaller*minval(off) + flattening &
                      + ((weights%spacing + weights%square*error%resolution)*error%resolution &
+                        + weights%graded*max(0.0_wp, coarse - stretched*error%resolution) &
                         + weights%pressure_energy*energy)*largest
     if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
+
+  !> How far the elements at a pair that can be strained reach into their bodies; of six-node ones half [length].
+  pure real(wp) function depth_behind(model, table, pair) result(depth)
+    type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
+    integer, intent(in) :: pair
+    integer :: e, i, k
+
+    depth = 0.0_wp
+    do k = 1, 2
+      associate (node => model%pair_node(k, pair))
+        if (.not. gives_way(model, table, node)) cycle
+        do i = table%around%start(node), table%around%start(node + 1) - 1
+          e = table%around%group(i)
+          associate (along => matmul(model%normal(:, pair), model%x(:, model%connectivity(:model%corners(e), e))))
+            depth = max(depth, (maxval(along) - minval(along))*merge(0.5_wp, 1.0_wp, model%order(e) == 6))
+          end associate
+        end do
+      end associate
+    end do
+  end function depth_behind
+
+  !> Does a zone go all around, its last pair beside its first? Then it has no ends.
+  pure logical function is_closed(line, pairs)
+    type(contact_line), intent(in) :: line
+    integer, intent(in) :: pairs(:)
+
+    is_closed = size(pairs) > 2 .and. any(line%neighbour(:, pairs(1)) == pairs(size(pairs)))
+  end function is_closed
 
   !> The largest pressure; of equal ones, but for rounding, that on the largest area: a corner on the axis may have its neighbour's.
   pure integer function peak_of(pressure, area) result(peak)

@@ -12,6 +12,7 @@ import tempfile
 import unittest
 
 import chance
+import curved
 from chance import quads
 from score_by_chance import figures_of, solve
 
@@ -74,6 +75,24 @@ class Limits(unittest.TestCase):
                 path = pathlib.Path(__file__).resolve().parents[2] / "input" / f"{deck}.dat"
                 run = subprocess.run([PROGRAM, path, "-o", place], capture_output=True, text=True, check=True)
                 self.assertRegex(run.stdout, rf"^{path.stem}  valid  p_max +\d\.\d{{5}}E[-+]\d\d{words}  approach +-\d\.\d{{5}}E[-+]\d\d\n$")
+
+    def test_whole_circles(self):
+        """A zone that goes all around has no end, and of its even pressure (Lame) the error is told."""
+        for element in chance.PLANE:
+            for hole, pin in ((60, 40), (40, 8), (60, 12), (30, 24)):
+                with self.subTest(element=element, hole=hole, pin=pin):
+                    pressure, estimate, words = figures_of(*solve(PROGRAM, curved.press_fit(element, hole, pin)))["p"]
+                    self.assertRegex(words, GIVEN)
+                    self.assertLess(abs(pressure - curved.lame()), estimate)
+
+    def test_chords(self):
+        """Middle nodes on the chords of a cylinder make the gap wave: its pressure and approach are off by several times what they are on the arc."""
+        for straight in (False, True):
+            scene = curved.Cylinder("ctria6", 24, 30, 10, straight_sides=straight)
+            figures = figures_of(*solve(PROGRAM, scene.deck()))
+            for key, true in (("p", 837.6), ("q1", curved.APPROACH[400.0, 1.0])):
+                with self.subTest(straight=straight, figure=key):
+                    self.assertLess(abs(figures[key][0] - true), figures[key][1])
 
     def test_too_few_pairs(self):
         for element in chance.PLANE:
