@@ -116,7 +116,7 @@ contains
       error%resolved = error%unbounded .or. n + count(mirrored)*(n - 1) >= few .and. .not. cut_off
     end if
     error%end_resolution = error%resolution
-    if (error%resolution > 0.0_wp .and. widest > spacing) error%end_resolution = error%resolution*widest/spacing
+    if (spacing > 0.0_wp .and. widest > spacing) error%end_resolution = error%resolution*widest/spacing
     call find_waves(model, table, line, zone%pairs, flattening, error%wave_height)
     if (error%half_width >= 0.0_wp) error%half_width = error%half_width + flattening/largest*zone%half_width   ! the load is given
     if (flattening > waves_alone*largest .and. .not. error%unbounded) error%resolved = .false.
