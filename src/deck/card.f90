@@ -343,11 +343,12 @@ contains
     type(source), intent(in) :: lines
     integer, intent(in) :: slot
     type(place_type) :: place
-    integer :: i, left, before
+    integer :: i, left, before, line
 
     place = self%name_place(lines)
     if (slot > self%count) return
-    associate (at => self%at(line_of(self, slot)))
+    line = line_of(self, slot)
+    associate (at => self%at(line))
       before = slot - at%slot
       left = lines%last(at%line) + 1
       if (before < at%fields .and. at%comma == 0) then
