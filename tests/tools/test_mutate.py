@@ -97,7 +97,7 @@ class Judged(Trial):
         self.tests = {name: ([name], {}, {"contact"}) for name in tests}
         (self.tree / "src").mkdir(parents=True)
 
-    def build(self, *targets):
+    def build(self):
         return self.built
 
     def run(self, name, seconds):
