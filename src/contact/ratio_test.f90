@@ -23,14 +23,10 @@ contains
     type(step_type) :: step
     logical, allocatable :: blocking(:), tied(:)
     real(wp), allocatable :: ratio(:)
-    real(wp) :: zero   !! entries up to this are none
 
     step%slope = entries_of_column(tableau, column)
-    ! The load factor goes from 0 to 1, so its column is measured by 1.
-    zero = negligible
-    if (tableau%nonbasic(column) /= load_factor) zero = negligible*maxval(abs(step%slope))
-    call test_load(tableau, column, zero, step)
-    blocking = step%slope < -zero .and. tableau%basic /= load_factor
+    call test_load(tableau, column, step)
+    blocking = step%slope < -negligible .and. tableau%basic /= load_factor
     if (.not. any(blocking)) return
     allocate (ratio(size(blocking)), source=huge(1.0_wp))
     where (blocking) ratio = max(tableau%value, 0.0_wp)/(-step%slope)
@@ -41,10 +37,9 @@ contains
   end function test_ratios
 
   !> Where the load is complete.
-  pure subroutine test_load(tableau, column, zero, step)
+  pure subroutine test_load(tableau, column, step)
     type(contact_tableau), intent(in) :: tableau
     integer, intent(in) :: column
-    real(wp), intent(in) :: zero
     type(step_type), intent(inout) :: step
     integer :: row
 
@@ -53,7 +48,7 @@ contains
       if (tableau%nonbasic(column) /= load_factor) return
       step%load_rate = 1.0_wp
       step%full_load = 1.0_wp
-    else if (step%slope(row) > zero) then
+    else if (step%slope(row) > negligible) then
       step%load_rate = step%slope(row)
       step%full_load = max(1.0_wp - tableau%value(row), 0.0_wp)/step%load_rate
     end if

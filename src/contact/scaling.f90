@@ -15,7 +15,7 @@ module epcont_contact_scaling
   private
   public :: scaled_problem, scale_problem, drop_motions, restore_units
 
-  !> In scaled units an entry up to this part of its column is zero, and ratios this near are tied.
+  !> In scaled units an entry up to this is zero, and ratios this near are tied.
   real(wp), parameter, public :: negligible = 1.0e-11_wp
 
   !> The problem in its own units, over the motions that are kept.

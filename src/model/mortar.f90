@@ -141,21 +141,16 @@ contains
                 value(3)*(s - at(1))*(s - at(2))/((at(3) - at(1))*(at(3) - at(2)))
   end function continued
 
-  !> How far from a side the part of the other line lies that it faces, at most: twice as far as its nodes say, or its length.
+  !> How far from a side the part of the other line lies that it faces, at most: twice as far as its ends say, or its length.
   pure real(wp) function reach_of(contact, side, row, facing)
     type(line_contact), intent(in) :: contact
     integer, intent(in) :: side
     integer, intent(in) :: row(3)                  !! of its nodes; 0: they face nothing, or there is none
     type(facing_type), intent(in) :: facing(:)     !! what the nodes face [rows]
-    integer :: k
 
     reach_of = contact%search
     if (any(row == 0 .and. contact%slave%segment(:, side) > 0)) return
-    reach_of = 2.0_wp*contact%slave%chord_length(side)
-    do k = 1, 3
-      if (row(k) > 0) reach_of = max(reach_of, 2.0_wp*abs(facing(row(k))%place%gap))
-    end do
-    reach_of = min(reach_of, contact%search)
+    reach_of = min(reach_of, 2.0_wp*max(contact%slave%chord_length(side), maxval(abs(facing(row(:2))%place%gap))))
   end function reach_of
 
   !> Integration points of a side, cut where nodes of the other line face it.
