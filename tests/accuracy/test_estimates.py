@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Is anything said of errors that was not said before?
+
+    tests/accuracy/test_estimates.py PROGRAM [--accept]
+
+A coarse scene of each kind of element, elastic and beyond yield: largest pressure, half-width and approach with their estimates, within
+0.1 % of estimates.csv. What they are worth is for score.py and score_by_chance.py to say, of many scenes; there a weight that
+counts for a single kind of element, or beside others, hardly shows. --accept writes what is said today.
+"""
+import argparse
+import csv
+import pathlib
+import sys
+
+import chance
+from score import solve
+
+REFERENCE = pathlib.Path(__file__).with_name("estimates.csv")
+COLUMNS = ["element", "beyond yield", "figure", "value", "estimate"]
+TOLERANCE = 1e-3
+
+
+def scene(rings, yields):
+    """A round body on a flat one, three times as stiff."""
+    drawn = chance.Scene("round", rings, (1000.0, 3000.0), wide=(6.0, 6.0), deep=(8.0, 8.0))
+    drawn.load = chance.nominal_load(drawn) * (2.0 if yields else 1.0)
+    if yields:
+        drawn.stress, drawn.hardening, drawn.width = 0.25 / chance.compliance(drawn) / drawn.radius, 0.05, 1.4
+    return drawn
+
+
+def said(program):
+    mesh = chance.Fineness(pairs=6.0, growth=1.4, finer=1.0, shift=0.0, stretch=1.0, jitter=0.0, seed=0)
+    for element in (*chance.PLANE, *chance.RINGS):
+        for yields in (False, True):
+            figures = solve(program, chance.make(scene(element in chance.RINGS, yields), element, mesh))
+            for name, (value, estimate) in sorted(figures.items()):
+                yield [element, "yes" if yields else "no", name, value, estimate]
+
+
+def differs(one, other):
+    return abs(one - other) > TOLERANCE * max(abs(one), abs(other))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--accept", action="store_true", help="these are right")
+    options = parser.parse_args()
+    rows = list(said(options.program))
+    if options.accept:
+        with REFERENCE.open("w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([COLUMNS, *([*row[:3], *(f"{x:.6g}" for x in row[3:])] for row in rows)])
+        return 0
+    with REFERENCE.open(newline="") as file:
+        known = list(csv.reader(file))[1:]
+    faults = [f"{' '.join(now[:3])}: {now[3]:.6g} and estimate {now[4]:.6g}, where there were {was[3]} and {was[4]}"
+              for now, was in zip(rows, known) if now[:3] != was[:3] or any(differs(a, float(b)) for a, b in zip(now[3:], was[3:]))]
+    if len(rows) != len(known):
+        faults.append(f"{len(rows)} figures, where there were {len(known)}")
+    print("\n".join(faults), end="\n" if faults else "")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
