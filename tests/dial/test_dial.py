@@ -8,15 +8,20 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "accuracy"))
+import chance  # noqa: E402
+
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 INPUT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"]) / "input"
 FIGURE = "error that single precision leaves"
 
 
 class Dial(unittest.TestCase):
-    def run_deck(self, name, *parameters, left_out="none", words={}, memory="16"):
+    def run_deck(self, name, *parameters, **more):
+        return self.run_text((INPUT / f"{name}.dat").read_text(), *parameters, **more)
+
+    def run_text(self, text, *parameters, left_out="none", words={}, memory="16"):
         """The run, the listing and the contact pressures of a deck with further PARAMs, one left out, words replaced."""
-        text = (INPUT / f"{name}.dat").read_text()
         names = [parameter.split(",")[0] for parameter in parameters] + [left_out]
         text = "".join(line for line in text.splitlines(True) if not re.match(rf"PARAM +({'|'.join(names)}) ", line))
         for old, new in words.items():
@@ -54,6 +59,14 @@ class Dial(unittest.TestCase):
                 self.assertAlmostEqual(1.0, tolerance/(10*error), delta=1e-3)
                 self.assertNotIn("digits that rounding leaves", listing)
                 self.assertNotIn("rounding in the contact forces", listing)
+
+    def test_forces_that_are_less_exact_than_strains(self):
+        """Two flat blocks, a fine mesh: forces of its pairs are off by five times what strains are."""
+        scene = chance.Scene("stack", False, (1000.0, 3000.0), whole=True, wide=(1.0, 1.0), deep=(0.3, 0.3))
+        text = chance.make(scene, "cquad4", chance.Fineness(60.0, 1.4, 1.0, 0.0, 1.0, 0.0, 0)).text()
+        _, listing, pressures = self.run_text(text, "PRECIS,SINGLE")
+        _, _, exact = self.run_text(text, "PRECIS,DOUBLE")
+        self.assertLess(0.5*self.difference(pressures, exact), self.figure(listing, FIGURE))
 
     def test_mixed_is_as_certain_as_double(self):
         run, listing, _ = self.run_deck("hertz/hertz330", "PRECIS,MIXED")
