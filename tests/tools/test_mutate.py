@@ -80,6 +80,11 @@ class Generator(unittest.TestCase):
         kinds = {m.old for m in choose(mutants, 1, 6)}
         self.assertTrue(kinds & {"min"} and kinds & {"1.0e-9", "0.5", "1.5d0"}, kinds)
 
+    def test_twins(self):
+        """Lines that are alike are mutants of their own."""
+        mutants = mutants_of("a.f90", "x = 1\ny = 2\n  x = 1\n")
+        self.assertEqual([m.key for m in mutants if m.new == "2"], ["a.f90|x = 1|4|2", "a.f90|x = 1|4|2|1"])
+
     def test_sources(self):
         """All layers that decide an answer."""
         mutate = load()

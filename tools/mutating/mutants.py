@@ -1,4 +1,5 @@
 """Mutants: what one operator or one constant of a Fortran source may be changed into."""
+import collections
 import dataclasses
 import hashlib
 import itertools
@@ -33,12 +34,13 @@ class Mutant:
     old: str
     new: str
     text: str       # the line, unchanged
+    twin: int = 0   # so many lines like it stand above
 
     @property
     def key(self):
         """The same wherever the line stands."""
         indent = len(self.text) - len(self.text.lstrip())
-        return f"{self.path}|{self.text.strip()}|{self.column - indent}|{self.new}"
+        return f"{self.path}|{self.text.strip()}|{self.column - indent}|{self.new}" + (f"|{self.twin}" if self.twin else "")
 
     def rank(self, seed):
         """Place in a random order that changes of other lines do not disturb."""
@@ -85,6 +87,7 @@ def mutants_of(path, source):
     """All mutants of a source, in the order of its text."""
     found, barren, declared = [], False, False
     going_on = False
+    seen = collections.Counter()
     for number, text in enumerate(source.split("\n"), 1):
         if not going_on:
             barren, declared = bool(BARREN.match(text)), False
@@ -104,7 +107,8 @@ def mutants_of(path, source):
                     continue
                 old, column = match.group(kind), match.start(kind)
                 for new in replacements(kind, old, text[:column], text[column + len(old):], declared):
-                    found.append(Mutant(path, number, column, old, new, text))
+                    found.append(Mutant(path, number, column, old, new, text, seen[text.strip()]))
+        seen[text.strip()] += 1
         going_on = code.endswith("&") or (going_on and not code.strip())
     return found
 

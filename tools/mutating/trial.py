@@ -43,9 +43,10 @@ class Trial:
         return digest.hexdigest()
 
     def configure(self):
-        """One shared library that no program is linked with anew: a mutant compiles one file and links one."""
+        """One shared library that no program is linked with anew: a mutant compiles one file and links one. Bounds are checked, as
+        `tools/test debug` does: what reads beyond an array may give anything."""
         generator = ["-G", "Ninja"] if shutil.which("ninja") and not (self.folder / "Makefile").exists() else []
-        subprocess.run(["cmake", "-S", self.tree, "-B", self.folder, *generator, "-DCMAKE_BUILD_TYPE=Plain", "-DCMAKE_Fortran_FLAGS=-O0",
+        subprocess.run(["cmake", "-S", self.tree, "-B", self.folder, *generator, "-DCMAKE_BUILD_TYPE=Plain", "-DCMAKE_Fortran_FLAGS=-O0 -fcheck=bounds",
                         "-DBUILD_SHARED_LIBS=ON", "-DEPCONT_STATIC=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON"],
                        check=True, stdout=subprocess.DEVNULL)
 
