@@ -37,18 +37,20 @@ contains
     integer :: bearing
 
     too_near = 0.0_wp
-    bearing = bearing_pairs(answer%contact%force(pairs))
+    bearing = bearing_pairs(model, answer%contact%force(pairs))
     if (bearing > narrow) return
     if (.not. zone%unbounded) too_near = gap_bulge(model, line, zone%peak)/bearing   ! a tip is where contact begins
     if (bearing == 1) too_near = too_near + finer*surface_compliance(model, table, zone%peak)* &
                                  force_of_depth(model, table, zone%peak, answer%contact%force(zone%peak))
   end function too_near
 
-  !> How many pairs bear the force of a zone: as many as would if all bore the same.
-  pure integer function bearing_pairs(force)
+  !> How many pairs bear the force of a zone: as many as would if all bore the same. (In rings forces grow with the radius.)
+  pure integer function bearing_pairs(model, force)
+    type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)
 
-    bearing_pairs = nint(sum(force)**2/sum(force**2))
+    bearing_pairs = size(force)
+    if (.not. model%has_rings()) bearing_pairs = nint(sum(force)**2/sum(force**2))
   end function bearing_pairs
 
   !> Force of a pair over the depth of its elements [force/length].
@@ -82,7 +84,7 @@ contains
     resultant = resultants(model, answer%contact%force)
     do z = 1, size(answer%zones)
       associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
-        if (bearing_pairs(force(pairs)) > narrow) cycle
+        if (bearing_pairs(model, force(pairs)) > narrow) cycle
         do i = 1, size(pairs)
           k = pairs(i)
           own = -smooth_normal(model, k)
