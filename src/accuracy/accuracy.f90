@@ -3,7 +3,7 @@
 module epcont_accuracy_accuracy
   use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
   use epcont_accuracy_discretisation, only: error_products, stored_energy
-  use epcont_accuracy_limits, only: gap_bulge
+  use epcont_accuracy_narrow_zone, only: too_near, turned_force
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
@@ -51,11 +51,6 @@ module epcont_accuracy_accuracy
     logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
   end type accuracy_type
 
-  !> A force on one pair is one on a contact narrower than a side: by each three times finer mesh the bodies come nearer by this
-  !! times the force over depth and modulus, (2/pi) log 3 of the half-plane.
-  real(wp), parameter :: finer = 0.7_wp
-  !> Pairs up to which a zone is too narrow to tell where its contact begins.
-  integer, parameter :: narrow = 2
   !> A part of the products of elements that may not be trusted to cancel.
   real(wp), parameter :: uncertain = 1.0_wp/3.0_wp
 
@@ -136,6 +131,7 @@ contains
     accuracy%total_force = 0.0_wp   ! where loads alone make it
     call assess_motions(model, motions, line, answer, table, unit_force(:, moved), along, moved, accuracy)
     call widen_pressures(answer, accuracy)
+    accuracy%total_force = accuracy%total_force + turned_force(model, answer)
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
   end subroutine assess
 
@@ -260,49 +256,13 @@ contains
         ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says nothing of one.
         if (.not. zone%unbounded) short = short - weights%between*between*sum(force)
         ! Of a tilt of either sign the ends count, not the sum. Waves are as high above as below the gap that is meant.
-        end_error = end_error + sum(abs(force))*(weights%end*at_end + &
-                                                 2.0_wp*zone%wave_height)
-        if (size(force) <= narrow) end_error = end_error + sum(abs(force))*too_near(model, line, answer, table, zone, size(force))
+        end_error = end_error + sum(abs(force))*(weights%end*at_end + 2.0_wp*zone%wave_height + &
+                                                 too_near(model, line, answer, table, zone, answer%zones(z)%pairs))
       end associate
     end do
     ! What a mesh misses is measured by what it has: both errors are larger by as much as its energy is too small.
     error = weights%product*max(abs(short), uncertain*product(2))/max(least_energy, 1.0_wp - accuracy%energy_norm**2)**2 + end_error
   end function error_along
-
-  !> What contact on one pair says too little: how much nearer the bodies come on a three times finer mesh, and how high a smooth
-  !! gap may bulge between this pair and the next, where contact truly begins; of two pairs, half of that between them [length].
-  pure real(wp) function too_near(model, line, answer, table, zone, pairs)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    type(answer_type), intent(in) :: answer
-    type(patch_table), intent(in) :: table
-    type(zone_error), intent(in) :: zone
-    integer, intent(in) :: pairs
-
-    too_near = 0.0_wp
-    if (.not. zone%unbounded) too_near = gap_bulge(model, line, zone%peak)/pairs   ! a tip is where contact begins
-    if (pairs == 1) too_near = too_near + finer*surface_compliance(model, table, zone%peak)* &
-                               force_of_depth(model, table, zone%peak, answer%contact%force(zone%peak))
-  end function too_near
-
-  !> Force of a pair over the depth of its elements [force/length].
-  pure real(wp) function force_of_depth(model, table, pair, force)
-    type(model_type), intent(in) :: model
-    type(patch_table), intent(in) :: table
-    integer, intent(in) :: pair
-    real(wp), intent(in) :: force
-    real(wp) :: depth
-    integer :: k
-
-    force_of_depth = 0.0_wp
-    do k = 1, 2
-      associate (node => model%pair_node(k, pair))
-        if (table%around%start(node + 1) == table%around%start(node)) cycle
-        depth = model%depth(table%around%group(table%around%start(node)), model%x(1, node))
-        if (depth > 0.0_wp) force_of_depth = force/depth
-      end associate
-    end do
-  end function force_of_depth
 
   !> Is a SUPORT freedom the one node of its body's mesh that bears a load?
   pure logical function is_point_load(model, motions, table, j)

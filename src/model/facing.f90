@@ -39,7 +39,7 @@ module epcont_model_facing
     real(wp) :: along(2) = 0.0_wp     !! from there to the middle of its own side [length]
     real(wp) :: rise = 0.0_wp         !! how far its own curve may be from the sides there [length]
     integer :: node = 0               !! sides that end at this node do not count; 0: it is none
-    logical :: at_corner = .false.    !! of its own boundary
+    logical :: at_tip = .false.       !! a convex corner of its own boundary
   end type looking_point
 
   type :: facing_type
@@ -62,7 +62,7 @@ contains
     if (which == 3) from%along = 0.5_wp*(line%x(:, 2, side) - from%x)
     from%rise = rise_of(line, side)
     from%node = line%segment(which, side)
-    if (which < 3) from%at_corner = line%corner(which, side) .and. .not. line%mirrored(which, side)
+    if (which < 3) from%at_tip = line%tip(which, side)
   end function node_of
 
   !> The side of a line that a point faces nearest by, not farther than `search`.
@@ -128,7 +128,7 @@ contains
           same_way = same_way .or. dot_product(found%place%normal, from%outward) > -against
           cycle
         end if
-        if (found%place%at_corner .and. .not. from%at_corner) call press_corner(from, found%place)
+        if (found%place%at_corner .and. .not. from%at_tip) call press_corner(from, found%place)
         if (found%place%gap < -max(equal*search, roundings*maxval(abs(from%x)))) then
           if (.not. goes_on(line, sides(k), from, search)) cycle
         end if
@@ -167,7 +167,7 @@ contains
       else if (is_better(line, from, search, faces(k), best)) then
         taken = .false.
       else
-        taken(k) = from%at_corner .and. are_equal(from, search, faces(k), best)
+        taken(k) = from%at_tip .and. are_equal(from, search, faces(k), best)
         if (taken(k)) call take_mean(faces(k)%place, best%place)
         cycle
       end if

@@ -18,6 +18,8 @@ module epcont_model_nearness
   !> A node between those of the other line that stand on its own may pass through by so many times what chords of curves and
   !> of bent sides make.
   real(wp), parameter :: allowance = 3.0_wp
+  !> But not by more than this part of the largest displacement: that is no end of contact, but contact missed.
+  real(wp), parameter :: most = 0.5_wp
   !> The two lines, not quite parallel, tell gaps by normals of their own: what these make of nodes that slide, and of gaps that
   !! close, differs by this much at most.
   real(wp), parameter :: askew = 1.5_wp
@@ -108,7 +110,9 @@ contains
     logical :: smooth
     real(wp) :: allowed, angle
     integer :: i, k, which
+    real(wp) :: travel   !! the largest displacement [length]
 
+    travel = maxval(norm2(displacement, dim=1))
     associate (slave => contact%slave, master => contact%master)
       do i = 1, size(master%element)
         do which = 1, 3
@@ -119,11 +123,12 @@ contains
             call find_facing(slave, obstacles, node_of(master, i, which), size_of_scene, face(1), face(2))
             do k = 1, 2
               if (.not. face(k)%place%found) cycle
-              ! Between nodes that all touch it is where the mesh has it; a pair of its own would be one too many.
-              if (smooth .and. all_hold(slave%segment(:, face(k)%segment), holds)) cycle
               allowed = least*size_of_scene
               if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
                 cycle   ! it has a pair
+              else if (smooth .and. all_hold(slave%segment(:, face(k)%segment), holds)) then
+                ! It is where the mesh has it; a pair of its own would be one too many.
+                allowed = most*travel
               else if (is_held_off(slave, face(k)%segment, holds)) then
                 allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement) + &
                                                openness_at(master, i, which, displacement))
@@ -134,6 +139,7 @@ contains
                 angle = norm2(face(k)%place%normal + master%outward(i, which))
                 allowed = allowed + askew*angle*(slip_of(node, slave, face(k), displacement) + 0.5_wp*angle*abs(face(k)%place%gap))
               end if
+              allowed = min(allowed, most*travel)
               if (gap_of(node, slave, face(k), displacement) >= -allowed) cycle
               contact%came_near = [contact%came_near, node]
               contact%search = max(contact%search, further*abs(face(k)%place%gap))

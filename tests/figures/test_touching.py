@@ -21,6 +21,8 @@ FIGURES = [
     ("patch_two_masters", "total", 20.0, EXACT), ("patch_two_masters", "p_max", 10.0, EXACT), ("patch_two_masters", "p_min", 10.0, EXACT),
     ("line_twice", "p_max", 10.0, EXACT), ("pen_minimal", "approach", -0.0156, 0.07), ("rigid_prescribed_rc4", "total", 0.0, EXACT),
     ("vee_no_node_faces", "total", 5.0 * 1.25 ** 0.5, EXACT),      # a wedge of slope 1/2 under 5
+    ("tip_in_vee", "total", 5.0 * 1.25 ** 0.5, EXACT),             # of slope 3/4: along the normals of the V
+    ("nose_missed_by_slave_nodes", "total", 0.950, 0.05),
     ("wall_as_floor", "total", 13.26, 0.02), ("wall_as_floor_whole", "total", 13.26, 0.02), ("two_feet", "total", 13.0, 0.05),
     ("step_half_covered", "total", 5.55, 0.08), ("block_corner_between_floor_nodes", "total", 12.85, 0.06),
     ("corner_between_floor_nodes_moved", "total", 9.96, 0.08), ("edge_on_edge_3", "approach", -0.0191, 0.02),
@@ -46,6 +48,7 @@ EXCHANGED = [
     ("corner_between_floor_nodes_moved", 0.01), ("flanks_through_bodies", EXACT), ("thin_whole_outlines", 0.01),
     ("chamfer15_master", 0.02), ("chamfer30_master", 0.02), ("mirror_chamfer_base", 0.02), ("mirror_corner_base", 1e-6),
     ("teeth_through_block", EXACT), ("narrow_punch_between_nodes", EXACT), ("vee_no_node_faces", EXACT), ("overhang_none", EXACT),
+    ("tip_in_vee", EXACT), ("nose_missed_by_slave_nodes", 0.01),
     ("patch_slave_split", EXACT), ("patch_master_split", EXACT), ("corner_on_corner", 1e-6), ("corner_beside_it", 1e-6),
 ]
 

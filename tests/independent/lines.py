@@ -35,7 +35,7 @@ class Eye:
     along: list
     rise: float
     node: object = None
-    at_corner: bool = False
+    at_tip: bool = False
 
 
 @dataclass
@@ -52,8 +52,8 @@ def eye_of(segment, k):
     last = len(segment.nodes) - 1
     x = segment.x[k]
     to = segment.centre if k in (0, last) else [(segment.x[-1][c] + x[c]) / 2 for c in (0, 1)]
-    corner = k in (0, last) and segment.corner[k > 0] and not segment.mirrored[k > 0]
-    return Eye(x, segment.outward(k), [to[c] - x[c] for c in (0, 1)], RISE * segment.bend, segment.nodes[k], corner)
+    tip = k in (0, last) and segment.tip[k > 0]
+    return Eye(x, segment.outward(k), [to[c] - x[c] for c in (0, 1)], RISE * segment.bend, segment.nodes[k], tip)
 
 
 class Line:
@@ -88,7 +88,7 @@ class Line:
         against = min(dot(place.normal, eye.outward) for place in tied)
         tied = [place for place in tied if dot(place.normal, eye.outward) <= against + EQUAL]
         best = min(tied, key=lambda place: hypot(*(x + y - z for x, y, z in zip(eye.x, eye.along, at_place(place)))))
-        both = [place for place in tied if place.at_corner] if eye.at_corner and best.at_corner else []
+        both = [place for place in tied if place.at_corner] if eye.at_tip and best.at_corner else []
         if len(both) == 2:
             found = [place for place in found if place not in both]
         others = [place for place in found if dot(place.normal, best.normal) <= SAME and abs(place.gap) <= abs(best.gap) + more]
@@ -108,7 +108,7 @@ class Line:
         place = segment.face(eye.x)
         if place is None or abs(place.gap) > reach or dot(place.normal, eye.outward) >= AGAINST:
             return None
-        if place.at_corner and not eye.at_corner:   # along the normal of the smooth boundary
+        if place.at_corner and not eye.at_tip:   # along the normal of the smooth boundary
             place.gap, place.normal = -place.gap * dot(place.normal, eye.outward), [-v for v in eye.outward]
         if place.gap < -max(EQUAL * reach, ROUNDING * max(map(abs, eye.x))) and not self.goes_on(segment, eye, reach):
             return None

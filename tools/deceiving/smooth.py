@@ -170,8 +170,9 @@ def shrink_fit(pick, n):
     over, outer = pick.choice([0.001, 0.005, 0.02]), pick.uniform(1.5, 2.5)
     body = d.slave()
     c = disc(body, (0.0, 0.0), 1.0, d.h_slave)
-    x = d.scene.nodes
-    d.scene.hold([k for k in body.at.values() if max(map(abs, x[k])) <= 0.5 * c + 1e-9])
+    x, m = d.scene.nodes, number_of(1.4, d.h_slave)
+    held = c * max(k / m for k in range(m % 2, m + 1, 2) if k <= max(1, m / 2)) + 1e-9   # on lines of the coarse mesh: the same when finer
+    d.scene.hold([k for k in body.at.values() if max(map(abs, x[k])) <= held])
     ring = d.master()
     turns = number_of(1.57, d.h_master)
     for k in range(4):

@@ -1,0 +1,160 @@
+!> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which way it presses.
+module epcont_accuracy_narrow_zone
+  use epcont_accuracy_contact_stress, only: surface_compliance
+  use epcont_accuracy_limits, only: gap_bulge
+  use epcont_accuracy_patches, only: patch_table
+  use epcont_accuracy_zone_error, only: zone_error
+  use epcont_base_kinds, only: wp
+  use epcont_model_boundary_line, only: boundary_line
+  use epcont_model_model, only: model_type
+  use epcont_result_answer, only: answer_type
+  use epcont_result_contact_line, only: contact_line
+  implicit none
+  private
+  public :: too_near, turned_force
+
+  !> Pairs up to which a zone is too narrow to tell where its contact begins.
+  integer, parameter :: narrow = 2
+  !> A force on one pair is one on a contact narrower than a side: by each three times finer mesh the bodies come nearer by this
+  !! times the force over depth and modulus, (2/pi) log 3 of the half-plane.
+  real(wp), parameter :: finer = 0.7_wp
+  !> The place where the bodies touch is farther from a pair than the normals there tell, by this much at most.
+  real(wp), parameter :: askew = 1.25_wp
+  !> A resultant below this part of the forces is none.
+  real(wp), parameter :: no_resultant = 1.0e-6_wp
+
+contains
+
+  !> What contact on few pairs says too little: how much nearer the bodies come on a three times finer mesh, and how high a smooth
+  !! gap may bulge between one pair and the next, where contact truly begins; of two pairs, half of that between them [length].
+  pure real(wp) function too_near(model, line, answer, table, zone, pairs)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(in) :: answer
+    type(patch_table), intent(in) :: table
+    type(zone_error), intent(in) :: zone
+    integer, intent(in) :: pairs(:)
+    integer :: bearing
+
+    too_near = 0.0_wp
+    bearing = bearing_pairs(model, answer%contact%force(pairs))
+    if (bearing > narrow) return
+    if (.not. zone%unbounded) too_near = gap_bulge(model, line, zone%peak)/bearing   ! a tip is where contact begins
+    if (bearing == 1) too_near = too_near + finer*surface_compliance(model, table, zone%peak)* &
+                                 force_of_depth(model, table, zone%peak, answer%contact%force(zone%peak))
+  end function too_near
+
+  !> How many pairs bear the force of a zone: as many as would if all bore the same. (In rings forces grow with the radius.)
+  pure integer function bearing_pairs(model, force)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: force(:)
+
+    bearing_pairs = size(force)
+    if (.not. model%has_rings()) bearing_pairs = nint(sum(force)**2/sum(force**2))
+  end function bearing_pairs
+
+  !> Force of a pair over the depth of its elements [force/length].
+  pure real(wp) function force_of_depth(model, table, pair, force)
+    type(model_type), intent(in) :: model
+    type(patch_table), intent(in) :: table
+    integer, intent(in) :: pair
+    real(wp), intent(in) :: force
+    real(wp) :: depth
+    integer :: k
+
+    force_of_depth = 0.0_wp
+    do k = 1, 2
+      associate (node => model%pair_node(k, pair))
+        if (table%around%start(node + 1) == table%around%start(node)) cycle
+        depth = model%depth(table%around%group(table%around%start(node)), model%x(1, node))
+        if (depth > 0.0_wp) force_of_depth = force/depth
+      end associate
+    end do
+  end function force_of_depth
+
+  !> How much more or less force there would be in narrow zones if they pressed along the node's own normal instead of that of
+  !! what it faces: of smooth boundaries these are the same only where the bodies touch.
+  pure real(wp) function turned_force(model, answer)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    real(wp) :: on(2), own(2), resultant(2, model%bodies)
+    integer :: i, k, z
+
+    turned_force = 0.0_wp
+    resultant = resultants(model, answer%contact%force)
+    do z = 1, size(answer%zones)
+      associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
+        if (bearing_pairs(model, force(pairs)) > narrow) cycle
+        do i = 1, size(pairs)
+          k = pairs(i)
+          own = -smooth_normal(model, k)
+          associate (one => resultant(:, model%body(model%pair_node(1, k))), two => resultant(:, model%body(model%pair_node(2, k))))
+            on = merge(one, two, norm2(one) > norm2(two))
+          end associate
+          if (all(own == 0.0_wp) .or. norm2(on) <= no_resultant*sum(force)) cycle
+          turned_force = turned_force + askew*force(k)*excess(dot_product(on, model%normal(:, k)), dot_product(on, own))
+        end do
+      end associate
+    end do
+  end function turned_force
+
+  !> |a/b - 1|, 1 at most.
+  pure real(wp) function excess(a, b)
+    real(wp), intent(in) :: a, b
+
+    excess = 1.0_wp
+    if (abs(a - b) < abs(b)) excess = abs(a - b)/abs(b)
+  end function excess
+
+  !> Of the contact forces on each body [force] [2, bodies].
+  pure function resultants(model, force) result(sums)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: force(:)   !! [pairs]
+    real(wp) :: sums(2, model%bodies)
+    integer :: k
+
+    sums = 0.0_wp
+    do k = 1, model%pairs
+      associate (a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)))
+        sums(:, a) = sums(:, a) - force(k)*model%normal(:, k)
+        sums(:, b) = sums(:, b) + force(k)*model%normal(:, k)
+      end associate
+    end do
+  end function resultants
+
+  !> The normal of a line in contact at the node of a pair that stands on the other line; none at a corner, or without lines.
+  pure function smooth_normal(model, pair) result(normal)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: pair
+    real(wp) :: normal(2)
+    integer :: c
+
+    normal = 0.0_wp
+    do c = 1, size(model%line_contact)
+      associate (contact => model%line_contact(c))
+        if (pair < contact%first .or. pair > contact%last) cycle
+        if (pair < contact%first_of_master) then
+          normal = normal_at(contact%slave, model%pair_node(2, pair))
+        else
+          normal = normal_at(contact%master, model%pair_node(2, pair))
+        end if
+      end associate
+    end do
+  end function smooth_normal
+
+  !> The same of one line.
+  pure function normal_at(line, node) result(normal)
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: node
+    real(wp) :: normal(2)
+    integer :: at(2)
+
+    normal = 0.0_wp
+    at = findloc(line%segment, node)
+    if (any(at == 0)) return
+    if (at(1) < 3) then
+      if (line%corner(at(1), at(2))) return
+    end if
+    normal = line%outward(at(2), at(1))
+  end function normal_at
+end module epcont_accuracy_narrow_zone
