@@ -47,6 +47,8 @@ module epcont_certificate_allowance
     real(wp), allocatable :: curvature(:)  !! c [1/length] [sides]
     real(wp), allocatable :: stretch(:)    !! of the side, whatever its sign [sides]
     real(wp), allocatable :: length(:)     !! h [length] [sides]
+    !> Of a circle whose outline is as long as the part's: however it lies, it is the same [length] [parts]
+    real(wp), allocatable :: width(:)
     real(wp), allocatable :: gap(:)        !! that CGAPs there give, less that of the coordinates [length] [sides]
   contains
     procedure :: of
@@ -168,6 +170,8 @@ contains
       call take_lines(model, drawn, chord, allowance%sag)
       allowance%curvature = allowance%curvature + 8.0_wp*allowance%sag/chord**2
     end associate
+    allowance%width = [(sum(allowance%length(model%body_outline%first(s):model%body_outline%first(s + 1) - 1))/acos(-1.0_wp), &
+                        s=1, model%body_outline%parts)]
     call take_gaps(model, allowance%gap)
     allowance%least = least_part*maxval(maxval(model%x, dim=2) - minval(model%x, dim=2)) &
                       + roundings*epsilon(1.0_wp)*(maxval(abs(model%x)) + maxval(abs(displacement)))

@@ -109,20 +109,9 @@ contains
     type(search_type), intent(in) :: search
     type(overlap_place), intent(in) :: place
 
-    associate (part => search%now%outline%part, length => search%allowance%length)
+    associate (part => search%now%outline%part, length => search%allowance%length, width => search%allowance%width)
       small = max(part_of_side*max(length(place%side), length(place%other)), &
-                  part_of_body*min(extent(part(place%side)), extent(part(place%other))))
+                  part_of_body*min(width(part(place%side)), width(part(place%other))))
     end associate
-
-  contains
-
-    !> The longer way of a part's box.
-    pure real(wp) function extent(part)
-      integer, intent(in) :: part
-
-      associate (tree => search%now%side_tree(part))
-        extent = maxval(tree%high(:, 1) - tree%low(:, 1))
-      end associate
-    end function extent
   end function small_slide
 end module epcont_certificate_pressed
