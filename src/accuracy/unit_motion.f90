@@ -12,6 +12,9 @@ module epcont_accuracy_unit_motion
   private
   public :: closing_forces, unit_forces, unit_strains
 
+  !> Forces, in scaled units, of which rounding leaves less than this.
+  real(wp), parameter :: rounding = 1.0e-10_wp
+
 contains
 
   !> Contact forces under unit loads [pairs, motions]; zero for motions that are not kept.
@@ -33,7 +36,7 @@ contains
     force(basis%pairs, problem%kept) = carried
   end function unit_forces
 
-  !> Contact forces when all gaps shrink by a unit of length [force/length] [pairs].
+  !> Contact forces when all gaps shrink by a unit of length; none where motions give way to that [force/length] [pairs].
   pure function closing_forces(problem, basis) result(force)
     type(scaled_problem), intent(in) :: problem
     type(contact_basis), intent(in) :: basis
@@ -45,7 +48,7 @@ contains
     allocate (opening(size(basis%pairs), 1), source=-1.0_wp/problem%gap_unit)
     allocate (load(size(problem%kept), 1), source=0.0_wp)
     call respond(basis, opening, load, carried, approach)
-    force(basis%pairs) = carried(:, 1)*problem%force_unit
+    if (maxval(abs(carried)) > rounding*maxval(abs(opening))) force(basis%pairs) = carried(:, 1)*problem%force_unit
   end function closing_forces
 
   !> Strains of such forces [4, points].
