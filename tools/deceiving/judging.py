@@ -154,7 +154,7 @@ def differences(one, other):
     total = 0.0 if None in (one.total_error, other.total_error) else (one.total_error + other.total_error) / scale
     allowed = max(CLOSE, total, 3.0 * (one.energy_error ** 2 + other.energy_error ** 2))   # none is stated of what one body carries
     # Of rings the radial one is mostly their own: what hoops take of a prescribed fit.
-    largest = max([scale, *(math.hypot(*one) for one in (*one.resultant, *other.resultant))])
+    largest = max(scale, min(max((math.hypot(*r) for r in answer.resultant), default=0.0) for answer in (one, other)))
     part = max((math.hypot(a[0] - b[0], a[1] - b[1]) for a, b in zip(one.resultant, other.resultant)), default=0.0) / largest
     found.append(("resultant", part, part / allowed))
     part = abs(one.total - other.total) / scale
