@@ -51,6 +51,8 @@ class Dial(unittest.TestCase):
                 _, _, exact = self.run_deck(deck)
                 self.assertEqual(0, run.returncode)
                 self.assertIn("  factors in single precision, not refined (SINGLE); where that fails, all is solved anew in double\n", listing)
+                if deck == "flange/flange" and "(factors in double: " in listing:
+                    continue   # with a condition of 3E6 the kernels of the BLAS decide whether single precision does
                 error = self.figure(listing, FIGURE)
                 self.assertLess(1e-7, self.difference(pressures, exact))
                 self.assertLess(self.difference(pressures, exact), 10*error)
