@@ -53,23 +53,11 @@ contains
     gives_way = .false.
     if (model%held(1, model%leader(1, node)) .and. model%held(2, model%leader(2, node))) return
     do i = table%around%start(node), table%around%start(node + 1) - 1
-      gives_way = gives_way .or. .not. is_rigid(model, table%around%group(i))
-    end do
-  end function gives_way
-
-  !> Do supports and RBE2 leave an element no strain? In each direction its nodes are all held, or all tied to one.
-  pure logical function is_rigid(model, element)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: element
-    integer :: c
-
-    is_rigid = .true.
-    do c = 1, 2
-      associate (leader => model%leader(c, model%connectivity(:model%order(element), element)))
-        is_rigid = is_rigid .and. (all(leader == leader(1)) .or. all(model%held(c, leader)))
+      associate (element => table%around%group(i))
+        gives_way = gives_way .or. .not. model%is_rigid(model%connectivity(:model%order(element), element))
       end associate
     end do
-  end function is_rigid
+  end function gives_way
 
   !> Normal stress of a smooth strain at a node, as a pressure.
   pure real(wp) function normal_pressure(model, table, material, strain, node, n)

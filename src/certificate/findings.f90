@@ -19,7 +19,6 @@ module epcont_certificate_findings
     logical :: moving = .false.    !! it is for slides and turns that most of the depth is allowed
   end type overlap_place
 
-
   !> A node that is displaced beyond a line to which its body ends: the axis of rings, or a line of symmetry.
   type :: beyond_place
     real(wp) :: depth = 0.0_wp     !! [length]

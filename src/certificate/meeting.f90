@@ -8,8 +8,8 @@ module epcont_certificate_meeting
   use epcont_model_outline_shape, only: near_place, new_outline_shape, outline_shape
   implicit none
   private
-  public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, place_allowance, widen_allowance, take_told, &
-            note_crossing
+  public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, along_side, place_allowance, widen_allowance, &
+            take_told, note_crossing
 
   !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
   !! though it be allowed.
@@ -31,7 +31,6 @@ module epcont_certificate_meeting
     real(wp), allocatable :: crossing(:)   !! room for where a side crosses others
     integer :: last = 1                    !! the side that was nearest to the point before: the next is not far from it
   end type search_type
-
 
 contains
 
@@ -95,21 +94,10 @@ contains
     long = [longest_at(model, search, side, s), longest_at(model, search, place%side, place%s)]
     if (all(long > 0.0_wp)) meeting%longest = maxval(long)
     along = search%now%tangent(place%side, place%s)
-    meeting%slide = dot_product(along, motion(side, s) - motion(place%side, place%s))/max(norm2(along), tiny(1.0_wp))
-
-  contains
-
-    !> Displacement of a place of a side.
-    pure function motion(side, s) result(u)
-      integer, intent(in) :: side
-      real(wp), intent(in) :: s
-      real(wp) :: u(2)
-
-      associate (node => model%body_outline%node(:, side), v => search%displacement)
-        u = (1.0_wp - s)*v(:, node(1)) + s*v(:, node(2))
-        if (node(3) > 0) u = u + 4.0_wp*s*(1.0_wp - s)*(v(:, node(3)) - 0.5_wp*(v(:, node(1)) + v(:, node(2))))
-      end associate
-    end function motion
+    associate (u => search%displacement)
+      meeting%slide = dot_product(along, along_side(model, side, s, u) - along_side(model, place%side, place%s, u)) &
+                      /max(norm2(along), tiny(1.0_wp))
+    end associate
   end function meeting_of
 
   !> Length of a side of a line, or of the longer one of two that share a node; 0: of no line [length].
@@ -199,6 +187,20 @@ contains
       place%allowed = search%told + allowance%of_drawing(place%side, meeting) + allowance%of_drawing(place%other, meeting)
     end associate
   end subroutine take_told
+
+  !> What a field has at a place of a side.
+  pure function along_side(model, side, s, field) result(there)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s             !! from 0 to 1
+    real(wp), intent(in) :: field(:, :)   !! coordinates, or displacements [length] [2, nodes]
+    real(wp) :: there(2)
+
+    associate (node => model%body_outline%node(:, side), v => field)
+      there = (1.0_wp - s)*v(:, node(1)) + s*v(:, node(2))
+      if (node(3) > 0) there = there + 4.0_wp*s*(1.0_wp - s)*(v(:, node(3)) - 0.5_wp*(v(:, node(1)) + v(:, node(2))))
+    end associate
+  end function along_side
 
   !> Middle of the element that a side is of, or what a field has there.
   pure function middle_of(model, side, field) result(mean)

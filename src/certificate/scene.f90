@@ -10,8 +10,8 @@ module epcont_certificate_scene
   use epcont_certificate_beyond, only: farthest_beyond_axis, farthest_beyond_mirror
   use epcont_certificate_findings, only: beyond_place, is_worse, more, overlap_place, scene_type, take_deeper, take_worse
   use epcont_certificate_pressed, only: look_at_pairs
-  use epcont_certificate_meeting, only: is_joined, is_paired, meeting_of, middle_of, new_search, note_crossing, place_allowance, &
-                                       search_type, take_told, widen_allowance
+  use epcont_certificate_meeting, only: along_side, is_joined, is_paired, meeting_of, middle_of, new_search, note_crossing, &
+                                       place_allowance, search_type, take_told, widen_allowance
   use epcont_certificate_way, only: look_at_ways
   use epcont_model_model, only: model_type
   use epcont_model_outline_shape, only: near_place, new_outline_shape
@@ -237,26 +237,11 @@ contains
         if (place%distance <= more*allowed*scene%itself%ratio) cycle
         ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
         associate (a => model%x(:, node(1, other)), b => model%x(:, node(2, other)))
-          drawn = cross_product(b - a, side_as_drawn(side, s) - a)/norm2(b - a)
+          drawn = cross_product(b - a, along_side(model, side, s, model%x) - a)/norm2(b - a)
         end associate
         if (drawn > allowed) cycle
         scene%itself = overlap_place(place%distance/allowed, place%distance, allowed, x, side, other)
       end do
     end associate
-
-  contains
-
-    !> A place of a side as drawn.
-    pure function side_as_drawn(side, s) result(x)
-      integer, intent(in) :: side
-      real(wp), intent(in) :: s
-      real(wp) :: x(2)
-
-      associate (node => model%body_outline%node(:, side))
-        x = (1.0_wp - s)*model%x(:, node(1)) + s*model%x(:, node(2))
-        if (node(3) > 0) x = x + 4.0_wp*s*(1.0_wp - s)*(model%x(:, node(3)) - 0.5_wp*(model%x(:, node(1)) + model%x(:, node(2))))
-      end associate
-    end function side_as_drawn
   end subroutine look_at_itself
-
 end module epcont_certificate_scene

@@ -103,11 +103,9 @@ contains
           ways%straight(p) = .true.
           ways%mean(:, p) = 0.5_wp*(minval(u, dim=2) + maxval(u, dim=2))
           ways%spread(p) = 0.0_wp
-          low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))
+          low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))   ! from where it was drawn to where it is
           high(:, p) = tree%high(:, 1) - min(0.0_wp, minval(u, dim=2))
         end associate
-        low(:, p) = min(low(:, p), search%now%side_tree(p)%low(:, 1))
-        high(:, p) = max(high(:, p), search%now%side_tree(p)%high(:, 1))
       end do
       do s = 1, outline%sides
         associate (p => outline%part(s), u => search%displacement, allowance => search%allowance)

@@ -49,7 +49,7 @@ contains
 
     do i = 1, model%nodes
       associate (first => model%around%start(i), last => model%around%start(i + 1) - 1)
-        if (first /= last .or. is_tied(model, i)) cycle
+        if (first /= last .or. model%is_tied([i])) cycle
         e = model%around%group(first)
       end associate
       if (model%order(e) /= 6) cycle
@@ -141,19 +141,11 @@ contains
       t = from
       do while (t /= last)
         associate (node => outline%node(2, t))
-          if (node /= outline%node(3, side) .and. .not. is_tied(model, node)) &
+          if (node /= outline%node(3, side) .and. .not. model%is_tied([node])) &
             edge(:, node) = [outline%node(:2, side), outline%element(side)]
         end associate
         t = outline%after(t)
       end do
     end associate
   end subroutine follow
-
-  !> Does RBE2 say where a node goes?
-  pure logical function is_tied(model, node)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node
-
-    is_tied = any(model%leader(:, node) /= node)
-  end function is_tied
 end module epcont_model_hanging_nodes

@@ -88,6 +88,8 @@ module epcont_model_model
     procedure :: edge_coordinates
     procedure :: depth
     procedure :: has_rings
+    procedure :: is_tied
+    procedure :: is_rigid
     procedure :: can_yield
     procedure :: has_flat_curve
     procedure :: opening
@@ -152,6 +154,28 @@ contains
 
     has_rings = self%kinematics(self%section(1)) == axisymmetric
   end function has_rings
+
+  !> Does RBE2 say where one of these nodes goes?
+  pure logical function is_tied(self, node)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: node(:)
+
+    is_tied = any(self%leader(1, node) /= node) .or. any(self%leader(2, node) /= node)
+  end function is_tied
+
+  !> Do supports and RBE2 keep the shape between these nodes? In each direction they are all held, or all tied to one.
+  pure logical function is_rigid(self, node)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: node(:)
+    integer :: c
+
+    is_rigid = .true.
+    do c = 1, 2
+      associate (leader => self%leader(c, node))
+        is_rigid = is_rigid .and. (all(leader == leader(1)) .or. all(self%held(c, leader)))
+      end associate
+    end do
+  end function is_rigid
 
   !> Can an element yield?
   elemental function can_yield(self, element)

@@ -111,7 +111,7 @@ contains
     associate (outline => model%body_outline)
       do s = 1, outline%sides
         if (outline%node(3, s) == 0) cycle
-        if (on_line(outline%node(3, s)) .or. is_rigid(model, outline%node(:, s))) cycle
+        if (on_line(outline%node(3, s)) .or. model%is_rigid(outline%node(:, s))) cycle
         at = has_pair(model, around, outline%node(:, s))
         if (at(3)) then
           if (any(at(:2))) cycle
@@ -170,19 +170,6 @@ contains
       end do
     end do
   end function has_pair
-
-  !> Can a side not bend, since its nodes are held or move as one?
-  pure logical function is_rigid(model, node)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node(3)
-    integer :: c, k
-
-    is_rigid = .true.
-    do c = 1, 2
-      is_rigid = is_rigid .and. (all([(model%held(c, model%leader(c, node(k))), k=1, 3)]) .or. &
-                                 all([(model%leader(c, node(k)) == model%leader(c, node(1)), k=2, 3)]))
-    end do
-  end function is_rigid
 
   !> Outward normal of the boundary at a node; zero inside a body, and where there is none.
   pure function boundary_normal(model, node) result(normal)

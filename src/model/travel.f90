@@ -49,10 +49,10 @@ contains
       shift(c) = mean(u(c, :), known(c, :))
       arm(c, :) = (2*c - 3)*(model%x(3 - c, node) - mean(model%x(3 - c, node), known(c, :)))
     end do
-    turn = 0.0_wp
+    turn = 0.0_wp   ! freedoms that an RBE2 makes equal are not those of a body that turns
     if (model%has_rings()) then
       shift(1) = 0.0_wp
-    else if (sum(arm**2, mask=known) > nearness**2*maxval(arm**2) .and. .not. is_tied(model, node)) then
+    else if (sum(arm**2, mask=known) > nearness**2*maxval(arm**2) .and. .not. model%is_tied(node)) then
       turn = sum(arm*(u - spread(shift, 2, size(node))), mask=known)/sum(arm**2, mask=known)
     end if
     travel = spread(shift, 2, size(node)) + turn*arm
@@ -72,12 +72,4 @@ contains
       mean = first + sum(value - first, mask=known)/count(known)
     end associate
   end function mean
-
-  !> Freedoms that an RBE2 makes equal are not those of a body that turns.
-  pure logical function is_tied(model, node)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node(:)
-
-    is_tied = any(model%leader(1, node) /= node) .or. any(model%leader(2, node) /= node)
-  end function is_tied
 end module epcont_model_travel
