@@ -26,6 +26,8 @@ module epcont_report_remarks
   end type remarks_type
 
   character(len=*), parameter :: warning = 'warning: '
+  !> Gaps that differ by less than this part are equally near.
+  real(wp), parameter :: as_good = 1.0e-6_wp
 
 contains
 
@@ -51,6 +53,7 @@ contains
     type(remarks_type), intent(inout) :: remarks
     integer :: k
 
+    call warn(nothing_touches(model, answer), remarks)
     call warn(itself_text(model, scene), remarks)
     call warn(mirror_text(model, scene), remarks)
     call warn(drawn_text(model, scene), remarks)
@@ -89,6 +92,23 @@ contains
     remarks%warnings = remarks%warnings + 1
     remarks%of_answer = remarks%of_answer//warning//text//newline
   end subroutine warn
+
+  !> No pair closes; empty: some do, or there are none.
+  pure function nothing_touches(model, answer) result(text)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    character(len=:), allocatable :: text
+
+    text = ''
+    associate (contact => answer%contact)
+      if (model%pairs == 0 .or. any(contact%touching)) return
+      ! Of gaps that are as good as equal the first: rounding chooses no pair.
+      associate (nearest => findloc(contact%gap <= (1.0_wp + as_good)*minval(contact%gap), .true., dim=1))
+        text = 'nothing touches: no pair carries a force; nearest is GRID '//text_of(model%node_id(model%pair_node(1, nearest)))// &
+               ', '//short_real(contact%gap(nearest))//' away'
+      end associate
+    end associate
+  end function nothing_touches
 
   pure function not_small(model, answer) result(text)
     type(model_type), intent(in) :: model

@@ -1,4 +1,5 @@
-"""Memory as it is forecast in the plan, against what the run has held at its peak: 0.8 to 1.3 of it."""
+"""Memory as it is forecast in the plan, against what the run has held at its peak: 0.8 to 1.3 of it, and of small decks
+within what that differs by from run to run."""
 import os
 import pathlib
 import re
@@ -9,6 +10,8 @@ import unittest
 from scene import PROGRAM, Deck
 
 INPUT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])/"input"
+#: MB by which the peak of one deck differs from run to run: pages of shared libraries that others hold, too, or not.
+WAVERS = 2.0
 
 
 def blocks_in_a_row(count, parts):
@@ -96,10 +99,10 @@ class Memory(unittest.TestCase):
             return
         status, held = peak(deck, self.directory)
         self.assertIn(status, (0, 1), name)
-        ratio = expected/(held - self.libraries)
+        own = held - self.libraries
         with self.subTest(name, forecast=expected, held=held):
-            self.assertGreaterEqual(ratio, 0.8)
-            self.assertLessEqual(ratio, 1.3)
+            self.assertGreaterEqual(expected, 0.8*(own - WAVERS))
+            self.assertLessEqual(expected, 1.3*(own + WAVERS))
 
     def test_decks_of_input(self):
         decks = sorted(INPUT.glob("*/*.dat"))

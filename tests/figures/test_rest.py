@@ -91,6 +91,9 @@ class Rest(unittest.TestCase):
                     self.assertEqual((result.summary["max_equivalent_stress"], result.summary["pairs_in_contact"]), (0.0, 0.0))
                     self.assertEqual(result.summary["max_pressure"], 0.0)
                     self.assertAlmostEqual(min(result.gap), away + 0.1, delta=1e-12 * (away + 1.0))
+                    gap = {0.0: "0.1000", 0.2: "0.3000", 1e5: "1.000E+05"}[away]
+                    self.assertEqual(result.message, "scene.dat: warning: nothing touches: no pair carries a force; nearest is GRID "
+                                     f"{lower[-1][0]}, {gap} away\n")
 
     def test_moved_onto_another(self):
         """A support moves the lower body up by 0.1 more than the gap: as if it had stood there."""
