@@ -71,8 +71,7 @@ def read(scene, twin, numbers, folder, name, said):
     for body in scene.bodies:
         sums = [0.0, 0.0]
         for k in body.at.values():
-            # What holds a ring's node on the axis has no radius, and vanishes with the sides there.
-            for c in range(1 if scene.rings and scene.nodes[k][0] == 0.0 else 0, 2):
+            for c in range(1 if scene.rings else 0, 2):   # a radial sum is no force: hoops take it, and contact's share is in the total
                 sums[c] -= answer.reaction[k][c] + forces.get(k, (0.0, 0.0))[c]
         answer.resultant.append(sums)
     for place, (node, directions) in enumerate(scene.free):
@@ -155,9 +154,7 @@ def differences(one, other):
         return found
     total = 0.0 if None in (one.total_error, other.total_error) else (one.total_error + other.total_error) / scale
     allowed = max(CLOSE, total, 3.0 * (one.energy_error ** 2 + other.energy_error ** 2))   # none is stated of what one body carries
-    # Of rings the radial one is mostly their own: what hoops take of a prescribed fit.
-    largest = max(scale, min(max((math.hypot(*r) for r in answer.resultant), default=0.0) for answer in (one, other)))
-    part = max((math.hypot(a[0] - b[0], a[1] - b[1]) for a, b in zip(one.resultant, other.resultant)), default=0.0) / largest
+    part = max((math.hypot(a[0] - b[0], a[1] - b[1]) for a, b in zip(one.resultant, other.resultant)), default=0.0) / scale
     found.append(("resultant", part, part / allowed))
     part = abs(one.total - other.total) / scale
     found.append(("total force", part, part / max(CLOSE, total)))
@@ -189,13 +186,25 @@ def warned(of, one, other):
 
 
 def outlines(scene, answer):
-    """Each body's displaced outline as sides (a, b), and what its chords leave of smooth curves."""
-    place = [(x[0] + u[0], x[1] + u[1]) for x, u in zip(scene.nodes, answer.displacement)]
+    """Points as drawn and displaced, and each body's outline as chords (a, b) of them: four of a side with a middle node, which bends."""
+    drawn = [tuple(x) for x in scene.nodes]
+    now = [(x[0] + u[0], x[1] + u[1]) for x, u in zip(scene.nodes, answer.displacement)]
     found = []
     for body in scene.bodies:
-        sides = body.sides()
-        found.append([(a, b) for a, middle, c in sides.values() for a, b in ([(a, c)] if middle is None else [(a, middle), (middle, c)])])
-    return place, found
+        found.append([])
+        for a, middle, c in body.sides().values():
+            run = [a, c]
+            if middle is not None:
+                run = [a, len(drawn), middle, len(drawn) + 1, c]
+                for x in (drawn, now):
+                    x += [quarter(x[a], x[middle], x[c]), quarter(x[c], x[middle], x[a])]
+            found[-1] += list(zip(run, run[1:]))
+    return drawn, now, found
+
+
+def quarter(a, middle, c):
+    """Where the parabola through three nodes is after a quarter of it."""
+    return tuple(0.375 * p + 0.75 * q - 0.125 * r for p, q, r in zip(a, middle, c))
 
 
 def sagitta(x, sides):
@@ -225,14 +234,14 @@ def depth(point, place, sides):
 
 def through(scene, answer):
     """Where one body lies deepest inside another once displaced, beyond what chords explain: (depth, of what moved, place)."""
-    place, sides = outlines(scene, answer)
+    drawn, place, sides = outlines(scene, answer)
     moved = max((math.hypot(*u) for u in answer.displacement), default=0.0)
     worst = (0.0, 0.0, None)
     for k, own in enumerate(sides):
         for m, other in enumerate(sides):
             if k == m:
                 continue
-            allowed = 3 * max(sagitta(scene.nodes, own), sagitta(scene.nodes, other))
+            allowed = 3 * max(sagitta(drawn, own), sagitta(drawn, other))
             xs, ys = [place[a][0] for a, _ in other], [place[a][1] for a, _ in other]
             box = (min(xs), max(xs), min(ys), max(ys))
             for a, b in own:
