@@ -30,7 +30,7 @@ module epcont_certificate_allowance
 
   !> How two sides meet.
   type :: meeting_type
-    real(wp) :: slide = 0.0_wp      !! of a point of one along the other [length]
+    real(wp) :: slide = 0.0_wp      !! of a point of one along the other, 0 or more [length]
     real(wp) :: longest = 0.0_wp    !! length of the longer one, where both are of lines in contact [length]
     logical :: joined = .false.     !! pairs join the two bodies there
   end type meeting_type
@@ -74,7 +74,7 @@ contains
     integer, intent(in) :: side
     type(meeting_type), intent(in) :: meeting
 
-    associate (slide => abs(meeting%slide), turn => abs(self%turn(side)))
+    associate (slide => meeting%slide, turn => abs(self%turn(side)))
       of_motion = factor*(min(slide*turn + 0.5_wp*slide**2*self%curvature(side), most_by_slide*self%length(side)) &
                           + 0.5_wp*self%length(side)*max(turn, self%stretch(side))**2)
     end associate

@@ -8,8 +8,8 @@ module epcont_certificate_meeting
   use epcont_model_outline_shape, only: near_place, new_outline_shape, outline_shape
   implicit none
   private
-  public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, along_side, place_allowance, widen_allowance, &
-            take_told, note_crossing
+  public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, along_side, slide_along, place_allowance, &
+            widen_allowance, take_told, note_crossing
 
   !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
   !! though it be allowed.
@@ -88,17 +88,36 @@ contains
     real(wp), intent(in) :: s
     type(near_place), intent(in) :: place
     logical, intent(in) :: joined
-    real(wp) :: along(2), long(2)
+    real(wp) :: long(2)
 
     meeting%joined = joined
     long = [longest_at(model, search, side, s), longest_at(model, search, place%side, place%s)]
     if (all(long > 0.0_wp)) meeting%longest = maxval(long)
-    along = search%now%tangent(place%side, place%s)
-    associate (u => search%displacement)
-      meeting%slide = dot_product(along, along_side(model, side, s, u) - along_side(model, place%side, place%s, u)) &
-                      /max(norm2(along), tiny(1.0_wp))
+    meeting%slide = slide_along(model, search, side, s, place)
+    ! At a node it is the lesser of those along its two sides: which of the two is nearer, rounding decides.
+    associate (before => model%body_outline%before(place%side), after => model%body_outline%after(place%side))
+      if (place%s <= 0.0_wp) &
+        meeting%slide = min(meeting%slide, slide_along(model, search, side, s, near_place(side=before, s=1.0_wp)))
+      if (place%s >= 1.0_wp) &
+        meeting%slide = min(meeting%slide, slide_along(model, search, side, s, near_place(side=after, s=0.0_wp)))
     end associate
   end function meeting_of
+
+  !> How far a point of a side has slid along the place that it is near to, either way [length].
+  pure real(wp) function slide_along(model, search, side, s, place) result(slide)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    type(near_place), intent(in) :: place
+    real(wp) :: along(2)
+
+    along = search%now%tangent(place%side, place%s)
+    associate (u => search%displacement)
+      slide = abs(dot_product(along, along_side(model, side, s, u) - along_side(model, place%side, place%s, u))) &
+              /max(norm2(along), tiny(1.0_wp))
+    end associate
+  end function slide_along
 
   !> Length of a side of a line, or of the longer one of two that share a node; 0: of no line [length].
   pure real(wp) function longest_at(model, search, side, s) result(length)

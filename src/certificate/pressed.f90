@@ -5,7 +5,8 @@ module epcont_certificate_pressed
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
   use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_deeper, take_worse
-  use epcont_certificate_meeting, only: meeting_of, place_allowance, search_type, take_told, widen_allowance
+  use epcont_certificate_meeting, only: meeting_of, place_allowance, search_type, slide_along, take_told, &
+                                        widen_allowance
   use epcont_model_model, only: model_type
   use epcont_model_outline_shape, only: near_place
   implicit none
@@ -64,7 +65,7 @@ contains
     found%side = side
     found%other = place%side
     slid = found
-    slid%depth = abs(meeting%slide)
+    slid%depth = slide_along(model, search, side, s, place)
     slid%allowed = small_slide(search, found)
     call take_worse(slid, scene%slid)
     if (place%inside) return

@@ -10,6 +10,8 @@ module epcont_model_outline_shape
 
   !> Distances that differ by less than this part are equal: of two edges of a slit, either may be met.
   real(wp), parameter :: equal = 1.0e-9_wp
+  !> A place nearer to a node than this part of its side is at the node.
+  real(wp), parameter :: at_node = 1.0e-9_wp
   !> Places of a curved side that are tried first, and steps of Newton's method from the nearest of them.
   integer, parameter :: tried = 4, most_steps = 8
 
@@ -172,6 +174,8 @@ contains
       place%s = min(1.0_wp, max(0.0_wp, place%s))
     end associate
     if (self%outline%node(3, side) > 0) place%s = near_curve(self, side, point)
+    if (place%s < at_node) place%s = 0.0_wp
+    if (1.0_wp - place%s < at_node) place%s = 1.0_wp
     place%x = self%at(side, place%s)
     place%distance = norm2(point - place%x)
   end function near_side

@@ -95,6 +95,15 @@ class Touching(unittest.TestCase):
                       result.message)
         self.assertIn("What may mend it: a BLSEG along side", result.message)
 
+    def test_corner_at_a_corner(self):
+        """A key bulges into walls that are in no line. Its corner stands at that of the groove: rounding chooses the nearer side there."""
+        for name in ("bulging_key", "bulging_key_mirrored"):
+            with self.subTest(scene=name):
+                result = scene.solve((FOLDER / f"{name}.dat").read_text())
+                self.assertEqual(result.status, 4)
+                self.assertIn(" lies 0.01000 deep in that of GRID ", result.message)
+                self.assertIn("; 0.003931 is allowed. What may mend it: ", result.message)
+
     def test_ways(self):
         """A block is moved through a plate, and exactly into another; one is moved off the ledge that it stands on."""
         for name, words in [("through_a_plate", "bodies pass through each other on their way: "),
