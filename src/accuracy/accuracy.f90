@@ -42,6 +42,7 @@ module epcont_accuracy_accuracy
     real(wp), allocatable :: element(:)            !! square of each element's error [energy] [elements]
     integer, allocatable :: worst(:)               !! elements with the largest errors
     type(zone_error), allocatable :: zone(:)
+    real(wp) :: feature(10, 9) = 0.0_wp
     real(wp) :: max_pressure = -1.0_wp             !! error of the largest pressure of all; negative: unknown [stress]
     logical :: pressure_unbounded = .false.        !! it grows with every finer mesh
     real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
@@ -68,7 +69,8 @@ contains
     type(material_type), allocatable :: material(:)
     real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)   !! of the answer, then of some unit loads [4, any, 1 + loads]
     real(wp), allocatable :: product(:, :)                      !! [energy] [elements, 1 + loads]
-    real(wp), allocatable :: along(:, :)                        !! of all elements, and of each without its sign [energy] [2, moved]
+    real(wp), allocatable :: along(:, :)                        !! of all elements, of each without its sign [energy] [2, moved]
+    real(wp), allocatable :: missing(:), unit_missing(:)        !! part of the energy, of unit loads [1 + loads], [moved]
     real(wp), allocatable :: unit_force(:, :)                   !! contact forces of unit loads, closing gaps [pairs, motions + 1]
     integer, allocatable :: moved(:)                            !! those of them that say something
     type(scaled_problem) :: problem
@@ -89,7 +91,7 @@ contains
     end if
     table = new_patch_table(model)
     material = section_materials(model)
-    allocate (along(2, size(moved)))
+    allocate (along(2, size(moved)), unit_missing(size(moved)))
     associate (volume => run%scene%operator%volume)
       do first = 1, max(1, size(moved)), loads_at_once
         loads = min(loads_at_once, size(moved) - first + 1)
@@ -99,8 +101,9 @@ contains
           strain(:, :, 1 + j) = unit_strains(model, numbering, run%scene, unit_force(:, moved(first - 1 + j)))
         end do
         smooth = recover_strains(model, table, volume, strain)
-        product = error_products(model, table, material, volume, strain, smooth)
+        call error_products(model, table, material, volume, strain, smooth, product, missing)
         along(:, first:first + loads - 1) = reshape([(sum(product(:, 1 + j)), sum(abs(product(:, 1 + j))), j=1, loads)], [2, loads])
+        unit_missing(first:first + loads - 1) = missing(2:)
         deallocate (strain)
       end do
       accuracy%element = product(:, 1)
@@ -129,14 +132,14 @@ contains
 
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
     accuracy%total_force = 0.0_wp   ! where loads alone make it
-    call assess_motions(model, motions, line, answer, table, unit_force(:, moved), along, moved, accuracy)
+    call assess_motions(model, motions, line, answer, table, unit_force(:, moved), along, unit_missing, moved, accuracy)
     call widen_pressures(answer, accuracy)
     accuracy%total_force = accuracy%total_force + turned_force(model, answer)
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
   end subroutine assess
 
   !> Approaches, and the total contact force, which comes behind them.
-  pure subroutine assess_motions(model, motions, line, answer, table, unit_force, along, moved, accuracy)
+  pure subroutine assess_motions(model, motions, line, answer, table, unit_force, along, missing, moved, accuracy)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     type(contact_line), intent(in) :: line
@@ -144,13 +147,14 @@ contains
     type(patch_table), intent(in) :: table
     real(wp), intent(in) :: unit_force(:, :)   !! contact forces under each unit load [pairs, moved]
     real(wp), intent(in) :: along(:, :)        !! products of errors [energy] [2, moved]
+    real(wp), intent(in) :: missing(:)         !! part of the energy of each unit load [moved]
     integer, intent(in) :: moved(:)
     type(accuracy_type), intent(inout) :: accuracy
     real(wp) :: off
     integer :: j
 
     do j = 1, size(moved)
-      off = error_along(model, line, answer, table, unit_force(:, j), along(:, j), accuracy)
+      off = error_along(model, line, answer, table, unit_force(:, j), along(:, j), missing(j), accuracy)
       if (moved(j) > motions%count) then
         accuracy%total_force = merge(off, 0.0_wp, off > no_error*sum(answer%contact%force))
       else
@@ -232,13 +236,14 @@ contains
 
   !> Error of an approach, or of the total contact force: the product of the errors of the scene and of its answer to a unit load
   !! along the motion, or to closing gaps, signed, with what contact at nodes alone lets the bodies come too near.
-  pure real(wp) function error_along(model, line, answer, table, unit_force, product, accuracy) result(error)
+  pure real(wp) function error_along(model, line, answer, table, unit_force, product, missing, accuracy) result(error)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     type(patch_table), intent(in) :: table
     real(wp), intent(in) :: unit_force(:)   !! contact forces under the unit load [pairs]
     real(wp), intent(in) :: product(2)      !! of all elements, and of each without its sign
+    real(wp), intent(in) :: missing         !! part of the unit load's energy
     type(accuracy_type), intent(in) :: accuracy
     real(wp) :: at_end, between, end_error, short
     type(estimate_weights) :: weights
@@ -260,8 +265,9 @@ contains
                                                  too_near(model, line, answer, table, zone, answer%zones(z)%pairs))
       end associate
     end do
-    ! What a mesh misses is measured by what it has: both errors are larger by as much as its energy is too small.
-    error = weights%product*max(abs(short), uncertain*product(2))/max(least_energy, 1.0_wp - accuracy%energy_norm**2)**2 + end_error
+    ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its field is too small.
+    error = weights%product*max(abs(short), uncertain*product(2)) &
+            /max(least_energy, 1.0_wp - accuracy%energy_norm**2)/max(least_energy, 1.0_wp - missing) + end_error
   end function error_along
 
   !> Is a SUPORT freedom the one node of its body's mesh that bears a load?

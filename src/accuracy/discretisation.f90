@@ -37,33 +37,44 @@ module epcont_accuracy_discretisation
 contains
 
   !> Integrals of error times error: what the stress of the first field, on the material's curve, is off by, times what the strain
-  !! of each field is off by. Of the first field that is the square of its error [energy] [elements, fields].
-  pure function error_products(model, table, material, volume, strain, smooth) result(product)
+  !! of each field is off by. Of the first field that is the square of its error. Each of the other fields by itself misses a part
+  !! of its energy, too.
+  pure subroutine error_products(model, table, material, volume, strain, smooth, product, missing)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
     type(material_type), intent(in) :: material(:)   !! of each section
     real(wp), intent(in) :: volume(:)                !! of the integration points [points]
     real(wp), contiguous, intent(in) :: strain(:, :, :)   !! [4, points, fields]
     real(wp), contiguous, intent(in) :: smooth(:, :, :)   !! [4, places, fields]
-    real(wp), allocatable :: product(:, :)
+    real(wp), allocatable, intent(out) :: product(:, :)   !! [energy] [elements, fields]
+    real(wp), allocatable, intent(out) :: missing(:)      !! of elastic bodies; that of the first is not found here [fields]
     type(kind_type) :: kind(most_nodes)
     type(response_type) :: before, after
-    real(wp) :: own(4, most_places), error(4, most_places, size(strain, 3)), cross, part
+    real(wp) :: own(4, most_places), error(4, most_places, size(strain, 3)), part(most_places), cross
+    real(wp) :: energy(2, size(strain, 3))   !! of each field's error, and of its own strain
     logical :: yielded
     integer :: e, f, k, n
 
     kind([3, 4, 6]) = [kind_of(3), kind_of(4), kind_of(6)]
-    allocate (product(model%elements, size(strain, 3)), source=0.0_wp)
+    allocate (product(model%elements, size(strain, 3)), missing(size(strain, 3)), source=0.0_wp)
+    energy = 0.0_wp
     do e = 1, model%elements
       n = model%order(e)
       associate (first => model%first_point(e), last => model%first_point(e + 1) - 1, m => material(model%section(e)))
+        cross = cross_modulus(m%bulk, m%shear, m%sheet)
+        do k = 1, kind(n)%places
+          part(k) = sum(kind(n)%v(:last - first + 1, k)*volume(first:last))
+        end do
         do f = size(strain, 3), 1, -1   ! last the first, whose own strain is wanted
           call compare(kind(n), table%place(:n, e), strain(:, first:last, f), smooth(:, :, f), own, error(:, :, f))
+          if (f == 1) exit
+          do k = 1, kind(n)%places
+            energy(:, f) = energy(:, f) + part(k)*[elastic_product(cross, m%shear, error(:, k, f), error(:, k, f)), &
+                                                   elastic_product(cross, m%shear, own(:, k), own(:, k))]
+          end do
         end do
-        cross = cross_modulus(m%bulk, m%shear, m%sheet)
         yielded = .false.
         do k = 1, kind(n)%places
-          part = sum(kind(n)%v(:last - first + 1, k)*volume(first:last))
           if (m%yields) then
             ! The strain of a three-node element is the same at all its places.
             if (k == 1 .or. n > 3) before = respond(m, own(:, k))
@@ -72,15 +83,16 @@ contains
           end if
           do f = 1, size(strain, 3)
             if (yielded) then
-              product(e, f) = product(e, f) + part*dot_product(after%stress - before%stress, error(:, k, f))
+              product(e, f) = product(e, f) + part(k)*dot_product(after%stress - before%stress, error(:, k, f))
             else
-              product(e, f) = product(e, f) + part*elastic_product(cross, m%shear, error(:, k, 1), error(:, k, f))
+              product(e, f) = product(e, f) + part(k)*elastic_product(cross, m%shear, error(:, k, 1), error(:, k, f))
             end if
           end do
         end do
       end associate
     end do
-  end function error_products
+    where (energy(1, :) > 0.0_wp) missing = energy(1, :)/sum(energy, dim=1)
+  end subroutine error_products
 
   !> An element's own strain at its places, and what the smooth one is beyond it.
   pure subroutine compare(kind, place, strain, smooth, own, error)

@@ -34,6 +34,9 @@ module epcont_accuracy_zone_error
 
   !> An element so many times deeper than its side is wide is not graded.
   real(wp), parameter :: stretched = 1.8_wp
+  !> The last pair of the candidates has half a side. Where pressures rise towards it, its own is the mean over that, and short of
+  !! the pressure at the end itself: of a straight rise by half of what it is above the next pair, and of a steeper one by more.
+  real(wp), parameter :: beyond_mean = 0.625_wp
   !> Where flattening the waves of the gap takes so much of the largest pressure, that is a pressure of the waves.
   real(wp), parameter :: waves_alone = 0.5_wp
 
@@ -66,7 +69,7 @@ contains
     real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
     real(wp), allocatable :: s(:)     !! place of each of them, from the first on [length]
     integer, allocatable :: inward(:) !! in p and s, from one end on
-    real(wp) :: off(2), beyond(2), coarse, flattening, largest, open, spacing, step, uncertain, widest
+    real(wp) :: off(2), beyond(2), coarse, flattening, largest, open, short, spacing, step, uncertain, widest
     logical :: closed, cut_off, edge, ends, mirrored(2)   !! ends: an end of the zone is one of contact, not of the candidates
     integer :: e, k, n, peak
 
@@ -83,6 +86,7 @@ contains
     beyond = 0.0_wp
     uncertain = 0.0_wp
     widest = 0.0_wp
+    short = 0.0_wp
     edge = .false.
     cut_off = .false.
     ends = .false.
@@ -99,6 +103,7 @@ contains
         ends = ends .or. open > 0.0_wp
         if (open == 0.0_wp) edge = edge .or. any(p(inward(:min(n, edge_pairs(model, line, last)))) >= falls*largest)
         cut_off = cut_off .or. open > 0.0_wp .and. n > few .and. peak == inward(1)
+        if (open == 0.0_wp .and. peak == inward(1)) short = beyond_mean*(largest - p(inward(min(n, 2))))
       end associate
     end do
     error%half_length = 0.5_wp*(s(n) + sum(beyond))
@@ -125,7 +130,7 @@ contains
     if (error%resolution > 0.0_wp) &
       coarse = max(s(n)/max(1, n - 1), depth_behind(model, table, error%peak))/max(spacing, error%half_length)
     off = [off_parabola(s, p, mirrored, peak, spacing, error%resolution), abs(largest - stress_pressure(error%peak))]
-    error%pressure = weights%parabola*off(1) + weights%stress*off(2) + weights%smaller*minval(off) + flattening &
+    error%pressure = weights%parabola*off(1) + weights%stress*off(2) + weights%smaller*minval(off) + flattening + short &
                      + ((weights%spacing + weights%square*error%resolution)*error%resolution &
                         + weights%graded*max(0.0_wp, coarse - stretched*error%resolution) &
                         + weights%pressure_energy*energy)*largest
