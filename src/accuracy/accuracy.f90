@@ -42,7 +42,6 @@ module epcont_accuracy_accuracy
     real(wp), allocatable :: element(:)            !! square of each element's error [energy] [elements]
     integer, allocatable :: worst(:)               !! elements with the largest errors
     type(zone_error), allocatable :: zone(:)
-    real(wp) :: feature(10, 9) = 0.0_wp
     real(wp) :: max_pressure = -1.0_wp             !! error of the largest pressure of all; negative: unknown [stress]
     logical :: pressure_unbounded = .false.        !! it grows with every finer mesh
     real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
