@@ -296,14 +296,13 @@ contains
     type(search_type), intent(in) :: search
     integer, intent(in) :: side
     real(wp), intent(in) :: time
-    real(wp), intent(out) :: x(2, 3)   !! of where it begins and ends, and of its middle [length]
+    real(wp), intent(inout) :: x(2, 3)   !! of where it begins and ends, and of its middle node if it has one [length]
     integer :: k
 
     associate (node => model%body_outline%node(:, side))
       do k = 1, merge(3, 2, node(3) > 0)
         x(:, k) = model%x(:, node(k)) + time*search%displacement(:, node(k))
       end do
-      if (node(3) == 0) x(:, 3) = 0.5_wp*(x(:, 1) + x(:, 2))
     end associate
   end subroutine put_side
 end module epcont_certificate_way
