@@ -7,7 +7,8 @@
 !>                            chords lie before the curve, those of others behind it
 !>     b = H |d theta|/8      d theta by how much displacements turn the outline along H; that is h, or where both sides are of
 !>                            lines in contact the longer one: over such a length their gap is zero in the mean
-!>     k = d |w| + d**2 c/2   sliding by d along a side that turns by w, and has the curvature c: up to h/10, however far it slides
+!>     k = d |w| + d**2 c/2   sliding by d along a side, as drawn, that turns by w, and where s counts has the curvature c: up to
+!>                            h/10, however far it slides
 !>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
 module epcont_certificate_allowance
   use epcont_base_geometry, only: cross_product
@@ -75,7 +76,8 @@ contains
     type(meeting_type), intent(in) :: meeting
 
     associate (slide => meeting%slide, turn => abs(self%turn(side)))
-      of_motion = factor*(min(slide*turn + 0.5_wp*slide**2*self%curvature(side), most_by_slide*self%length(side)) &
+      of_motion = factor*(min(slide*turn + merge(0.5_wp*slide**2*self%curvature(side), 0.0_wp, is_curve(self, side, meeting)), &
+                              most_by_slide*self%length(side)) &
                           + 0.5_wp*self%length(side)*max(turn, self%stretch(side))**2)
     end associate
   end function of_motion
@@ -123,8 +125,17 @@ contains
     integer, intent(in) :: side
     type(meeting_type), intent(in) :: meeting
 
-    curve_over = merge(self%sag(side), 0.0_wp, meeting%joined .or. self%hollow(side))
+    curve_over = merge(self%sag(side), 0.0_wp, is_curve(self, side, meeting))
   end function curve_over
+
+  !> Is there more of a side than its chord?
+  pure logical function is_curve(self, side, meeting)
+    type(allowance_type), intent(in) :: self
+    integer, intent(in) :: side
+    type(meeting_type), intent(in) :: meeting
+
+    is_curve = meeting%joined .or. self%hollow(side)
+  end function is_curve
 
   !> For all sides of the outlines.
   pure function new_allowance(model, displacement) result(allowance)

@@ -8,8 +8,8 @@ module epcont_certificate_meeting
   use epcont_model_outline_shape, only: near_place, new_outline_shape, outline_shape
   implicit none
   private
-  public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, along_side, slide_along, place_allowance, &
-            widen_allowance, take_told, note_crossing
+  public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, along_side, place_allowance, widen_allowance, &
+            take_told, note_crossing
 
   !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
   !! though it be allowed.
@@ -80,7 +80,7 @@ contains
     end associate
   end function is_joined
 
-  !> How a point of a side meets the place that it is near to: it has slid along it.
+  !> How a point of a side meets the place that it is near to: one has slid along the other.
   pure type(meeting_type) function meeting_of(model, search, side, s, place, joined) result(meeting)
     type(model_type), intent(in) :: model
     type(search_type), intent(in) :: search
@@ -88,36 +88,40 @@ contains
     real(wp), intent(in) :: s
     type(near_place), intent(in) :: place
     logical, intent(in) :: joined
-    real(wp) :: long(2)
+    real(wp) :: long(2), moved(2)
 
     meeting%joined = joined
     long = [longest_at(model, search, side, s), longest_at(model, search, place%side, place%s)]
     if (all(long > 0.0_wp)) meeting%longest = maxval(long)
-    meeting%slide = slide_along(model, search, side, s, place)
-    ! At a node it is the lesser of those along its two sides: which of the two is nearer, rounding decides.
-    associate (before => model%body_outline%before(place%side), after => model%body_outline%after(place%side))
-      if (place%s <= 0.0_wp) &
-        meeting%slide = min(meeting%slide, slide_along(model, search, side, s, near_place(side=before, s=1.0_wp)))
-      if (place%s >= 1.0_wp) &
-        meeting%slide = min(meeting%slide, slide_along(model, search, side, s, near_place(side=after, s=0.0_wp)))
-    end associate
+    moved = along_side(model, side, s, search%displacement) - along_side(model, place%side, place%s, search%displacement)
+    meeting%slide = max(part_along(model, side, s, moved), part_along(model, place%side, place%s, moved))
   end function meeting_of
 
-  !> How far a point of a side has slid along the place that it is near to, either way [length].
-  pure real(wp) function slide_along(model, search, side, s, place) result(slide)
+  !> How much of a motion goes along a side as drawn, from which gaps are measured, either way. At a node it is the lesser of those
+  !! along its two sides: on which of them a point is, rounding decides [length].
+  pure real(wp) function part_along(model, side, s, moved) result(slide)
     type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
     integer, intent(in) :: side
-    real(wp), intent(in) :: s
-    type(near_place), intent(in) :: place
-    real(wp) :: along(2)
+    real(wp), intent(in) :: s, moved(2)
 
-    along = search%now%tangent(place%side, place%s)
-    associate (u => search%displacement)
-      slide = abs(dot_product(along, along_side(model, side, s, u) - along_side(model, place%side, place%s, u))) &
-              /max(norm2(along), tiny(1.0_wp))
-    end associate
-  end function slide_along
+    slide = along(side, s)
+    if (s <= 0.0_wp) slide = min(slide, along(model%body_outline%before(side), 1.0_wp))
+    if (s >= 1.0_wp) slide = min(slide, along(model%body_outline%after(side), 0.0_wp))
+
+  contains
+
+    pure real(wp) function along(side, s)
+      integer, intent(in) :: side
+      real(wp), intent(in) :: s
+      real(wp) :: tangent(2)
+
+      associate (node => model%body_outline%node(:, side), x => model%x)
+        tangent = x(:, node(2)) - x(:, node(1))
+        if (node(3) > 0) tangent = tangent + 4.0_wp*(1.0_wp - 2.0_wp*s)*(x(:, node(3)) - 0.5_wp*(x(:, node(1)) + x(:, node(2))))
+      end associate
+      along = abs(dot_product(tangent, moved))/max(norm2(tangent), tiny(1.0_wp))
+    end function along
+  end function part_along
 
   !> Length of a side of a line, or of the longer one of two that share a node; 0: of no line [length].
   pure real(wp) function longest_at(model, search, side, s) result(length)

@@ -5,8 +5,7 @@ module epcont_certificate_pressed
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
   use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_deeper, take_worse
-  use epcont_certificate_meeting, only: meeting_of, place_allowance, search_type, slide_along, take_told, &
-                                        widen_allowance
+  use epcont_certificate_meeting, only: along_side, meeting_of, place_allowance, search_type, take_told, widen_allowance
   use epcont_model_model, only: model_type
   use epcont_model_outline_shape, only: near_place
   implicit none
@@ -104,6 +103,22 @@ contains
     call take_worse(found, scene%apart)
     call take_deeper(found, scene%widest)
   end subroutine look_at_gap
+
+  !> How far a point of a side has slid along the place that it is near to, either way [length].
+  pure real(wp) function slide_along(model, search, side, s, place) result(slide)
+    type(model_type), intent(in) :: model
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    type(near_place), intent(in) :: place
+    real(wp) :: along(2)
+
+    along = search%now%tangent(place%side, place%s)
+    associate (u => search%displacement)
+      slide = abs(dot_product(along, along_side(model, side, s, u) - along_side(model, place%side, place%s, u))) &
+              /max(norm2(along), tiny(1.0_wp))
+    end associate
+  end function slide_along
 
   !> How far sides may slide along each other and be where they were drawn [length].
   pure real(wp) function small_slide(search, place) result(small)
