@@ -91,27 +91,20 @@ contains
     type(model_type), intent(in) :: model
     type(search_type), intent(in) :: search
     type(ways_type) :: ways
-    real(wp), allocatable :: high(:, :), low(:, :)
-    integer :: p, s
+    real(wp), allocatable :: high(:, :), low(:, :), u(:, :)
+    integer :: p
 
-    associate (outline => model%body_outline)
+    associate (outline => model%body_outline, allowance => search%allowance)
       allocate (ways%mean(2, outline%parts), ways%spread(outline%parts), ways%straight(outline%parts))
       allocate (low(2, outline%parts), high(2, outline%parts))
       do p = 1, outline%parts
-        associate (u => search%displacement(:, outline%node(1, outline%first(p):outline%first(p + 1) - 1)), &
-                   tree => search%now%side_tree(p))
-          ways%straight(p) = .true.
+        associate (first => outline%first(p), last => outline%first(p + 1) - 1, tree => search%now%side_tree(p))
+          ways%straight(p) = all(max(abs(allowance%turn(first:last)), allowance%stretch(first:last)) <= shapeless)
+          u = search%displacement(:, outline%node(1, first:last))   ! what middles bulge besides is allowed three times over
           ways%mean(:, p) = 0.5_wp*(minval(u, dim=2) + maxval(u, dim=2))
-          ways%spread(p) = 0.0_wp
+          ways%spread(p) = maxval(norm2(u - spread(ways%mean(:, p), 2, size(u, 2)), dim=1))
           low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))   ! from where it was drawn to where it is
           high(:, p) = tree%high(:, 1) - min(0.0_wp, minval(u, dim=2))
-        end associate
-      end do
-      do s = 1, outline%sides
-        associate (p => outline%part(s), u => search%displacement, allowance => search%allowance)
-          if (max(abs(allowance%turn(s)), allowance%stretch(s)) > shapeless) ways%straight(p) = .false.
-          ways%spread(p) = max(ways%spread(p), norm2(u(:, outline%node(1, s)) - ways%mean(:, p)))
-          if (outline%node(3, s) > 0) ways%spread(p) = max(ways%spread(p), norm2(u(:, outline%node(3, s)) - ways%mean(:, p)))
         end associate
       end do
       ways%part_tree = new_box_tree(low, high)
