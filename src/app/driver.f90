@@ -30,7 +30,6 @@ module epcont_app_driver
   use epcont_report_plan, only: plan_text
   use epcont_report_remarks, only: remark_answer, remarks_of_deck
   use epcont_report_results, only: remove_results, run_results, write_results
-  use epcont_report_solver, only: report_solver_fault
   use epcont_report_timing, only: timing_text
   use epcont_result_answer, only: answer_type
   implicit none
@@ -186,7 +185,6 @@ contains
     if (run%faults%error_count() > 0) return
     call find_free_motions(run%model, run%motions, loose)
     call report_motion_faults(run%deck, run%model, loose, run%faults)
-    call report_solver_fault(run%deck, run%model, run%faults)
     call watch%lap(stage_plan)
   end subroutine prepare
 

@@ -1,6 +1,6 @@
 !> epcont: contact of plane bodies and rings, from card decks. The only place that sets the exit status.
 program epcont
-  use, intrinsic :: iso_c_binding, only: c_bool, c_null_ptr
+  use, intrinsic :: iso_c_binding, only: c_bool
   use, intrinsic :: iso_fortran_env, only: error_unit
   use epcont_app_arguments, only: arguments_type, command_line, read_arguments
   use epcont_app_console, only: print_text, stop_with, watch_exit
@@ -21,7 +21,7 @@ program epcont
 
   call watch_exit(ended)
   call prepare_heap()
-  call use_one_thread(c_null_ptr)
+  call use_one_thread()
   call run(status)
   ended = .true.
   call stop_with(status)

@@ -1,6 +1,6 @@
-!> Stiffness of one body, assembled and factored: a band or sparse matrix, and a border of the ties' free leaders.
+!> Stiffness of one body, assembled and factored: a band or fronts, and a border of the ties' free leaders.
 !>
-!>     K = [ K_bb  K_br ]   b: band or sparse,  r: border (few)
+!>     K = [ K_bb  K_br ]   b: band or fronts,  r: border (few)
 !>         [ K_rb  K_rr ]
 !>
 !> K_bb is factored alone; the border follows by its Schur complement S = K_rr - K_rb W, W = K_bb^-1 K_br.
@@ -13,11 +13,10 @@ module epcont_assembly_stiffness
   use epcont_linalg_panel, only: panel_matrix
   use epcont_linalg_single_front, only: single_front_matrix => front_matrix
   use epcont_linalg_single_panel, only: single_panel_matrix => panel_matrix
-  use epcont_linalg_sparse, only: sparse_matrix
   use epcont_material_linear_law, only: linear_law
-  use epcont_model_controls, only: solver_frontal, solver_sparse
+  use epcont_model_controls, only: solver_frontal
   use epcont_model_model, only: model_type, most_nodes
-  use epcont_plan_numbering, only: body_numbering, element_numbers
+  use epcont_plan_numbering, only: body_numbering
   implicit none
   private
   public :: body_stiffness, assemble_body, norm_of
@@ -61,7 +60,7 @@ contains
       if (stiffness%is_sound() .and. body%border == 0) stale = changed_equations(model, changed, equation, body)
       call stiffness%matrix%clear(stale)
     else
-      call begin(model, equation, body, stiffness%single, stiffness%matrix)
+      call begin(body, stiffness%single, stiffness%matrix)
       if (stiffness%single) stiffness%unit = unit_of(model, operator, law, body)
     end if
     allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
@@ -183,9 +182,7 @@ contains
   end function changed_equations
 
   !> A matrix of zeros, of the kind that the plan has chosen.
-  subroutine begin(model, equation, body, single, matrix)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: equation(:, :)
+  subroutine begin(body, single, matrix)
     type(body_numbering), intent(in) :: body
     logical, intent(in) :: single
     class(assembled_matrix), allocatable, intent(inout) :: matrix
@@ -193,13 +190,8 @@ contains
     type(single_front_matrix), allocatable :: single_fronts
     type(panel_matrix), allocatable :: panels
     type(single_panel_matrix), allocatable :: single_panels
-    type(sparse_matrix), allocatable :: sparse
 
-    if (body%solver == solver_sparse) then
-      allocate (sparse)
-      call sparse%begin(body%equations, element_numbers(model, equation, body))
-      call move_alloc(sparse, matrix)
-    else if (body%solver == solver_frontal .and. single) then
+    if (body%solver == solver_frontal .and. single) then
       allocate (single_fronts)
       call single_fronts%begin(body%fronts, body%can_yield, body%contact_equations)
       call move_alloc(single_fronts, matrix)

@@ -1,8 +1,7 @@
 !> One thread for the BLAS, whatever the environment says: with more, sums are cut differently, and the last digits of the
 !> tables are others. (Decks run side by side use more cores.)
 module epcont_base_one_thread
-  use, intrinsic :: iso_c_binding, only: c_associated, c_f_procpointer, c_funptr, c_int, c_null_ptr, c_ptr
-  use epcont_base_shared_library, only: entry_in
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, c_null_char, c_null_ptr, c_ptr
   implicit none
   private
   public :: blas_may_be_shared, use_one_thread
@@ -18,15 +17,23 @@ module epcont_base_one_thread
     end function get_parallel
   end interface
 
+  interface
+    function c_dlsym(library, name) bind(c, name='dlsym') result(address)
+      import :: c_char, c_funptr, c_ptr
+      type(c_ptr), value :: library
+      character(kind=c_char), intent(in) :: name(*)
+      type(c_funptr) :: address
+    end function c_dlsym
+  end interface
+
 contains
 
   !> Tell OpenBLAS; another BLAS has no such procedure.
-  subroutine use_one_thread(library)
-    type(c_ptr), intent(in) :: library   !! that calls it; null: the program
+  subroutine use_one_thread()
     procedure(set_threads), pointer :: set
     type(c_funptr) :: address
 
-    address = entry_in(library, 'openblas_set_num_threads')
+    address = procedure_of('openblas_set_num_threads')
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set)
     call set(1_c_int)
@@ -39,9 +46,16 @@ contains
     type(c_funptr) :: address
 
     blas_may_be_shared = .false.
-    address = entry_in(c_null_ptr, 'openblas_get_parallel')
+    address = procedure_of('openblas_get_parallel')
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, parallel)
     blas_may_be_shared = parallel() /= 0   ! 0 sequential, 1 threads, 2 OpenMP
   end function blas_may_be_shared
+
+  !> Where a procedure of the program or its libraries is; null: nowhere. Which BLAS there is, is not known before.
+  type(c_funptr) function procedure_of(name) result(address)
+    character(len=*), intent(in) :: name
+
+    address = c_dlsym(c_null_ptr, name//c_null_char)
+  end function procedure_of
 end module epcont_base_one_thread

@@ -348,8 +348,9 @@ contains
     field(9) = integer_field(3, 'NLOAD', 'load steps; default 1', 1, 10000)
     field(10) = positive(real_field(3, 'SEARCH', 'how far BCONP looks for a segment; default twice the longest segment of the'// &
                                     ' two lines', 'length'))
-    field(11) = word_field(3, 'SOLVER', 'matrices of the bodies: panels of a band, nested fronts, or MUMPS; default AUTO', &
-                           choices='AUTO BAND FRONTAL SPARSE')
+    field(11) = word_field(3, 'SOLVER', 'matrices of the bodies: panels of a band, or nested fronts; default AUTO', &
+                           choices='AUTO BAND FRONTAL')
+    field(11)%withdrawn = 'SPARSE'
     field(12) = word_field(3, 'PRECIS', 'factors in double or single precision, these refined to double (MIXED) or not;'// &
                            ' default DOUBLE', choices='DOUBLE MIXED SINGLE')
     field(13) = positive(real_field(3, 'ACCURACY', 'wanted relative error of contact pressures: sets TOL, METHOD and PRECIS'// &

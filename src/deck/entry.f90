@@ -37,6 +37,7 @@ module epcont_deck_entry
     logical :: point_optional = .false.  !! in large field a real without a decimal point serves too
     logical :: above_lowest = .false., below_highest = .false.  !! the limit itself is out of range
     character(len=:), allocatable :: choices  !! the words allowed, with blanks between; any if not allocated
+    character(len=:), allocatable :: withdrawn  !! a word that was allowed once
     character(len=:), allocatable :: unit
     character(len=:), allocatable :: meaning
     character(len=:), allocatable :: reason   !! why the upper limit is out of range, or why nothing but zero is in

@@ -114,11 +114,16 @@ contains
     type(field_entry), intent(in) :: entry
     character(len=:), allocatable, intent(out) :: what
     character(len=:), allocatable, intent(inout) :: remedy
+    character(len=8) :: word
     real(wp) :: value
     integer :: outcome
 
     what = 'is out of range'
     if (entry%kind == kind_word) what = 'is not a word known here'
+    if (allocated(entry%withdrawn)) then
+      call scan_word(text, word, outcome)
+      if (word == entry%withdrawn) what = 'is '//entry%withdrawn//', which is no longer there'
+    end if
     if (.not. allocated(entry%instead)) return
     call scan_real(text, value, outcome)
     if (value /= entry%highest) return

@@ -4,8 +4,7 @@ module epcont_model_choices
   use epcont_deck_card_kinds, only: card_param, card_pshell, card_psolid
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_model_controls, only: method_name, method_newton, precision_double, precision_name, rule_name, &
-                                   solver_name, solver_sparse
+  use epcont_model_controls, only: method_name, method_newton, precision_name, rule_name, solver_name
   use epcont_model_model, only: model_type, plane_strain
   implicit none
   private
@@ -38,10 +37,6 @@ contains
       if (precision_name(k) == word) model%controls%precision = k
     end do
     model%controls%accuracy = deck%parameter_value('ACCURACY', 0.0_wp)
-    if (model%controls%solver == solver_sparse .and. model%controls%precision > precision_double) &
-      call faults%add_error(deck%place(card_param, deck%parameter_row('PRECIS'), 2), &
-                            'PARAM PRECIS: '//trim(word)//' does not go with SOLVER SPARSE: MUMPS works in double precision', &
-                            'PRECIS DOUBLE, or SOLVER AUTO, BAND or FRONTAL')
     model%controls%tolerance = deck%parameter_value('TOL', 0.0_wp)
     model%controls%most_iterations = nint(deck%parameter_value('MAXIT', 100.0_wp))
     model%controls%load_steps = nint(deck%parameter_value('NLOAD', 1.0_wp))

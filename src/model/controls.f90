@@ -16,9 +16,9 @@ module epcont_model_controls
   character(len=*), parameter, public :: rule_name(0:2) = ['AUTO ', 'CONRY', 'BLOCK']
 
   !> PARAM SOLVER.
-  integer, parameter, public :: solver_auto = 0, solver_band = 1, solver_frontal = 2, solver_sparse = 3
+  integer, parameter, public :: solver_auto = 0, solver_band = 1, solver_frontal = 2
   !> Their names in a deck, from solver_auto on.
-  character(len=*), parameter, public :: solver_name(0:3) = ['AUTO   ', 'BAND   ', 'FRONTAL', 'SPARSE ']
+  character(len=*), parameter, public :: solver_name(0:2) = ['AUTO   ', 'BAND   ', 'FRONTAL']
 
   !> PARAM PRECIS: of the factors and the flexibility.
   integer, parameter, public :: precision_open = 0, precision_double = 1, precision_mixed = 2, precision_single = 3

@@ -5,7 +5,7 @@ module epcont_plan_forecast
   use epcont_base_memory, only: has_memory, memory_of_libraries
   use epcont_base_text, only: short_real
   use epcont_linalg_panel_layout, only: panel_entries
-  use epcont_model_controls, only: precision_double, solver_frontal, solver_sparse
+  use epcont_model_controls, only: precision_double, solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -85,10 +85,9 @@ contains
       associate (body => numbering%body(b))
         factor = factor_entries(body)
         entries = entries + factor + int(body%equations, i8)*body%border
-        if (body%solver /= solver_sparse .and. plan%precision /= precision_double) saved = saved + factor*real_bytes/2
+        if (plan%precision /= precision_double) saved = saved + factor*real_bytes/2
         flexibility = max(flexibility, flexibility_entries(body, int(own_pairs(b), i8)))
-        expected%operations = expected%operations + 4.0_wp*body%border*factor + &
-                              merge(sparse_operations(body%equations), body%operations, body%solver == solver_sparse)
+        expected%operations = expected%operations + 4.0_wp*body%border*factor + body%operations
       end associate
     end do
     associate (pairs => int(model%pairs, i8))
@@ -110,14 +109,11 @@ contains
   pure integer(i8) function factor_entries(body) result(entries)
     type(body_numbering), intent(in) :: body
 
-    select case (body%solver)
-    case (solver_sparse)
-      entries = sparse_entries(body%equations)
-    case (solver_frontal)
+    if (body%solver == solver_frontal) then
       entries = body%fronts%entries() + body%fronts%remainders(body%can_yield)
-    case default
+    else
       entries = panel_entries(body%reach)
-    end select
+    end if
   end function factor_entries
 
   !> Entries wanted while a body's part of the flexibility is found: the trailing block of the inverse, or the window that
@@ -164,18 +160,4 @@ contains
       if (model%can_yield(e)) bytes = bytes + of_yielding_point
     end do
   end function memory_of_model
-
-  !> Entries that MUMPS takes for its factor and its work: of nested fronts in the plane, n log n.
-  pure integer(i8) function sparse_entries(equations)
-    integer, intent(in) :: equations
-
-    sparse_entries = int(12.0_wp*equations*log(real(max(2, equations), wp)), i8)
-  end function sparse_entries
-
-  !> Operations of its factorization, n**1.5.
-  pure real(wp) function sparse_operations(equations)
-    integer, intent(in) :: equations
-
-    sparse_operations = 65.0_wp*real(equations, wp)**1.5_wp
-  end function sparse_operations
 end module epcont_plan_forecast

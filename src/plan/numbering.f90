@@ -4,12 +4,12 @@ module epcont_plan_numbering
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_front_layout, only: front_layout, new_front_layout
   use epcont_linalg_panel_layout, only: gram_operations, panel_operations
-  use epcont_model_controls, only: solver_auto, solver_band, solver_frontal, solver_sparse
+  use epcont_model_controls, only: solver_auto, solver_band, solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_dissection, only: dissect, dissection
   implicit none
   private
-  public :: body_numbering, element_numbers, numbering_type, number_equations
+  public :: body_numbering, numbering_type, number_equations
 
   !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact bodies (7 000 nodes of two
   !! cylinders) and on long ones, on elastic ones and on those that yield.
@@ -24,7 +24,7 @@ module epcont_plan_numbering
     logical :: contact_last = .true.       !! the contact equations are the last ones
     integer :: first_contact = 1           !! the first of them; behind the last equation where there is none
     logical :: can_yield = .false.
-    integer :: solver = solver_band        !! or solver_frontal, or solver_sparse: MUMPS, which orders them anew
+    integer :: solver = solver_band        !! or solver_frontal
     type(front_layout) :: fronts           !! of solver_frontal
     real(wp) :: operations = 0.0_wp        !! of factor and flexibility
     integer, allocatable :: reach(:)       !! the last equation that each is coupled with [equations], of solver_band
@@ -91,10 +91,9 @@ contains
     type(body_numbering), intent(inout) :: body
 
     body%can_yield = any(model%can_yield(body%element))
-    if (model%controls%solver == solver_sparse .or. size(body%element) == 0) then
+    if (size(body%element) == 0) then
       call number_nodes(model, at_contact, nodes, equation, body)
       call find_reach(model, equation, body)
-      if (model%controls%solver == solver_sparse .and. body%equations > 0) body%solver = solver_sparse
     else if (model%controls%solver == solver_frontal) then
       call number_fronts(model, nodes, at_contact, equation, body)
     else

@@ -4,7 +4,6 @@ module epcont_plan_side_by_side
   use epcont_base_kinds, only: i8, wp
   use epcont_base_memory, only: has_memory, memory_of_thread
   use epcont_base_sorting, only: sorted_order
-  use epcont_model_controls, only: solver_sparse
   use epcont_plan_forecast, only: most_memory
   use epcont_plan_numbering, only: numbering_type
   implicit none
@@ -16,15 +15,13 @@ module epcont_plan_side_by_side
 
 contains
 
-  !> Threads for a scene: one where there is no memory for more, and with MUMPS, which does not bear calls side by side.
+  !> Threads for a scene: one where there is no memory for more.
   integer function plan_threads(numbering, bytes, granted) result(threads)
     type(numbering_type), intent(in) :: numbering
     integer(i8), intent(in) :: bytes      !! that the run will hold on one thread
     integer, intent(in) :: granted
     real(wp), allocatable :: operations(:)
 
-    threads = 1
-    if (any(numbering%body%solver == solver_sparse)) return
     operations = numbering%body%operations
     threads = threads_for(operations, granted)
     if (threads == 1) return

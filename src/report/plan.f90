@@ -3,8 +3,7 @@ module epcont_report_plan
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, precision_double, &
-                                   precision_name, precision_open, solver_auto, solver_band, solver_frontal, &
-                                   solver_name, solver_sparse
+                                   precision_name, precision_open, solver_auto, solver_band, solver_frontal, solver_name
   use epcont_model_model, only: model_type
   use epcont_plan_contact_plan, only: contact_plan, many_pairs
   use epcont_plan_forecast, only: forecast_type
@@ -104,8 +103,6 @@ contains
     character(len=:), allocatable :: text
 
     text = ''
-    if (any(numbering%body%solver == solver_sparse)) &
-      text = '  bodies factored by MUMPS (SPARSE): '//text_of(count(numbering%body%solver == solver_sparse))//newline
     if (.not. any(numbering%body%solver == solver_frontal)) return
     text = '  bodies factored in nested fronts (FRONTAL): '//text_of(count(numbering%body%solver == solver_frontal))//newline
     if (model%controls%solver /= solver_auto) return

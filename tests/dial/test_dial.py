@@ -139,10 +139,6 @@ class Dial(unittest.TestCase):
         self.assertRegex(single, rf"  memory \d+ MB \(in double {needed}\), operations")
 
     def test_faults(self):
-        run, _, _ = self.run_deck("hertz/hertz44", "SOLVER,SPARSE", "PRECIS,MIXED")
-        self.assertEqual(2, run.returncode)
-        self.assertIn("PARAM PRECIS: MIXED does not go with SOLVER SPARSE: MUMPS works in double precision\n", run.stderr)
-        self.assertIn("^^^^^ PRECIS DOUBLE, or SOLVER AUTO, BAND or FRONTAL\n", run.stderr)
         for value in ("0.0", "1.0", "-0.1"):
             run, _, _ = self.run_deck("hertz/hertz44", f"ACCURACY,{value}")
             self.assertEqual(2, run.returncode)

@@ -135,11 +135,6 @@ class Counts(Extremes):
         self.assertLessEqual(self.most(stack(), OMP_NUM_THREADS="8"), 4)
         self.assertEqual(1, self.most(stack(12, 8), OMP_NUM_THREADS="8"))
 
-    def test_one_with_mumps(self):
-        if b"libdmumps_seq" not in pathlib.Path(PROGRAM).read_bytes():
-            self.skipTest("the program is built without MUMPS")
-        self.assertEqual(1, self.most(stack(parameters=[("SOLVER", "SPARSE")]), OMP_NUM_THREADS="4"))
-
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)   # tells why a test is skipped

@@ -364,48 +364,6 @@ class Memory(Case):
         self.limits(SMALL, resource.RLIMIT_DATA)
 
 
-class Mumps(Case):
-    def setUp(self):
-        super().setUp()
-        name = re.search(rb"libdmumps_seq[\w.-]*?\.so[.\d]*", pathlib.Path(PROGRAM).read_bytes())
-        if not name:
-            self.skipTest("the program is built without MUMPS")
-        self.library = name[0].decode()
-        self.deck = self.directory / "deck.dat"
-        self.deck.write_text(SMALL.read_text().replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,SOLVER,SPARSE\n", 1))
-
-    def test_library_that_cannot_be_loaded(self):
-        """The deck is refused in the loader's words; one that does not ask for MUMPS does not miss it."""
-        (self.directory / self.library).touch()
-        environment = dict(os.environ, LD_LIBRARY_PATH=str(self.directory))
-        run = self.run_it(self.deck, "-o", self.directory, env=environment)
-        self.check(run, 2, f"deck.dat:{self.line()}:14-19: PARAM SOLVER: there is no MUMPS, which SPARSE takes: {self.directory}/{self.library}: ",
-                   "SOLVER AUTO, BAND or FRONTAL, or an epcont built, and run, where libmumps-seq-dev is installed")
-        self.check(self.run_it(SMALL, "-o", self.directory, env=environment), 0)
-
-    def line(self):
-        return self.deck.read_text().splitlines().index("PARAM,SOLVER,SPARSE") + 1
-
-    def test_threads(self):
-        """Its BLAS has one thread, whatever the environment says: the same bytes."""
-        self.deck.write_text(LARGE.read_text().replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,SOLVER,SPARSE\n", 1))
-        for threads in "124":
-            self.check(self.run_it(self.deck, "-o", self.directory / threads, *ALL,
-                                   env=dict(os.environ, OMP_NUM_THREADS=threads, OPENBLAS_NUM_THREADS=threads)), 0)
-        one, two, four = (self.files(self.directory / threads) for threads in "124")
-        self.assertEqual([], [name for name in one if not one[name] == two.get(name) == four.get(name)])
-
-    def test_address_space(self):
-        """Another BLAS comes with it: no limit makes that wait without end."""
-        if sanitized():
-            self.skipTest("the address sanitizer maps more than any limit")
-        for megabytes in range(500, 1200, 50):
-            def limit(most=megabytes * 1000000):
-                resource.setrlimit(resource.RLIMIT_AS, (most, most))
-            run = self.run_it(self.deck, "-o", self.directory, preexec_fn=limit)
-            self.assertIn(run.returncode, (0, 2, 3), (megabytes, run.stderr))
-
-
 if __name__ == "__main__":
     PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
     unittest.main(verbosity=2)   # tells why a test is skipped

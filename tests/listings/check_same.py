@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """check_same.py PROGRAM DECK OUTPUT PARAM ONE OTHER: a deck must have the same answer by two values of a PARAM: SOLVER BAND and
-FRONTAL or SPARSE, PRECIS DOUBLE and MIXED.
+FRONTAL, PRECIS DOUBLE and MIXED.
 
 Exit status, words and whole numbers are to be the same; reals to 1e-9 of the largest of their kind in their table, for two
 factors of one matrix leave different rounding. What measures rounding, and states that are no answers, are not compared.

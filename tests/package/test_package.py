@@ -152,7 +152,7 @@ class Package(unittest.TestCase):
         self.assertEqual(is_static, "The OpenBLAS Project" in notices)
 
     def test_depends(self):
-        """Every library that the program is linked with is in a package that is named; the one that it loads is recommended."""
+        """Every library that the program is linked with is in a package that is named."""
         depends = Closure.names(self.field("Depends"))
         self.assertIn("libc6", depends)
         program = self.root / "usr/bin/epcont"
@@ -160,15 +160,10 @@ class Package(unittest.TestCase):
         for library, package in (("openblas", r"\blibopenblas"), ("gfortran", r"\blibgfortran5\b"), ("quadmath", r"\blibquadmath0\b")):
             if any(library in name for name in needed):
                 self.assertRegex(" ".join(depends), package)
-        self.assertFalse(any("mumps" in name for name in needed))
-        recommends = r"^libmumps-seq-[\d.]+$" if self.has_mumps() else r"^$"
-        self.assertRegex(self.field("Recommends"), recommends)
-
-    def has_mumps(self):
-        return b"libdmumps_seq" in (self.root / "usr/bin/epcont").read_bytes()
+        self.assertEqual("", self.field("Recommends"))
 
     def test_run(self):
-        """In a root of its own; without its dependencies it does not run there, so that it is they which make it. So with MUMPS."""
+        """In a root of its own; without its dependencies it does not run there, so that it is they which make it."""
         deck, out = "/usr/" + DECK, self.root / "out"
         out.mkdir()
         enter = ["chroot", self.root] if os.geteuid() == 0 else ["unshare", "--map-root-user", "chroot", self.root]
@@ -182,18 +177,6 @@ class Package(unittest.TestCase):
         self.assertEqual((0, ""), (done.returncode, done.stderr))
         self.assertRegex(done.stdout, r"^hertz44  valid  p_max ")
         self.same_as_here(deck, out)
-        if not self.has_mumps():
-            return
-        text = (self.root / deck.lstrip("/")).read_text()
-        (self.root / "hertz44.dat").write_text(text.replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,SOLVER,SPARSE\n", 1))
-        command[-5] = "/hertz44.dat"
-        done = run(shutil.which(command[0]), *command[1:], env={}, cwd="/")
-        self.assertEqual(2, done.returncode, done.stderr)
-        self.assertIn("PARAM SOLVER: there is no MUMPS, which SPARSE takes: libdmumps_seq", done.stderr)
-        Closure(self.field("Recommends")).copy_to(self.root)
-        done = run(shutil.which(command[0]), *command[1:], env={}, cwd="/")
-        self.assertEqual((0, ""), (done.returncode, done.stderr))
-        self.same_as_here("/hertz44.dat", out)
 
     def same_as_here(self, deck, out):
         """The same bytes as in this root. Without environment, too: a variable may choose OpenBLAS' kernels, and these the last digits."""

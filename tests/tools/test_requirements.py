@@ -230,16 +230,6 @@ class Telling(Case):
         (self.place / "results.xml").write_text("<testsuite><testcase name='good'><system-out>well</system-out></testcase></testsuite>")
         self.assertEqual("ctest's summary\n", self.run_it(8, "tools/test").stdout)
 
-    def test_mumps_is_tried_for_once(self):
-        self.machine(user=0)
-        for times in (1, 0):
-            self.run_it(8, "tools/test")
-            self.assertEqual(times, any(line.endswith(" libmumps-seq-dev") for line in self.calls("apt-get")))
-        (self.place / "dmumps_struc.h").touch()
-        (self.top / "build" / "release" / "tests.xml").unlink()
-        self.run_it(8, "tools/test")
-        self.assertEqual([], self.calls("apt-get"))
-
 
 if __name__ == "__main__":
     unittest.main()

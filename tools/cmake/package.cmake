@@ -33,11 +33,6 @@ set(CPACK_PACKAGE_CONTACT "The epcont authors" CACHE STRING "Whom the package na
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)   # the libraries that it was linked with, by their packages
-if(has_mumps)   # the one that it loads: the program runs without it
-  get_filename_component(file "${MUMPS_LIBRARY}" REALPATH)
-  execute_process(COMMAND dpkg-query -S "${file}" OUTPUT_VARIABLE owner ERROR_QUIET)
-  string(REGEX MATCH "^[^:, ]+" CPACK_DEBIAN_PACKAGE_RECOMMENDS "${owner}")
-endif()
 # Folders that anyone may enter, whatever the umask of whoever packs.
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/tools/cmake/compress.cmake")
