@@ -27,7 +27,6 @@ PROGRAM = pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve()
 INSTEAD = [
     (r"cmake --preset release && cmake --build --preset release( --target epcont)?",
      r"cmake --list-presets && cmake --build --preset release", "minutes; the build under test was made so"),
-    (r"cmake --build --preset release --target (bench\w+)", r"grep -w 'add_executable(\1' tools/benchmark/CMakeLists.txt", "builds"),
     (r"cmake --install build/release .*", None, "the ctest `package` installs"),
     (r"sudo apt install .*", None, "changes the machine; the ctest `package` unpacks the package and runs it"),
     (r"tests/slurm/run", "tests/slurm/run --help", "installs and starts Slurm"),
