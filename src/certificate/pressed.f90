@@ -57,7 +57,7 @@ contains
 
     associate (b => model%pair_node(2, k), part => model%body_outline%part_of(model%pair_node(1, k)))
       found%x = model%x(:, b) + search%displacement(:, b)
-      place = search%now%nearest(part, found%x)
+      place = search%now%nearest_place(part, found%x)
       s = merge(0.5_wp, 0.0_wp, model%body_outline%node(3, side) == b)
     end associate
     meeting = meeting_of(model, search, side, s, place, joined=.true.)

@@ -127,7 +127,7 @@ contains
 
     x = now_at(model, search, point)
     if (search%now%side_tree(part)%away(1, x) > 0.0_wp) return
-    place = search%now%nearest(part, x, search%last)
+    place = search%now%nearest_place(part, x, search%last)
     search%last = place%side
     if (.not. place%inside) return
     meeting = meeting_of(model, search, point%side, point%s, place, is_joined(model, search, point%side, place%side))
@@ -178,7 +178,7 @@ contains
     else
       x = search%drawn%at(point%side, point%s)
     end if
-    before = search%drawn%nearest(model%body_outline%part(inside%other), x)
+    before = search%drawn%nearest_place(model%body_outline%part(inside%other), x)
     if (.not. before%inside) return
     if (before%distance > inside%allowed .and. before%distance > more*drawn%depth) &
       drawn = overlap_place(before%distance/inside%allowed, before%distance, inside%allowed, x, inside%side, before%side)

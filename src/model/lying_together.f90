@@ -125,7 +125,7 @@ contains
         k = merge(node(1), node(2), which /= side)
         lies_against = loose_twin(k, which) > 0
         if (.not. lies_against) return
-        place = drawn%nearest(part, drawn%at(which, 0.5_wp))
+        place = drawn%nearest_place(part, drawn%at(which, 0.5_wp))
         lies_against = place%distance <= coincident*norm2(drawn%chord(which)) .and. &
                        dot_product(drawn%tangent(place%side, place%s), drawn%tangent(which, 0.5_wp)) < 0.0_wp
       end associate
@@ -136,7 +136,7 @@ contains
       integer, intent(in) :: node, which
       type(near_place) :: place
 
-      place = drawn%nearest(part, model%x(:, node))
+      place = drawn%nearest_place(part, model%x(:, node))
       found = 0
       associate (within => coincident*norm2(drawn%chord(which)), ends => model%body_outline%node(:2, place%side))
         if (place%distance > within) return

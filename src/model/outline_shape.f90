@@ -29,7 +29,7 @@ module epcont_model_outline_shape
     procedure :: tangent
     procedure :: chord
     procedure :: near_side
-    procedure :: nearest
+    procedure :: nearest_place
     procedure :: is_inside
   end type outline_shape
 
@@ -113,7 +113,7 @@ contains
   end function chord
 
   !> The place of a part that is nearest to a point: branch and bound in its tree. `guess` is a side that may be near.
-  pure function nearest(self, part, point, guess) result(best)
+  pure function nearest_place(self, part, point, guess) result(best)
     class(outline_shape), intent(in) :: self
     integer, intent(in) :: part
     real(wp), intent(in) :: point(2)   !! [length]
@@ -157,7 +157,7 @@ contains
       end do
     end associate
     best%inside = is_inside(self, best, point)
-  end function nearest
+  end function nearest_place
 
   !> The place of a side that is nearest to a point; whether the point is inside is not looked at.
   pure function near_side(self, side, point) result(place)
