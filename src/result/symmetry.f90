@@ -13,12 +13,14 @@ module epcont_result_symmetry
 
 contains
 
-  !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there; where that is so all
-  !! over a rigid body, held or tied by RBE2, the node of the other body tells that lies on the same line.
+  !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there, and so is the other body
+  !! where it ends at the same line, or all over if it is rigid; a body that goes on beyond the line is not mirrored. One of the two
+  !! is held along the boundary alone: one held all over, or tied by RBE2, does not tell.
   pure logical function is_on_symmetry(model, pair, node, side)
     type(model_type), intent(in) :: model
     integer, intent(in) :: pair, node
     real(wp), intent(in) :: side   !! length of the longest side at the node [length]
+    logical :: ends, guided, rigid
     integer :: along, i
 
     is_on_symmetry = .false.
@@ -26,14 +28,28 @@ contains
       along = merge(1, 2, abs(n(2)) > abs(n(1)))
       if (abs(n(3 - along)) <= along_line) return
     end associate
-    if (.not. model%held(along, model%leader(along, node))) return
-    is_on_symmetry = is_guided(model, node, along)
+    if (.not. is_held(node)) return
+    ends = .false.
+    guided = is_guided(model, node, along)
+    rigid = .true.
     do i = model%row_start(pair), model%row_start(pair + 1) - 1
-      if (is_on_symmetry) return
       associate (other => model%row_node(i))
-        is_on_symmetry = is_guided(model, other, along) .and. abs(model%x(along, other) - model%x(along, node)) <= beside*side
+        if (other == node) cycle
+        rigid = rigid .and. is_held(other)
+        if (.not. is_held(other) .or. abs(model%x(along, other) - model%x(along, node)) > beside*side) cycle
+        ends = .true.
+        guided = guided .or. is_guided(model, other, along)
       end associate
     end do
+    is_on_symmetry = guided .and. (ends .or. rigid)
+
+  contains
+
+    pure logical function is_held(node)
+      integer, intent(in) :: node
+
+      is_held = model%held(along, model%leader(along, node))
+    end function is_held
   end function is_on_symmetry
 
   !> Is a node held by itself in one direction, and free in the other?

@@ -3,7 +3,7 @@
 import random
 import unittest
 
-from scenes import Punch
+from scenes import Punch, grid
 
 import scene
 
@@ -90,6 +90,35 @@ class Symmetry(unittest.TestCase):
                 with self.subTest(kind=kind, pairs=pairs):
                     self.same(one, self.figures(punch.deck(backwards=True)))
                     self.same(one, self.figures(punch.deck(rename=other.get)))
+
+    def test_guide_is_no_line_of_symmetry(self):
+        """A block whose left side slides in a guide, on a base that goes on beyond it: the zone ends there, at a sharp edge."""
+        for kind in PLANE:
+            for slave in (1, 2):
+                deck, rows = scene.Deck(), []
+                deck.material(1, 1000.0, 0.3)
+                for body, (left, bottom, wide, parts) in enumerate([(-1.0, -1.0, 3.0, 12), (0.0, 0.0, 1.0, 4)]):
+                    place, elements, of_body = grid(1 + 1000 * body, left, bottom, wide, 1.0, parts, 3, kind)
+                    for n, at in place.items():
+                        deck.grid(n, *at)
+                    for nodes in elements:
+                        deck.element(1, *nodes, kind=kind)
+                    rows.append(of_body)
+                (lower, *_, top), upper = rows
+                deck.hold(12, *lower)
+                deck.hold(1, *(row[0] for row in upper))
+                for n in upper[-1]:
+                    deck.displace(n, 2, -0.01)
+                step = 2 if kind.endswith("6") else 1
+                deck.card("BLSEG", 1, *upper[0][::step])
+                deck.card("BLSEG", 2, *top[::step][::-1])
+                deck.card("BCONP", 1, slave, 3 - slave)
+                with self.subTest(kind=kind, slave=slave):
+                    result = scene.solve(deck)
+                    self.assertEqual(result.status, 0, result.message)
+                    zone, = result.table("zones")
+                    self.assertAlmostEqual(zone["half_width_last_pair"], 0.5, delta=1e-9)
+                    self.assertEqual(zone["max_pressure_is"], "unbounded")
 
 
 class Axis(unittest.TestCase):

@@ -138,7 +138,7 @@ class Run:
 
 
 def on_symmetry(node, n, others, x, held, leader, near):
-    """Is a node held along its side, or in a rigid body that is, beside a node of the other body that is held so by itself?"""
+    """Is a node held along its side, and the other body too, where it ends at the same line or all over; one of the two by itself?"""
     along = 0 if abs(n[1]) > UPRIGHT else 1 if abs(n[0]) > UPRIGHT else None
 
     def top(freedom):
@@ -151,7 +151,10 @@ def on_symmetry(node, n, others, x, held, leader, near):
 
     if along is None or top((node, along)) not in held:
         return False
-    return guided(node) or any(guided(other) and abs(x[other][along] - x[node][along]) <= near for other in others)
+    others = [other for other in others if other != node]
+    holding = [other for other in others if top((other, along)) in held]
+    here = [other for other in holding if abs(x[other][along] - x[node][along]) <= near]
+    return bool(here or len(holding) == len(others)) and any(guided(one) for one in [node, *here])
 
 
 def stands(x, weights, node):
