@@ -8,7 +8,7 @@ module epcont_model_line_contacts
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_line_pairs, only: add_pairs, faces_type, find_faces
-  use epcont_model_line_warnings, only: warn_of_both_ways, warn_of_finer_slave, warn_of_overlap
+  use epcont_model_line_warnings, only: warn_of_both_ways, warn_of_finer_slave, warn_of_overlap, warn_of_thicker_slave
   use epcont_model_model, only: line_contact, model_type
   use epcont_model_reference, only: check_unique, index_of_ids, resolve
   use epcont_model_side_boxes, only: new_boxed_line
@@ -244,6 +244,7 @@ contains
     end do
     call warn_of_overlap(deck, i, model, contact, faults)
     call warn_of_finer_slave(deck, i, model, contact, faces, faults)
+    call warn_of_thicker_slave(deck, i, model, contact, faults)
   end subroutine find_pairs
 
   subroutine add_nothing_faced(deck, i, contact, same_way, faults)

@@ -10,7 +10,7 @@ module epcont_model_line_warnings
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
-  public :: warn_of_both_ways, warn_of_finer_slave, warn_of_overlap
+  public :: warn_of_both_ways, warn_of_finer_slave, warn_of_overlap, warn_of_thicker_slave
 
   !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off by 3 % and more.
   real(wp), parameter :: finer = 1.3_wp
@@ -114,6 +114,25 @@ contains
       is_rigid = all(held(:, 1) .and. held(:, 2) .or. model%leader(:, node(1)) == model%leader(:, node(2)))
     end function is_rigid
   end subroutine warn_of_finer_slave
+
+  !> Pressures are forces by the area of the slave, which a thinner master does not cover.
+  subroutine warn_of_thicker_slave(deck, i, model, contact, faults)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i
+    type(model_type), intent(in) :: model
+    type(line_contact), intent(in) :: contact
+    type(diagnostics), intent(inout) :: faults
+    real(wp) :: thickness(2)
+
+    if (model%has_rings()) return
+    thickness = [maxval(model%thickness(model%section(contact%slave%element))), &
+                 minval(model%thickness(model%section(contact%master%element)))]
+    if (thickness(1)*(1.0_wp - digits) <= thickness(2)) return
+    call faults%add_warning(deck%place(card_bconp, i, 2), deck%identity(card_bconp, i)//': the slave is '// &
+                            short_real(thickness(1))//' thick, the master '//short_real(thickness(2))// &
+                            ': pressures are forces by the slave''s area, of which the master covers a part', &
+                            'SLAVE and MASTER exchanged')
+  end subroutine warn_of_thicker_slave
 
   !> One warning for all overlaps: shrink fits have many. What curves over chords, and cards of eight columns, leave is none.
   subroutine warn_of_overlap(deck, i, model, contact, faults)
