@@ -155,7 +155,7 @@ contains
     do j = 1, size(moved)
       off = error_along(model, line, answer, table, unit_force(:, j), along(:, j), missing(j), accuracy)
       if (moved(j) > motions%count) then
-        accuracy%total_force = merge(off, 0.0_wp, off > no_error*sum(answer%contact%force))
+        if (off > no_error*sum(answer%contact%force)) accuracy%total_force = off + force_of_waves(answer, accuracy)
       else
         accuracy%approach(moved(j)) = off
         accuracy%approach_unbounded(moved(j)) = is_point_load(model, motions, table, moved(j))
@@ -268,6 +268,19 @@ contains
     error = weights%product*max(abs(short), uncertain*product(2)) &
             /max(least_energy, 1.0_wp - accuracy%energy_norm**2)/max(least_energy, 1.0_wp - missing) + end_error
   end function error_along
+
+  !> Where motions are given, waves of the gap that are not pressed flat bear more than what is meant: the higher they are the more,
+  !! and none of it where they are flat [force].
+  pure real(wp) function force_of_waves(answer, accuracy) result(force)
+    type(answer_type), intent(in) :: answer
+    type(accuracy_type), intent(in) :: accuracy
+    integer :: z
+
+    force = 0.0_wp
+    do z = 1, size(accuracy%zone)
+      force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)*sum(answer%contact%force(answer%zones(z)%pairs))
+    end do
+  end function force_of_waves
 
   !> Is a SUPORT freedom the one node of its body's mesh that bears a load?
   pure logical function is_point_load(model, motions, table, j)
