@@ -16,7 +16,7 @@ module epcont_analysis
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_methods, only: choose_method
   use epcont_plasticity_onlooker, only: onlooker
-  use epcont_result_answer, only: answer_type
+  use epcont_result_answer, only: answer_type, largest_loss
   use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
   use epcont_result_line_pressure, only: compare_sides
   use epcont_result_gradient, only: find_gradients
@@ -28,8 +28,9 @@ module epcont_analysis
   private
   public :: analyse
 
-  !> Steps of refinement where forces are out of balance; each takes rounding's part of it down by digits.
-  integer, parameter :: most_refinements = 2
+  !> Steps of refinement where forces, gaps or the energy are out of balance, or rounding has taken too much of a pivot; each
+  !! gains as many digits as the factors have.
+  integer, parameter :: most_refinements = 3
   !> So many times the load steps, where those asked for did not lead to an answer.
   integer, parameter :: more_steps = 5
 
@@ -64,8 +65,9 @@ contains
     line = find_contact_line(model)
     call evaluate(model, plan, run, line, answer, certificate, watch)
     do step = 1, most_refinements
-      if (.not. run%converged .or. certificate%equilibrium <= certificate%tolerance) exit
-      call run%scene%sharpen(model, motions, numbering, run%law, run%load_factor, run%state, watch)
+      if (.not. run%converged .or. certificate%balanced .and. answer%lost() <= largest_loss .and. &
+          (step == 1 .or. answer%last_correction <= largest_loss)) exit
+      call run%scene%sharpen(model, motions, numbering, run%law, run%load_factor, run%state, found%last_correction, watch)
       answer = found
       call evaluate(model, plan, run, line, answer, certificate, watch)
     end do

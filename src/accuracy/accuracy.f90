@@ -130,6 +130,7 @@ contains
     if (.not. carried) return
 
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
+    accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
     accuracy%total_force = 0.0_wp   ! where loads alone make it
     call assess_motions(model, motions, line, answer, table, unit_force(:, moved), along, unit_missing, moved, accuracy)
     call widen_pressures(answer, accuracy)

@@ -8,7 +8,7 @@ module epcont_certificate_certificate
   use epcont_certificate_gradient, only: kind_of, kind_type, most_places, unit_strains
   use epcont_certificate_scene, only: scene_type
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
-  use epcont_model_model, only: axisymmetric, model_type, most_nodes
+  use epcont_model_model, only: axisymmetric, model_type, most_nodes, plane_stress
   implicit none
   private
   public :: certificate_type, certify
@@ -125,7 +125,7 @@ contains
     type(kind_type) :: kind(most_nodes)
     logical :: moves, ring
     real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), u(2, most_nodes), travel(2, most_nodes)
-    real(wp) :: strain(4), steepest(4), force(2), largest_stress, off, rounding, scale
+    real(wp) :: strain(4), steepest(4), force(2), largest_stress, off, rounding, rounding_strain, scale, stiffest
     integer :: c, e, k, n, p, point, section
 
     kind([3, 4, 6]) = [kind_of(3), kind_of(4), kind_of(6)]
@@ -135,6 +135,7 @@ contains
       n = model%order(e)
       section = model%section(e)
       ring = model%kinematics(section) == axisymmetric
+      stiffest = stiffest_modulus(model, section)
       call unit_strains(model, e, kind(n), unit, volume)
       associate (node => model%connectivity(:, e), first => model%first_point(e))
         do k = 1, n
@@ -152,8 +153,9 @@ contains
             steepest = max(steepest, abs(unit(:, 1, k, p)), abs(unit(:, 2, k, p)))
           end do
           rounding = epsilon(1.0_wp)*largest(steepest)   ! of a strain by unit displacements
-          certificate%lost_stress = max(certificate%lost_stress, &
-                                        ratio(model%young(section)*rounding*maxval(abs(u(:, :n))), scale))
+          rounding_strain = rounding*maxval(abs(u(:, :n)))
+          certificate%lost_stress = max(certificate%lost_stress, ratio(model%young(section)*rounding_strain, scale), &
+                                        ratio(stiffest*rounding_strain, largest_stress))
           if (.not. moves) cycle
           strain = strain_at(n, ring, travel, unit(:, :, :, p))
           rounding = rounding*maxval(abs(travel(:, :n)) + abs(u(:, :n)))
@@ -193,6 +195,17 @@ contains
     scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
     off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
   end subroutine measure_stress
+
+  !> Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5 far above E [stress].
+  pure real(wp) function stiffest_modulus(model, section) result(modulus)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: section
+
+    modulus = model%young(section)
+    associate (nu => model%poisson(section))
+      if (model%kinematics(section) /= plane_stress) modulus = modulus*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
+    end associate
+  end function stiffest_modulus
 
   !> Largest component, whatever its sign.
   pure real(wp) function largest(vector)

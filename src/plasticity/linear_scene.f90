@@ -197,7 +197,7 @@ contains
 
   !> One step of refinement of what `solve` has found: where a body is long and its elements fine, rounding leaves forces out of
   !! balance though the factors are in double. The contact follows the deformation, and that the contact.
-  subroutine sharpen(self, model, motions, numbering, law, part, state, watch)
+  subroutine sharpen(self, model, motions, numbering, law, part, state, change, watch)
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
@@ -205,23 +205,35 @@ contains
     type(linear_law), intent(in) :: law
     real(wp), intent(in) :: part
     type(scene_state), intent(inout) :: state   !! as it was where the contact is not found again
+    real(wp), intent(out) :: change             !! of displacements and contact forces, of the largest of each
     class(stopwatch), intent(inout) :: watch
     type(scene_state) :: refined
     logical, allocatable :: touching(:)
-    real(wp) :: change
+    real(wp) :: strained   ! part of the strains that a correction changes: the displacements tell what the step has done
 
+    change = huge(1.0_wp)
     refined = state
     touching = state%contact%touching
-    call correct(self, model, numbering, law, part, refined, change)
+    call correct(self, model, numbering, law, part, refined, strained)
     call watch%lap(stage_displacements)
     call solve_contact_about(self, model, part, touching, refined)
     call watch%lap(stage_contact)
     if (refined%contact%state /= contact_solved) return
-    call correct(self, model, numbering, law, part, refined, change)
+    call correct(self, model, numbering, law, part, refined, strained)
     call complete_state(model, motions, law, self%problem, part, refined)
+    change = change_of(state, refined)
     state = refined
     call watch%lap(stage_displacements)
   end subroutine sharpen
+
+  !> Largest change of the displacements and of the contact forces, over the largest of each.
+  pure real(wp) function change_of(before, after) result(change)
+    type(scene_state), intent(in) :: before, after
+
+    change = maxval(abs(after%displacement - before%displacement))/max(maxval(abs(after%displacement)), tiny(1.0_wp))
+    if (.not. any(after%contact%force > 0.0_wp)) return
+    change = max(change, maxval(abs(after%contact%force - before%contact%force))/maxval(after%contact%force))
+  end function change_of
 
   !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
   subroutine solve_once(self, model, numbering, law, part, start, state, watch)

@@ -41,7 +41,7 @@ contains
     call figure(file, 'condition of the stiffness (1-norm)', right(short_real(answer%condition), 13))
     call list_precision(file, answer)
     if (answer%precision /= precision_single) call figure(file, 'digits that rounding leaves, at least', &
-                right(text_of(max(0, floor(-log10(answer%condition*epsilon(1.0_wp))))), 13))
+                right(text_of(max(0, floor(-log10(answer%rounding())))), 13))
     call figure(file, 'linear residual', right(rounding_number(certificate%equilibrium), 13))
     if (accuracy%sensitivity%known) then
       associate (found => accuracy%sensitivity)

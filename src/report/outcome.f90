@@ -9,7 +9,7 @@ module epcont_report_outcome
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_scene, only: scene_fault
-  use epcont_result_answer, only: answer_type
+  use epcont_result_answer, only: answer_type, largest_loss
   implicit none
   private
   public :: outcome_type, judge
@@ -22,11 +22,9 @@ module epcont_report_outcome
   end type outcome_type
 
   character(len=*), parameter :: reason = &
-    'elements differ too much in size or stiffness, hardly anything resists a motion, or a Poisson''s ratio is too near 0.5'
+    'elements differ too much in size or stiffness, hardly anything resists a motion, a body is too slender, '// &
+    'or a Poisson''s ratio is too near 0.5'
   character(len=*), parameter :: axis(2) = ['x', 'y']
-  !> Largest part that rounding may take of a pivot in a valid answer. The certificate need not see it: rigid motions of a
-  !! stiff part upon a soft one are wrong by 1 to 30 times as much, in equilibrium.
-  real(wp), parameter :: largest_loss = 1.0e-8_wp
 
 contains
 
@@ -75,14 +73,14 @@ contains
     else
       outcome%has_answer = .true.
       outcome%word = 'valid'
-      if (answer%converged .and. certificate%valid .and. loss_of(answer) <= largest_loss) then
+      if (answer%converged .and. certificate%valid .and. answer%lost() <= largest_loss) then
         if (certificate%scene%sound()) return
         outcome%status = status_numerical
         outcome%word = 'not certified'
         outcome%sentence = scene_fault(model, certificate%scene)
         return
       end if
-      if (.not. answer%converged .and. (certificate%balanced .and. loss_of(answer) <= largest_loss .or. answer%runs_away)) then
+      if (.not. answer%converged .and. (certificate%balanced .and. answer%lost() <= largest_loss .or. answer%runs_away)) then
         outcome%status = status_no_answer
         outcome%word = 'not converged'
         outcome%sentence = unconverged(model, answer)
@@ -90,17 +88,10 @@ contains
       end if
       outcome%status = status_numerical
       outcome%word = trim(merge('ill-conditioned', 'not certified  ', certificate%valid .or. certificate%balanced .and. &
-                                loss_of(answer) > largest_loss))
+                                answer%lost() > largest_loss))
       outcome%sentence = 'the figures are not to be trusted: '//doubts(model, answer, certificate)
     end if
   end function judge
-
-  !> What rounding has taken of the weakest pivot.
-  pure real(wp) function loss_of(answer) result(loss)
-    type(answer_type), intent(in) :: answer
-
-    loss = epsilon(1.0_wp)/answer%weakest%ratio
-  end function loss_of
 
   !> What speaks against an answer: the figure of the certificate that is farthest beyond its tolerance, and lost digits.
   pure function doubts(model, answer, certificate) result(text)
@@ -130,13 +121,14 @@ contains
       text = trim(what(worst))//' '//short_real(figure(worst))//' (at most '//short_real(largest(worst))//')'
     if (.not. all(figure <= huge(figure))) then
       text = 'the work of the loads is too far from 1.0 for a number: other units'
-    else if (loss_of(answer) > 0.1_wp*certificate%tolerance) then
+    else if (answer%lost() > 0.1_wp*certificate%tolerance) then
       if (len(text) > 0) text = text//'; '
-      text = text//'rounding takes '//short_real(loss_of(answer))//' of a pivot in the stiffness of the body of GRID '// &
-             first_node(model, answer%weakest%body)//': '//reason
+      text = text//'rounding takes '//short_real(epsilon(1.0_wp)/answer%weakest%ratio)// &
+             ' of a pivot in the stiffness of the body of GRID '//first_node(model, answer%weakest%body)//': '//reason
     else if (certificate%lost_stress > 0.1_wp*certificate%tolerance) then
       text = text//'; the rounding of displacements is '//short_real(certificate%lost_stress)// &
-             ' of the largest stress: elements too small or too stiff for how far they travel'
+             ' of the largest stress: elements too small or too stiff for how far they travel, '// &
+             'or a Poisson''s ratio is too near 0.5'
     else if (answer%condition*epsilon(1.0_wp) > 0.1_wp*certificate%tolerance) then
       text = text//'; the condition of the stiffness is '//short_real(answer%condition)// &
              ': slender bodies or elements, or SUPORT nodes that are near each other'

@@ -13,6 +13,12 @@ module epcont_result_answer
   private
   public :: answer_type
 
+  !> Largest part that rounding may take of a valid answer. The certificate need not see it: rigid motions of a
+  !! stiff part upon a soft one are wrong by 1 to 30 times what is lost of a pivot, in equilibrium.
+  real(wp), parameter, public :: largest_loss = 1.0e-8_wp
+  !> Where more of a pivot is lost, the factors may be too stiff to tell what is wrong.
+  real(wp), parameter :: largest_mended = 1.0e-4_wp
+
   type :: answer_type
     real(wp), allocatable :: displacement(:, :)      !! [length] [2, nodes]
     real(wp), allocatable :: deformation(:, :)       !! displacements before the rigid motions are added [length] [2, nodes]
@@ -40,6 +46,7 @@ module epcont_result_answer
     real(wp) :: largest_rounding_error = 0.0_wp      !! that it may leave
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest                      !! of the stiffness
+    real(wp) :: last_correction = huge(1.0_wp)       !! of displacements and contact forces, relative, by the last step of refinement
     type(iteration_record), allocatable :: history(:)  !! every solve
     integer :: factorizations = 0                    !! of bodies
     character(len=:), allocatable :: against_double  !! single precision has failed, and this stands against double
@@ -53,6 +60,8 @@ module epcont_result_answer
     integer :: first_unloaded = 0                    !! one of them
   contains
     procedure :: largest_pressure
+    procedure :: lost
+    procedure :: rounding
   end type answer_type
 
 contains
@@ -64,4 +73,19 @@ contains
     largest_pressure = 0.0_wp
     if (any(self%contact%touching)) largest_pressure = maxval(self%pressure, mask=self%contact%touching)
   end function largest_pressure
+
+  !> What rounding has taken of the weakest pivot; or, where the answer was refined by factors that tell the error, of the answer.
+  pure real(wp) function lost(self)
+    class(answer_type), intent(in) :: self
+
+    lost = epsilon(1.0_wp)/self%weakest%ratio
+    if (lost <= largest_mended) lost = min(lost, self%last_correction)
+  end function lost
+
+  !> What rounding may have taken of displacements and forces, at most: by the condition, or by what a step of refinement changed.
+  pure real(wp) function rounding(self)
+    class(answer_type), intent(in) :: self
+
+    rounding = min(self%condition*epsilon(1.0_wp), max(self%last_correction, epsilon(1.0_wp)))
+  end function rounding
 end module epcont_result_answer
