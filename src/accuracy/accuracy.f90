@@ -117,10 +117,8 @@ contains
       accuracy%element = 0.0_wp
       along = 0.0_wp
     end if
-    allocate (accuracy%approach(motions%count), accuracy%approach_unbounded(motions%count), accuracy%weak(model%pairs))
-    accuracy%approach = -1.0_wp
-    accuracy%approach_unbounded = .false.
-    accuracy%weak = .false.
+    allocate (accuracy%approach(motions%count), source=-1.0_wp)
+    allocate (accuracy%approach_unbounded(motions%count), accuracy%weak(model%pairs), source=.false.)
     allocate (accuracy%zone(0))
     if (.not. pressed) return
 
@@ -130,6 +128,7 @@ contains
     if (.not. carried) return
 
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
+    ! What the last step of refinement has not changed is right.
     accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
     accuracy%total_force = 0.0_wp   ! where loads alone make it
     call assess_motions(model, motions, line, answer, table, unit_force(:, moved), along, unit_missing, moved, accuracy)

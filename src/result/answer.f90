@@ -46,7 +46,7 @@ module epcont_result_answer
     real(wp) :: largest_rounding_error = 0.0_wp      !! that it may leave
     real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest                      !! of the stiffness
-    real(wp) :: last_correction = huge(1.0_wp)       !! of displacements and contact forces, relative, by the last step of refinement
+    real(wp) :: last_correction = huge(1.0_wp)       !! of displacements and forces by refinement's last step, relative
     type(iteration_record), allocatable :: history(:)  !! every solve
     integer :: factorizations = 0                    !! of bodies
     character(len=:), allocatable :: against_double  !! single precision has failed, and this stands against double
