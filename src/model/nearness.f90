@@ -39,6 +39,7 @@ contains
     integer :: before, c, k
     type(faces_type) :: faces
     logical, allocatable :: holds(:)   !! nodes that stand on the other line [nodes]
+    logical, allocatable :: shares(:)  !! nodes that share in the gap of a pair that touches [nodes]
     logical :: wider
 
     entered = .false.
@@ -46,13 +47,20 @@ contains
     if (size(model%line_contact) == 0) return
     size_of_scene = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
     allocate (holds(model%nodes), source=.false.)
-    if (allocated(displacement)) holds(model%pair_node(2, pack([(k, k=1, model%pairs)], touching))) = .true.
+    allocate (shares(model%nodes), source=.false.)
+    if (allocated(displacement)) then
+      do k = 1, model%pairs
+        if (.not. touching(k)) cycle
+        holds(model%pair_node(2, k)) = .true.
+        shares(model%row_node(model%row_start(k):model%row_start(k + 1) - 1)) = .true.
+      end do
+    end if
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
         if (allocated(displacement)) then
           call widen(contact, model%boundary, displacement, holds, size_of_scene, wider)
           ! What the slave's nodes will hold off is not the master's.
-          if (.not. wider) call look_from_master(contact, model%boundary, displacement, holds, size_of_scene, entered)
+          if (.not. wider) call look_from_master(contact, model%boundary, displacement, holds, shares, size_of_scene, entered)
           entered = entered .or. wider
         else if (size(contact%left_out) > 0 .and. contact%search < size_of_scene) then
           contact%search = size_of_scene
@@ -100,11 +108,11 @@ contains
   end subroutine widen
 
   !> Nodes of the master that pass through sides of the slave by more than what these leave open between their nodes.
-  subroutine look_from_master(contact, obstacles, displacement, holds, size_of_scene, entered)
+  subroutine look_from_master(contact, obstacles, displacement, holds, shares, size_of_scene, entered)
     type(line_contact), intent(inout) :: contact
     type(boxed_line), intent(in) :: obstacles
     real(wp), intent(in) :: displacement(:, :), size_of_scene
-    logical, intent(in) :: holds(:)
+    logical, intent(in) :: holds(:), shares(:)   !! [nodes]
     logical, intent(inout) :: entered
     type(facing_type) :: face(2)
     logical :: smooth
@@ -126,7 +134,7 @@ contains
               allowed = least*size_of_scene
               if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
                 cycle   ! it has a pair
-              else if (smooth .and. all_hold(slave%segment(:, face(k)%segment), holds)) then
+              else if (smooth .and. (shares(node) .or. all_hold(slave%segment(:, face(k)%segment), holds))) then
                 ! It is where the mesh has it; a pair of its own would be one too many.
                 allowed = most*travel
               else if (is_held_off(slave, face(k)%segment, holds)) then
