@@ -254,6 +254,7 @@ contains
                      model%kinematics(model%section(contact%slave%element(1))) == axisymmetric, start, node, weight, covered)
     call find_tips(contact, model%boundary, covered, faces)
     tips = size(faces%tip)
+    contact%came_near = pack(contact%came_near, [(any(faces%tip == contact%came_near(i)), i=1, size(contact%came_near))])
     contact%stands_on = faces%on%segment
     do i = 1, tips
       do k = 1, 3
