@@ -39,7 +39,6 @@ contains
     integer :: before, c, k
     type(faces_type) :: faces
     logical, allocatable :: holds(:)   !! nodes that stand on the other line [nodes]
-    logical, allocatable :: shares(:)  !! nodes that share in the gap of a pair that touches [nodes]
     logical :: wider
 
     entered = .false.
@@ -47,20 +46,13 @@ contains
     if (size(model%line_contact) == 0) return
     size_of_scene = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
     allocate (holds(model%nodes), source=.false.)
-    allocate (shares(model%nodes), source=.false.)
-    if (allocated(displacement)) then
-      do k = 1, model%pairs
-        if (.not. touching(k)) cycle
-        holds(model%pair_node(2, k)) = .true.
-        shares(model%row_node(model%row_start(k):model%row_start(k + 1) - 1)) = .true.
-      end do
-    end if
+    if (allocated(displacement)) holds(model%pair_node(2, pack([(k, k=1, model%pairs)], touching))) = .true.
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
         if (allocated(displacement)) then
           call widen(contact, model%boundary, displacement, holds, size_of_scene, wider)
           ! What the slave's nodes will hold off is not the master's.
-          if (.not. wider) call look_from_master(contact, model%boundary, displacement, holds, shares, size_of_scene, entered)
+          if (.not. wider) call look_from_master(contact, model%boundary, displacement, holds, size_of_scene, entered)
           entered = entered .or. wider
         else if (size(contact%left_out) > 0 .and. contact%search < size_of_scene) then
           contact%search = size_of_scene
@@ -108,11 +100,11 @@ contains
   end subroutine widen
 
   !> Nodes of the master that pass through sides of the slave by more than what these leave open between their nodes.
-  subroutine look_from_master(contact, obstacles, displacement, holds, shares, size_of_scene, entered)
+  subroutine look_from_master(contact, obstacles, displacement, holds, size_of_scene, entered)
     type(line_contact), intent(inout) :: contact
     type(boxed_line), intent(in) :: obstacles
     real(wp), intent(in) :: displacement(:, :), size_of_scene
-    logical, intent(in) :: holds(:), shares(:)   !! [nodes]
+    logical, intent(in) :: holds(:)
     logical, intent(inout) :: entered
     type(facing_type) :: face(2)
     logical :: smooth
@@ -134,14 +126,15 @@ contains
               allowed = least*size_of_scene
               if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
                 cycle   ! it has a pair
-              else if (smooth .and. (shares(node) .or. all_hold(slave%segment(:, face(k)%segment), holds))) then
+              else if (smooth .and. all_hold(slave%segment(:, face(k)%segment), holds)) then
                 ! It is where the mesh has it; a pair of its own would be one too many.
                 allowed = most*travel
               else if (is_held_off(slave, face(k)%segment, holds)) then
-                allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement) + &
-                                               openness_at(master, i, which, displacement))
+                ! Over a side of the slave gaps are closed in the mean, however short the master's are.
+                allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement, 0.0_wp) + &
+                                               openness_at(master, i, which, displacement, slave%chord_length(face(k)%segment)))
               else
-                allowed = allowed + bend(slave, face(k)%segment, displacement)
+                allowed = allowed + bend(slave, face(k)%segment, displacement, 0.0_wp)
               end if
               if (smooth) then
                 angle = norm2(face(k)%place%normal + master%outward(i, which))
@@ -225,41 +218,53 @@ contains
   end function apart_of
 
   !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as it bends [length].
-  pure real(wp) function openness(line, side, displacement)
+  pure real(wp) function openness(line, side, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(in) :: displacement(:, :), over
 
     openness = line%chord_length(side)/4.0_wp*max(norm2(line%normal(:, 1, side) - line%own_normal(side, 0.0_wp)), &
                                                   norm2(line%normal(:, 2, side) - line%own_normal(side, 1.0_wp))) + &
-               bend(line, side, displacement)
+               bend(line, side, displacement, over)
   end function openness
 
   !> The larger one of the sides that meet in a node.
-  pure real(wp) function openness_at(line, side, which, displacement)
+  pure real(wp) function openness_at(line, side, which, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side, which
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(in) :: displacement(:, :), over
 
-    openness_at = openness(line, side, displacement)
+    openness_at = openness(line, side, displacement, over)
     if (which == 3) return
-    if (line%neighbour(which, side) > 0) openness_at = max(openness_at, openness(line, line%neighbour(which, side), displacement))
+    associate (beside => line%neighbour(which, side))
+      if (beside > 0) openness_at = max(openness_at, openness(line, beside, displacement, over))
+    end associate
   end function openness_at
 
-  !> How far a straight side is from the curve into which the boundary bends [length].
-  pure real(wp) function bend(line, side, displacement)
+  !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which the boundary bends
+  !! from that side on [length].
+  pure real(wp) function bend(line, side, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
-    real(wp), intent(in) :: displacement(:, :)
-    real(wp) :: turn
-    integer :: end
+    real(wp), intent(in) :: displacement(:, :), over
+    real(wp) :: covered, theta, turn
+    integer :: end, i
 
-    turn = 0.0_wp
+    theta = 0.0_wp
     do end = 1, 2
-      if (line%neighbour(end, side) == 0 .or. line%corner(end, side)) cycle
-      turn = turn + abs(rotation(line, side, displacement) - rotation(line, line%neighbour(end, side), displacement))
+      i = side
+      turn = 0.0_wp
+      covered = 0.0_wp
+      do
+        covered = covered + line%chord_length(i)
+        if (line%neighbour(end, i) == 0 .or. line%corner(end, i)) exit
+        i = line%neighbour(end, i)
+        turn = max(turn, abs(rotation(line, i, displacement) - rotation(line, side, displacement)))
+        if (covered + line%chord_length(i) > over) exit
+      end do
+      theta = theta + turn
     end do
-    bend = line%chord_length(side)*turn/8.0_wp
+    bend = max(line%chord_length(side), over)*theta/8.0_wp
   end function bend
 
   !> By how much displacements turn a side.
