@@ -85,6 +85,26 @@ def stiff_parabola(lines, levels, columns, slave, master):
     return scene.solve(deck.text())
 
 
+def tooth(way):
+    """A tooth is pressed into its groove and to one side; `way` -1: mirrored."""
+    deck = scene.Deck()
+    deck.material(1, 1000.0, 0.3)
+    profile = [(-2.0, 0.0), (-1.0, 0.0), (-0.42265, 1.0), (0.57735, 1.0), (1.1547, 0.0), (2.0, 0.0)]
+    for first, rest in ((1, [(-2.0, -1.0), (-1.0, -1.0), (1.1547, -1.0), (2.0, -1.0)]), (21, [(-2.0, 2.0), (-0.42265, 2.0), (0.57735, 2.0), (2.0, 2.0)])):
+        for k, (x, y) in enumerate(profile + rest):
+            deck.grid(first + k, way * x, y)
+    for nodes in ((7, 8, 2, 1), (8, 9, 5, 2), (9, 10, 6, 5), (2, 5, 4, 3), (21, 22, 23, 27), (23, 28, 27), (23, 24, 29, 28), (24, 30, 29), (24, 25, 26, 30)):
+        deck.element(1, *nodes)
+    deck.hold(12, 7, 8, 9, 10)
+    for node in (27, 28, 29, 30):
+        deck.displace(node, 1, way * 0.003)
+        deck.displace(node, 2, -0.01)
+    deck.card("BLSEG", 1, 21, 22, 23, 24, 25, 26)
+    deck.card("BLSEG", 2, 1, 2, 3, 4, 5, 6)
+    deck.card("BCONP", 1, 1, 2)
+    return scene.solve(deck.text())
+
+
 class Touching(unittest.TestCase):
 
     def figures(self, name, change=lambda text: text):
@@ -132,6 +152,18 @@ class Touching(unittest.TestCase):
                 self.near(result.summary["max_pressure"], right[0], 0.03)
                 self.near(result.table("zones")[0]["half_width"], right[1], 0.06)
                 self.near(result.summary["total_contact_force"], 35.0, 2e-3)
+
+    def test_zones_at_corners(self):
+        """A zone goes on along a side to the corner's pair on that side: mirrored, the zones are the same."""
+        zones = []
+        for way in (1, -1):
+            result = tooth(way)
+            self.assertEqual(result.status, 0, result.message)
+            zones.append(sorted((zone["force"], zone["max_pressure"]) for zone in result.table("zones")))
+        self.assertEqual(len(zones[0]), len(zones[1]))
+        for one, other in zip(*zones):
+            self.near(one[0], other[0], EXACT)
+            self.near(one[1], other[1], EXACT)
 
     def test_wall_that_no_line_names(self):
         """The block is pushed into a wall that is in no line: not certified, and what would mend it."""
