@@ -203,7 +203,8 @@ contains
     faces%on = [faces%on, there]
   end subroutine take_place
 
-  !> Does a place on the slave lie at a node that has a pair there?
+  !> Does a place on the slave lie at a node that has a pair there, of whichever of its sides? (At a corner rounding tells which
+  !! of them is faced.)
   pure logical function stands_at_node(contact, faces, place)
     type(line_contact), intent(in) :: contact
     type(faces_type), intent(in) :: faces
@@ -213,9 +214,11 @@ contains
     stands_at_node = .false.
     k = maxloc(place%place%share, dim=1)
     if (place%place%share(k) < 1.0_wp - beyond) return
-    row = faces%row_of(k, place%segment)
-    if (row == 0) return
-    stands_at_node = dot_product(faces%facing(row)%place%normal, place%place%normal) < -opposite
+    do row = 1, size(faces%node)
+      if (faces%node(row) /= contact%slave%segment(k, place%segment)) cycle
+      stands_at_node = dot_product(faces%facing(row)%place%normal, place%place%normal) < -opposite
+      if (stands_at_node) return
+    end do
   end function stands_at_node
 
   !> Forget the pairs of all contacts of lines.
@@ -251,6 +254,7 @@ contains
                      model%kinematics(model%section(contact%slave%element(1))) == axisymmetric, start, node, weight, covered)
     call find_tips(contact, model%boundary, covered, faces)
     tips = size(faces%tip)
+    contact%came_near = pack(contact%came_near, [(any(faces%tip == contact%came_near(i)), i=1, size(contact%came_near))])
     contact%stands_on = faces%on%segment
     do i = 1, tips
       do k = 1, 3

@@ -130,10 +130,11 @@ contains
                 ! It is where the mesh has it; a pair of its own would be one too many.
                 allowed = most*travel
               else if (is_held_off(slave, face(k)%segment, holds)) then
-                allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement) + &
-                                               openness_at(master, i, which, displacement))
+                ! Over a side of the slave gaps are closed in the mean, however short the master's are.
+                allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement, 0.0_wp) + &
+                                               openness_at(master, i, which, displacement, slave%chord_length(face(k)%segment)))
               else
-                allowed = allowed + bend(slave, face(k)%segment, displacement)
+                allowed = allowed + bend(slave, face(k)%segment, displacement, 0.0_wp)
               end if
               if (smooth) then
                 angle = norm2(face(k)%place%normal + master%outward(i, which))
@@ -217,41 +218,53 @@ contains
   end function apart_of
 
   !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as it bends [length].
-  pure real(wp) function openness(line, side, displacement)
+  pure real(wp) function openness(line, side, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(in) :: displacement(:, :), over
 
     openness = line%chord_length(side)/4.0_wp*max(norm2(line%normal(:, 1, side) - line%own_normal(side, 0.0_wp)), &
                                                   norm2(line%normal(:, 2, side) - line%own_normal(side, 1.0_wp))) + &
-               bend(line, side, displacement)
+               bend(line, side, displacement, over)
   end function openness
 
   !> The larger one of the sides that meet in a node.
-  pure real(wp) function openness_at(line, side, which, displacement)
+  pure real(wp) function openness_at(line, side, which, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side, which
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(in) :: displacement(:, :), over
 
-    openness_at = openness(line, side, displacement)
+    openness_at = openness(line, side, displacement, over)
     if (which == 3) return
-    if (line%neighbour(which, side) > 0) openness_at = max(openness_at, openness(line, line%neighbour(which, side), displacement))
+    associate (beside => line%neighbour(which, side))
+      if (beside > 0) openness_at = max(openness_at, openness(line, beside, displacement, over))
+    end associate
   end function openness_at
 
-  !> How far a straight side is from the curve into which the boundary bends [length].
-  pure real(wp) function bend(line, side, displacement)
+  !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which the boundary bends
+  !! from that side on [length].
+  pure real(wp) function bend(line, side, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
-    real(wp), intent(in) :: displacement(:, :)
-    real(wp) :: turn
-    integer :: end
+    real(wp), intent(in) :: displacement(:, :), over
+    real(wp) :: covered, theta, turn
+    integer :: end, i
 
-    turn = 0.0_wp
+    theta = 0.0_wp
     do end = 1, 2
-      if (line%neighbour(end, side) == 0 .or. line%corner(end, side)) cycle
-      turn = turn + abs(rotation(line, side, displacement) - rotation(line, line%neighbour(end, side), displacement))
+      i = side
+      turn = 0.0_wp
+      covered = 0.0_wp
+      do
+        covered = covered + line%chord_length(i)
+        if (line%neighbour(end, i) == 0 .or. line%corner(end, i)) exit
+        i = line%neighbour(end, i)
+        turn = max(turn, abs(rotation(line, i, displacement) - rotation(line, side, displacement)))
+        if (covered + line%chord_length(i) > over) exit
+      end do
+      theta = theta + turn
     end do
-    bend = line%chord_length(side)*turn/8.0_wp
+    bend = max(line%chord_length(side), over)*theta/8.0_wp
   end function bend
 
   !> By how much displacements turn a side.

@@ -2,6 +2,7 @@
 module epcont_result_contact_line
   use epcont_base_edge, only: edge_point, edge_point_count, edge_points
   use epcont_base_geometry, only: cross_product
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_sorting, only: sorted_order
@@ -74,11 +75,12 @@ contains
     type(line_contact), intent(in) :: contact
     type(contact_line), intent(inout) :: line
     type(partition), intent(inout) :: places
-    integer, allocatable :: order(:), pair_at(:)
+    type(incidence) :: at
+    integer, allocatable :: order(:)
     integer :: first, last
 
     if (contact%last < contact%first_of_master) return
-    pair_at = first_pair_at(model, contact%first, contact%first_of_master - 1, line)
+    at = pairs_at_nodes(model, contact%first, contact%first_of_master - 1, line)
     order = sorted_order(contact%stands_on)
     last = 0
     do while (last < size(order))
@@ -87,24 +89,35 @@ contains
         do last = first, size(order) - 1
           if (contact%stands_on(order(last + 1)) /= side) exit
         end do
-        call link(model, contact, side, run_on(model, contact, side, pair_at, order(first:last), line), line, places)
+        call link(model, contact, side, run_on(model, contact, side, at, order(first:last), line), line, places)
       end associate
     end do
   end subroutine insert_masters
 
-  !> Of a range of pairs the first at each node, 0 where there is none. [nodes]
-  pure function first_pair_at(model, first, last, line) result(pair_at)
+  !> Of a range of pairs those at each node, counted from the first of the range.
+  pure function pairs_at_nodes(model, first, last, line) result(at)
     type(model_type), intent(in) :: model
     integer, intent(in) :: first, last
     type(contact_line), intent(in) :: line
-    integer, allocatable :: pair_at(:)
-    integer :: pair
+    type(incidence) :: at
 
-    allocate (pair_at(model%nodes), source=0)
-    do pair = last, first, -1
-      pair_at(line%node(pair)) = pair
-    end do
-  end function first_pair_at
+    at = new_incidence(reshape(line%node(first:last), [1, last - first + 1]), model%nodes)
+  end function pairs_at_nodes
+
+  !> The pair that a side has at one of its nodes: of several there the one that presses on it the most squarely; 0: none.
+  pure integer function pair_of_side(model, at, first, side, node) result(pair)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: at
+    integer, intent(in) :: first           !! of the range of pairs
+    integer, intent(in) :: side(3), node   !! 0: none
+
+    pair = 0
+    if (node == 0) return
+    associate (there => first - 1 + at%group(at%start(node):at%start(node + 1) - 1))
+      if (size(there) == 0) return
+      pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), model%normal(:, there))), dim=1))
+    end associate
+  end function pair_of_side
 
   !> Between the places of two pairs [length].
   pure real(wp) function distance(model, line, a, b)
@@ -131,18 +144,18 @@ contains
   end function foot_of
 
   !> The pairs along a side of the slave, of its nodes and of the master's, from its start on.
-  pure function run_on(model, contact, side, pair_at, masters, line) result(run)
+  pure function run_on(model, contact, side, at, masters, line) result(run)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
     integer, intent(in) :: side
-    integer, intent(in) :: pair_at(:)   !! the slave's pair at each node, 0: none [nodes]
-    integer, intent(in) :: masters(:)   !! which of the master's pairs stand on the side
+    type(incidence), intent(in) :: at    !! the slave's pairs
+    integer, intent(in) :: masters(:)    !! which of the master's pairs stand on the side
     type(contact_line), intent(in) :: line
     integer, allocatable :: pairs(:), run(:)
     integer :: i, j
 
     associate (node => contact%slave%segment(:, side))
-      pairs = [pair_at(pack(node, node > 0)), contact%first_of_master - 1 + masters]
+      pairs = [(pair_of_side(model, at, contact%first, node, node(i)), i=1, 3), contact%first_of_master - 1 + masters]
     end associate
     pairs = pack(pairs, pairs > 0)
     allocate (run(0))
@@ -234,11 +247,11 @@ contains
     type(model_type), intent(in) :: model
     integer, intent(in) :: first, last
     type(contact_line), intent(inout) :: line
-    integer, allocatable :: pair_at(:)
+    type(incidence) :: at
     real(wp) :: longest, own
-    integer :: e, i, k, pair, side(3)
+    integer :: beside, e, end, i, k, pair, side(3)
 
-    pair_at = first_pair_at(model, first, last, line)
+    at = pairs_at_nodes(model, first, last, line)
     do pair = first, last
       associate (node => line%node(pair), n => model%normal(:, pair))
         longest = 0.0_wp
@@ -253,7 +266,12 @@ contains
             if (abs(own) <= no_area*area(model, e, side, n)) own = 0.0_wp
             line%tributary(pair) = line%tributary(pair) + own
             line%middle(pair) = side(3) == node
-            call add_neighbours(side, node, pair_at, own, line%neighbour(:, pair), line%part(:, pair))
+            if (line%middle(pair)) then
+              line%neighbour(:, pair) = [(pair_of_side(model, at, first, side, side(end)), end=1, 2)]
+            else
+              beside = merge(side(3), sum(side(:2)) - node, side(3) > 0)
+              call add_neighbour(pair_of_side(model, at, first, side, beside), own, line%neighbour(:, pair), line%part(:, pair))
+            end if
           end do
         end do
         if (any(line%neighbour(:, pair) == 0)) line%mirrored(pair) = is_on_symmetry(model, pair, node, longest)
@@ -302,25 +320,19 @@ contains
     end do
   end function area
 
-  !> Pairs beside a node on one of its sides: at the other end, or at the middle, or from there at both ends.
-  pure subroutine add_neighbours(side, node, pair_at, share, neighbour, part)
-    integer, intent(in) :: side(3), node, pair_at(:)
-    real(wp), intent(in) :: share   !! of the side's area
+  !> The pair beside a node on one of its sides, with its share of the side's area.
+  pure subroutine add_neighbour(beside, share, neighbour, part)
+    integer, intent(in) :: beside
+    real(wp), intent(in) :: share
     integer, intent(inout) :: neighbour(2)
     real(wp), intent(inout) :: part(2)
     integer :: k
 
-    if (side(3) == node) then
-      neighbour = pair_at(side(:2))
-      return
-    end if
-    associate (beside => merge(side(3), sum(side(:2)) - node, side(3) > 0))
-      k = findloc(neighbour, 0, dim=1)
-      if (k == 0) return
-      neighbour(k) = pair_at(beside)
-      part(k) = share
-    end associate
-  end subroutine add_neighbours
+    k = findloc(neighbour, 0, dim=1)
+    if (k == 0) return
+    neighbour(k) = beside
+    part(k) = share
+  end subroutine add_neighbour
 
   !> Whether two elements share the edge between two nodes.
   pure logical function shared(model, a, b)

@@ -53,6 +53,58 @@ EXCHANGED = [
 ]
 
 
+def six_nodes(deck, first, material, lines, levels, place):
+    """CTRIA6 between lines and levels, with middles between them; returns the nodes, row by row upwards."""
+    def halved(values):
+        return [0.5 * (values[k // 2] + values[(k + 1) // 2]) for k in range(2 * len(values) - 1)]
+
+    across, up = halved(lines), halved(levels)
+    rows = [[deck.grid(first + j * len(across) + i, *place(u, v)) for i, u in enumerate(across)] for j, v in enumerate(up)]
+    for a, b, c in zip(rows[::2], rows[1::2], rows[2::2]):
+        for i in range(0, len(across) - 2, 2):
+            deck.element(material, a[i], a[i + 2], c[i + 2], a[i + 1], b[i + 2], b[i + 1])
+            deck.element(material, a[i], c[i + 2], c[i], b[i + 1], c[i + 1], b[i])
+    return rows
+
+
+def stiff_parabola(lines, levels, columns, slave, master):
+    """A half of y = x**2/20 on a block, ten times softer, whose sides are .04 long where they touch."""
+    deck = scene.Deck()
+    deck.material(1, 1000.0, 0.3)
+    deck.material(2, 10000.0, 0.3)
+    floor = six_nodes(deck, 1, 1, [1.6 * k / columns for k in range(columns + 1)] + [2.4, 3.6, 6.0], [-4.0, -1.5, -0.5, 0.0], lambda x, y: (x, y))
+    punch = six_nodes(deck, 5001, 2, lines, levels, lambda x, part: (x, 0.05 * x * x + (1.5 - 0.05 * x * x) * part))
+    deck.hold(12, *floor[0])
+    deck.hold(1, *[row[0] for row in floor[1:]], *[row[0] for row in punch])
+    deck.card("RBE2", 9000, punch[-1][0], 2, *punch[-1][1:])
+    deck.support(punch[-1][0], 2)
+    deck.force(punch[-1][0], 0.0, -35.0)
+    deck.card("BLSEG", 1, *punch[0])
+    deck.card("BLSEG", 2, *reversed(floor[-1]))
+    deck.card("BCONP", 1, slave, master)
+    return scene.solve(deck.text())
+
+
+def tooth(way):
+    """A tooth is pressed into its groove and to one side; `way` -1: mirrored."""
+    deck = scene.Deck()
+    deck.material(1, 1000.0, 0.3)
+    profile = [(-2.0, 0.0), (-1.0, 0.0), (-0.42265, 1.0), (0.57735, 1.0), (1.1547, 0.0), (2.0, 0.0)]
+    for first, rest in ((1, [(-2.0, -1.0), (-1.0, -1.0), (1.1547, -1.0), (2.0, -1.0)]), (21, [(-2.0, 2.0), (-0.42265, 2.0), (0.57735, 2.0), (2.0, 2.0)])):
+        for k, (x, y) in enumerate(profile + rest):
+            deck.grid(first + k, way * x, y)
+    for nodes in ((7, 8, 2, 1), (8, 9, 5, 2), (9, 10, 6, 5), (2, 5, 4, 3), (21, 22, 23, 27), (23, 28, 27), (23, 24, 29, 28), (24, 30, 29), (24, 25, 26, 30)):
+        deck.element(1, *nodes)
+    deck.hold(12, 7, 8, 9, 10)
+    for node in (27, 28, 29, 30):
+        deck.displace(node, 1, way * 0.003)
+        deck.displace(node, 2, -0.01)
+    deck.card("BLSEG", 1, 21, 22, 23, 24, 25, 26)
+    deck.card("BLSEG", 2, 1, 2, 3, 4, 5, 6)
+    deck.card("BCONP", 1, 1, 2)
+    return scene.solve(deck.text())
+
+
 class Touching(unittest.TestCase):
 
     def figures(self, name, change=lambda text: text):
@@ -86,6 +138,32 @@ class Touching(unittest.TestCase):
                 one = self.figures(name)
                 figure = "approach" if one["approach"] else "total"
                 self.near(other[figure], one[figure], part)
+
+    def test_contact_that_ends_within_a_side(self):
+        """Contact of coarse, uneven six-node sides on fine ones ends in the middle of a side, which the fine ones' nodes pass through."""
+        coarse = [0.0, 0.468, 1.325, 2.0]
+        fine = stiff_parabola([2.0 * k / 36 for k in range(37)], [0.0, 0.25, 0.5, 0.75, 1.0], 32, 1, 2)
+        right = fine.summary["max_pressure"], fine.table("zones")[0]["half_width"]
+        self.near(right[0], 48.3, 0.02)
+        for slave, master in ((1, 2), (2, 1)):
+            with self.subTest(slave=slave):
+                result = stiff_parabola(coarse, [0.0, 0.5, 1.0], 40, slave, master)
+                self.assertEqual((result.status, len(result.table("zones"))), (0, 1), result.message)
+                self.near(result.summary["max_pressure"], right[0], 0.03)
+                self.near(result.table("zones")[0]["half_width"], right[1], 0.06)
+                self.near(result.summary["total_contact_force"], 35.0, 2e-3)
+
+    def test_zones_at_corners(self):
+        """A zone goes on along a side to the corner's pair on that side: mirrored, the zones are the same."""
+        zones = []
+        for way in (1, -1):
+            result = tooth(way)
+            self.assertEqual(result.status, 0, result.message)
+            zones.append(sorted((zone["force"], zone["max_pressure"]) for zone in result.table("zones")))
+        self.assertEqual(len(zones[0]), len(zones[1]))
+        for one, other in zip(*zones):
+            self.near(one[0], other[0], EXACT)
+            self.near(one[1], other[1], EXACT)
 
     def test_wall_that_no_line_names(self):
         """The block is pushed into a wall that is in no line: not certified, and what would mend it."""
