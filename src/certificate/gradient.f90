@@ -10,7 +10,7 @@ module epcont_certificate_gradient
   !> Integration places of an element, at most.
   integer, parameter, public :: most_places = 4
 
-  !> Half the step of the differences: exact for quadratics whatever its size.
+  !> Half the step of the differences, which is one: exact for quadratics whatever its size.
   real(wp), parameter :: half_step = 0.5_wp
 
   !> What is the same in all elements of so many nodes.
@@ -126,8 +126,8 @@ contains
     real(wp), intent(in) :: place(2)
     real(wp) :: slope(2, most_nodes)
 
-    slope(1, :) = (shares(nodes, place + [half_step, 0.0_wp]) - shares(nodes, place - [half_step, 0.0_wp]))/(2.0_wp*half_step)
-    slope(2, :) = (shares(nodes, place + [0.0_wp, half_step]) - shares(nodes, place - [0.0_wp, half_step]))/(2.0_wp*half_step)
+    slope(1, :) = shares(nodes, place + [half_step, 0.0_wp]) - shares(nodes, place - [half_step, 0.0_wp])
+    slope(2, :) = shares(nodes, place + [0.0_wp, half_step]) - shares(nodes, place - [0.0_wp, half_step])
   end function differences
 
   !> The nodes' shares in what is at a local place: linear, quadratic or bilinear between the nodes.
