@@ -16,6 +16,7 @@ module epcont_analysis
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_methods, only: choose_method
   use epcont_plasticity_onlooker, only: onlooker
+  use epcont_plasticity_state, only: scene_state
   use epcont_result_answer, only: answer_type, largest_loss
   use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
   use epcont_result_line_pressure, only: compare_sides
@@ -50,7 +51,9 @@ contains
     class(onlooker), intent(inout) :: watch
     type(plastic_run) :: run
     type(contact_line) :: line
-    type(answer_type) :: found
+    type(answer_type) :: found, refined
+    type(certificate_type) :: refined_certificate
+    type(scene_state) :: kept
     integer :: step
 
     call solve(model, motions, numbering, plan, run, answer, watch)
@@ -67,9 +70,17 @@ contains
     do step = 1, most_refinements
       if (.not. run%converged .or. certificate%balanced .and. answer%lost() <= largest_loss .and. &
           (step == 1 .or. answer%last_correction <= largest_loss)) exit
-      call run%scene%sharpen(model, motions, numbering, run%law, run%load_factor, run%state, found%last_correction, watch)
-      answer = found
-      call evaluate(model, plan, run, line, answer, certificate, watch)
+      kept = run%state
+      refined = found
+      call run%scene%sharpen(model, motions, numbering, run%law, run%load_factor, run%state, refined%last_correction, watch)
+      call evaluate(model, plan, run, line, refined, refined_certificate, watch)
+      if (refined_certificate%excess() > max(1.0_wp, certificate%excess())) then
+        ! Gaps far below a travel are rounding, and contact found from them is worse.
+        run%state = kept
+        exit
+      end if
+      answer = refined
+      certificate = refined_certificate
     end do
     call assess(model, motions, numbering, run, line, answer, accuracy)
     where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp   ! an open pair does not press

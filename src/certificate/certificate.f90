@@ -51,7 +51,16 @@ module epcont_certificate_certificate
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
     logical :: valid = .false.            !! that one too
     type(scene_type) :: scene             !! whether bodies pass through each other; looked through where all else is right
+  contains
+    procedure :: figures
+    procedure :: excess
   end type certificate_type
+
+  !> Figures that a limit is set to, and what they say.
+  character(len=*), parameter, public :: figure_name(8) = [character(len=70) :: &
+    'equilibrium is off by', 'stresses are off their curve by', 'energy is off by', 'contact forces pull, by', &
+    'gaps overlap, by', 'pressed gaps are open, by', 'the rounding of gaps and travels is, of what the bodies give way,', &
+    'rigid motions strain the bodies; their roundings are']
 
 contains
 
@@ -104,6 +113,27 @@ contains
     certificate%off_curve_limit = certificate%curve_tolerance + min(several*certificate%lost_stress, certificate%curve_tolerance)
     certificate%valid = certificate%balanced .and. certificate%off_curve <= certificate%off_curve_limit
   end subroutine certify
+
+  !> All figures and the largest of each in a valid answer, as `figure_name` has them.
+  pure subroutine figures(self, figure, largest)
+    class(certificate_type), intent(in) :: self
+    real(wp), intent(out) :: figure(:), largest(:)
+    real(wp) :: exact
+
+    exact = self%tolerance*self%length_scale + self%gap_rounding
+    figure = [self%equilibrium, self%off_curve, self%energy, -self%smallest_force/self%force_scale, self%overlap, &
+              self%force_gap/self%force_scale, self%gap_rounding/self%length_scale, self%motion_strain]
+    largest = [self%tolerance, self%off_curve_limit, self%tolerance, self%tolerance, exact, exact, largest_rounding, most_roundings]
+  end subroutine figures
+
+  !> The figure that is farthest beyond its limit, over that.
+  pure real(wp) function excess(self)
+    class(certificate_type), intent(in) :: self
+    real(wp) :: figure(size(figure_name)), largest(size(figure_name))
+
+    call self%figures(figure, largest)
+    excess = maxval(figure/max(largest, least_length))
+  end function excess
 
   !> a/b, 0 where both are 0; finite.
   pure real(wp) function ratio(a, b)
