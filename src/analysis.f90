@@ -51,9 +51,9 @@ contains
     class(onlooker), intent(inout) :: watch
     type(plastic_run) :: run
     type(contact_line) :: line
-    type(answer_type) :: found, refined
-    type(certificate_type) :: refined_certificate
-    type(scene_state) :: kept
+    type(answer_type) :: raw, found                  ! without what follows from the state; before refinement
+    type(certificate_type) :: found_certificate
+    type(scene_state) :: state
     integer :: step
 
     call solve(model, motions, numbering, plan, run, answer, watch)
@@ -64,24 +64,27 @@ contains
     if (answer%contact%state /= contact_solved) return
 
     call take_over(run, answer)
-    found = answer
+    raw = answer
     line = find_contact_line(model)
     call evaluate(model, plan, run, line, answer, certificate, watch)
     do step = 1, most_refinements
       if (.not. run%converged .or. certificate%balanced .and. answer%lost() <= largest_loss .and. &
           (step == 1 .or. answer%last_correction <= largest_loss)) exit
-      kept = run%state
-      refined = found
-      call run%scene%sharpen(model, motions, numbering, run%law, run%load_factor, run%state, refined%last_correction, watch)
-      call evaluate(model, plan, run, line, refined, refined_certificate, watch)
-      if (refined_certificate%excess() > max(1.0_wp, certificate%excess())) then
-        ! Gaps far below a travel are rounding, and contact found from them is worse.
-        run%state = kept
-        exit
+      if (step == 1) then
+        found = answer
+        found_certificate = certificate
+        state = run%state
       end if
-      answer = refined
-      certificate = refined_certificate
+      call run%scene%sharpen(model, motions, numbering, run%law, run%load_factor, run%state, raw%last_correction, watch)
+      answer = raw
+      call evaluate(model, plan, run, line, answer, certificate, watch)
     end do
+    ! Gaps far below a travel are rounding, and contact found from them is out of balance.
+    if (step > 1 .and. certificate%has_spoilt(found_certificate)) then
+      answer = found
+      certificate = found_certificate
+      run%state = state
+    end if
     call assess(model, motions, numbering, run, line, answer, accuracy)
     where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp   ! an open pair does not press
     call watch%lap(stage_accuracy)

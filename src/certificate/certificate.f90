@@ -53,7 +53,7 @@ module epcont_certificate_certificate
     type(scene_type) :: scene             !! whether bodies pass through each other; looked through where all else is right
   contains
     procedure :: figures
-    procedure :: excess
+    procedure :: has_spoilt
   end type certificate_type
 
   !> Figures that a limit is set to, and what they say.
@@ -126,14 +126,16 @@ contains
     largest = [self%tolerance, self%off_curve_limit, self%tolerance, self%tolerance, exact, exact, largest_rounding, most_roundings]
   end subroutine figures
 
-  !> The figure that is farthest beyond its limit, over that.
-  pure real(wp) function excess(self)
+  !> Is a figure beyond its limit that was not before?
+  pure logical function has_spoilt(self, before)
     class(certificate_type), intent(in) :: self
-    real(wp) :: figure(size(figure_name)), largest(size(figure_name))
+    type(certificate_type), intent(in) :: before
+    real(wp), dimension(size(figure_name)) :: figure, largest, figure_before, largest_before
 
     call self%figures(figure, largest)
-    excess = maxval(figure/max(largest, least_length))
-  end function excess
+    call before%figures(figure_before, largest_before)
+    has_spoilt = any(figure > largest .and. figure_before <= largest_before)
+  end function has_spoilt
 
   !> a/b, 0 where both are 0; finite.
   pure real(wp) function ratio(a, b)
