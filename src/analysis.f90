@@ -16,6 +16,7 @@ module epcont_analysis
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_methods, only: choose_method
   use epcont_plasticity_onlooker, only: onlooker
+  use epcont_plasticity_state, only: scene_state
   use epcont_result_answer, only: answer_type, largest_loss
   use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
   use epcont_result_line_pressure, only: compare_sides
@@ -50,7 +51,9 @@ contains
     class(onlooker), intent(inout) :: watch
     type(plastic_run) :: run
     type(contact_line) :: line
-    type(answer_type) :: found
+    type(answer_type) :: raw, found                  ! without what follows from the state; before refinement
+    type(certificate_type) :: found_certificate
+    type(scene_state) :: state
     integer :: step
 
     call solve(model, motions, numbering, plan, run, answer, watch)
@@ -61,16 +64,27 @@ contains
     if (answer%contact%state /= contact_solved) return
 
     call take_over(run, answer)
-    found = answer
+    raw = answer
     line = find_contact_line(model)
     call evaluate(model, plan, run, line, answer, certificate, watch)
     do step = 1, most_refinements
       if (.not. run%converged .or. certificate%balanced .and. answer%lost() <= largest_loss .and. &
           (step == 1 .or. answer%last_correction <= largest_loss)) exit
-      call run%scene%sharpen(model, motions, numbering, run%law, run%load_factor, run%state, found%last_correction, watch)
-      answer = found
+      if (step == 1) then
+        found = answer
+        found_certificate = certificate
+        state = run%state
+      end if
+      call run%scene%sharpen(model, motions, numbering, run%law, run%load_factor, run%state, raw%last_correction, watch)
+      answer = raw
       call evaluate(model, plan, run, line, answer, certificate, watch)
     end do
+    ! Gaps far below a travel are rounding, and contact found from them is out of balance.
+    if (step > 1 .and. certificate%has_spoilt(found_certificate)) then
+      answer = found
+      certificate = found_certificate
+      run%state = state
+    end if
     call assess(model, motions, numbering, run, line, answer, accuracy)
     where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp   ! an open pair does not press
     call watch%lap(stage_accuracy)

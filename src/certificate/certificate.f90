@@ -51,7 +51,16 @@ module epcont_certificate_certificate
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
     logical :: valid = .false.            !! that one too
     type(scene_type) :: scene             !! whether bodies pass through each other; looked through where all else is right
+  contains
+    procedure :: figures
+    procedure :: has_spoilt
   end type certificate_type
+
+  !> Figures that a limit is set to, and what they say.
+  character(len=*), parameter, public :: figure_name(8) = [character(len=70) :: &
+    'equilibrium is off by', 'stresses are off their curve by', 'energy is off by', 'contact forces pull, by', &
+    'gaps overlap, by', 'pressed gaps are open, by', 'the rounding of gaps and travels is, of what the bodies give way,', &
+    'rigid motions strain the bodies; their roundings are']
 
 contains
 
@@ -104,6 +113,29 @@ contains
     certificate%off_curve_limit = certificate%curve_tolerance + min(several*certificate%lost_stress, certificate%curve_tolerance)
     certificate%valid = certificate%balanced .and. certificate%off_curve <= certificate%off_curve_limit
   end subroutine certify
+
+  !> All figures and the largest of each in a valid answer, as `figure_name` has them.
+  pure subroutine figures(self, figure, largest)
+    class(certificate_type), intent(in) :: self
+    real(wp), intent(out) :: figure(:), largest(:)
+    real(wp) :: exact
+
+    exact = self%tolerance*self%length_scale + self%gap_rounding
+    figure = [self%equilibrium, self%off_curve, self%energy, -self%smallest_force/self%force_scale, self%overlap, &
+              self%force_gap/self%force_scale, self%gap_rounding/self%length_scale, self%motion_strain]
+    largest = [self%tolerance, self%off_curve_limit, self%tolerance, self%tolerance, exact, exact, largest_rounding, most_roundings]
+  end subroutine figures
+
+  !> Is a figure beyond its limit that was not before?
+  pure logical function has_spoilt(self, before)
+    class(certificate_type), intent(in) :: self
+    type(certificate_type), intent(in) :: before
+    real(wp), dimension(size(figure_name)) :: figure, largest, figure_before, largest_before
+
+    call self%figures(figure, largest)
+    call before%figures(figure_before, largest_before)
+    has_spoilt = any(figure > largest .and. figure_before <= largest_before)
+  end function has_spoilt
 
   !> a/b, 0 where both are 0; finite.
   pure real(wp) function ratio(a, b)

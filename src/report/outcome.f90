@@ -3,7 +3,7 @@ module epcont_report_outcome
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
-  use epcont_certificate_certificate, only: certificate_type, largest_rounding, most_roundings
+  use epcont_certificate_certificate, only: certificate_type, figure_name
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_controls, only: precision_name
   use epcont_model_model, only: model_type
@@ -99,27 +99,16 @@ contains
     type(answer_type), intent(in) :: answer
     type(certificate_type), intent(in) :: certificate
     character(len=:), allocatable :: text
-    character(len=*), parameter :: what(8) = [character(len=70) :: &
-      'equilibrium is off by', 'stresses are off their curve by', 'energy is off by', 'contact forces pull, by', &
-      'gaps overlap, by', 'pressed gaps are open, by', 'the rounding of gaps and travels is, of what the bodies give way,', &
-      'rigid motions strain the bodies; their roundings are']
     real(wp), parameter :: least = 1.0e-200_wp   ! a limit of no size is none, and no figure over it beyond the largest number
-    real(wp) :: exact, figure(8), largest(8), taken
+    real(wp) :: figure(size(figure_name)), largest(size(figure_name)), taken
     integer :: worst
 
-    exact = certificate%tolerance*certificate%length_scale + certificate%gap_rounding
-    figure = [certificate%equilibrium, certificate%off_curve, certificate%energy, &
-              -certificate%smallest_force/certificate%force_scale, certificate%overlap, &
-              certificate%force_gap/certificate%force_scale, certificate%gap_rounding/certificate%length_scale, &
-              certificate%motion_strain]
-    associate (tolerance => certificate%tolerance)
-      largest = [tolerance, certificate%off_curve_limit, tolerance, tolerance, exact, exact, largest_rounding, most_roundings]
-    end associate
+    call certificate%figures(figure, largest)
     worst = maxloc(figure/max(largest, least), dim=1)
     taken = epsilon(1.0_wp)/answer%weakest%ratio   ! of a pivot: the cause, though refinement may have mended it
     text = ''
     if (figure(worst) > largest(worst)) &
-      text = trim(what(worst))//' '//short_real(figure(worst))//' (at most '//short_real(largest(worst))//')'
+      text = trim(figure_name(worst))//' '//short_real(figure(worst))//' (at most '//short_real(largest(worst))//')'
     if (.not. all(figure <= huge(figure))) then
       text = 'the work of the loads is too far from 1.0 for a number: other units'
     else if (taken > 0.1_wp*certificate%tolerance) then
