@@ -18,6 +18,7 @@ module epcont_analysis
   use epcont_plasticity_onlooker, only: onlooker
   use epcont_plasticity_state, only: scene_state
   use epcont_result_answer, only: answer_type, largest_loss
+  use epcont_result_body_force, only: find_body_forces
   use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
   use epcont_result_line_pressure, only: compare_sides
   use epcont_result_gradient, only: find_gradients
@@ -113,6 +114,7 @@ contains
     answer%pressure = pair_pressures(model, line, touching, answer%contact%force)
     answer%zones = find_zones(model, line, touching, answer%contact%force, answer%pressure)
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
+    answer%bodies = find_body_forces(model, answer%contact%force)
     call watch%lap(stage_stresses)
     call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
                  answer%contact%force, certificate, answer%rounding_error)

@@ -1,9 +1,11 @@
-!> What the figures of an answer are worth: the error of the mesh in the energy norm, in the approach, in the largest pressure
-!> and the half-width of each zone; what rounding may have done to the contact forces; pairs that may as well be open.
+!> What the figures of an answer are worth: the error of the mesh in the energy norm, in the approach, in the total contact force
+!> and what of it each body bears, in the largest pressure and the half-width of each zone; what rounding may have done to the
+!> contact forces; pairs that may as well be open.
 module epcont_accuracy_accuracy
+  use epcont_accuracy_body_shares, only: find_shares
   use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
   use epcont_accuracy_discretisation, only: error_products, stored_energy
-  use epcont_accuracy_narrow_zone, only: too_near, turned_force
+  use epcont_accuracy_narrow_zone, only: find_turned, too_near
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
@@ -47,6 +49,7 @@ module epcont_accuracy_accuracy
     real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
     logical, allocatable :: approach_unbounded(:)  !! it grows with every finer mesh [motions]
     real(wp) :: total_force = -1.0_wp              !! error of the total contact force; negative: unknown [force]
+    real(wp), allocatable :: body_force(:, :)      !! of its resultants on bodies; negative: unknown [force] [2, answer's bodies]
     type(contact_sensitivity) :: sensitivity
     logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
   end type accuracy_type
@@ -70,7 +73,10 @@ contains
     real(wp), allocatable :: product(:, :)                      !! [energy] [elements, 1 + loads]
     real(wp), allocatable :: along(:, :)                        !! of all elements, of each without its sign [energy] [2, moved]
     real(wp), allocatable :: missing(:), unit_missing(:)        !! part of the energy, of unit loads [1 + loads], [moved]
-    real(wp), allocatable :: unit_force(:, :)                   !! contact forces of unit loads, closing gaps [pairs, motions + 1]
+    real(wp), allocatable :: share(:, :)                        !! of pairs in what bodies bear [pairs, any]
+    real(wp), allocatable :: unit_force(:, :)                   !! contact forces of unit loads, closing gaps [pairs, any]
+    real(wp), allocatable :: off(:)                             !! error of each approach, of the sum of forces, of its shares
+    integer, allocatable :: column(:, :)                        !! of the shares, of each body [2, bodies]
     integer, allocatable :: moved(:)                            !! those of them that say something
     type(scaled_problem) :: problem
     type(contact_basis) :: basis
@@ -83,10 +89,12 @@ contains
     if (carried) then
       problem = scale_problem(run%scene%problem)
       basis = new_basis(problem, answer%contact%force > 0.0_wp)
-      unit_force = reshape([unit_forces(problem, basis, motions%count), closing_forces(problem, basis)], &
-                           [model%pairs, motions%count + 1])
-      moved = pack([(j, j=1, motions%count + 1)], &
-                   any(unit_force /= 0.0_wp, dim=1) .and. [.not. answer%contact%motion_free, .true.])
+      call find_shares(model, motions, answer%bodies, share, column)
+      share = reshape([spread(1.0_wp, 1, model%pairs), share], [model%pairs, 1 + size(share, 2)])
+      unit_force = reshape([unit_forces(problem, basis, motions%count), closing_forces(problem, basis, share)], &
+                           [model%pairs, motions%count + size(share, 2)])
+      moved = pack([(j, j=1, size(unit_force, 2))], any(unit_force /= 0.0_wp, dim=1) .and. &
+                   [.not. answer%contact%motion_free, spread(.true., 1, size(share, 2))])
     end if
     table = new_patch_table(model)
     material = section_materials(model)
@@ -120,6 +128,7 @@ contains
     allocate (accuracy%approach(motions%count), source=-1.0_wp)
     allocate (accuracy%approach_unbounded(motions%count), accuracy%weak(model%pairs), source=.false.)
     allocate (accuracy%zone(0))
+    allocate (accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
     if (.not. pressed) return
 
     call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, smooth(:, :, 1)), &
@@ -130,38 +139,48 @@ contains
     accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
     ! What the last step of refinement has not changed is right.
     accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
-    accuracy%total_force = 0.0_wp   ! where loads alone make it
-    call assess_motions(model, motions, line, answer, table, unit_force(:, moved), along, unit_missing, moved, accuracy)
+    allocate (off(size(unit_force, 2)), source=0.0_wp)
+    do j = 1, size(moved)
+      ! What one body bears more another bears less: there parts cancel that need not.
+      if (moved(j) > motions%count + 1) along(1, j) = along(2, j)
+      off(moved(j)) = error_along(model, line, answer, table, unit_force(:, moved(j)), along(:, j), unit_missing(j), accuracy)
+    end do
+    accuracy%approach = merge(off(:motions%count), -1.0_wp, [(any(moved == j), j=1, motions%count)])
+    accuracy%approach_unbounded = [(any(moved == j) .and. is_point_load(model, motions, table, j), j=1, motions%count)]
+    call assess_forces(model, answer, share, column, off(motions%count + 1:), accuracy)
     call widen_pressures(answer, accuracy)
-    accuracy%total_force = accuracy%total_force + turned_force(model, answer)
     accuracy%weak = find_weak(model, line, answer, run, accuracy)
   end subroutine assess
 
-  !> Approaches, and the total contact force, which comes behind them.
-  pure subroutine assess_motions(model, motions, line, answer, table, unit_force, along, missing, moved, accuracy)
+  !> The total contact force, and what of it each body bears: nothing is off where loads alone make it.
+  pure subroutine assess_forces(model, answer, share, column, off, accuracy)
     type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
-    type(patch_table), intent(in) :: table
-    real(wp), intent(in) :: unit_force(:, :)   !! contact forces under each unit load [pairs, moved]
-    real(wp), intent(in) :: along(:, :)        !! products of errors [energy] [2, moved]
-    real(wp), intent(in) :: missing(:)         !! part of the energy of each unit load [moved]
-    integer, intent(in) :: moved(:)
+    real(wp), intent(in) :: share(:, :)      !! of each pair in the sum of all, and in what bodies bear [pairs, any]
+    integer, intent(in) :: column(:, :)      !! of the latter, of each body [2, bodies]
+    real(wp), intent(in) :: off(:)           !! errors of these sums that come from errors of gaps [force] [any]
     type(accuracy_type), intent(inout) :: accuracy
-    real(wp) :: off
-    integer :: j
+    real(wp) :: turned, turned_on(2, model%bodies)
+    integer :: c, i
 
-    do j = 1, size(moved)
-      off = error_along(model, line, answer, table, unit_force(:, j), along(:, j), missing(j), accuracy)
-      if (moved(j) > motions%count) then
-        if (off > no_error*sum(answer%contact%force)) accuracy%total_force = off + force_of_waves(answer, accuracy)
-      else
-        accuracy%approach(moved(j)) = off
-        accuracy%approach_unbounded(moved(j)) = is_point_load(model, motions, table, moved(j))
-      end if
+    call find_turned(model, answer, turned, turned_on)
+    accuracy%total_force = with_waves(1) + turned
+    do i = 1, size(column, 2)
+      do c = 1, 2
+        if (column(c, i) >= 0) accuracy%body_force(c, i) = 0.0_wp
+        if (column(c, i) > 0) accuracy%body_force(c, i) = with_waves(1 + column(c, i)) + turned_on(c, answer%bodies(i)%body)
+      end do
     end do
-  end subroutine assess_motions
+
+  contains
+
+    pure real(wp) function with_waves(k)
+      integer, intent(in) :: k
+
+      with_waves = off(k)
+      if (off(k) > no_error*sum(answer%contact%force)) with_waves = off(k) + force_of_waves(answer, accuracy, share(:, k))
+    end function with_waves
+  end subroutine assess_forces
 
   !> a/b, 0 where a is 0.
   pure real(wp) function part(a, b)
@@ -271,14 +290,17 @@ contains
 
   !> Where motions are given, waves of the gap that are not pressed flat bear more than what is meant: the higher they are the more,
   !! and none of it where they are flat [force].
-  pure real(wp) function force_of_waves(answer, accuracy) result(force)
+  pure real(wp) function force_of_waves(answer, accuracy, share) result(force)
     type(answer_type), intent(in) :: answer
     type(accuracy_type), intent(in) :: accuracy
+    real(wp), intent(in) :: share(:)   !! of each pair [pairs]
     integer :: z
 
     force = 0.0_wp
     do z = 1, size(accuracy%zone)
-      force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)*sum(answer%contact%force(answer%zones(z)%pairs))
+      associate (pairs => answer%zones(z)%pairs)
+        force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)*sum(abs(share(pairs))*answer%contact%force(pairs))
+      end associate
     end do
   end function force_of_waves
 

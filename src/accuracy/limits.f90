@@ -12,7 +12,7 @@ module epcont_accuracy_limits
   use epcont_result_contact_line, only: contact_line, shared
   implicit none
   private
-  public :: bend_at, edge_pairs, gap_bulge, has_tip
+  public :: bend_at, corner, edge_pairs, gap_bulge, has_tip
 
   !> A tip's curvature is so many times that of the nodes around it.
   real(wp), parameter :: alone = 4.0_wp
@@ -113,7 +113,8 @@ contains
       associate (near => merge(pair, line%neighbour(max(k, 1), pair), k == 0))
         if (near == 0) cycle
         call bend_at(model, line, near, angle, curvature)
-        if (curvature > 0.0_wp) gap_bulge = max(gap_bulge, angle**2/curvature/8.0_wp)   ! an eighth of angle times spacing
+        if (curvature <= 0.0_wp .or. angle > corner) cycle   ! beyond, one pair faces a step, or another side
+        gap_bulge = max(gap_bulge, angle**2/curvature/8.0_wp)   ! an eighth of angle times spacing
       end associate
     end do
   end function gap_bulge

@@ -8,10 +8,11 @@ module epcont_accuracy_narrow_zone
   use epcont_model_boundary_line, only: boundary_line
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
+  use epcont_result_body_force, only: resultants
   use epcont_result_contact_line, only: contact_line
   implicit none
   private
-  public :: too_near, turned_force
+  public :: find_turned, too_near
 
   !> Pairs up to which a zone is too narrow to tell where its contact begins.
   integer, parameter :: narrow = 2
@@ -20,8 +21,8 @@ module epcont_accuracy_narrow_zone
   real(wp), parameter :: finer = 0.7_wp
   !> The place where the bodies touch is farther from a pair than the normals there tell, by this much at most.
   real(wp), parameter :: askew = 1.25_wp
-  !> A resultant below this part of the forces is none.
-  real(wp), parameter :: no_resultant = 1.0e-6_wp
+  !> A force, or a resultant, below this part of all forces is none.
+  real(wp), parameter :: no_force = 1.0e-6_wp
 
 contains
 
@@ -44,12 +45,13 @@ contains
                                  force_of_depth(model, table, zone%peak, answer%contact%force(zone%peak))
   end function too_near
 
-  !> How many pairs bear the force of a zone: as many as would if all bore the same. (In rings forces grow with the radius.)
+  !> How many pairs bear the force of a zone: as many as would if all bore the same. (In rings forces grow with the radius: there
+  !! those that bear any.)
   pure integer function bearing_pairs(model, force)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)
 
-    bearing_pairs = size(force)
+    bearing_pairs = count(force > no_force*sum(force))
     if (.not. model%has_rings()) bearing_pairs = nint(sum(force)**2/sum(force**2))
   end function bearing_pairs
 
@@ -74,13 +76,16 @@ contains
 
   !> How much more or less force there would be in narrow zones if they pressed along the node's own normal instead of that of
   !! what it faces: of smooth boundaries these are the same only where the bodies touch.
-  pure real(wp) function turned_force(model, answer)
+  pure subroutine find_turned(model, answer, total, of_body)
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
-    real(wp) :: on(2), own(2), resultant(2, model%bodies)
+    real(wp), intent(out) :: total                      !! of the total contact force [force]
+    real(wp), intent(out) :: of_body(2, model%bodies)   !! of the resultant on each body [force]
+    real(wp) :: along, change(2), on(2), own(2), resultant(2, model%bodies)
     integer :: i, k, z
 
-    turned_force = 0.0_wp
+    total = 0.0_wp
+    of_body = 0.0_wp
     resultant = resultants(model, answer%contact%force)
     do z = 1, size(answer%zones)
       associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
@@ -88,39 +93,27 @@ contains
         do i = 1, size(pairs)
           k = pairs(i)
           own = -smooth_normal(model, k)
-          associate (one => resultant(:, model%body(model%pair_node(1, k))), two => resultant(:, model%body(model%pair_node(2, k))))
-            on = merge(one, two, norm2(one) > norm2(two))
+          associate (a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)), normal => model%normal(:, k))
+            on = merge(resultant(:, a), resultant(:, b), norm2(resultant(:, a)) > norm2(resultant(:, b)))
+            if (all(own == 0.0_wp) .or. norm2(on) <= no_force*sum(force)) cycle
+            along = excess(dot_product(on, normal), dot_product(on, own))
+            total = total + askew*force(k)*abs(along)
+            change = askew*force(k)*abs((1.0_wp + along)*own - normal)
+            of_body(:, a) = of_body(:, a) + change
+            of_body(:, b) = of_body(:, b) + change
           end associate
-          if (all(own == 0.0_wp) .or. norm2(on) <= no_resultant*sum(force)) cycle
-          turned_force = turned_force + askew*force(k)*excess(dot_product(on, model%normal(:, k)), dot_product(on, own))
         end do
       end associate
     end do
-  end function turned_force
+  end subroutine find_turned
 
-  !> |a/b - 1|, 1 at most.
+  !> a/b - 1, between -1 and 1.
   pure real(wp) function excess(a, b)
     real(wp), intent(in) :: a, b
 
-    excess = 1.0_wp
-    if (abs(a - b) < abs(b)) excess = abs(a - b)/abs(b)
+    excess = sign(1.0_wp, a - b)*sign(1.0_wp, b)
+    if (abs(a - b) < abs(b)) excess = (a - b)/b
   end function excess
-
-  !> Of the contact forces on each body [force] [2, bodies].
-  pure function resultants(model, force) result(sums)
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: force(:)   !! [pairs]
-    real(wp) :: sums(2, model%bodies)
-    integer :: k
-
-    sums = 0.0_wp
-    do k = 1, model%pairs
-      associate (a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)))
-        sums(:, a) = sums(:, a) - force(k)*model%normal(:, k)
-        sums(:, b) = sums(:, b) + force(k)*model%normal(:, k)
-      end associate
-    end do
-  end function resultants
 
   !> The normal of a line in contact at the node of a pair that stands on the other line; none at a corner, or without lines.
   pure function smooth_normal(model, pair) result(normal)

@@ -1,5 +1,5 @@
-!> What the scene does, the pairs in contact held closed, under a unit load along each free motion, and when all their gaps shrink
-!> by a unit of length: what tells of an error anywhere how much of it arrives at the approach, and at the total contact force.
+!> What the scene does, the pairs in contact held closed, under a unit load along each free motion, and when their gaps shrink: what
+!> tells of an error anywhere how much of it arrives at the approach, and at sums of contact forces.
 module epcont_accuracy_unit_motion
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, respond
@@ -36,19 +36,24 @@ contains
     force(basis%pairs, problem%kept) = carried
   end function unit_forces
 
-  !> Contact forces when all gaps shrink by a unit of length; none where motions give way to that [force/length] [pairs].
-  pure function closing_forces(problem, basis) result(force)
+  !> Contact forces when the gap of each pair shrinks by its weight; none where motions give way to that [force/length] [pairs, any].
+  pure function closing_forces(problem, basis, weight) result(force)
     type(scaled_problem), intent(in) :: problem
     type(contact_basis), intent(in) :: basis
-    real(wp), allocatable :: force(:)
+    real(wp), intent(in) :: weight(:, :)   !! [pairs, any]
+    real(wp), allocatable :: force(:, :)
     real(wp), allocatable :: opening(:, :), load(:, :), carried(:, :), approach(:, :)
+    integer :: j
 
-    allocate (force(size(problem%gap)), source=0.0_wp)
+    allocate (force(size(problem%gap), size(weight, 2)), source=0.0_wp)
     if (.not. basis%sound) return
-    allocate (opening(size(basis%pairs), 1), source=-1.0_wp/problem%gap_unit)
-    allocate (load(size(problem%kept), 1), source=0.0_wp)
+    opening = -weight(basis%pairs, :)/problem%gap_unit
+    allocate (load(size(problem%kept), size(weight, 2)), source=0.0_wp)
     call respond(basis, opening, load, carried, approach)
-    if (maxval(abs(carried)) > rounding*maxval(abs(opening))) force(basis%pairs) = carried(:, 1)*problem%force_unit
+    do j = 1, size(weight, 2)
+      if (maxval(abs(carried(:, j))) > rounding*maxval(abs(opening(:, j)))) &
+        force(basis%pairs, j) = carried(:, j)*problem%force_unit
+    end do
   end function closing_forces
 
   !> Strains of such forces [4, points].

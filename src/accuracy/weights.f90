@@ -35,7 +35,7 @@ module epcont_accuracy_weights
     estimate_weights(1.5_wp, 0.0_wp, 0.2_wp, 0.03_wp, 0.0_wp, 0.45_wp, 1.2_wp, 0.16_wp, 0.65_wp, 1.3_wp, 0.0_wp, 0.12_wp)]
   type(estimate_weights), parameter :: trax6(2) = [ &
     estimate_weights(1.2_wp, 0.02_wp, 0.5_wp, 0.003_wp, 0.36_wp, 0.05_wp, 2.8_wp, 0.31_wp, 0.5_wp, 1.4_wp, 0.0_wp, 0.35_wp), &
-    estimate_weights(0.7_wp, 0.17_wp, 0.8_wp, 0.0_wp, 0.2_wp, 0.05_wp, 3.2_wp, 0.33_wp, 0.5_wp, 1.8_wp, 0.0_wp, 0.4_wp)]
+    estimate_weights(0.7_wp, 0.17_wp, 0.8_wp, 0.0_wp, 0.2_wp, 0.05_wp, 3.2_wp, 0.33_wp, 0.5_wp, 2.1_wp, 0.0_wp, 0.4_wp)]
 
 contains
 

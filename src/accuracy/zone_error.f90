@@ -49,7 +49,7 @@ module epcont_accuracy_zone_error
     real(wp) :: resolution = 1.0_wp      !! spacing of the pairs over half of the zone's length
     real(wp) :: end_resolution = 1.0_wp  !! the same of the larger spacing at its ends
     real(wp) :: half_length = 0.0_wp     !! of the zone, to where the pressure vanishes [length]
-    real(wp) :: wave_height = 0.0_wp     !! of what its gap bends otherwise from pair to pair [length]
+    real(wp) :: wave_height = 0.0_wp     !! of waves of its gap [length]
     real(wp) :: waviness = 0.0_wp        !! what flattens these waves, of the largest pressure
     integer :: order = 3                 !! nodes of the elements there
   end type zone_error
@@ -70,7 +70,7 @@ contains
     real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
     real(wp), allocatable :: s(:)     !! place of each of them, from the first on [length]
     integer, allocatable :: inward(:) !! in p and s, from one end on
-    real(wp) :: off(2), beyond(2), coarse, flattening, largest, open, short, spacing, step, uncertain, widest
+    real(wp) :: off(2), beyond(2), coarse, flattening, largest, open, short, spacing, step, uncertain, waves, widest
     logical :: cut_off, edge, ends, mirrored(2)   !! ends: an end of the zone is one of contact, not of the candidates
     integer :: e, k, n, peak
 
@@ -122,9 +122,9 @@ contains
     end if
     error%end_resolution = error%resolution
     if (spacing > 0.0_wp .and. widest > spacing) error%end_resolution = error%resolution*widest/spacing
-    call find_waves(model, table, line, zone%pairs, flattening, error%wave_height)
-    error%waviness = flattening/largest
-    if (error%half_width >= 0.0_wp) error%half_width = error%half_width + error%waviness*zone%half_width   ! the load is given
+    call find_waves(model, table, line, zone%pairs, flattening, waves, error%wave_height)
+    error%waviness = waves/largest
+    if (error%half_width >= 0.0_wp) error%half_width = error%half_width + flattening/largest*zone%half_width   ! the load is given
     if (flattening > waves_alone*largest .and. .not. error%unbounded) error%resolved = .false.
     if (error%unbounded .or. .not. error%resolved) return
     coarse = 0.0_wp   ! of an even pressure any spacing tells

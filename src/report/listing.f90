@@ -14,16 +14,17 @@ module epcont_report_listing
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: figure, heading, right, wrap
   use epcont_report_limit, only: limit_of_largest, reason_of
-  use epcont_report_number, only: column_number, known_column, rounding_number
+  use epcont_report_number, only: column_number, estimate_number, known_column, rounding_number
   use epcont_report_outcome, only: outcome_type
   use epcont_report_scene, only: list_scene
   use epcont_result_answer, only: answer_type
+  use epcont_result_body_force, only: body_force
   use epcont_result_zones, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none
   private
-  public :: list_deck, list_outcome, list_contact, list_zones, list_lines, list_nodes, list_elements, list_summary
+  public :: list_deck, list_outcome, list_contact, list_zones, list_lines, list_bodies, list_nodes, list_elements, list_summary
 
 contains
 
@@ -185,6 +186,41 @@ contains
 
     text = text_of(id(1))//trim(merge('+', ' ', size(id) > 1))
   end function first_of
+
+  !> What contact exerts on each body.
+  subroutine list_bodies(file, model, bodies, error)
+    type(text_file), intent(in) :: file
+    type(model_type), intent(in) :: model
+    type(body_force), intent(in) :: bodies(:)
+    real(wp), intent(in) :: error(:, :)   !! [2, bodies]
+    character(len=:), allocatable :: x
+    real(wp) :: scale
+    integer :: i
+
+    call heading(file, 'BODIES  (force of contact on each; error: of the mesh, estimated)')
+    call file%line('      body  first GRID      force x       error      force y       error')
+    scale = maxval([(abs(bodies(i)%resultant), i=1, size(bodies))])
+    do i = 1, size(bodies)
+      associate (body => bodies(i))
+        x = right('-', 13)//right('-', 12)
+        if (.not. model%has_rings()) x = column_number(body%resultant(1), scale)//error_column(error(1, i), scale)
+        call file%line(right(text_of(body%body), 10)//right(text_of(model%node_id(body%node)), 12)//x// &
+                       column_number(body%resultant(2), scale)//error_column(error(2, i), scale))
+      end associate
+    end do
+  end subroutine list_bodies
+
+  !> An error of two digits; none where it is rounding; one that is not known.
+  pure function error_column(error, scale) result(text)
+    real(wp), intent(in) :: error
+    real(wp), intent(in) :: scale   !! of the column
+    character(len=12) :: text
+    real(wp), parameter :: none = 1.0e-9_wp
+
+    text = right('-', 12)
+    if (error >= 0.0_wp) text = right('0.0', 12)
+    if (error > none*scale) text = right(estimate_number(error), 12)
+  end function error_column
 
   !> Displacements and reactions.
   subroutine list_nodes(file, model, answer)

@@ -10,11 +10,12 @@ module epcont_report_results
   use epcont_report_accuracy, only: list_accuracy
   use epcont_report_file, only: new_text_file, remove_file, text_file
   use epcont_report_iterations, only: list_iterations
-  use epcont_report_listing, only: list_contact, list_deck, list_elements, list_lines, list_nodes, list_outcome, &
+  use epcont_report_listing, only: list_bodies, list_contact, list_deck, list_elements, list_lines, list_nodes, list_outcome, &
                                    list_summary, list_zones
   use epcont_report_outcome, only: outcome_type
   use epcont_report_remarks, only: list_remarks, remarks_type
-  use epcont_report_tables, only: write_contact, write_elements, write_history, write_nodes, write_summary, write_zones
+  use epcont_report_tables, only: write_bodies, write_contact, write_elements, write_history, write_nodes, write_summary, &
+                                  write_zones
   use epcont_report_vtk_bodies, only: write_vtk_bodies
   use epcont_report_vtk_contact, only: write_vtk_contact
   use epcont_result_answer, only: answer_type
@@ -33,6 +34,7 @@ module epcont_report_results
     result_file('.summary.csv', 'outcome, approaches, certificate and accuracy, in 17 digits like all tables'), &
     result_file('.contact.csv', 'pairs: place, normal, initial gap, force, pressure, gap, status'), &
     result_file('.zones.csv', 'runs of touching pairs: force, largest pressure and its limit, half-width'), &
+    result_file('.bodies.csv', 'bodies: the force of contact on each, and how much it may be off'), &
     result_file('.history.csv', 'iterations: change, residual, pairs in contact, plastic elements'), &
     result_file('.nodes.csv', 'displacements and reactions; where the deck or --tables all asks for it'), &
     result_file('.elements.csv', 'stresses and states; where the deck or --tables all asks for it'), &
@@ -74,6 +76,7 @@ contains
       if (.not. run%outcome%has_answer) return
       if (.not. allocated(error)) call write_contact(stem, model, answer, error)
       if (.not. allocated(error)) call write_zones(stem, model, answer, run%accuracy, error)
+      if (.not. allocated(error) .and. model%pairs > 0) call write_bodies(stem, model, answer, run%accuracy, error)
       if (.not. allocated(error)) call write_history(stem, answer, error)
       if (.not. allocated(error) .and. nodes) call write_nodes(stem, model, answer, error)
       if (.not. allocated(error) .and. elements) call write_elements(stem, model, answer, error)
@@ -113,6 +116,7 @@ contains
           call list_contact(file, model, answer)
           call list_zones(file, model, answer%zones)
           if (size(answer%lines) > 0) call list_lines(file, model, answer%lines)
+          call list_bodies(file, model, answer%bodies, run%accuracy%body_force)
         end if
         if (nodes) call list_nodes(file, model, answer)
         if (elements) call list_elements(file, model, answer)

@@ -17,7 +17,7 @@ module epcont_report_tables
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none
   private
-  public :: write_summary, write_contact, write_zones, write_nodes, write_elements, write_history
+  public :: write_summary, write_contact, write_zones, write_bodies, write_nodes, write_elements, write_history
 
 contains
 
@@ -200,6 +200,35 @@ contains
     end associate
     call file%finish(error)
   end subroutine write_zones
+
+  !> One row a body that has elements: what contact exerts on it, and how much that may be off; no x in rings.
+  subroutine write_bodies(stem, model, answer, accuracy, error)
+    character(len=*), intent(in) :: stem
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    type(accuracy_type), intent(in) :: accuracy
+    type(error_type), allocatable, intent(out) :: error
+    type(text_file) :: file
+    character(len=:), allocatable :: force_x, error_x
+    integer :: i
+
+    call new_text_file(stem//'.bodies.csv', file, error)
+    if (allocated(error)) return
+    call file%line('body,first_node,force_x,force_y,mesh_error_x,mesh_error_y')
+    do i = 1, size(answer%bodies)
+      associate (body => answer%bodies(i))
+        force_x = ''
+        error_x = ''
+        if (.not. model%has_rings()) then
+          force_x = full_number(body%resultant(1))
+          error_x = known_number(accuracy%body_force(1, i))
+        end if
+        call file%line(text_of(body%body)//','//text_of(model%node_id(body%node))//','//force_x//','// &
+                       full_number(body%resultant(2))//','//error_x//','//known_number(accuracy%body_force(2, i)))
+      end associate
+    end do
+    call file%finish(error)
+  end subroutine write_bodies
 
   !> One row a node.
   subroutine write_nodes(stem, model, answer, error)

@@ -5,6 +5,7 @@ module epcont_result_answer
   use epcont_contact_problem, only: contact_solution
   use epcont_model_controls, only: precision_double
   use epcont_plasticity_onlooker, only: iteration_record
+  use epcont_result_body_force, only: body_force
   use epcont_result_zones, only: contact_zone
   use epcont_result_gradient, only: gradient_type
   use epcont_result_line_pressure, only: line_pressure
@@ -38,6 +39,7 @@ module epcont_result_answer
     real(wp), allocatable :: pressure(:)             !! at the pairs; negative: no boundary there [stress] [pairs]
     type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
+    type(body_force), allocatable :: bodies(:)       !! what contact exerts on each that has elements
     type(locking_type) :: locking                    !! of three-node elements
     type(gradient_type) :: gradient                  !! of displacements that are not small
     integer :: precision = precision_double          !! of the factors

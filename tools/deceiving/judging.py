@@ -34,6 +34,7 @@ class Answer:
     total_error: float | None = None
     energy_error: float = 0.0
     resultant: list = field(default_factory=list)       # of contact on each body
+    resultant_error: list = field(default_factory=list)
     displacement: list = field(default_factory=list)
     reaction: list = field(default_factory=list)
     approach: dict = field(default_factory=dict)        # place in scene.free -> value, estimate
@@ -74,10 +75,22 @@ def read(scene, twin, numbers, folder, name, said):
             for c in range(1 if scene.rings else 0, 2):   # a radial sum is no force: hoops take it, and contact's share is in the total
                 sums[c] -= answer.reaction[k][c] + forces.get(k, (0.0, 0.0))[c]
         answer.resultant.append(sums)
+    answer.resultant_error = errors_of_bodies(scene, numbers, folder / f"{name}.bodies.csv")
     for place, (node, directions) in enumerate(scene.free):
         answer.approach[place] = (answer.displacement[node][int(directions) - 1], estimate_of_approach(values, numbers[node]))
     read_zones(answer, values, folder / f"{name}.zones.csv")
     return answer
+
+
+def errors_of_bodies(scene, numbers, path):
+    """What the resultant on each body of the scene may be off by, by the answer itself; 0 where it says nothing."""
+    said = {}
+    try:
+        for row in rows(path):
+            said[int(row["first_node"])] = math.hypot(number(row["mesh_error_x"]) or 0.0, number(row["mesh_error_y"]) or 0.0)
+    except OSError:
+        pass
+    return [max((said.get(numbers[k], 0.0) for k in body.at.values()), default=0.0) for body in scene.bodies]
 
 
 def estimate_of_approach(values, node):
@@ -152,10 +165,10 @@ def differences(one, other):
     found = []
     if not scale:
         return found
+    for k, (a, b) in enumerate(zip(one.resultant, other.resultant)):
+        part = math.hypot(a[0] - b[0], a[1] - b[1]) / scale
+        found.append(("resultant", part, part / max(CLOSE, (one.resultant_error[k] + other.resultant_error[k]) / scale)))
     total = 0.0 if None in (one.total_error, other.total_error) else (one.total_error + other.total_error) / scale
-    allowed = max(CLOSE, total, 3.0 * (one.energy_error ** 2 + other.energy_error ** 2))   # none is stated of what one body carries
-    part = max((math.hypot(a[0] - b[0], a[1] - b[1]) for a, b in zip(one.resultant, other.resultant)), default=0.0) / scale
-    found.append(("resultant", part, part / allowed))
     part = abs(one.total - other.total) / scale
     found.append(("total force", part, part / max(CLOSE, total)))
     for place in one.approach:

@@ -1,0 +1,69 @@
+!> What contact exerts on each body as a whole, and what each pair counts in it.
+module epcont_result_body_force
+  use epcont_base_kinds, only: wp
+  use epcont_flexibility_flexibility, only: pair_forces
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: body_force, find_body_forces, resultants, shares_of_pairs
+
+  !> The resultant of contact on a body that has elements. In rings it has no x: hoops take what acts along radii.
+  type :: body_force
+    integer :: body = 0                    !! number of the body
+    integer :: node = 0                    !! its first
+    real(wp) :: resultant(2) = 0.0_wp      !! [force]
+  end type body_force
+
+contains
+
+  !> Those of all bodies that have elements.
+  pure function find_body_forces(model, force) result(found)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: force(:)   !! [pairs]
+    type(body_force), allocatable :: found(:)
+    real(wp) :: sums(2, model%bodies)
+    logical :: has_elements(model%bodies)
+    integer :: b, i
+
+    has_elements = .false.
+    has_elements(model%body(model%connectivity(1, :))) = .true.
+    sums = resultants(model, force)
+    if (model%has_rings()) sums(1, :) = 0.0_wp
+    allocate (found(count(has_elements)))
+    found%body = pack([(b, b=1, model%bodies)], has_elements)
+    do i = 1, size(found)
+      found(i)%node = findloc(model%body, found(i)%body, dim=1)
+      found(i)%resultant = sums(:, found(i)%body)
+    end do
+  end function find_body_forces
+
+  !> Of forces at the pairs on each body [force] [2, bodies].
+  pure function resultants(model, force) result(sums)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: force(:)   !! [pairs]
+    real(wp) :: sums(2, model%bodies)
+    real(wp), allocatable :: nodal(:, :)
+    integer :: i
+
+    sums = 0.0_wp
+    nodal = pair_forces(model, force)
+    do i = 1, model%nodes
+      sums(:, model%body(i)) = sums(:, model%body(i)) + nodal(:, i)
+    end do
+  end function resultants
+
+  !> What a unit force at each pair adds to one component of the resultant on a body [pairs].
+  pure function shares_of_pairs(model, body, c) result(share)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: body, c
+    real(wp), allocatable :: share(:)
+    integer :: k
+
+    allocate (share(model%pairs))
+    do k = 1, model%pairs
+      associate (first => model%row_start(k), last => model%row_start(k + 1) - 1)
+        share(k) = model%normal(c, k)*sum(model%row_weight(first:last), mask=model%body(model%row_node(first:last)) == body)
+      end associate
+    end do
+  end function shares_of_pairs
+end module epcont_result_body_force
