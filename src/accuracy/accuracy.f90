@@ -4,20 +4,18 @@
 module epcont_accuracy_accuracy
   use epcont_accuracy_body_shares, only: find_shares
   use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
-  use epcont_accuracy_discretisation, only: error_products, stored_energy
+  use epcont_accuracy_error_fields, only: compare_fields, error_fields
   use epcont_accuracy_narrow_zone, only: find_turned, too_near
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
-  use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
-  use epcont_accuracy_unit_motion, only: closing_forces, unit_forces, unit_strains
+  use epcont_accuracy_unit_motion, only: closing_forces, unit_forces
   use epcont_accuracy_weights, only: estimate_weights, weights_of
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, new_basis
   use epcont_contact_scaling, only: scale_problem, scaled_problem
-  use epcont_material_curve, only: material_type, section_materials
+  use epcont_material_curve, only: section_materials
   use epcont_model_model, only: model_type
-  use epcont_plan_forecast, only: loads_at_once
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
   use epcont_plasticity_iteration, only: plastic_run
@@ -68,24 +66,20 @@ contains
     type(answer_type), intent(in) :: answer
     type(accuracy_type), intent(out) :: accuracy
     type(patch_table) :: table
-    type(material_type), allocatable :: material(:)
-    real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)   !! of the answer, then of some unit loads [4, any, 1 + loads]
-    real(wp), allocatable :: product(:, :)                      !! [energy] [elements, 1 + loads]
-    real(wp), allocatable :: along(:, :)                        !! of all elements, of each without its sign [energy] [2, moved]
-    real(wp), allocatable :: missing(:), unit_missing(:)        !! part of the energy, of unit loads [1 + loads], [moved]
-    real(wp), allocatable :: share(:, :)                        !! of pairs in what bodies bear [pairs, any]
-    real(wp), allocatable :: unit_force(:, :)                   !! contact forces of unit loads, closing gaps [pairs, any]
-    real(wp), allocatable :: off(:)                             !! error of each approach, of the sum of forces, of its shares
-    integer, allocatable :: column(:, :)                        !! of the shares, of each body [2, bodies]
-    integer, allocatable :: moved(:)                            !! those of them that say something
+    type(error_fields) :: field
     type(scaled_problem) :: problem
     type(contact_basis) :: basis
+    real(wp), allocatable :: share(:, :)        !! of pairs in the sum of all, and in what bodies bear [pairs, any]
+    real(wp), allocatable :: unit_force(:, :)   !! contact forces of unit loads, closing gaps [pairs, any]
+    real(wp), allocatable :: off(:)             !! error of each approach, of the sum of forces, of what bodies bear
+    integer, allocatable :: column(:, :)        !! of what bodies bear, of each body [2, bodies]
+    integer, allocatable :: moved(:)            !! unit loads that say something
     logical :: carried, pressed
-    integer :: first, j, loads
+    integer :: j
 
     pressed = any(answer%contact%force > 0.0_wp)
     carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
-    allocate (moved(0))
+    allocate (moved(0), unit_force(model%pairs, 0))
     if (carried) then
       problem = scale_problem(run%scene%problem)
       basis = new_basis(problem, answer%contact%force > 0.0_wp)
@@ -97,41 +91,23 @@ contains
                    [.not. answer%contact%motion_free, spread(.true., 1, size(share, 2))])
     end if
     table = new_patch_table(model)
-    material = section_materials(model)
-    allocate (along(2, size(moved)), unit_missing(size(moved)))
-    associate (volume => run%scene%operator%volume)
-      do first = 1, max(1, size(moved)), loads_at_once
-        loads = min(loads_at_once, size(moved) - first + 1)
-        allocate (strain(4, model%points, 1 + loads))
-        strain(:, :, 1) = run%state%strain
-        do j = 1, loads
-          strain(:, :, 1 + j) = unit_strains(model, numbering, run%scene, unit_force(:, moved(first - 1 + j)))
-        end do
-        smooth = recover_strains(model, table, volume, strain)
-        call error_products(model, table, material, volume, strain, smooth, product, missing)
-        along(:, first:first + loads - 1) = reshape([(sum(product(:, 1 + j)), sum(abs(product(:, 1 + j))), j=1, loads)], [2, loads])
-        unit_missing(first:first + loads - 1) = missing(2:)
-        deallocate (strain)
-      end do
-      accuracy%element = product(:, 1)
-      accuracy%energy_norm = sqrt(part(sum(accuracy%element), &
-                                       sum(accuracy%element) + abs(stored_energy(volume, run%state%strain, run%state%stress))))
-    end associate
+    call compare_fields(model, numbering, run, table, unit_force(:, moved), field)
+    accuracy%element = field%element
+    accuracy%energy_norm = sqrt(part(sum(field%element), sum(field%element) + abs(field%energy)))
     allocate (accuracy%worst(0))
     if (accuracy%energy_norm > no_error) then
       accuracy%worst = worst_of(accuracy%element)
     else
       accuracy%energy_norm = 0.0_wp
       accuracy%element = 0.0_wp
-      along = 0.0_wp
+      field%along = 0.0_wp
     end if
-    allocate (accuracy%approach(motions%count), source=-1.0_wp)
+    allocate (accuracy%approach(motions%count), accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
     allocate (accuracy%approach_unbounded(motions%count), accuracy%weak(model%pairs), source=.false.)
     allocate (accuracy%zone(0))
-    allocate (accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
     if (.not. pressed) return
 
-    call assess_zones(model, table, line, answer, smooth_pressures(model, table, material, smooth(:, :, 1)), &
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, section_materials(model), field%smooth), &
                       accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads(model, motions, table)), &
                                                    sum(accuracy%element)), accuracy)
     if (.not. carried) return
@@ -142,8 +118,9 @@ contains
     allocate (off(size(unit_force, 2)), source=0.0_wp)
     do j = 1, size(moved)
       ! What one body bears more another bears less: there parts cancel that need not.
-      if (moved(j) > motions%count + 1) along(1, j) = along(2, j)
-      off(moved(j)) = error_along(model, line, answer, table, unit_force(:, moved(j)), along(:, j), unit_missing(j), accuracy)
+      if (moved(j) > motions%count + 1) field%along(1, j) = field%along(2, j)
+      off(moved(j)) = error_along(model, line, answer, table, unit_force(:, moved(j)), field%along(:, j), field%missing(j), &
+                                  accuracy)
     end do
     accuracy%approach = merge(off(:motions%count), -1.0_wp, [(any(moved == j), j=1, motions%count)])
     accuracy%approach_unbounded = [(any(moved == j) .and. is_point_load(model, motions, table, j), j=1, motions%count)]

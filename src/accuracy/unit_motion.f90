@@ -36,7 +36,8 @@ contains
     force(basis%pairs, problem%kept) = carried
   end function unit_forces
 
-  !> Contact forces when the gap of each pair shrinks by its weight; none where motions give way to that [force/length] [pairs, any].
+  !> Contact forces when the gap of each pair shrinks by its weight; none where motions give way to that
+  !! [force/length] [pairs, any].
   pure function closing_forces(problem, basis, weight) result(force)
     type(scaled_problem), intent(in) :: problem
     type(contact_basis), intent(in) :: basis

@@ -16,9 +16,9 @@ TOLERANCE = 1e-9
 ESTIMATES = {"condition": 0.1, "rounding_error_force": 0.1}
 #: Estimates that are solved for with the factors as they are: those of MIXED in single precision, not refined. Its rounding times
 #: the condition is what it leaves them (2 % of a condition of 3e6, with the reference BLAS).
-UNREFINED, SINGLE = re.compile("contact_amplification|mesh_error_approach_.*|mesh_error_total_contact_force"), 2.0**-24
+UNREFINED, SINGLE = re.compile("contact_amplification|mesh_error_approach_.*|mesh_error_total_contact_force|mesh_error_[xy]"), 2.0**-24
 #: Columns of one kind: a stress that should be zero is compared with the others, not with itself.
-KINDS = [{"ux", "uy"}, {"rx", "ry"}, {"sx", "sy", "sz", "txy", "equivalent_stress"}]
+KINDS = [{"ux", "uy"}, {"rx", "ry"}, {"sx", "sy", "sz", "txy", "equivalent_stress"}, {"force_x", "force_y"}, {"mesh_error_x", "mesh_error_y"}]
 #: Tables and rows of the summary that tell of rounding, or of the way.
 WAY = {"equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "stress_off_curve", "energy_balance",
        "iteration_error_displacement", "iteration_error_force", "pivots"}
@@ -68,8 +68,9 @@ def faults(name, one, other, words):
             key = column if name != "summary" else (mine[0], column)
             if key not in scales:
                 scales[key] = scale(name, column, mine, one)
-            unrefined = words[1] == "MIXED" and UNREFINED.fullmatch(mine[0])
-            if not abs(real(a) - real(b)) <= (single if unrefined else ESTIMATES.get(mine[0], TOLERANCE)) * scales[key]:
+            figure = mine[0] if name == "summary" else one[0][column]
+            unrefined = words[1] == "MIXED" and UNREFINED.fullmatch(figure)
+            if not abs(real(a) - real(b)) <= (single if unrefined else ESTIMATES.get(figure, TOLERANCE)) * scales[key]:
                 yield f"{name}: {one[0][column]}: {a} by {words[0]}, {b} by {words[1]} in {','.join(mine)}"
 
 

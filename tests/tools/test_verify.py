@@ -22,7 +22,7 @@ verify = importlib.util.module_from_spec(importlib.util.spec_from_loader("verify
 loader.exec_module(verify)
 
 HERTZ, LINES, RING = (ROOT / "input" / name for name in ("hertz/hertz44.dat", "flat_match/flat_lines.dat", "from_gmsh/press_fit.dat"))
-TABLES = ("summary", "nodes", "elements", "contact", "zones", "history")
+TABLES = ("summary", "nodes", "elements", "contact", "zones", "bodies", "history")
 WORDS = {"touching": "open", "open": "touching", "plastic": "elastic", "elastic": "plastic"}
 #: What is told apart from rounding, of the largest value of a column.
 SEEN = 1e-9

@@ -60,6 +60,7 @@ def check_columns(scene, tables, found, tolerance):
     if scene.pair:
         check_contact(report, scene, tables, found, tolerance)
         check_zones(report, scene, tables, tolerance)
+        check_bodies(report, scene, tables, tolerance)
     check_summary(report, scene, tables, found, tolerance)
     return report.lines, report.faults
 
@@ -164,6 +165,31 @@ def check_zones(report, scene, tables, tolerance):
         report.column(f"zones {column}", cells)
 
 
+def check_bodies(report, scene, tables, tolerance):
+    """What the pairs exert on each body that has elements; the first node of one has the lowest number."""
+    body, bodies = scene.bodies(), {}
+    for name, nodes, _ in scene.element.values():
+        bodies.setdefault(body[nodes[0]], []).extend(nodes)
+    terms = {b: [] for b in bodies}
+    for pair, own in scene.pair.items():
+        force = float(tables.contact[pair]["force"])
+        for node, weight in own.weights.items():
+            if body[node] in terms:
+                terms[body[node]].append([force * weight * own.normal[c] for c in (0, 1)])
+    told = {int(row["first_node"]): row for row in tables.bodies.values()}
+    firsts = {min(node for node in body if body[node] == b): b for b in bodies}
+    report.line("bodies first_node", len(firsts), str(len(told)), sorted(firsts) == sorted(told) and len(told) == len(tables.bodies))
+    for c, name in enumerate(("force_x", "force_y")):
+        cells = []
+        for first, b in firsts.items():
+            if first not in told:
+                continue
+            ours, all_of_it = (add([each[c] for each in terms[b]]) for add in (math.fsum, lambda each: math.fsum(map(abs, each))))
+            value = "" if c == 0 and scene.has_rings else ours
+            cells.append((first, value, told[first][name], tolerance * abs(ours) + report.rounding * all_of_it))
+        report.column(f"bodies {name}, first node", cells)
+
+
 def check_summary(report, scene, tables, found, tolerance):
     """Counts, maxima, words and units; the figures of the certificate are held elsewhere."""
     summary = tables.summary
@@ -229,7 +255,7 @@ def not_read(tables):
     """Lines that name what nothing here looks at, and what is held to a bound only."""
     keys = [key for key in tables.summary if key not in UNITS and not key.startswith("approach_")]
     files = sorted(path.name for path in tables.directory.glob(f"{glob_safe(tables.stem)}.*")
-                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "history")})
+                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history")})
     lines = [f"not read: {name}.csv {', '.join(columns)}" for name, columns in (("summary", keys), *tables.unread.items()) if columns]
     if len(tables.history) > 1:
         lines.append("not read: history.csv pairs_in_contact, plastic_elements, load_factor, but of its last row")

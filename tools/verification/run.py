@@ -11,6 +11,7 @@ COLUMNS = {
     "elements": ("element", ["x", "y", "sx", "sy", "sz", "txy", "equivalent_stress", "equivalent_strain", "secant_modulus"], [], ["state"]),
     "contact": ("pair", ["ga", "gb", "x", "y", "nx", "ny", "initial_gap", "force", "gap"], ["pressure"], ["status"]),
     "zones": ("zone", ["first_pair", "last_pair", "force", "half_width_last_pair"], ["max_pressure", "half_width"], []),
+    "bodies": ("body", ["first_node", "force_y"], ["force_x"], []),
     "history": ("iteration", ["pairs_in_contact", "plastic_elements", "pivots", "load_factor"], [], []),
 }
 #: Columns that only some versions have.
@@ -84,7 +85,7 @@ class Tables:
                 raise TableFault(f"{self.path(name)}: no {what} {lacking[0]}: the table of another deck, or cut off")
             if strange:
                 raise TableFault(f"{self.path(name)}: {what} {strange[0]} is not in the deck: the table of another one")
-        for name in ("zones", "history"):
+        for name in ("zones", "bodies", "history"):
             if not self.path(name).exists() and (scene.pair or name == "history"):
                 raise TableFault(f"{self.path(name)}: no such file")
 

@@ -46,6 +46,7 @@ class Scene:
         self.supports()
         self.pairs(told)
         self.loads()
+        self.has_rings = any(section.thickness is None for section in self.section.values())
 
     def sections(self):
         material = {}
@@ -102,6 +103,21 @@ class Scene:
         self.pair = {name: self.pair[name] for name in sorted(self.pair, key=lambda name: rank.get(name, len(rank)))}
         for contact in self.contacts:
             contact.sort(key=lambda name: rank.get(name, len(rank)))
+
+    def bodies(self):
+        """The body of each node, by one of its nodes: elements join theirs, and ties those that are tied."""
+        above = {node: node for node in self.x}
+
+        def top(node):
+            while above[node] != node:
+                above[node] = above[above[node]]
+                node = above[node]
+            return node
+
+        for nodes in [nodes for _, nodes, _ in self.element.values()] + [(node, leader[0]) for (node, _), leader in self.leader.items()]:
+            for node in nodes[1:]:
+                above[top(node)] = top(nodes[0])
+        return {node: top(node) for node in self.x}
 
     def leads(self, *freedom):
         """The freedom that one is tied to, itself if it is not."""
