@@ -29,7 +29,7 @@ module epcont_accuracy_weights
     estimate_weights(1.2_wp, 0.35_wp, 0.0_wp, 0.02_wp, 0.0_wp, 0.12_wp, 0.7_wp, 0.27_wp, 0.8_wp, 1.5_wp, 0.4_wp, 0.3_wp)]
   type(estimate_weights), parameter :: tria6(2) = [ &
     estimate_weights(0.4_wp, 0.04_wp, 1.3_wp, 0.024_wp, 0.0_wp, 0.16_wp, 0.0_wp, 0.29_wp, 0.2_wp, 1.8_wp, 0.0_wp, 0.14_wp), &
-    estimate_weights(0.5_wp, 0.8_wp, 0.5_wp, 0.006_wp, 0.0_wp, 0.06_wp, 2.5_wp, 0.3_wp, 0.5_wp, 2.0_wp, 0.0_wp, 0.95_wp)]
+    estimate_weights(0.5_wp, 0.8_wp, 0.5_wp, 0.006_wp, 0.0_wp, 0.06_wp, 2.5_wp, 0.3_wp, 0.5_wp, 1.7_wp, 0.0_wp, 0.75_wp)]
   type(estimate_weights), parameter :: trax3(2) = [ &
     estimate_weights(1.3_wp, 0.0_wp, 0.3_wp, 0.2_wp, 0.0_wp, 0.6_wp, 0.3_wp, 0.2_wp, 0.75_wp, 1.4_wp, 0.0_wp, 0.2_wp), &
     estimate_weights(1.5_wp, 0.0_wp, 0.2_wp, 0.03_wp, 0.0_wp, 0.45_wp, 1.2_wp, 0.16_wp, 0.65_wp, 1.3_wp, 0.0_wp, 0.12_wp)]

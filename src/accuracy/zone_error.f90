@@ -21,9 +21,10 @@ module epcont_accuracy_zone_error
 
   !> Pairs that the parabola goes through.
   integer, parameter :: around_peak = 7
-  !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved: three have a largest one,
-  !! but those of one side with a middle node are told by that side alone.
+  !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved.
   integer, parameter :: few = 3
+  !> Pairs of a side with a middle node: a zone on one, mirrored or not, follows the pressure no better than one parabola.
+  integer, parameter :: one_side = 3
   !> Pressures that differ by less than this part are the same all over the zone.
   real(wp), parameter :: uniform = 1.0e-6_wp
   !> Part of the product of its diagonal that the determinant of the normal equations must be.
@@ -119,7 +120,8 @@ contains
       if (error%half_length > spacing .and. n > 1) error%resolution = spacing/error%half_length   ! of a single pair it stays 1
       error%unbounded = edge
       if (.not. edge) error%unbounded = has_tip(model, table, line, zone%pairs, largest)
-      error%resolved = error%unbounded .or. n + count(mirrored)*(n - 1) >= merge(few + 1, few, error%order == 6) .and. .not. cut_off
+      error%resolved = n + count(mirrored)*(n - 1) >= few .and. .not. cut_off .and. (n > one_side .or. error%order /= 6)
+      error%resolved = error%resolved .or. error%unbounded
     end if
     error%end_resolution = error%resolution
     if (spacing > 0.0_wp .and. widest > spacing) error%end_resolution = error%resolution*widest/spacing
