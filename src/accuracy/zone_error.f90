@@ -120,8 +120,7 @@ contains
       if (error%half_length > spacing .and. n > 1) error%resolution = spacing/error%half_length   ! of a single pair it stays 1
       error%unbounded = edge
       if (.not. edge) error%unbounded = has_tip(model, table, line, zone%pairs, largest)
-      error%resolved = n + count(mirrored)*(n - 1) >= few .and. .not. cut_off .and. (n > one_side .or. error%order /= 6)
-      error%resolved = error%resolved .or. error%unbounded
+      error%resolved = error%unbounded .or. enough(n, mirrored, error%order) .and. .not. cut_off
     end if
     error%end_resolution = error%resolution
     if (spacing > 0.0_wp .and. widest > spacing) error%end_resolution = error%resolution*widest/spacing
@@ -140,6 +139,16 @@ contains
                         + weights%pressure_energy*energy)*largest
     if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
   end function estimate_zone
+
+  !> Are so many pairs enough to see where the pressure is largest?
+  pure logical function enough(pairs, mirrored, order)
+    integer, intent(in) :: pairs
+    logical, intent(in) :: mirrored(2)   !! the zone goes on beyond its ends
+    integer, intent(in) :: order
+
+    enough = pairs + count(mirrored)*(pairs - 1) >= few
+    if (order == 6) enough = enough .and. pairs > one_side
+  end function enough
 
   !> How far the elements at a pair that can be strained reach into their bodies; of six-node ones half [length].
   pure real(wp) function depth_behind(model, table, pair) result(depth)
