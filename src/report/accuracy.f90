@@ -54,7 +54,7 @@ contains
     end if
     call list_discretisation(file, model, motions, answer, accuracy)
     if (any(accuracy%weak)) call list_weak(file, model, answer, accuracy%weak)
-    if (answer%locking%elements > 0) call list_locking(file, answer%locking)
+    if (answer%locking%elements > 0) call list_locking(file, answer%locking, any(answer%plastic))
     if (answer%gradient%part > 0.0_wp) call list_gradient(file, model, answer%gradient)
     if (model%controls%accuracy > 0.0_wp) call list_wanted(file, model, answer, accuracy)
   end subroutine list_accuracy
@@ -198,14 +198,16 @@ contains
   end subroutine list_weak
 
   !> Elements that are too stiff for what their material does.
-  subroutine list_locking(file, locking)
+  subroutine list_locking(file, locking, yielded)
     type(text_file), intent(in) :: file
     type(locking_type), intent(in) :: locking
+    logical, intent(in) :: yielded   !! something has
 
     call figure(file, 'three-node elements of constant volume', right(text_of(locking%elements), 13))
     call figure(file, 'scatter of their mean stress / equivalent', column_number(locking%scatter, 1.0_wp))
     call file%line('    (Poisson''s ratio '//short_real(high_poisson)// &
-                   ' or more, as yielding has made it: they are too stiff there; six-node elements and CQUAD4 are not)')
+                   ' or more'//trim(merge(', as yielding has made it', repeat(' ', 25), yielded))// &
+                   ': they are too stiff there; six-node elements and CQUAD4 are not)')
   end subroutine list_locking
 
   !> Displacements that are not small.

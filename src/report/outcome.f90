@@ -137,8 +137,8 @@ contains
     if (answer%runs_away) then
       text = text//'the displacements grow without end: it is more than a material with a flat curve can carry (limit load)'
     else
-      text = text//plural(answer%history(n)%iteration, 'iteration')//' leave a change of '// &
-             short_real(answer%history(n)%change)//' of the largest displacement (PARAM MAXIT, METHOD)'
+      text = text//'after '//plural(answer%history(n)%iteration, 'iteration')//' displacements still change by '// &
+             short_real(answer%history(n)%change)//' of the largest (PARAM MAXIT: more of them; METHOD: another way)'
     end if
     if (answer%load_factor < answer%history(n)%load_factor) &
       text = text//'; what follows is for load factor '//short_real(answer%load_factor)//', the largest that converged'

@@ -67,7 +67,8 @@ contains
     call warn(slid_text(model, scene), remarks)
     if (answer%locking%elements > 0) call warn(plural(answer%locking%elements, 'three-node element')// &
       ' of nearly constant volume (Poisson''s ratio '//short_real(high_poisson)// &
-      ' or more, as yielding has made it): too stiff; six-node elements or CQUAD4 would be right', remarks)
+      ' or more'//trim(merge(', as yielding has made it', repeat(' ', 25), any(answer%plastic)))// &
+      '): too stiff; six-node elements or CQUAD4 would be right', remarks)
     if (any(answer%beyond)) call warn(plural(count(answer%beyond), 'element')// &
       ' strained beyond the last point of the table, whose last slope goes on', remarks)
     if (answer%unloaded > 0) call warn(plural(answer%unloaded, 'element')// &

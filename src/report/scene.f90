@@ -307,11 +307,11 @@ contains
 
     if (scene%looked_through) then
       call list_ratio('bodies in each other, of what is allowed', scene%inside)
-      call list_larger('  deepest, of what is allowed there', scene%deepest, scene%inside)
+      call list_larger('  at the deepest place, of what is allowed', scene%deepest, scene%inside)
       if (scene%passed%side > 0) call list_ratio('  on their way through each other', scene%passed)
       if (model%pairs > 0) then
         call list_ratio('pressed across a gap, of what is allowed', scene%apart)
-        call list_larger('  widest, of what is allowed there', scene%widest, scene%apart)
+        call list_larger('  at the widest place, of what is allowed', scene%widest, scene%apart)
         if (scene%beside%ratio >= little) call list_ratio('  beside the other body', scene%beside)
       end if
     end if
