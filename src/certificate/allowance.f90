@@ -11,6 +11,7 @@
 !>                            h/10, however far it slides
 !>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
 module epcont_certificate_allowance
+  use epcont_base_edge, only: edge_tangent
   use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
@@ -193,15 +194,12 @@ contains
     integer, intent(in) :: node(3)
     real(wp), intent(in) :: x(:, :)
     real(wp), intent(out) :: along(2, 2), length
-    real(wp) :: middle(2)
 
-    along(:, 1) = x(:, node(2)) - x(:, node(1))
-    length = norm2(along(:, 1))
-    along(:, 2) = along(:, 1)
-    if (node(3) == 0) return
-    middle = 4.0_wp*(x(:, node(3)) - 0.5_wp*(x(:, node(1)) + x(:, node(2))))
-    along(:, 1) = along(:, 1) + middle
-    along(:, 2) = along(:, 2) - middle
+    associate (own => x(:, node(:merge(3, 2, node(3) > 0))))
+      along(:, 1) = edge_tangent(own, 0.0_wp)
+      along(:, 2) = edge_tangent(own, 1.0_wp)
+      length = norm2(own(:, 2) - own(:, 1))
+    end associate
   end subroutine side_ends
 
   !> From one direction to another, counter-clockwise [rad].

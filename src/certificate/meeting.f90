@@ -1,5 +1,6 @@
 !> What a scene is looked through with: the outlines displaced and as drawn, how their sides meet, and what these allow there.
 module epcont_certificate_meeting
+  use epcont_base_edge, only: edge_tangent
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
   use epcont_certificate_findings, only: overlap_place
@@ -115,10 +116,7 @@ contains
       real(wp), intent(in) :: s
       real(wp) :: tangent(2)
 
-      associate (node => model%body_outline%node(:, side), x => model%x)
-        tangent = x(:, node(2)) - x(:, node(1))
-        if (node(3) > 0) tangent = tangent + 4.0_wp*(1.0_wp - 2.0_wp*s)*(x(:, node(3)) - 0.5_wp*(x(:, node(1)) + x(:, node(2))))
-      end associate
+      tangent = edge_tangent(model%edge_coordinates(model%body_outline%node(:, side)), s)
       along = abs(dot_product(tangent, moved))/max(norm2(tangent), tiny(1.0_wp))
     end function along
   end function part_along

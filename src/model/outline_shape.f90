@@ -2,6 +2,7 @@
 !> Sides of six-node elements are the parabolas that they are.
 module epcont_model_outline_shape
   use epcont_base_box_tree, only: box_tree, most_waiting, new_box_tree
+  use epcont_base_edge, only: edge_tangent
   use epcont_base_kinds, only: wp
   use epcont_model_body_outline, only: outline_type
   implicit none
@@ -96,11 +97,7 @@ contains
     real(wp), intent(in) :: s
     real(wp) :: along(2)
 
-    associate (own => self%x(:, :, side))
-      along = own(:, 2) - own(:, 1)
-      if (self%outline%node(3, side) > 0) &
-        along = along + 4.0_wp*(1.0_wp - 2.0_wp*s)*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
-    end associate
+    along = edge_tangent(self%x(:, :merge(3, 2, self%outline%node(3, side) > 0), side), s)
   end function tangent
 
   !> From where a side begins to where it ends [length].
