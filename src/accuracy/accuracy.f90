@@ -52,6 +52,10 @@ module epcont_accuracy_accuracy
     logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
   end type accuracy_type
 
+  !> Weights are measured on approaches: sums of forces are off by so much more.
+  real(wp), parameter :: of_sums = 1.3_wp
+  !> Errors are so much larger where a zone has too few pairs to see its pressures.
+  real(wp), parameter :: unresolved = 1.4_wp
   !> A part of the products of elements that may not be trusted to cancel.
   real(wp), parameter :: uncertain = 1.0_wp/3.0_wp
 
@@ -117,46 +121,54 @@ contains
     accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
     allocate (off(size(unit_force, 2)), source=0.0_wp)
     do j = 1, size(moved)
-      ! What one body bears more another bears less: there parts cancel that need not.
-      if (moved(j) > motions%count + 1) field%along(1, j) = field%along(2, j)
+      ! Where loads are given, what one pair or body bears more another bears less: parts cancel that need not.
+      if (moved(j) > motions%count) field%along(1, j) = field%along(2, j)
       off(moved(j)) = error_along(model, line, answer, table, unit_force(:, moved(j)), field%along(:, j), field%missing(j), &
                                   accuracy)
     end do
     accuracy%approach = merge(off(:motions%count), -1.0_wp, [(any(moved == j), j=1, motions%count)])
     accuracy%approach_unbounded = [(any(moved == j) .and. is_point_load(model, motions, table, j), j=1, motions%count)]
-    call assess_forces(model, answer, share, column, off(motions%count + 1:), accuracy)
+    call assess_forces(model, line, answer, share, column, off(motions%count + 1:), &
+                       run%scene%problem%flexibility, accuracy)
     call widen_pressures(answer, accuracy)
-    accuracy%weak = find_weak(model, line, answer, run, accuracy)
+    accuracy%weak = find_weak(line, answer, run%scene%problem%flexibility, accuracy)
   end subroutine assess
 
   !> The total contact force, and what of it each body bears: nothing is off where loads alone make it.
-  pure subroutine assess_forces(model, answer, share, column, off, accuracy)
+  pure subroutine assess_forces(model, line, answer, share, column, off, flexibility, accuracy)
     type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     real(wp), intent(in) :: share(:, :)      !! of each pair in the sum of all, and in what bodies bear [pairs, any]
     integer, intent(in) :: column(:, :)      !! of the latter, of each body [2, bodies]
     real(wp), intent(in) :: off(:)           !! errors of these sums that come from errors of gaps [force] [any]
+    real(wp), intent(in) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
     type(accuracy_type), intent(inout) :: accuracy
     real(wp) :: turned, turned_on(2, model%bodies)
+    real(wp), allocatable :: may_bear(:)     !! what open pairs may bear in truth [force] [pairs]
     integer :: c, i
 
-    call find_turned(model, answer, turned, turned_on)
-    accuracy%total_force = with_waves(1) + turned
+    call find_turned(model, line, answer, turned, turned_on)
+    may_bear = forces_of_open(line, answer, flexibility, accuracy)
+    accuracy%total_force = summed(1) + turned
     do i = 1, size(column, 2)
       do c = 1, 2
         if (column(c, i) >= 0) accuracy%body_force(c, i) = 0.0_wp
-        if (column(c, i) > 0) accuracy%body_force(c, i) = with_waves(1 + column(c, i)) + turned_on(c, answer%bodies(i)%body)
+        if (column(c, i) <= 0) cycle
+        accuracy%body_force(c, i) = summed(1 + column(c, i)) + turned_on(c, answer%bodies(i)%body)
       end do
     end do
 
   contains
 
-    pure real(wp) function with_waves(k)
+    !> With what waves and open pairs may bear, unless loads alone make the sum.
+    pure real(wp) function summed(k)
       integer, intent(in) :: k
 
-      with_waves = off(k)
-      if (off(k) > no_error*sum(answer%contact%force)) with_waves = off(k) + force_of_waves(answer, accuracy, share(:, k))
-    end function with_waves
+      summed = of_sums*off(k)
+      if (off(k) > no_error*sum(answer%contact%force)) &
+        summed = summed + force_of_waves(answer, accuracy, share(:, k)) + sum(abs(share(:, k))*may_bear)
+    end function summed
   end subroutine assess_forces
 
   !> a/b, 0 where a is 0.
@@ -240,12 +252,13 @@ contains
     real(wp), intent(in) :: product(2)      !! of all elements, and of each without its sign
     real(wp), intent(in) :: missing         !! part of the unit load's energy
     type(accuracy_type), intent(in) :: accuracy
-    real(wp) :: at_end, between, end_error, short
+    real(wp) :: at_end, between, end_error, short, vague
     type(estimate_weights) :: weights
     integer :: z
 
     short = product(1)
     end_error = 0.0_wp
+    vague = 1.0_wp
     weights = weights_of(3, model%has_rings(), any(answer%plastic))   ! without a zone
     do z = 1, size(accuracy%zone)
       associate (zone => accuracy%zone(z), force => unit_force(answer%zones(z)%pairs))
@@ -256,6 +269,7 @@ contains
         ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says nothing of one.
         if (.not. zone%unbounded) short = short - weights%between*between*sum(force)
         ! Of a tilt of either sign the ends count, not the sum. Waves are as high above as below the gap that is meant.
+        if (.not. zone%resolved) vague = unresolved
         end_error = end_error + sum(abs(force))*(weights%end*at_end + 2.0_wp*zone%wave_height + &
                                                  too_near(model, line, answer, table, zone, answer%zones(z)%pairs))
       end associate
@@ -263,6 +277,7 @@ contains
     ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its field is too small.
     error = weights%product*max(abs(short), uncertain*product(2)) &
             /max(least_energy, 1.0_wp - accuracy%energy_norm**2)/max(least_energy, 1.0_wp - missing) + end_error
+    error = vague*error
   end function error_along
 
   !> Where motions are given, waves of the gap that are not pressed flat bear more than what is meant: the higher they are the more,
@@ -314,38 +329,66 @@ contains
     end do
   end function beside_point_loads
 
-  !> Pairs pressed less than the error of their force, or open less than such a force would close.
-  pure function find_weak(model, line, answer, run, accuracy) result(weak)
-    type(model_type), intent(in) :: model
+  !> What pairs that are open beside a zone may bear in truth: what its pressure is off by there, all of it where nothing is known,
+  !! less what closes the gap [force] [pairs].
+  pure function forces_of_open(line, answer, flexibility, accuracy) result(force)
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
-    type(plastic_run), intent(in) :: run
+    real(wp), intent(in) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
     type(accuracy_type), intent(in) :: accuracy
-    logical, allocatable :: weak(:)
-    real(wp), allocatable :: off(:)   !! error of the pressure [stress] [pairs]
-    real(wp) :: force
+    real(wp), allocatable :: force(:)
+    integer :: k
+
+    force = pressures_off(line, answer, merge(answer%zones%max_pressure, accuracy%zone%pressure, accuracy%zone%pressure < 0.0_wp))
+    do k = 1, size(force)
+      force(k) = force(k)*line%tributary(k)
+      if (answer%contact%touching(k)) force(k) = 0.0_wp
+      if (force(k) > 0.0_wp) force(k) = max(0.0_wp, force(k) - answer%contact%gap(k)/flexibility(k, k))
+    end do
+  end function forces_of_open
+
+  !> An error of each zone's pressure at its pairs, and at those beside its ends [stress] [pairs].
+  pure function pressures_off(line, answer, of_zone) result(off)
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(in) :: answer
+    real(wp), intent(in) :: of_zone(:)   !! [stress] [zones]
+    real(wp), allocatable :: off(:)
     integer :: i, k, z
 
-    allocate (off(model%pairs), source=0.0_wp)
-    do z = 1, size(accuracy%zone)
+    allocate (off(size(line%tributary)), source=0.0_wp)
+    do z = 1, size(of_zone)
       associate (pairs => answer%zones(z)%pairs)
-        off(pairs) = max(0.0_wp, accuracy%zone(z)%pressure)
+        off(pairs) = max(0.0_wp, of_zone(z))
         do i = 1, 2
           associate (beyond => line%neighbour(:, pairs(merge(1, size(pairs), i == 1))))
             do k = 1, 2
-              if (beyond(k) > 0) off(beyond(k)) = max(off(beyond(k)), accuracy%zone(z)%pressure)
+              if (beyond(k) > 0) off(beyond(k)) = max(off(beyond(k)), of_zone(z))
             end do
           end associate
         end do
       end associate
     end do
-    allocate (weak(model%pairs))
-    do k = 1, model%pairs
+  end function pressures_off
+
+  !> Pairs pressed less than the error of their force, or open less than such a force would close.
+  pure function find_weak(line, answer, flexibility, accuracy) result(weak)
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(in) :: answer
+    real(wp), intent(in) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
+    type(accuracy_type), intent(in) :: accuracy
+    logical, allocatable :: weak(:)
+    real(wp), allocatable :: off(:)   !! error of the pressure [stress] [pairs]
+    real(wp) :: force
+    integer :: k
+
+    off = pressures_off(line, answer, accuracy%zone%pressure)
+    allocate (weak(size(off)))
+    do k = 1, size(off)
       force = off(k)*line%tributary(k) + accuracy%sensitivity%rounding*maxval(answer%contact%force)
       if (answer%contact%touching(k)) then
         weak(k) = answer%contact%force(k) <= force
       else
-        weak(k) = answer%contact%gap(k) <= run%scene%problem%flexibility(k, k)*force
+        weak(k) = answer%contact%gap(k) <= flexibility(k, k)*force
       end if
     end do
   end function find_weak

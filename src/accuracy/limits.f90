@@ -12,7 +12,7 @@ module epcont_accuracy_limits
   use epcont_result_contact_line, only: contact_line, shared
   implicit none
   private
-  public :: bend_at, corner, edge_pairs, gap_bulge, has_tip
+  public :: bend_at, beyond, corner, edge_pairs, gap_bulge, has_tip
 
   !> A tip's curvature is so many times that of the nodes around it.
   real(wp), parameter :: alone = 4.0_wp

@@ -74,18 +74,29 @@ contains
     end do
   end function force_of_depth
 
-  !> How much more or less force there would be in narrow zones if they pressed along the node's own normal instead of that of
-  !! what it faces: of smooth boundaries these are the same only where the bodies touch.
-  pure subroutine find_turned(model, answer, total, of_body)
+  !> How much more or less force there would be if pairs pressed another way that may be the right one.
+  pure subroutine find_turned(model, line, answer, total, of_body)
     type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     real(wp), intent(out) :: total                      !! of the total contact force [force]
     real(wp), intent(out) :: of_body(2, model%bodies)   !! of the resultant on each body [force]
-    real(wp) :: along, change(2), on(2), own(2), resultant(2, model%bodies)
-    integer :: i, k, z
 
     total = 0.0_wp
     of_body = 0.0_wp
+    call turn_narrow_zones(model, answer, total, of_body)
+    if (allocated(line%place)) call turn_shared_places(model, line%place, answer%contact%force, total, of_body)
+  end subroutine find_turned
+
+  !> Narrow zones may press along the node's own normal instead of that of what it faces: of smooth boundaries these are the same
+  !! only where the bodies touch.
+  pure subroutine turn_narrow_zones(model, answer, total, of_body)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    real(wp), intent(inout) :: total, of_body(:, :)
+    real(wp) :: along, change(2), on(2), own(2), resultant(2, model%bodies)
+    integer :: i, k, z
+
     resultant = resultants(model, answer%contact%force)
     do z = 1, size(answer%zones)
       associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
@@ -105,7 +116,37 @@ contains
         end do
       end associate
     end do
-  end subroutine find_turned
+  end subroutine turn_narrow_zones
+
+  !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the strongest there does.
+  pure subroutine turn_shared_places(model, place, force, total, of_body)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: place(:)    !! of each pair [pairs]
+    real(wp), intent(in) :: force(:)   !! [pairs]
+    real(wp), intent(inout) :: total, of_body(:, :)
+    real(wp) :: change(2)
+    integer :: k
+    integer :: strongest(maxval(place))   !! pair at each place; 0: none bears anything
+
+    strongest = 0
+    do k = 1, size(force)
+      associate (first => strongest(place(k)))
+        if (force(k) <= 0.0_wp) cycle
+        if (first == 0) first = k
+        if (force(k) > force(first)) first = k
+      end associate
+    end do
+    do k = 1, size(force)
+      if (force(k) <= 0.0_wp .or. strongest(place(k)) == k) cycle
+      associate (first => strongest(place(k)), a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)))
+        change = force(k)*abs(model%normal(:, k) - merge(1.0_wp, -1.0_wp, model%body(model%pair_node(2, first)) == b) &
+                                                   *model%normal(:, first))
+        total = total + norm2(change)
+        of_body(:, a) = of_body(:, a) + change
+        of_body(:, b) = of_body(:, b) + change
+      end associate
+    end do
+  end subroutine turn_shared_places
 
   !> a/b - 1, between -1 and 1.
   pure real(wp) function excess(a, b)

@@ -72,8 +72,8 @@ contains
     real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
     real(wp), allocatable :: s(:)     !! place of each of them, from the first on [length]
     integer, allocatable :: inward(:) !! in p and s, from one end on
-    real(wp) :: off(2), beyond(2), coarse, flattening, largest, open, short, spacing, step, uncertain, waves, widest
-    logical :: cut_off, edge, ends, mirrored(2)   !! ends: an end of the zone is one of contact, not of the candidates
+    real(wp) :: off(2), beyond(2), coarse, flattening, largest, open, short, spacing, step, uncertain, widest
+    logical :: cut_off, edge, waves, ends, mirrored(2)   !! ends: an end of the zone is one of contact, not of the candidates
     integer :: e, k, n, peak
 
     n = size(zone%pairs)
@@ -125,7 +125,7 @@ contains
     error%end_resolution = error%resolution
     if (spacing > 0.0_wp .and. widest > spacing) error%end_resolution = error%resolution*widest/spacing
     call find_waves(model, table, line, zone%pairs, flattening, waves, error%wave_height)
-    error%waviness = waves/largest
+    if (waves) error%waviness = flattening/largest
     if (error%half_width >= 0.0_wp) error%half_width = error%half_width + flattening/largest*zone%half_width   ! the load is given
     if (flattening > waves_alone*largest .and. .not. error%unbounded) error%resolved = .false.
     if (error%unbounded .or. .not. error%resolved) return
