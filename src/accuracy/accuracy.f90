@@ -329,8 +329,8 @@ contains
     end do
   end function beside_point_loads
 
-  !> What pairs that are open beside a zone may bear in truth: what its pressure is off by there, all of it where nothing is known,
-  !! less what closes the gap [force] [pairs].
+  !> What pairs that are open beside a zone may bear in truth: what its pressure is off by there, less what closes the gap
+  !! [force] [pairs].
   pure function forces_of_open(line, answer, flexibility, accuracy) result(force)
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
@@ -339,7 +339,7 @@ contains
     real(wp), allocatable :: force(:)
     integer :: k
 
-    force = pressures_off(line, answer, merge(answer%zones%max_pressure, accuracy%zone%pressure, accuracy%zone%pressure < 0.0_wp))
+    force = pressures_off(line, answer, accuracy%zone%pressure)
     do k = 1, size(force)
       force(k) = force(k)*line%tributary(k)
       if (answer%contact%touching(k)) force(k) = 0.0_wp
