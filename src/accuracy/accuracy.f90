@@ -128,28 +128,24 @@ contains
     end do
     accuracy%approach = merge(off(:motions%count), -1.0_wp, [(any(moved == j), j=1, motions%count)])
     accuracy%approach_unbounded = [(any(moved == j) .and. is_point_load(model, motions, table, j), j=1, motions%count)]
-    call assess_forces(model, line, answer, share, column, off(motions%count + 1:), &
-                       run%scene%problem%flexibility, accuracy)
+    call assess_forces(model, line, answer, share, column, off(motions%count + 1:), accuracy)
     call widen_pressures(answer, accuracy)
-    accuracy%weak = find_weak(line, answer, run%scene%problem%flexibility, accuracy)
+    accuracy%weak = find_weak(model, line, answer, run, accuracy)
   end subroutine assess
 
   !> The total contact force, and what of it each body bears: nothing is off where loads alone make it.
-  pure subroutine assess_forces(model, line, answer, share, column, off, flexibility, accuracy)
+  pure subroutine assess_forces(model, line, answer, share, column, off, accuracy)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     real(wp), intent(in) :: share(:, :)      !! of each pair in the sum of all, and in what bodies bear [pairs, any]
     integer, intent(in) :: column(:, :)      !! of the latter, of each body [2, bodies]
     real(wp), intent(in) :: off(:)           !! errors of these sums that come from errors of gaps [force] [any]
-    real(wp), intent(in) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
     type(accuracy_type), intent(inout) :: accuracy
     real(wp) :: turned, turned_on(2, model%bodies)
-    real(wp), allocatable :: may_bear(:)     !! what open pairs may bear in truth [force] [pairs]
     integer :: c, i
 
     call find_turned(model, line, answer, turned, turned_on)
-    may_bear = forces_of_open(line, answer, flexibility, accuracy)
     accuracy%total_force = summed(1) + turned
     do i = 1, size(column, 2)
       do c = 1, 2
@@ -161,13 +157,12 @@ contains
 
   contains
 
-    !> With what waves and open pairs may bear, unless loads alone make the sum.
+    !> With what waves bear, unless loads alone make the sum.
     pure real(wp) function summed(k)
       integer, intent(in) :: k
 
       summed = of_sums*off(k)
-      if (off(k) > no_error*sum(answer%contact%force)) &
-        summed = summed + force_of_waves(answer, accuracy, share(:, k)) + sum(abs(share(:, k))*may_bear)
+      if (off(k) > no_error*sum(answer%contact%force)) summed = summed + force_of_waves(answer, accuracy, share(:, k))
     end function summed
   end subroutine assess_forces
 
@@ -329,66 +324,38 @@ contains
     end do
   end function beside_point_loads
 
-  !> What pairs that are open beside a zone may bear in truth: what its pressure is off by there, less what closes the gap
-  !! [force] [pairs].
-  pure function forces_of_open(line, answer, flexibility, accuracy) result(force)
+  !> Pairs pressed less than the error of their force, or open less than such a force would close.
+  pure function find_weak(model, line, answer, run, accuracy) result(weak)
+    type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
-    real(wp), intent(in) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
+    type(plastic_run), intent(in) :: run
     type(accuracy_type), intent(in) :: accuracy
-    real(wp), allocatable :: force(:)
-    integer :: k
-
-    force = pressures_off(line, answer, accuracy%zone%pressure)
-    do k = 1, size(force)
-      force(k) = force(k)*line%tributary(k)
-      if (answer%contact%touching(k)) force(k) = 0.0_wp
-      if (force(k) > 0.0_wp) force(k) = max(0.0_wp, force(k) - answer%contact%gap(k)/flexibility(k, k))
-    end do
-  end function forces_of_open
-
-  !> An error of each zone's pressure at its pairs, and at those beside its ends [stress] [pairs].
-  pure function pressures_off(line, answer, of_zone) result(off)
-    type(contact_line), intent(in) :: line
-    type(answer_type), intent(in) :: answer
-    real(wp), intent(in) :: of_zone(:)   !! [stress] [zones]
-    real(wp), allocatable :: off(:)
+    logical, allocatable :: weak(:)
+    real(wp), allocatable :: off(:)   !! error of the pressure [stress] [pairs]
+    real(wp) :: force
     integer :: i, k, z
 
-    allocate (off(size(line%tributary)), source=0.0_wp)
-    do z = 1, size(of_zone)
+    allocate (off(model%pairs), source=0.0_wp)
+    do z = 1, size(accuracy%zone)
       associate (pairs => answer%zones(z)%pairs)
-        off(pairs) = max(0.0_wp, of_zone(z))
+        off(pairs) = max(0.0_wp, accuracy%zone(z)%pressure)
         do i = 1, 2
           associate (beyond => line%neighbour(:, pairs(merge(1, size(pairs), i == 1))))
             do k = 1, 2
-              if (beyond(k) > 0) off(beyond(k)) = max(off(beyond(k)), of_zone(z))
+              if (beyond(k) > 0) off(beyond(k)) = max(off(beyond(k)), accuracy%zone(z)%pressure)
             end do
           end associate
         end do
       end associate
     end do
-  end function pressures_off
-
-  !> Pairs pressed less than the error of their force, or open less than such a force would close.
-  pure function find_weak(line, answer, flexibility, accuracy) result(weak)
-    type(contact_line), intent(in) :: line
-    type(answer_type), intent(in) :: answer
-    real(wp), intent(in) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
-    type(accuracy_type), intent(in) :: accuracy
-    logical, allocatable :: weak(:)
-    real(wp), allocatable :: off(:)   !! error of the pressure [stress] [pairs]
-    real(wp) :: force
-    integer :: k
-
-    off = pressures_off(line, answer, accuracy%zone%pressure)
-    allocate (weak(size(off)))
-    do k = 1, size(off)
+    allocate (weak(model%pairs))
+    do k = 1, model%pairs
       force = off(k)*line%tributary(k) + accuracy%sensitivity%rounding*maxval(answer%contact%force)
       if (answer%contact%touching(k)) then
         weak(k) = answer%contact%force(k) <= force
       else
-        weak(k) = answer%contact%gap(k) <= flexibility(k, k)*force
+        weak(k) = answer%contact%gap(k) <= run%scene%problem%flexibility(k, k)*force
       end if
     end do
   end function find_weak
