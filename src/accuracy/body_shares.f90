@@ -21,7 +21,7 @@ contains
     type(free_motions), intent(in) :: motions
     type(body_force), intent(in) :: bodies(:)
     real(wp), allocatable, intent(out) :: share(:, :)   !! of a unit force at each pair [pairs, any]
-    !> The column of each component; 0: loads alone make it, or nothing; negative: bodies are too many [2, bodies].
+    !> The column of each component; 0: loads alone make it; negative: bodies are too many [2, bodies].
     integer, allocatable, intent(out) :: column(:, :)
     real(wp), allocatable :: one(:)
     integer :: c, i, k
@@ -33,7 +33,7 @@ contains
     do i = 1, size(bodies)
       do c = merge(2, 1, model%has_rings()), 2
         one = shares_of_pairs(model, bodies(i)%body, c)
-        if (all(abs(one) <= equal) .or. is_free(model, motions, bodies(i)%body, c)) cycle
+        if (is_free(model, motions, bodies(i)%body, c)) cycle
         do k = 1, size(share, 2)
           if (all(abs(share(:, k) - one) <= equal) .or. all(abs(share(:, k) + one) <= equal)) exit
         end do

@@ -85,6 +85,7 @@ contains
     total = 0.0_wp
     of_body = 0.0_wp
     call turn_narrow_zones(model, answer, total, of_body)
+    call turn_wide_zones(model, answer, of_body)
     if (allocated(line%place)) call turn_shared_places(model, line%place, answer%contact%force, total, of_body)
   end subroutine find_turned
 
@@ -117,6 +118,33 @@ contains
       end associate
     end do
   end subroutine turn_narrow_zones
+
+  !> Of wide zones either body's normals may be the right ones: half of what that makes for bodies as a whole.
+  pure subroutine turn_wide_zones(model, answer, of_body)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    real(wp), intent(inout) :: of_body(:, :)
+    real(wp) :: lean(2, model%bodies), own(2)
+    integer :: i, z
+
+    lean = 0.0_wp
+    do z = 1, size(answer%zones)
+      associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
+        if (bearing_pairs(model, force(pairs)) <= narrow) cycle
+        do i = 1, size(pairs)
+          associate (k => pairs(i))
+            own = -smooth_normal(model, k)
+            if (all(own == 0.0_wp)) cycle
+            associate (a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)))
+              lean(:, a) = lean(:, a) - 0.5_wp*force(k)*(own - model%normal(:, k))
+              lean(:, b) = lean(:, b) + 0.5_wp*force(k)*(own - model%normal(:, k))
+            end associate
+          end associate
+        end do
+      end associate
+    end do
+    of_body = of_body + abs(lean)
+  end subroutine turn_wide_zones
 
   !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the strongest there does.
   pure subroutine turn_shared_places(model, place, force, total, of_body)

@@ -14,6 +14,8 @@ module epcont_model_line_warnings
 
   !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off by 3 % and more.
   real(wp), parameter :: finer = 1.3_wp
+  !> Sides so many times longer than those of the slave cannot follow it: where little of them touches, approaches are off as well.
+  real(wp), parameter :: far_coarser = 4.0_wp
   !> Gaps of curves over sides that are chords are exact to this part of how high the curves rise above them; and coordinates
   !> have so many digits where a card has eight columns.
   real(wp), parameter :: curve_error = 0.01_wp, digits = 1.0e-7_wp
@@ -77,6 +79,7 @@ contains
     type(line_contact), intent(in) :: contact
     type(faces_type), intent(in) :: faces
     type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: advice, text
     real(wp) :: nearest, sides(2)
     integer :: k, row, s
 
@@ -98,9 +101,15 @@ contains
       end do
     end associate
     if (sides(1)*finer >= sides(2)) return
+    if (sides(1)*far_coarser < sides(2)) then
+      text = 'pressures and approaches will be those of facets'
+      advice = 'lines of about the same fineness'
+    else
+      text = 'pressures will show these as facets'
+      advice = 'SLAVE and MASTER exchanged, or lines of about the same fineness'
+    end if
     call faults%add_warning(deck%place(card_bconp, i, 2), deck%identity(card_bconp, i)//': sides of the slave line are '// &
-                            short_real(sides(2)/sides(1))//' times shorter than those that they face: pressures will show these'// &
-                            ' as facets', 'SLAVE and MASTER exchanged, or lines of about the same fineness')
+                            short_real(sides(2)/sides(1))//' times shorter than those that they face: '//text, advice)
 
   contains
 
