@@ -1,4 +1,5 @@
-!> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which way it presses.
+!> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which way it presses; and which
+!> way pairs beside a corner, and wide zones as a whole, may press.
 module epcont_accuracy_narrow_zone
   use epcont_accuracy_contact_stress, only: surface_compliance
   use epcont_accuracy_limits, only: gap_bulge
