@@ -52,8 +52,8 @@ module epcont_accuracy_accuracy
     logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
   end type accuracy_type
 
-  !> Weights are measured on approaches: sums of forces are off by so much more.
-  real(wp), parameter :: of_sums = 1.3_wp
+  !> Weights are measured on approaches: forces that pairs or bodies share are off by so much more.
+  real(wp), parameter :: of_shares = 1.3_wp
   !> Errors are so much larger where a zone has too few pairs to see its pressures.
   real(wp), parameter :: unresolved = 1.4_wp
   !> A part of the products of elements that may not be trusted to cancel.
@@ -79,6 +79,7 @@ contains
     integer, allocatable :: column(:, :)        !! of what bodies bear, of each body [2, bodies]
     integer, allocatable :: moved(:)            !! unit loads that say something
     logical :: carried, pressed
+    logical :: shared   !! what one pair or body bears more another bears less: parts cancel that need not
     integer :: j
 
     pressed = any(answer%contact%force > 0.0_wp)
@@ -121,10 +122,10 @@ contains
     accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
     allocate (off(size(unit_force, 2)), source=0.0_wp)
     do j = 1, size(moved)
-      ! Where loads are given, what one pair or body bears more another bears less: parts cancel that need not.
-      if (moved(j) > motions%count) field%along(1, j) = field%along(2, j)
+      shared = moved(j) > max(1, motions%count)
+      if (shared) field%along(1, j) = field%along(2, j)
       off(moved(j)) = error_along(model, line, answer, table, unit_force(:, moved(j)), field%along(:, j), field%missing(j), &
-                                  accuracy)
+                                  accuracy)*merge(of_shares, 1.0_wp, shared)
     end do
     accuracy%approach = merge(off(:motions%count), -1.0_wp, [(any(moved == j), j=1, motions%count)])
     accuracy%approach_unbounded = [(any(moved == j) .and. is_point_load(model, motions, table, j), j=1, motions%count)]
@@ -161,7 +162,7 @@ contains
     pure real(wp) function summed(k)
       integer, intent(in) :: k
 
-      summed = of_sums*off(k)
+      summed = off(k)
       if (off(k) > no_error*sum(answer%contact%force)) summed = summed + force_of_waves(answer, accuracy, share(:, k))
     end function summed
   end subroutine assess_forces

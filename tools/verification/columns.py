@@ -166,7 +166,7 @@ def check_zones(report, scene, tables, tolerance):
 
 
 def check_bodies(report, scene, tables, tolerance):
-    """What the pairs exert on each body that has elements; the first node of one has the lowest number."""
+    """What the pairs exert on each body that has elements."""
     body, bodies = scene.bodies(), {}
     for name, nodes, _ in scene.element.values():
         bodies.setdefault(body[nodes[0]], []).extend(nodes)
@@ -176,9 +176,11 @@ def check_bodies(report, scene, tables, tolerance):
         for node, weight in own.weights.items():
             if body[node] in terms:
                 terms[body[node]].append([force * weight * own.normal[c] for c in (0, 1)])
+    order = list(dict.fromkeys(body[node] for node in tables.nodes))   # bodies are numbered by their first nodes, those of single nodes too
+    firsts = {next(node for node in tables.nodes if body[node] == b): b for b in order if b in bodies}
     told = {int(row["first_node"]): row for row in tables.bodies.values()}
-    firsts = {min(node for node in body if body[node] == b): b for b in bodies}
-    report.line("bodies first_node", len(firsts), str(len(told)), sorted(firsts) == sorted(told) and len(told) == len(tables.bodies))
+    ours = {order.index(b) + 1: first for first, b in firsts.items()}
+    report.line("bodies body, first_node", len(ours), str(len(told)), ours == {number: int(row["first_node"]) for number, row in tables.bodies.items()})
     for c, name in enumerate(("force_x", "force_y")):
         cells = []
         for first, b in firsts.items():
