@@ -23,7 +23,7 @@ from deceiving.scenes import PLANE, RINGS, Scene, Twin, deck, lines_of  # noqa: 
 from deceiving.shapes import cells, disc  # noqa: E402
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
-SOUND = ("cylinder_on_block", 0)   # nothing is wrong with this scene
+SOUND = ("stack", 2)   # nothing is wrong with this scene
 
 # Runs the program, then falsifies a column of a table of one deck.
 FALSIFIER = """#!{python}
@@ -235,12 +235,12 @@ class CommandLine(Case):
     def test_a_table_and_the_same_again(self):
         status, text = self.run_it("--family", SOUND[0], "--scenes", "2")
         self.assertEqual(status, 0, text)
-        self.assertRegex(text, r"cylinder_on_block +2 +2 +0 +0 +0 +0 +0 +0 +0 ")
+        self.assertRegex(text, r"stack +2 +2 +0 +0 +0 +0 +0 +0 +0 ")
         self.assertEqual(self.run_it("--family", SOUND[0], "--scenes", "2"), (status, text))
         self.assertFalse((self.directory / "kept").exists())
 
     def test_one_scene_at_length(self):
-        status, text = self.run_it("--family", SOUND[0], "--only", "0")
+        status, text = self.run_it("--family", SOUND[0], "--only", str(SOUND[1]))
         self.assertIn("exchanged", text)
         self.assertIn("half-width", text)
 
@@ -248,10 +248,10 @@ class CommandLine(Case):
         before = deceive.Judge
         deceive.Judge = lambda *arguments: lambda *scene: self.found(before(*arguments)(*scene))
         self.addCleanup(setattr, deceive, "Judge", before)
-        status, text = self.run_it("--family", SOUND[0], "--only", "0")
+        status, text = self.run_it("--family", SOUND[0], "--only", str(SOUND[1]))
         self.assertEqual(status, 1)
         self.assertIn("rotated: off", text)
-        self.assertEqual({path.name for path in (self.directory / "kept" / "cylinder_on_block_0").iterdir()}, {"base.dat", "finer.dat", "rotated.dat"})
+        self.assertEqual({path.name for path in (self.directory / "kept" / "{}_{}".format(*SOUND)).iterdir()}, {"base.dat", "finer.dat", "rotated.dat"})
 
     def found(self, verdict):
         verdict.faults.append(Fault("twin", "rotated", "off"))
