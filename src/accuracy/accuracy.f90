@@ -5,7 +5,7 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_body_shares, only: find_shares
   use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
   use epcont_accuracy_error_fields, only: compare_fields, error_fields
-  use epcont_accuracy_narrow_zone, only: find_turned, too_near
+  use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
   use epcont_accuracy_unit_motion, only: closing_forces, unit_forces
@@ -88,7 +88,7 @@ contains
     if (carried) then
       problem = scale_problem(run%scene%problem)
       basis = new_basis(problem, answer%contact%force > 0.0_wp)
-      call find_shares(model, motions, answer%bodies, share, column)
+      call find_shares(model, motions, answer%contact%touching, answer%bodies, share, column)
       share = reshape([spread(1.0_wp, 1, model%pairs), share], [model%pairs, 1 + size(share, 2)])
       unit_force = reshape([unit_forces(problem, basis, motions%count), closing_forces(problem, basis, share)], &
                            [model%pairs, motions%count + size(share, 2)])
@@ -123,10 +123,13 @@ contains
     allocate (off(size(unit_force, 2)), source=0.0_wp)
     do j = 1, size(moved)
       shared = moved(j) > max(1, motions%count)
-      if (shared) field%along(1, j) = field%along(2, j)
       off(moved(j)) = error_along(model, line, answer, table, unit_force(:, moved(j)), field%along(:, j), field%missing(j), &
-                                  accuracy)*merge(of_shares, 1.0_wp, shared)
+                                  shared, accuracy)
     end do
+    associate (of_motions => matmul(transpose(share), unit_force(:, :motions%count)))
+      off(motions%count + 1:) = off(motions%count + 1:) &
+                                + sum(abs(matmul(of_motions, shifted_loads(model, line, motions, answer))), dim=2)
+    end associate
     accuracy%approach = merge(off(:motions%count), -1.0_wp, [(any(moved == j), j=1, motions%count)])
     accuracy%approach_unbounded = [(any(moved == j) .and. is_point_load(model, motions, table, j), j=1, motions%count)]
     call assess_forces(model, line, answer, share, column, off(motions%count + 1:), accuracy)
@@ -144,9 +147,15 @@ contains
     real(wp), intent(in) :: off(:)           !! errors of these sums that come from errors of gaps [force] [any]
     type(accuracy_type), intent(inout) :: accuracy
     real(wp) :: turned, turned_on(2, model%bodies)
+    logical :: given(2, model%bodies)
     integer :: c, i
 
-    call find_turned(model, line, answer, turned, turned_on)
+    given = .false.
+    do i = 1, size(column, 2)
+      given(:, answer%bodies(i)%body) = column(:, i) == 0
+      if (model%has_rings()) given(1, answer%bodies(i)%body) = .false.
+    end do
+    call find_turned(model, line, answer, given, turned, turned_on)
     accuracy%total_force = summed(1) + turned
     do i = 1, size(column, 2)
       do c = 1, 2
@@ -239,7 +248,7 @@ contains
 
   !> Error of an approach, or of the total contact force: the product of the errors of the scene and of its answer to a unit load
   !! along the motion, or to closing gaps, signed, with what contact at nodes alone lets the bodies come too near.
-  pure real(wp) function error_along(model, line, answer, table, unit_force, product, missing, accuracy) result(error)
+  pure real(wp) function error_along(model, line, answer, table, unit_force, product, missing, shared, accuracy) result(error)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
@@ -247,12 +256,13 @@ contains
     real(wp), intent(in) :: unit_force(:)   !! contact forces under the unit load [pairs]
     real(wp), intent(in) :: product(2)      !! of all elements, and of each without its sign
     real(wp), intent(in) :: missing         !! part of the unit load's energy
+    logical, intent(in) :: shared           !! of forces that may go from one pair or body to another
     type(accuracy_type), intent(in) :: accuracy
-    real(wp) :: at_end, between, end_error, short, vague
+    real(wp) :: at_end, between, end_error, near, short, vague
     type(estimate_weights) :: weights
     integer :: z
 
-    short = product(1)
+    near = 0.0_wp
     end_error = 0.0_wp
     vague = 1.0_wp
     weights = weights_of(3, model%has_rings(), any(answer%plastic))   ! without a zone
@@ -263,7 +273,7 @@ contains
         between = at_end*zone%resolution**2
         at_end = at_end*zone%end_resolution**2
         ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says nothing of one.
-        if (.not. zone%unbounded) short = short - weights%between*between*sum(force)
+        if (.not. zone%unbounded) near = near + weights%between*between*sum(force)
         ! Of a tilt of either sign the ends count, not the sum. Waves are as high above as below the gap that is meant.
         if (.not. zone%resolved) vague = unresolved
         end_error = end_error + sum(abs(force))*(weights%end*at_end + 2.0_wp*zone%wave_height + &
@@ -271,7 +281,9 @@ contains
       end associate
     end do
     ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its field is too small.
-    error = weights%product*max(abs(short), uncertain*product(2)) &
+    short = max(abs(product(1) - near), uncertain*product(2))
+    if (shared) short = of_shares*(product(2) + abs(near))   ! no part cancels another
+    error = weights%product*short &
             /max(least_energy, 1.0_wp - accuracy%energy_norm**2)/max(least_energy, 1.0_wp - missing) + end_error
     error = vague*error
   end function error_along

@@ -9,19 +9,21 @@ module epcont_accuracy_body_shares
   public :: find_shares
 
   !> Bodies up to which errors are estimated of what each bears: one costs as much as two load cases.
-  integer, parameter :: most_bodies = 12
+  integer, parameter, public :: most_bodies = 12
   !> Shares, and motions, that differ by less than this are equal.
   real(wp), parameter :: equal = 1.0e-9_wp
 
 contains
 
-  !> One column for each resultant that may be off by itself; what two bodies exert on each other is one.
-  pure subroutine find_shares(model, motions, bodies, share, column)
+  !> One column for each resultant that may be off by itself; what two bodies exert on each other is one. Of bodies that no pair
+  !! touches, though some might, nothing is known.
+  pure subroutine find_shares(model, motions, touching, bodies, share, column)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
+    logical, intent(in) :: touching(:)   !! [pairs]
     type(body_force), intent(in) :: bodies(:)
     real(wp), allocatable, intent(out) :: share(:, :)   !! of a unit force at each pair [pairs, any]
-    !> The column of each component; 0: loads alone make it; negative: bodies are too many [2, bodies].
+    !> The column of each component; 0: loads alone make it; negative: not known [2, bodies].
     integer, allocatable, intent(out) :: column(:, :)
     real(wp), allocatable :: one(:)
     integer :: c, i, k
@@ -34,6 +36,10 @@ contains
       do c = merge(2, 1, model%has_rings()), 2
         one = shares_of_pairs(model, bodies(i)%body, c)
         if (is_free(model, motions, bodies(i)%body, c)) cycle
+        if (any(abs(one) > equal) .and. all(bodies(i)%resultant == 0.0_wp)) then
+          if (.not. any(abs(one) > equal .and. touching)) column(c, i) = -1
+          if (column(c, i) < 0) cycle
+        end if
         do k = 1, size(share, 2)
           if (all(abs(share(:, k) - one) <= equal) .or. all(abs(share(:, k) + one) <= equal)) exit
         end do
@@ -43,24 +49,42 @@ contains
     end do
   end subroutine find_shares
 
-  !> Is a body free to move along a component? Then contact bears its loads that way.
+  !> Is a body free to move along a component? Then contact bears its loads that way. Motions are measured at SUPORT freedoms: that
+  !! one may be a sum of some that turn the body.
   pure logical function is_free(model, motions, body, c)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
     integer, intent(in) :: body, c
-    real(wp) :: first(2), u(2)
-    integer :: i, k
+    real(wp), allocatable :: basis(:, :), rest(:, :)   !! displacements of its nodes [2, nodes]
+    real(wp), allocatable :: moved(:, :, :)            !! orthonormal ones of its motions [2, nodes, any]
+    integer, allocatable :: nodes(:)
+    integer :: i, m
 
-    is_free = .false.
-    do k = 1, motions%count
-      if (motions%body(k) /= body .or. is_free) cycle
-      first = motions%displacement(model, findloc(model%body, body, dim=1), k)
-      is_free = abs(first(3 - c)) <= equal*abs(first(c))
-      do i = 1, model%nodes
-        if (model%body(i) /= body .or. .not. is_free) cycle
-        u = motions%displacement(model, i, k) - first
-        is_free = norm2(u) <= equal*norm2(first)
-      end do
+    nodes = pack([(i, i=1, model%nodes)], model%body == body)
+    allocate (moved(2, size(nodes), 0))
+    do m = 1, motions%count
+      if (motions%body(m) /= body) cycle
+      basis = reshape([(motions%displacement(model, nodes(i), m), i=1, size(nodes))], [2, size(nodes)])
+      rest = across(basis)
+      if (norm2(rest) > equal*norm2(basis)) moved = reshape([moved, rest/norm2(rest)], [2, size(nodes), size(moved, 3) + 1])
     end do
+    basis = spread(merge(1.0_wp, 0.0_wp, [1, 2] == c), 2, size(nodes))
+    is_free = norm2(across(basis)) <= equal*norm2(basis)
+
+  contains
+
+    !> What none of the motions makes of a displacement; twice, for rounding.
+    pure function across(displacement) result(rest)
+      real(wp), intent(in) :: displacement(:, :)
+      real(wp) :: rest(2, size(nodes))
+      integer :: k
+
+      rest = displacement
+      do k = 1, 2*size(moved, 3)
+        associate (along => moved(:, :, 1 + mod(k - 1, size(moved, 3))))
+          rest = rest - sum(along*rest)*along
+        end associate
+      end do
+    end function across
   end function is_free
 end module epcont_accuracy_body_shares

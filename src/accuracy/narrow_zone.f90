@@ -1,5 +1,5 @@
-!> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which way it presses; and which
-!> way pairs beside a corner, and wide zones as a whole, may press.
+!> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which way it presses; and
+!> which way pairs beside a corner, and wide zones as a whole, may press.
 module epcont_accuracy_narrow_zone
   use epcont_accuracy_contact_stress, only: surface_compliance
   use epcont_accuracy_limits, only: gap_bulge
@@ -8,12 +8,13 @@ module epcont_accuracy_narrow_zone
   use epcont_base_kinds, only: wp
   use epcont_model_boundary_line, only: boundary_line
   use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: resultants
-  use epcont_result_contact_line, only: contact_line
+  use epcont_result_contact_line, only: contact_line, distance
   implicit none
   private
-  public :: find_turned, too_near
+  public :: find_turned, shifted_loads, too_near
 
   !> Pairs up to which a zone is too narrow to tell where its contact begins.
   integer, parameter :: narrow = 2
@@ -22,6 +23,8 @@ module epcont_accuracy_narrow_zone
   real(wp), parameter :: finer = 0.7_wp
   !> The place where the bodies touch is farther from a pair than the normals there tell, by this much at most.
   real(wp), parameter :: askew = 1.25_wp
+  !> A zone whose normals are across what stays the same, but for this part, does not bear it.
+  real(wp), parameter :: bears_on = 0.3_wp
   !> A force, or a resultant, below this part of all forces is none.
   real(wp), parameter :: no_force = 1.0e-6_wp
 
@@ -75,26 +78,61 @@ contains
     end do
   end function force_of_depth
 
+  !> What the force of a narrow zone does along each motion, more or less, where it is half a side aside, of two pairs a quarter:
+  !! where in its sides contact is, nothing tells [force*length or force] [motions, zones].
+  pure function shifted_loads(model, line, motions, answer) result(load)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    type(free_motions), intent(in) :: motions
+    type(answer_type), intent(in) :: answer
+    real(wp) :: load(motions%count, size(answer%zones))
+    real(wp) :: aside
+    integer :: bearing, i, k, m, z
+
+    load = 0.0_wp
+    do z = 1, size(answer%zones)
+      associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
+        bearing = bearing_pairs(model, force(pairs))
+        if (bearing > narrow) cycle
+        k = pairs(maxloc(force(pairs), dim=1))
+        aside = 0.0_wp
+        do i = 1, 2
+          if (line%neighbour(i, k) > 0) aside = max(aside, 0.5_wp*distance(model, line, k, line%neighbour(i, k))/bearing)
+        end do
+        do i = 1, 2   ! A is pushed against the normal, B along it
+          associate (node => model%pair_node(i, k))
+            do m = 1, motions%count
+              if (motions%body(m) /= model%body(node)) cycle
+              load(m, z) = load(m, z) + (2*i - 3)*sum(force(pairs))*aside*motions%coefficient(3, motions%parts%of_node(node), m)
+            end do
+          end associate
+        end do
+      end associate
+    end do
+  end function shifted_loads
+
   !> How much more or less force there would be if pairs pressed another way that may be the right one.
-  pure subroutine find_turned(model, line, answer, total, of_body)
+  pure subroutine find_turned(model, line, answer, given, total, of_body)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
+    logical, intent(in) :: given(:, :)                  !! loads make that component of the resultant [2, bodies]
     real(wp), intent(out) :: total                      !! of the total contact force [force]
     real(wp), intent(out) :: of_body(2, model%bodies)   !! of the resultant on each body [force]
 
     total = 0.0_wp
     of_body = 0.0_wp
-    call turn_narrow_zones(model, answer, total, of_body)
-    call turn_wide_zones(model, answer, of_body)
+    call turn_narrow_zones(model, answer, given, total, of_body)
+    call turn_wide_zones(model, answer, given, total, of_body)
     if (allocated(line%place)) call turn_shared_places(model, line%place, answer%contact%force, total, of_body)
   end subroutine find_turned
 
   !> Narrow zones may press along the node's own normal instead of that of what it faces: of smooth boundaries these are the same
   !! only where the bodies touch.
-  pure subroutine turn_narrow_zones(model, answer, total, of_body)
+  pure subroutine turn_narrow_zones(model, answer, given, total, of_body)
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
+    logical, intent(in) :: given(:, :)
     real(wp), intent(inout) :: total, of_body(:, :)
     real(wp) :: along, change(2), on(2), own(2), resultant(2, model%bodies)
     integer :: i, k, z
@@ -107,7 +145,7 @@ contains
           k = pairs(i)
           own = -smooth_normal(model, k)
           associate (a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)), normal => model%normal(:, k))
-            on = merge(resultant(:, a), resultant(:, b), norm2(resultant(:, a)) > norm2(resultant(:, b)))
+            on = kept(resultant(:, [a, b]), given(:, [a, b]))
             if (all(own == 0.0_wp) .or. norm2(on) <= no_force*sum(force)) cycle
             along = excess(dot_product(on, normal), dot_product(on, own))
             total = total + askew*force(k)*abs(along)
@@ -120,29 +158,37 @@ contains
     end do
   end subroutine turn_narrow_zones
 
-  !> Of wide zones either body's normals may be the right ones: half of what that makes for bodies as a whole.
-  pure subroutine turn_wide_zones(model, answer, of_body)
+  !> Of wide zones, too, either body's normals may be the right ones, all of one body.
+  pure subroutine turn_wide_zones(model, answer, given, total, of_body)
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
-    real(wp), intent(inout) :: of_body(:, :)
-    real(wp) :: lean(2, model%bodies), own(2)
+    logical, intent(in) :: given(:, :)
+    real(wp), intent(inout) :: total, of_body(:, :)
+    real(wp) :: along, change(2), lean(2, model%bodies), more, on(2), own(2), resultant(2, model%bodies)
     integer :: i, z
 
     lean = 0.0_wp
+    resultant = resultants(model, answer%contact%force)
     do z = 1, size(answer%zones)
+      more = 0.0_wp
       associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
         if (bearing_pairs(model, force(pairs)) <= narrow) cycle
         do i = 1, size(pairs)
-          associate (k => pairs(i))
+          associate (k => pairs(i), a => model%body(model%pair_node(1, pairs(i))), b => model%body(model%pair_node(2, pairs(i))))
             own = -smooth_normal(model, k)
-            if (all(own == 0.0_wp)) cycle
-            associate (a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)))
-              lean(:, a) = lean(:, a) - 0.5_wp*force(k)*(own - model%normal(:, k))
-              lean(:, b) = lean(:, b) + 0.5_wp*force(k)*(own - model%normal(:, k))
-            end associate
+            on = kept(resultant(:, [a, b]), given(:, [a, b]))
+            if (all(own == 0.0_wp) .or. norm2(on) <= no_force*sum(force)) cycle
+            along = 0.0_wp
+            if (abs(dot_product(on, own)) >= bears_on*norm2(on)) &
+              along = excess(dot_product(on, model%normal(:, k)), dot_product(on, own))
+            more = more + force(k)*along
+            change = force(k)*((1.0_wp + along)*own - model%normal(:, k))
+            lean(:, a) = lean(:, a) - change
+            lean(:, b) = lean(:, b) + change
           end associate
         end do
       end associate
+      total = total + abs(more)
     end do
     of_body = of_body + abs(lean)
   end subroutine turn_wide_zones
@@ -176,6 +222,18 @@ contains
       end associate
     end do
   end subroutine turn_shared_places
+
+  !> What stays the same of the resultants on two bodies where their contact turns: what loads make, else the larger one.
+  pure function kept(resultant, given) result(on)
+    real(wp), intent(in) :: resultant(2, 2)
+    logical, intent(in) :: given(2, 2)
+    real(wp) :: on(2)
+    real(wp) :: of_loads(2, 2)
+
+    of_loads = merge(resultant, 0.0_wp, given)
+    if (all(of_loads == 0.0_wp)) of_loads = resultant
+    on = of_loads(:, merge(1, 2, norm2(of_loads(:, 1)) > norm2(of_loads(:, 2))))
+  end function kept
 
   !> a/b - 1, between -1 and 1.
   pure real(wp) function excess(a, b)

@@ -13,8 +13,8 @@ module epcont_certificate_meeting
             take_told, note_crossing
 
   !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
-  !! though it be allowed. A tenth, less what the deepest place may lie beside those that are looked at.
-  real(wp), parameter :: told = 0.095_wp
+  !! though it be allowed.
+  real(wp), parameter :: told = 0.1_wp
   !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths off the largest
   !! allowance counts.
   real(wp), parameter :: about = 1.5_wp

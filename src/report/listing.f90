@@ -1,6 +1,7 @@
 !> The listing for people: ASCII, at most 132 columns, nothing in it that varies from run to run.
 module epcont_report_listing
   use epcont_accuracy_accuracy, only: accuracy_type
+  use epcont_accuracy_body_shares, only: most_bodies
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
@@ -197,7 +198,8 @@ contains
     real(wp) :: scale
     integer :: i
 
-    call heading(file, 'BODIES  (force of contact on each; error: of the mesh, estimated)')
+    call heading(file, 'BODIES  (force of contact on each that has elements; error: of the mesh, estimated of up to '// &
+                 text_of(most_bodies)//' bodies)')
     call file%line('      body  first GRID      force x       error      force y       error')
     scale = maxval([(abs(bodies(i)%resultant), i=1, size(bodies))])
     do i = 1, size(bodies)
