@@ -14,7 +14,7 @@ from tables import rows, summary  # noqa: E402
 SAME = 1e-7      # what rounding leaves between twins, of the largest
 CLOSE = 0.05     # what a figure may be off without an estimate
 DEEP = 0.1       # of the largest displacement: how far bodies may pass through each other
-TOLD = "bodies lie in each other by"    # unless the program says so, and where
+TOLD = "bodies lie in each other by"    # unless the program says so, and where: their forces are off by about as much
 NOTHING = "nothing touches"             # a mesh that touches nothing is not held against one that does: it says so
 FACETS = "pressures and approaches will be those of facets"   # approaches are not compared, then
 LARGE = "displacements are not small"   # where master and slave exchanged need not say the same
@@ -196,7 +196,7 @@ def unlike(one, other):
 def warned(of, one, other):
     """Does one of two answers say itself why they may differ?"""
     said = one.message + other.message
-    return NOTHING in said or of == "exchanged" and LARGE in said
+    return NOTHING in said or TOLD in said or of == "exchanged" and LARGE in said
 
 
 def outlines(scene, answer):

@@ -95,7 +95,8 @@ def nose_in_groove(pick, n):
     def profile(x):
         return shape(x) + lift
     xs, top = [-w, 0.0, w], profile(w) + 0.6
-    profiled(body, xs, top, profile, d.h_slave, d.h_slave)
+    # A curve whose sides turn by over 35 degrees is one with corners, as drawn: three times finer it would be another scene.
+    profiled(body, xs, top, profile, min(d.h_slave, w / 3 / n) if kind == "round" else d.h_slave, d.h_slave)
     d.sway = pick.choice([0.0, 0.0, 0.3])
     d.press(body, body.line((w, top), (-w, top)), 0.02, w)
     d.either(body.line((-w, profile(w)), (w, profile(w))), groove.line((1.4, deep), (-1.4, deep)), 0.4)
