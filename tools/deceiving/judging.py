@@ -19,6 +19,7 @@ NOTHING = "nothing touches"             # a mesh that touches nothing is not hel
 FACETS = "pressures and approaches will be those of facets"   # approaches are not compared, then
 LARGE = "displacements are not small"   # where master and slave exchanged need not say the same
 SMOOTH = math.radians(35.0)   # turns of an outline up to here may be those of a curve in chords
+CHORDS = 8       # of a side with a middle node
 LARGEST = 350    # nodes of a scene; larger ones are drawn again
 
 
@@ -200,7 +201,7 @@ def warned(of, one, other):
 
 
 def outlines(scene, answer):
-    """Points as drawn and displaced, and each body's outline as chords (a, b) of them: four of a side with a middle node, which bends."""
+    """Points as drawn and displaced, and each body's outline as chords (a, b) of them: eight of a side with a middle node, which bends."""
     drawn = [tuple(x) for x in scene.nodes]
     now = [(x[0] + u[0], x[1] + u[1]) for x, u in zip(scene.nodes, answer.displacement)]
     found = []
@@ -209,16 +210,16 @@ def outlines(scene, answer):
         for a, middle, c in body.sides().values():
             run = [a, c]
             if middle is not None:
-                run = [a, len(drawn), middle, len(drawn) + 1, c]
+                run = [a, *range(len(drawn), len(drawn) + CHORDS - 1), c]
                 for x in (drawn, now):
-                    x += [quarter(x[a], x[middle], x[c]), quarter(x[c], x[middle], x[a])]
+                    x += [on_parabola(x[a], x[middle], x[c], k / CHORDS) for k in range(1, CHORDS)]
             found[-1] += list(zip(run, run[1:]))
     return drawn, now, found
 
 
-def quarter(a, middle, c):
-    """Where the parabola through three nodes is after a quarter of it."""
-    return tuple(0.375 * p + 0.75 * q - 0.125 * r for p, q, r in zip(a, middle, c))
+def on_parabola(a, middle, c, s):
+    """Where the parabola through three nodes is after a part of it."""
+    return tuple((1 - s) * (1 - 2 * s) * p + 4 * s * (1 - s) * q - s * (1 - 2 * s) * r for p, q, r in zip(a, middle, c))
 
 
 def sagitta(x, sides):
