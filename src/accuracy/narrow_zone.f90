@@ -122,49 +122,19 @@ contains
 
     total = 0.0_wp
     of_body = 0.0_wp
-    call turn_narrow_zones(model, answer, given, total, of_body)
-    call turn_wide_zones(model, answer, given, total, of_body)
+    call turn_zones(model, answer, given, total, of_body)
     if (allocated(line%place)) call turn_shared_places(model, line%place, answer%contact%force, total, of_body)
   end subroutine find_turned
 
-  !> Narrow zones may press along the node's own normal instead of that of what it faces: of smooth boundaries these are the same
-  !! only where the bodies touch.
-  pure subroutine turn_narrow_zones(model, answer, given, total, of_body)
+  !> Pairs may press along the node's own normal instead of that of what it faces: of smooth boundaries these are the same only
+  !! where the bodies touch. In narrow zones each pair by itself; in wide ones all normals of the one body, or of the other.
+  pure subroutine turn_zones(model, answer, given, total, of_body)
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
     logical, intent(in) :: given(:, :)
     real(wp), intent(inout) :: total, of_body(:, :)
-    real(wp) :: along, change(2), on(2), own(2), resultant(2, model%bodies)
-    integer :: i, k, z
-
-    resultant = resultants(model, answer%contact%force)
-    do z = 1, size(answer%zones)
-      associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
-        if (bearing_pairs(model, force(pairs)) > narrow) cycle
-        do i = 1, size(pairs)
-          k = pairs(i)
-          own = -smooth_normal(model, k)
-          associate (a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)), normal => model%normal(:, k))
-            on = kept(resultant(:, [a, b]), given(:, [a, b]))
-            if (all(own == 0.0_wp) .or. norm2(on) <= no_force*sum(force)) cycle
-            along = excess(dot_product(on, normal), dot_product(on, own))
-            total = total + askew*force(k)*abs(along)
-            change = askew*force(k)*abs((1.0_wp + along)*own - normal)
-            of_body(:, a) = of_body(:, a) + change
-            of_body(:, b) = of_body(:, b) + change
-          end associate
-        end do
-      end associate
-    end do
-  end subroutine turn_narrow_zones
-
-  !> Of wide zones, too, either body's normals may be the right ones, all of one body.
-  pure subroutine turn_wide_zones(model, answer, given, total, of_body)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    logical, intent(in) :: given(:, :)
-    real(wp), intent(inout) :: total, of_body(:, :)
-    real(wp) :: along, change(2), lean(2, model%bodies), more, on(2), own(2), resultant(2, model%bodies)
+    real(wp) :: along, change(2), lean(2, model%bodies), more, resultant(2, model%bodies)
+    logical :: is_narrow
     integer :: i, z
 
     lean = 0.0_wp
@@ -172,26 +142,48 @@ contains
     do z = 1, size(answer%zones)
       more = 0.0_wp
       associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
-        if (bearing_pairs(model, force(pairs)) <= narrow) cycle
+        is_narrow = bearing_pairs(model, force(pairs)) <= narrow
         do i = 1, size(pairs)
           associate (k => pairs(i), a => model%body(model%pair_node(1, pairs(i))), b => model%body(model%pair_node(2, pairs(i))))
-            own = -smooth_normal(model, k)
-            on = kept(resultant(:, [a, b]), given(:, [a, b]))
-            if (all(own == 0.0_wp) .or. norm2(on) <= no_force*sum(force)) cycle
-            along = 0.0_wp
-            if (abs(dot_product(on, own)) >= bears_on*norm2(on)) &
-              along = excess(dot_product(on, model%normal(:, k)), dot_product(on, own))
-            more = more + force(k)*along
-            change = force(k)*((1.0_wp + along)*own - model%normal(:, k))
-            lean(:, a) = lean(:, a) - change
-            lean(:, b) = lean(:, b) + change
+            call turn_pair(model, k, kept(resultant(:, [a, b]), given(:, [a, b])), no_force*sum(force), &
+                           merge(0.0_wp, bears_on, is_narrow), along, change)
+            if (is_narrow) then
+              total = total + askew*force(k)*abs(along)
+              of_body(:, a) = of_body(:, a) + askew*force(k)*abs(change)
+              of_body(:, b) = of_body(:, b) + askew*force(k)*abs(change)
+            else
+              more = more + force(k)*along
+              lean(:, a) = lean(:, a) - force(k)*change
+              lean(:, b) = lean(:, b) + force(k)*change
+            end if
           end associate
         end do
       end associate
       total = total + abs(more)
     end do
     of_body = of_body + abs(lean)
-  end subroutine turn_wide_zones
+  end subroutine turn_zones
+
+  !> Of a force of one at a pair: by how much it grows, and how it changes, where it presses along the node's own normal and bears
+  !! the same along `on`. Nothing where there is no such normal, or no resultant.
+  pure subroutine turn_pair(model, pair, on, least, bears, along, change)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: pair
+    real(wp), intent(in) :: on(2)    !! what stays the same [force]
+    real(wp), intent(in) :: least    !! resultants up to this are none [force]
+    real(wp), intent(in) :: bears    !! part of the normal along `on` from which on the pair bears it
+    real(wp), intent(out) :: along, change(2)
+    real(wp) :: own(2)
+
+    along = 0.0_wp
+    change = 0.0_wp
+    own = -smooth_normal(model, pair)
+    if (all(own == 0.0_wp) .or. norm2(on) <= least) return
+    associate (normal => model%normal(:, pair))
+      if (abs(dot_product(on, own)) >= bears*norm2(on)) along = excess(dot_product(on, normal), dot_product(on, own))
+      change = (1.0_wp + along)*own - normal
+    end associate
+  end subroutine turn_pair
 
   !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the strongest there does.
   pure subroutine turn_shared_places(model, place, force, total, of_body)
