@@ -34,11 +34,11 @@ contains
     column = 0
     do i = 1, size(bodies)
       do c = merge(2, 1, model%has_rings()), 2
-        one = shares_of_pairs(model, bodies(i)%body, c)
         if (is_free(model, motions, bodies(i)%body, c)) cycle
-        if (any(abs(one) > equal) .and. all(bodies(i)%resultant == 0.0_wp)) then
-          if (.not. any(abs(one) > equal .and. touching)) column(c, i) = -1
-          if (column(c, i) < 0) cycle
+        one = shares_of_pairs(model, bodies(i)%body, c)
+        if (any(abs(one) > equal) .and. all(bodies(i)%resultant == 0.0_wp) .and. .not. any(abs(one) > equal .and. touching)) then
+          column(c, i) = -1
+          cycle
         end if
         do k = 1, size(share, 2)
           if (all(abs(share(:, k) - one) <= equal) .or. all(abs(share(:, k) + one) <= equal)) exit

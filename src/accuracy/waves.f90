@@ -71,10 +71,12 @@ contains
     run(5) = behind(line, run(4), pair)
     do k = 1, 5
       if (run(k) == 0) cycle
-      if (.not. goes_on(line, run(k))) run(k) = 0
-      if (run(k) == 0) cycle
-      call bend_at(model, line, run(k), bend, curvature(k))
-      if (abs(bend) > corner .and. k /= 3) run(k) = 0   ! there it faces a step, or another side
+      if (goes_on(line, run(k))) then
+        call bend_at(model, line, run(k), bend, curvature(k))
+        if (abs(bend) > corner .and. k /= 3) run(k) = 0   ! there it faces a step, or another side
+      else
+        run(k) = 0
+      end if
     end do
     associate (beside => pack(curvature([2, 4]), run([2, 4]) > 0))
       if (size(beside) > 0) angle = spacing*abs(curvature(3) - sum(beside)/size(beside))
