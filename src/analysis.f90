@@ -2,7 +2,6 @@
 module epcont_analysis
   use epcont_accuracy_accuracy, only: accuracy_type, assess
   use epcont_base_kinds, only: wp
-  use epcont_base_stopwatch, only: stage_accuracy, stage_certificate, stage_stresses
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_certificate_scene, only: look_through
   use epcont_contact_problem, only: contact_solved
@@ -16,16 +15,17 @@ module epcont_analysis
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_methods, only: choose_method
   use epcont_plasticity_onlooker, only: onlooker
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_scene_state, only: scene_state
   use epcont_result_answer, only: answer_type, largest_loss
   use epcont_result_body_force, only: find_body_forces
   use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
+  use epcont_result_displacement_gradient, only: find_gradients
   use epcont_result_line_pressure, only: compare_sides
-  use epcont_result_gradient, only: find_gradients
   use epcont_result_locking, only: find_locking
   use epcont_result_pressures, only: pair_pressures
   use epcont_result_stresses, only: recover_stresses
   use epcont_result_zones, only: find_zones
+  use epcont_system_stopwatch, only: stage_accuracy, stage_certificate, stage_stresses
   implicit none
   private
   public :: analyse

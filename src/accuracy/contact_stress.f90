@@ -2,9 +2,10 @@
 module epcont_accuracy_contact_stress
   use epcont_accuracy_patches, only: patch_table
   use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: plane_stress
   use epcont_material_curve, only: material_type
   use epcont_material_total_theory, only: respond, response_type
-  use epcont_model_model, only: model_type, plane_stress
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: gives_way, smooth_pressures, surface_compliance

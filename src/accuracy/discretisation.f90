@@ -6,11 +6,11 @@
 module epcont_accuracy_discretisation
   use epcont_accuracy_patches, only: patch_table
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: local_points, most_points, shape_values
+  use epcont_element_element, only: local_points, most_nodes, most_points, shape_values
   use epcont_material_curve, only: material_type
   use epcont_material_elasticity, only: cross_modulus
   use epcont_material_total_theory, only: respond, response_type
-  use epcont_model_model, only: model_type, most_nodes
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: error_products, stored_energy

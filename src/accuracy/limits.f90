@@ -6,8 +6,8 @@
 module epcont_accuracy_limits
   use epcont_accuracy_contact_stress, only: surface_compliance
   use epcont_accuracy_patches, only: patch_table
-  use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
+  use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
   use epcont_result_contact_line, only: contact_line, shared
   implicit none

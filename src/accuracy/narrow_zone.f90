@@ -6,7 +6,7 @@ module epcont_accuracy_narrow_zone
   use epcont_accuracy_patches, only: patch_table
   use epcont_accuracy_zone_error, only: zone_error
   use epcont_base_kinds, only: wp
-  use epcont_model_boundary_line, only: boundary_line
+  use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_result_answer, only: answer_type

@@ -5,18 +5,15 @@ module epcont_app_driver
   use epcont_analysis, only: analyse
   use epcont_app_arguments, only: arguments_type, stem_of
   use epcont_app_console, only: print_text
-  use epcont_app_progress, only: progress_type
+  use epcont_app_progress_display, only: progress_type
   use epcont_app_terminal, only: print_error
   use epcont_base_error, only: error_type, status_deck, status_valid
   use epcont_base_kinds, only: wp
-  use epcont_base_memory, only: peak_memory
-  use epcont_base_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
   use epcont_base_text, only: shown
-  use epcont_base_threads, only: granted_threads
+  use epcont_build_build, only: build_model
+  use epcont_contact_geometry_nearness, only: enter_nodes_that_came_near
   use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render
-  use epcont_model_build, only: build_model
-  use epcont_model_nearness, only: enter_nodes_that_came_near
   use epcont_plan_forecast, only: check_memory, forecast, forecast_type
   use epcont_plan_free_motion, only: find_free_motions, motion_fault
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
@@ -27,11 +24,14 @@ module epcont_app_driver
   use epcont_report_motions, only: report_motion_faults
   use epcont_report_number, only: column_number, known_column
   use epcont_report_outcome, only: judge, outcome_type
-  use epcont_report_plan, only: plan_text
+  use epcont_report_plan_text, only: plan_text
   use epcont_report_remarks, only: remark_answer, remarks_of_deck
   use epcont_report_results, only: remove_results, run_results, write_results
   use epcont_report_timing, only: timing_text
   use epcont_result_answer, only: answer_type
+  use epcont_system_memory, only: peak_memory
+  use epcont_system_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
+  use epcont_system_threads, only: granted_threads
   implicit none
   private
   public :: run_deck

@@ -7,14 +7,14 @@ program epcont
   use epcont_app_driver, only: run_deck
   use epcont_app_help, only: help_text
   use epcont_app_man_page, only: man_page
-  use epcont_base_large_pages, only: prepare_heap
   use epcont_base_error, only: error_type, raise, status_usage, status_valid
-  use epcont_base_memory, only: has_memory, memory_of_libraries
-  use epcont_base_one_thread, only: use_one_thread
   use epcont_base_text, only: shown
   use epcont_base_version, only: program_name, program_version
   use epcont_deck_manual, only: manual
   use epcont_report_file, only: make_directory
+  use epcont_system_large_pages, only: prepare_heap
+  use epcont_system_memory, only: has_memory, memory_of_libraries
+  use epcont_system_one_thread, only: use_one_thread
   implicit none
   logical(c_bool), target :: ended = .false.
   integer :: status

@@ -4,8 +4,8 @@ module epcont_app_start
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char, c_size_t
   use epcont_base_error, only: status_usage
   use epcont_base_kinds, only: i8
-  use epcont_base_memory, only: has_memory
   use epcont_base_version, only: program_name
+  use epcont_system_memory, only: has_memory
   implicit none
   private
   public :: prepare_start

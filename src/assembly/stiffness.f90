@@ -7,6 +7,7 @@
 module epcont_assembly_stiffness
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
+  use epcont_element_element, only: most_nodes
   use epcont_linalg_assembled, only: assembled_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   use epcont_linalg_front, only: front_matrix
@@ -15,7 +16,7 @@ module epcont_assembly_stiffness
   use epcont_linalg_single_panel, only: single_panel_matrix => panel_matrix
   use epcont_material_linear_law, only: linear_law
   use epcont_model_controls, only: solver_frontal
-  use epcont_model_model, only: model_type, most_nodes
+  use epcont_model_model, only: model_type
   use epcont_plan_numbering, only: body_numbering
   implicit none
   private

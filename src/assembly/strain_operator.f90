@@ -2,9 +2,9 @@
 !> displacements, nodal forces of stresses, element stiffness.
 module epcont_assembly_strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: element_point, evaluate_points, most_points
+  use epcont_element_element, only: element_point, evaluate_points, most_nodes, most_points
   use epcont_material_linear_law, only: linear_law
-  use epcont_model_model, only: model_type, most_nodes
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: strain_operator, new_strain_operator

@@ -11,9 +11,9 @@
 !>                            h/10, however far it slides
 !>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
 module epcont_certificate_allowance
-  use epcont_base_edge, only: edge_tangent
-  use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
+  use epcont_geometry_edge, only: edge_tangent
+  use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
   implicit none
   private

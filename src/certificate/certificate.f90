@@ -1,14 +1,16 @@
 !> Recomputes from displacements and forces alone whether they are an answer.
 !>
 !> Shares nothing with the solver: strains come from differences of what the displacements are between the nodes
-!> (epcont_certificate_gradient), stresses on the curve from the paper's own equations (epcont_certificate_yielding),
+!> (epcont_certificate_unit_strains), stresses on the curve from the paper's own equations (epcont_certificate_yielding),
 !> nodal forces from the work of the stresses on unit displacements.
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
-  use epcont_certificate_gradient, only: kind_of, kind_type, most_places, unit_strains
   use epcont_certificate_scene, only: scene_type
+  use epcont_certificate_unit_strains, only: kind_of, kind_type, most_places, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
-  use epcont_model_model, only: axisymmetric, model_type, most_nodes, plane_stress
+  use epcont_element_element, only: most_nodes
+  use epcont_element_kinematics, only: axisymmetric, plane_stress
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: certificate_type, certify

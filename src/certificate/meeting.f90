@@ -1,12 +1,12 @@
 !> What a scene is looked through with: the outlines displaced and as drawn, how their sides meet, and what these allow there.
 module epcont_certificate_meeting
-  use epcont_base_edge, only: edge_tangent
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
   use epcont_certificate_findings, only: overlap_place
-  use epcont_model_mates, only: find_mates, is_mate
+  use epcont_contact_geometry_mates, only: find_mates, is_mate
+  use epcont_geometry_edge, only: edge_tangent
+  use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
   use epcont_model_model, only: model_type
-  use epcont_model_outline_shape, only: near_place, new_outline_shape, outline_shape
   implicit none
   private
   public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, along_side, place_allowance, widen_allowance, &

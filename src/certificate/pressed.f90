@@ -1,13 +1,13 @@
 !> What pressed pairs press on, once displaced: the gap between the outlines along the normal, how far beside the other body the
 !> node stands, and how far the two sides have slid along each other.
 module epcont_certificate_pressed
-  use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
   use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_deeper, take_worse
   use epcont_certificate_meeting, only: along_side, meeting_of, place_allowance, search_type, take_told, widen_allowance
+  use epcont_geometry_outline_shape, only: near_place
+  use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
-  use epcont_model_outline_shape, only: near_place
   implicit none
   private
   public :: look_at_pairs

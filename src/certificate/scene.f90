@@ -4,17 +4,17 @@
 !> Each side of the outlines that meets the box of another body is sampled: where it begins, at its quarter points, and
 !> between two places where it crosses the other outline. The depth of a point is its distance from the other outline.
 module epcont_certificate_scene
-  use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
   use epcont_certificate_beyond, only: farthest_beyond_axis, farthest_beyond_mirror
   use epcont_certificate_findings, only: beyond_place, is_worse, more, overlap_place, scene_type, take_deeper, take_worse
-  use epcont_certificate_pressed, only: look_at_pairs
   use epcont_certificate_meeting, only: along_side, is_joined, is_paired, meeting_of, middle_of, new_search, note_crossing, &
                                        place_allowance, search_type, take_told, widen_allowance
+  use epcont_certificate_pressed, only: look_at_pairs
   use epcont_certificate_way, only: look_at_ways
+  use epcont_geometry_outline_shape, only: near_place, new_outline_shape
+  use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
-  use epcont_model_outline_shape, only: near_place, new_outline_shape
   implicit none
   private
   public :: beyond_place, overlap_place, scene_type, look_through

@@ -4,14 +4,14 @@
 !> A path is looked at in a frame that moves with the other body as a whole. There that body's sides are about where they are
 !> displaced, so its tree of boxes tells which of them the path meets, and nothing is built anew.
 module epcont_certificate_way
-  use epcont_base_box_tree, only: box_tree, new_box_tree
-  use epcont_base_geometry, only: cross_product
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
   use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_worse
   use epcont_certificate_meeting, only: is_joined, meeting_of, middle_of, note_crossing, place_allowance, search_type
+  use epcont_geometry_box_tree, only: box_tree, new_box_tree
+  use epcont_geometry_outline_shape, only: near_place, outline_shape
+  use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
-  use epcont_model_outline_shape, only: near_place, outline_shape
   implicit none
   private
   public :: look_at_ways

@@ -2,7 +2,8 @@
 !> Poisson's ratio mu of the secant body, and bisection for the equivalent strain. The solver shifts the curve instead.
 module epcont_certificate_yielding
   use epcont_base_kinds, only: wp
-  use epcont_model_model, only: model_type, plane_stress
+  use epcont_element_kinematics, only: plane_stress
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: stress_on_curve, von_mises_stress

@@ -11,9 +11,9 @@
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
   use epcont_contact_block_factor, only: block_factor, change_set, new_block_factor, solve_set
+  use epcont_contact_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, sign_tolerance
   use epcont_contact_problem, only: contact_solution, contact_solved
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, sign_tolerance
   implicit none
   private
   public :: find_by_blocks

@@ -11,10 +11,11 @@ module epcont_contact_simplex
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: basic_solution
   use epcont_contact_block_pivoting, only: find_by_blocks
+  use epcont_contact_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, has_right_signs, &
+    noise, sign_tolerance
   use epcont_contact_loading, only: follow_load, path_complete, path_ray
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: negligible, scaled_problem
-  use epcont_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, has_right_signs, noise, sign_tolerance
   use epcont_contact_tableau, only: contact_tableau, new_tableau
   implicit none
   private

@@ -3,11 +3,11 @@ module epcont_contact_solver
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: gaps_under
   use epcont_contact_block_pivoting, only: find_by_blocks
+  use epcont_contact_contact_state, only: contact_state, fresh_state, noise, terms_of_gaps
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, contact_solution, contact_stalled
   use epcont_contact_scaling, only: drop_motions, negligible, restore_units, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts, ray_tolerance
-  use epcont_contact_state, only: contact_state, fresh_state, noise, terms_of_gaps
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
   implicit none
   private

@@ -5,8 +5,8 @@ module epcont_deck_deck
   use epcont_base_text, only: text_of
   use epcont_deck_bulk, only: read_bulk
   use epcont_deck_card, only: card_fields, gather
-  use epcont_deck_case_control, only: case_control, read_case_control
   use epcont_deck_card_kinds, only: card_kinds, card_param
+  use epcont_deck_case_control, only: case_control, read_case_control
   use epcont_deck_catalogue, only: catalogue
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_entry, only: card_entry, slot_of

@@ -5,14 +5,16 @@
 !> plane stress, where the sheet gives way, there is no need.
 module epcont_element_element
   use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: axisymmetric, plane_stress
   use epcont_element_quad4, only: quad4_point, quad4_slopes, quad4_values, quad4_weight
   use epcont_element_tria3, only: tria3_point, tria3_slopes, tria3_values, tria3_weight
   use epcont_element_tria6, only: tria6_point, tria6_slopes, tria6_values, tria6_weight
-  use epcont_model_model, only: axisymmetric, most_nodes, plane_stress
   implicit none
   private
   public :: element_point, point_count, evaluate_points, shape_values, local_points
 
+  !> Nodes of an element, at most.
+  integer, parameter, public :: most_nodes = 6
   !> Integration points of an element, at most.
   integer, parameter, public :: most_points = 4
   real(wp), parameter :: full_turn = 2.0_wp*acos(-1.0_wp)

@@ -11,13 +11,13 @@
 !>         x x
 module epcont_linalg_panel
   use epcont_base_kinds, only: i8, rp => wp, wp
-  use epcont_base_large_pages, only: use_large_pages
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_assembled, only: add_seen_through, assembled_matrix
   use epcont_linalg_dense, only: cholesky_inverse
   use epcont_linalg_factored, only: probes
   use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
   use epcont_linalg_panel_layout, only: find_panels
+  use epcont_system_large_pages, only: use_large_pages
   implicit none
   private
   public :: panel_matrix

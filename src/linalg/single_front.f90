@@ -1,12 +1,12 @@
 !> The fronts of epcont_linalg_front with their entries in single precision: half of the memory and of the time to factor them.
 module epcont_linalg_single_front
   use epcont_base_kinds, only: i8, rp => sp, wp
-  use epcont_base_large_pages, only: use_large_pages
   use epcont_linalg_assembled, only: add_seen_through, assembled_matrix
   use epcont_linalg_dense, only: cholesky_inverse
   use epcont_linalg_factored, only: probes
   use epcont_linalg_front_layout, only: front_layout
   use epcont_linalg_lapack, only: gemm => sgemm, gemv => sgemv, potrf => spotrf, syrk => ssyrk, trsm => strsm
+  use epcont_system_large_pages, only: use_large_pages
   implicit none
   private
   public :: front_matrix

@@ -6,8 +6,9 @@
 !> e = eps_i (1 - (1 - 2 nu) sigma_s/(3 sigma_i)): a quadratic for eps_i on each segment.
 module epcont_material_curve
   use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: plane_stress
   use epcont_material_elasticity, only: bulk_modulus, shear_modulus
-  use epcont_model_model, only: model_type, plane_stress
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: material_type, curve_value, section_materials

@@ -5,17 +5,15 @@
 module epcont_model_model
   use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
-  use epcont_model_body_outline, only: outline_type
+  use epcont_element_element, only: most_nodes
+  use epcont_element_kinematics, only: axisymmetric
+  use epcont_geometry_boxed_line, only: boxed_line
+  use epcont_geometry_outline, only: outline_type
   use epcont_model_controls, only: controls_type, uniaxial_curve
-  use epcont_model_side_boxes, only: boxed_line
   implicit none
   private
   public :: line_contact, model_type, named_line
 
-  !> Nodes of an element, at most.
-  integer, parameter, public :: most_nodes = 6
-  !> What a section's elements do across the plane: nothing; give way; or they are rings, x their radius.
-  integer, parameter, public :: plane_strain = 1, plane_stress = 2, axisymmetric = 3
 
   !> A boundary line (BLSEG).
   type :: named_line

@@ -2,7 +2,6 @@
 module epcont_plan_forecast
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_memory, only: has_memory, memory_of_libraries
   use epcont_base_text, only: short_real
   use epcont_linalg_panel_layout, only: panel_entries
   use epcont_model_controls, only: precision_double, solver_frontal
@@ -10,6 +9,7 @@ module epcont_plan_forecast
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: body_numbering, numbering_type
+  use epcont_system_memory, only: has_memory, memory_of_libraries
   implicit none
   private
   public :: forecast_type, forecast, check_memory, most_memory

@@ -2,10 +2,10 @@
 !> flexibility by itself.
 module epcont_plan_side_by_side
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_memory, only: has_memory, memory_of_thread
   use epcont_base_sorting, only: sorted_order
   use epcont_plan_forecast, only: most_memory
   use epcont_plan_numbering, only: numbering_type
+  use epcont_system_memory, only: has_memory, memory_of_thread
   implicit none
   private
   public :: heaviest_first, plan_threads, threads_for

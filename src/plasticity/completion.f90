@@ -6,7 +6,7 @@ module epcont_plasticity_completion
   use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_scene_state, only: scene_state
   implicit none
   private
   public :: complete_state

@@ -2,7 +2,6 @@
 module epcont_plasticity_iteration
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
-  use epcont_base_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
   use epcont_contact_problem, only: contact_solved, contact_stalled
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
@@ -17,7 +16,8 @@ module epcont_plasticity_iteration
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_onlooker, only: iteration_record, onlooker
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
   implicit none
   private
   public :: plastic_run, follow_loads

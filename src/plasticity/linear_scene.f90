@@ -4,8 +4,6 @@ module epcont_plasticity_linear_scene
   use epcont_assembly_bodies, only: factored_bodies, half_solution, new_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_base_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, stage_stiffness, &
-                                   stopwatch
   use epcont_contact_problem, only: contact_problem, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
@@ -17,7 +15,9 @@ module epcont_plasticity_linear_scene
   use epcont_plan_numbering, only: numbering_type
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
   use epcont_plasticity_completion, only: complete_state
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, stage_stiffness, &
+                                   stopwatch
   implicit none
   private
   public :: linear_scene, new_linear_scene

@@ -4,7 +4,7 @@ module epcont_plasticity_method
   use epcont_material_curve, only: material_type
   use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_scene_state, only: scene_state
   implicit none
   private
   public :: plastic_method

@@ -10,7 +10,7 @@ module epcont_plasticity_newton
   use epcont_material_total_theory, only: respond, response_type, secant_matrix, tangent_matrix
   use epcont_model_model, only: model_type
   use epcont_plasticity_method, only: plastic_method
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_scene_state, only: scene_state
   implicit none
   private
   public :: newton_method

@@ -1,7 +1,7 @@
 !> Who may look on while loads are followed: the stopwatch, and whoever is told of each solve. What it does changes nothing.
 module epcont_plasticity_onlooker
   use epcont_base_kinds, only: wp
-  use epcont_base_stopwatch, only: stopwatch
+  use epcont_system_stopwatch, only: stopwatch
   implicit none
   private
   public :: iteration_record, onlooker

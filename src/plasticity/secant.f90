@@ -6,7 +6,7 @@ module epcont_plasticity_secant
   use epcont_material_total_theory, only: respond, secant_matrix
   use epcont_model_model, only: model_type
   use epcont_plasticity_method, only: plastic_method
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_scene_state, only: scene_state
   implicit none
   private
   public :: secant_method, set_secant_law

@@ -1,7 +1,7 @@
 !> What came of the lines in contact, for the plan: pairs, nodes left out, corners.
 module epcont_report_line_plan
   use epcont_base_text, only: plural, short_real, text_of
-  use epcont_model_boundary_line, only: boundary_line
+  use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_model, only: line_contact, model_type
   use epcont_report_layout, only: newline
   implicit none

@@ -17,12 +17,12 @@ module epcont_report_listing
   use epcont_report_limit, only: limit_of_largest, reason_of
   use epcont_report_number, only: column_number, estimate_number, known_column, rounding_number
   use epcont_report_outcome, only: outcome_type
-  use epcont_report_scene, only: list_scene
+  use epcont_report_scene_text, only: list_scene
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: body_force
-  use epcont_result_zones, only: contact_zone
   use epcont_result_line_pressure, only: line_pressure
   use epcont_result_stresses, only: first_largest, place_of_point
+  use epcont_result_zones, only: contact_zone
   implicit none
   private
   public :: list_deck, list_outcome, list_contact, list_zones, list_lines, list_bodies, list_nodes, list_elements, list_summary

@@ -1,7 +1,7 @@
 !> Faults of free bodies in words, with the card that would hold them.
 module epcont_report_motions
-  use epcont_base_text, only: plural, short_real, text_of
   use epcont_base_kinds, only: wp
+  use epcont_base_text, only: plural, short_real, text_of
   use epcont_deck_card_kinds, only: card_grid
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type

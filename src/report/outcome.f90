@@ -8,7 +8,7 @@ module epcont_report_outcome
   use epcont_model_controls, only: precision_name
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
-  use epcont_report_scene, only: scene_fault
+  use epcont_report_scene_text, only: scene_fault
   use epcont_result_answer, only: answer_type, largest_loss
   implicit none
   private

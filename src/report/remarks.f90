@@ -11,7 +11,7 @@ module epcont_report_remarks
   use epcont_plan_free_motion, only: free_motions
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: heading, newline, wrap
-  use epcont_report_scene, only: changed_text, deep_text, drawn_text, itself_text, mirror_text, slid_text, wide_text
+  use epcont_report_scene_text, only: changed_text, deep_text, drawn_text, itself_text, mirror_text, slid_text, wide_text
   use epcont_result_answer, only: answer_type
   use epcont_result_locking, only: high_poisson
   implicit none

@@ -7,7 +7,7 @@ module epcont_report_results
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
-  use epcont_report_accuracy, only: list_accuracy
+  use epcont_report_accuracy_text, only: list_accuracy
   use epcont_report_file, only: new_text_file, remove_file, text_file
   use epcont_report_iterations, only: list_iterations
   use epcont_report_listing, only: list_bodies, list_contact, list_deck, list_elements, list_lines, list_nodes, list_outcome, &

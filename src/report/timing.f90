@@ -1,8 +1,8 @@
 !> What --timing prints: where the time of a run went.
 module epcont_report_timing
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_stopwatch, only: stage_name, stages, stopwatch
   use epcont_report_layout, only: newline
+  use epcont_system_stopwatch, only: stage_name, stages, stopwatch
   implicit none
   private
   public :: timing_text

@@ -6,10 +6,10 @@ module epcont_result_answer
   use epcont_model_controls, only: precision_double
   use epcont_plasticity_onlooker, only: iteration_record
   use epcont_result_body_force, only: body_force
-  use epcont_result_zones, only: contact_zone
-  use epcont_result_gradient, only: gradient_type
+  use epcont_result_displacement_gradient, only: gradient_type
   use epcont_result_line_pressure, only: line_pressure
   use epcont_result_locking, only: locking_type
+  use epcont_result_zones, only: contact_zone
   implicit none
   private
   public :: answer_type

@@ -1,11 +1,11 @@
 !> The pairs as a line along the boundary: their areas and neighbours.
 module epcont_result_contact_line
-  use epcont_base_edge, only: edge_point, edge_point_count, edge_points
-  use epcont_base_geometry, only: cross_product
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_sorting, only: sorted_order
+  use epcont_geometry_edge, only: edge_point, edge_point_count, edge_points
+  use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: line_contact, model_type
   use epcont_result_symmetry, only: is_on_symmetry
   implicit none

@@ -1,9 +1,9 @@
 !> Contact of two lines seen from both sides: the pressure on the slave line, and on the master line what its nodes
 !> receive, over the boundary that belongs to them. How far one is from the other tells what the two meshes make of it.
 module epcont_result_line_pressure
-  use epcont_base_edge, only: edge_point, edge_point_count, edge_points
   use epcont_base_kinds, only: wp
-  use epcont_model_boundary_line, only: boundary_line
+  use epcont_geometry_boundary_line, only: boundary_line
+  use epcont_geometry_edge, only: edge_point, edge_point_count, edge_points
   use epcont_model_model, only: line_contact, model_type
   use epcont_result_contact_line, only: no_area
   implicit none

@@ -2,7 +2,8 @@
 !> beyond yield. They cannot follow and are too stiff; their mean stresses scatter from element to element.
 module epcont_result_locking
   use epcont_base_kinds, only: wp
-  use epcont_model_model, only: model_type, plane_stress
+  use epcont_element_kinematics, only: plane_stress
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: locking_type, find_locking

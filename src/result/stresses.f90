@@ -7,7 +7,7 @@ module epcont_result_stresses
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_material_total_theory, only: respond, response_type
   use epcont_model_model, only: model_type
-  use epcont_plasticity_state, only: scene_state
+  use epcont_plasticity_scene_state, only: scene_state
   use epcont_result_answer, only: answer_type
   implicit none
   private

@@ -6,7 +6,7 @@ module solved_scene
   use epcont_certificate_certificate, only: certificate_type
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_model_build, only: build_model
+  use epcont_build_build, only: build_model
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
   use epcont_plan_iteration_plan, only: plan_iteration

@@ -1,6 +1,6 @@
 !> Shapes of every kind of element, patches of them, and what tests ask of an element: strains, stiffness, eigenvalues.
 module element_kinds
-  use epcont_base_geometry, only: polygon_area
+  use epcont_geometry_plane, only: polygon_area
   use epcont_base_kinds, only: wp
   use epcont_element_element, only: element_point, evaluate_points, local_points, most_points, point_count, shape_values
   use epcont_element_quad4, only: quad4_slopes
@@ -9,7 +9,7 @@ module element_kinds
   use epcont_linalg_dense, only: lu_solve
   use epcont_linalg_lapack, only: dsyev
   use epcont_material_elasticity, only: bulk_modulus, isotropic_matrix, shear_modulus
-  use epcont_model_model, only: plane_stress
+  use epcont_element_kinematics, only: plane_stress
   implicit none
   private
   public :: sample_shapes, label, sample_place, local_node, slopes, corners_of, centroid_radius

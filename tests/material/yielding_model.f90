@@ -1,7 +1,8 @@
 !> A model of sections that yield, without a mesh, and strains to try them with.
 module yielding_model
   use epcont_base_kinds, only: wp
-  use epcont_model_model, only: model_type, plane_strain, plane_stress
+  use epcont_model_model, only: model_type
+  use epcont_element_kinematics, only: plane_strain, plane_stress
   implicit none
   private
   public :: new_yielding_model, strain_path

@@ -4,7 +4,7 @@ module deck_faults
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: render
-  use epcont_model_build, only: build_model
+  use epcont_build_build, only: build_model
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
   use epcont_report_motions, only: report_motion_faults

@@ -1,8 +1,8 @@
 !> Boundaries drawn from points, without elements behind them.
 module outlines
   use epcont_base_kinds, only: wp
-  use epcont_model_boundary_line, only: boundary_line
-  use epcont_model_corners, only: find_normals
+  use epcont_geometry_boundary_line, only: boundary_line
+  use epcont_geometry_corners, only: find_normals
   implicit none
   private
   public :: drawn, chain, degree

@@ -12,7 +12,7 @@ program bench_ours
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
-  use epcont_base_large_pages, only: prepare_heap
+  use epcont_system_large_pages, only: prepare_heap
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved
   use epcont_contact_solver, only: solve_contact
   use epcont_deck_deck, only: deck_type, read_deck
@@ -21,9 +21,10 @@ program bench_ours
                                             motion_resultants, pair_forces
   use epcont_material_curve, only: section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
-  use epcont_model_build, only: build_model
+  use epcont_build_build, only: build_model
   use epcont_model_controls, only: solver_frontal
-  use epcont_model_model, only: model_type, most_nodes
+  use epcont_model_model, only: model_type
+  use epcont_element_element, only: most_nodes
   use epcont_plan_contact_plan, only: contact_plan, plan_contact
   use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
   use epcont_plan_numbering, only: number_equations, numbering_type

@@ -1,0 +1,150 @@
+!> Bodies that lie against each other as drawn, with nodes at one place, though neither a pair nor RBE2 joins these: a contact, or
+!> a common node, that was forgotten.
+module epcont_build_lying_together
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
+  use epcont_contact_geometry_mates, only: find_mates, is_mate
+  use epcont_deck_card_kinds, only: card_grid
+  use epcont_deck_deck, only: deck_type
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: warn_of_lying_together
+
+  !> Nodes closer than this part of a side are at one place.
+  real(wp), parameter :: coincident = 1.0e-4_wp
+
+  !> A node and the one of another body at its place.
+  type :: twin_type
+    integer :: node = 0, other = 0
+    integer :: count = 0   !! of those of its two bodies, at the first of them
+  end type twin_type
+
+contains
+
+  !> One warning for each two bodies.
+  subroutine warn_of_lying_together(deck, model, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(in) :: model
+    type(diagnostics), intent(inout) :: faults
+    type(twin_type), allocatable :: twin(:)
+    integer, allocatable :: first(:)   ! of an earlier body, with each other one
+    integer :: i
+
+    twin = find_twins(model)
+    associate (part => model%body_outline%part_of)
+      allocate (first(model%body_outline%parts), source=0)
+      do i = 1, size(twin)   ! one earlier body after the other
+        associate (k => first(part(twin(i)%other)))
+          if (k == 0) then
+            k = i
+          else if (part(twin(k)%node) /= part(twin(i)%node)) then
+            k = i
+          end if
+          twin(k)%count = twin(k)%count + 1
+        end associate
+      end do
+      do i = 1, size(twin)
+        if (twin(i)%count > 0) call warn(twin(i))
+      end do
+    end associate
+
+  contains
+
+    subroutine warn(twin)
+      type(twin_type), intent(in) :: twin
+      character(len=:), allocatable :: others
+
+      others = ''
+      if (twin%count > 1) others = '; so do '//text_of(twin%count - 1)//' more of these two bodies'
+      call faults%add_warning(deck%place(card_grid, twin%node, 1), deck%identity(card_grid, twin%node)// &
+                              ': lies where GRID '//text_of(model%node_id(twin%other))// &
+                              ' of another body does, and no pair joins the two'//others, &
+                              'a CGAP, lines with a BCONP between them, or one GRID for both')
+    end subroutine warn
+  end subroutine warn_of_lying_together
+
+  !> Nodes of outlines with one of another body at their place, that nothing joins: those of sides that lie against each other
+  !! from end to end, and single ones that are in no pair at all. Of two twins the one of the earlier body is named.
+  function find_twins(model) result(twin)
+    type(model_type), intent(in) :: model
+    type(twin_type), allocatable :: twin(:)
+    type(outline_shape) :: drawn
+    integer, allocatable :: mate(:), near(:)
+    integer :: found, i, n, other, part, side
+    real(wp) :: within
+
+    allocate (twin(16), near(16))
+    found = 0
+    if (model%body_outline%parts > 1) then
+      drawn = new_outline_shape(model%body_outline, model%x)
+      mate = find_mates(model)
+      do side = 1, model%body_outline%sides
+        part = model%body_outline%part(side)
+        within = coincident*norm2(drawn%chord(side))
+        call drawn%part_tree%meeting(drawn%low(:, side) - within, drawn%high(:, side) + within, near, n)
+        do i = 1, n
+          if (near(i) <= part) cycle
+          other = twin_of(model, drawn, mate, side, near(i))
+          if (other == 0) cycle
+          if (found == size(twin)) twin = [twin, twin]
+          found = found + 1
+          twin(found) = twin_type(model%body_outline%node(1, side), other)
+        end do
+      end do
+    end if
+    twin = twin(:found)
+  end function find_twins
+
+  !> The twin, in another part, of the node where a side begins; 0: none that counts.
+  integer function twin_of(model, drawn, mate, side, part) result(other)
+    type(model_type), intent(in) :: model
+    type(outline_shape), intent(in) :: drawn
+    integer, intent(in) :: mate(:), side, part
+
+    associate (outline => model%body_outline)
+      other = loose_twin(outline%node(1, side), side)
+      if (other == 0) return
+      if (mate(outline%node(1, side)) == 0 .and. mate(other) == 0) return
+      if (lies_against(side)) return
+      if (lies_against(outline%before(side))) return
+    end associate
+    other = 0
+
+  contains
+
+    !> Is the other end of a side a twin too, and goes the other outline the other way between the two?
+    logical function lies_against(which)
+      integer, intent(in) :: which
+      type(near_place) :: place
+      integer :: k
+
+      associate (node => model%body_outline%node(:, which))
+        k = merge(node(1), node(2), which /= side)
+        lies_against = loose_twin(k, which) > 0
+        if (.not. lies_against) return
+        place = drawn%nearest_place(part, drawn%at(which, 0.5_wp))
+        lies_against = place%distance <= coincident*norm2(drawn%chord(which)) .and. &
+                       dot_product(drawn%tangent(place%side, place%s), drawn%tangent(which, 0.5_wp)) < 0.0_wp
+      end associate
+    end function lies_against
+
+    !> The node of the other part at the place of one at the end of a side, if nothing joins the two.
+    integer function loose_twin(node, which) result(found)
+      integer, intent(in) :: node, which
+      type(near_place) :: place
+
+      place = drawn%nearest_place(part, model%x(:, node))
+      found = 0
+      associate (within => coincident*norm2(drawn%chord(which)), ends => model%body_outline%node(:2, place%side))
+        if (place%distance > within) return
+        found = merge(ends(1), ends(2), place%s < 0.5_wp)
+        if (norm2(model%x(:, found) - model%x(:, node)) > within .or. any(model%leader(:, found) == model%leader(:, node)) .or. &
+            is_mate(mate, [node], part) .or. is_mate(mate, [found], model%body_outline%part_of(node)) .or. &
+            (all(model%held(:, node)) .and. all(model%held(:, found)))) found = 0
+      end associate
+    end function loose_twin
+  end function twin_of
+end module epcont_build_lying_together

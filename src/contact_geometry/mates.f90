@@ -1,0 +1,43 @@
+!> Which nodes pairs join with another body.
+module epcont_contact_geometry_mates
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: find_mates, is_mate
+
+  integer, parameter :: several = -1   !! more than one
+
+contains
+
+  !> The part of the outline with which pairs join each node; 0: none [nodes].
+  pure function find_mates(model) result(mate)
+    type(model_type), intent(in) :: model
+    integer, allocatable :: mate(:)
+    integer :: i, k, other
+
+    allocate (mate(model%nodes), source=0)
+    do k = 1, model%pairs
+      associate (ends => model%body_outline%part_of(model%pair_node(:, k)))
+        if (ends(1) == ends(2)) cycle
+        do i = model%row_start(k), model%row_start(k + 1) - 1
+          associate (node => model%row_node(i))
+            other = merge(ends(1), ends(2), model%body_outline%part_of(node) == ends(2))
+            if (other == 0 .or. mate(node) == other) cycle
+            mate(node) = merge(other, several, mate(node) == 0)
+          end associate
+        end do
+      end associate
+    end do
+  end function find_mates
+
+  !> Is one of these nodes joined with a part?
+  pure logical function is_mate(mate, node, part)
+    integer, intent(in) :: mate(:), node(:), part
+    integer :: k
+
+    is_mate = .false.
+    do k = 1, size(node)
+      if (node(k) > 0) is_mate = is_mate .or. mate(node(k)) == part .or. mate(node(k)) == several
+    end do
+  end function is_mate
+end module epcont_contact_geometry_mates

@@ -1,0 +1,101 @@
+!> Which of many boxes meet a given one, without looking at all of them.
+!>
+!> The boxes are halved by their middles, across the longer way of their extent, again and again; node i of the tree has the
+!> children 2i and 2i + 1, and each node has the box round all that lies below it. A leaf is one box.
+module epcont_geometry_box_tree
+  use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: halve
+  implicit none
+  private
+  public :: box_tree, new_box_tree
+
+  type :: box_tree
+    integer, allocatable :: item(:)      !! which box a leaf is; 0: no leaf [nodes]
+    real(wp), allocatable :: low(:, :)   !! corner of each node's box [length] [2, nodes]
+    real(wp), allocatable :: high(:, :)  !! the opposite one [length] [2, nodes]
+  contains
+    procedure :: meeting
+    procedure :: away
+  end type box_tree
+
+  !> Nodes that wait while a tree is walked, at most: one a level and one more.
+  integer, parameter, public :: most_waiting = bit_size(1) + 1
+
+contains
+
+  !> The tree of boxes from `low` to `high`.
+  pure function new_box_tree(low, high) result(tree)
+    real(wp), intent(in) :: low(:, :), high(:, :)   !! [length] [2, boxes]
+    type(box_tree) :: tree
+    integer, allocatable :: first(:), last(:), order(:)
+    integer :: axis, i, k, leaves, middle, n
+    real(wp) :: extent(2)
+
+    n = size(low, 2)
+    leaves = 1
+    do while (leaves < n)
+      leaves = 2*leaves
+    end do
+    order = [(i, i=1, n)]
+    allocate (tree%item(2*leaves - 1), first(2*leaves - 1), last(2*leaves - 1), source=0)
+    allocate (tree%low(2, 2*leaves - 1), source=huge(1.0_wp))
+    allocate (tree%high(2, 2*leaves - 1), source=-huge(1.0_wp))
+    if (n == 0) return   ! a root that nothing meets
+    first(1) = 1
+    last(1) = n
+    do i = 1, 2*leaves - 1
+      if (first(i) == 0) cycle
+      do k = first(i), last(i)
+        tree%low(:, i) = min(tree%low(:, i), low(:, order(k)))
+        tree%high(:, i) = max(tree%high(:, i), high(:, order(k)))
+      end do
+      if (first(i) == last(i)) then
+        tree%item(i) = order(first(i))
+        cycle
+      end if
+      extent = tree%high(:, i) - tree%low(:, i)
+      axis = merge(1, 2, extent(1) >= extent(2))
+      associate (own => order(first(i):last(i)))
+        call halve(low(axis, own) + high(axis, own), own)
+      end associate
+      middle = first(i) + (last(i) - first(i) + 1)/2
+      first(2*i:2*i + 1) = [first(i), middle]
+      last(2*i:2*i + 1) = [middle - 1, last(i)]
+    end do
+  end function new_box_tree
+
+  !> The boxes that meet the one from `low` to `high`, ascending by their place in the tree.
+  pure subroutine meeting(self, low, high, found, count)
+    class(box_tree), intent(in) :: self
+    real(wp), intent(in) :: low(2), high(2)       !! [length]
+    integer, allocatable, intent(inout) :: found(:)   !! room, made longer where it is short
+    integer, intent(out) :: count                 !! of them
+    integer :: i, waiting(most_waiting), waits
+
+    count = 0
+    waiting(1) = 1
+    waits = 1
+    do while (waits > 0)
+      i = waiting(waits)
+      waits = waits - 1
+      if (any(high < self%low(:, i)) .or. any(low > self%high(:, i))) cycle
+      if (self%item(i) == 0) then
+        waiting(waits + 1:waits + 2) = [2*i + 1, 2*i]
+        waits = waits + 2
+        cycle
+      end if
+      if (count == size(found)) found = [found, found]
+      count = count + 1
+      found(count) = self%item(i)
+    end do
+  end subroutine meeting
+
+  !> Square of the distance of a point from the box of a node; 0 in it [length**2].
+  pure real(wp) function away(self, node, point)
+    class(box_tree), intent(in) :: self
+    integer, intent(in) :: node
+    real(wp), intent(in) :: point(2)   !! [length]
+
+    away = sum(max(self%low(:, node) - point, 0.0_wp, point - self%high(:, node))**2)
+  end function away
+end module epcont_geometry_box_tree

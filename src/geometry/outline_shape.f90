@@ -1,0 +1,237 @@
+!> The outlines of the bodies in one state, as drawn or displaced: what a point is near to, and whether a body has it inside.
+!> Sides of six-node elements are the parabolas that they are.
+module epcont_geometry_outline_shape
+  use epcont_base_kinds, only: wp
+  use epcont_geometry_box_tree, only: box_tree, most_waiting, new_box_tree
+  use epcont_geometry_edge, only: edge_tangent
+  use epcont_geometry_outline, only: outline_type
+  implicit none
+  private
+  public :: outline_shape, near_place, new_outline_shape
+
+  !> Distances that differ by less than this part are equal: of two edges of a slit, either may be met.
+  real(wp), parameter :: equal = 1.0e-9_wp
+  !> A place nearer to a node than this part of its side is at the node.
+  real(wp), parameter :: at_node = 1.0e-9_wp
+  !> Places of a curved side that are tried first, and steps of Newton's method from the nearest of them.
+  integer, parameter :: tried = 4, most_steps = 8
+
+  !> Farther than anything is, and its square still a number.
+  real(wp), parameter :: far = 1.0e150_wp
+
+  type :: outline_shape
+    type(outline_type) :: outline
+    real(wp), allocatable :: x(:, :, :)          !! of where each side begins and ends, and of its middle [length] [2, 3, sides]
+    real(wp), allocatable :: low(:, :), high(:, :)  !! box of each side [length] [2, sides]
+    type(box_tree), allocatable :: side_tree(:)  !! of each part; the sides are counted from its first
+    type(box_tree) :: part_tree                  !! of the parts' boxes
+  contains
+    procedure :: at
+    procedure :: tangent
+    procedure :: chord
+    procedure :: near_side
+    procedure :: nearest_place
+    procedure :: is_inside
+  end type outline_shape
+
+  !> The place of a part's outline that is nearest to a point.
+  type :: near_place
+    integer :: side = 0                       !! 0: none
+    real(wp) :: s = 0.0_wp                    !! from 0 to 1 along it
+    real(wp) :: x(2) = 0.0_wp                 !! [length]
+    real(wp) :: distance = far                !! [length]
+    logical :: inside = .false.               !! the point is in the body there
+  end type near_place
+
+contains
+
+  !> The outlines with the nodes at `x`.
+  pure function new_outline_shape(outline, x) result(shape)
+    type(outline_type), intent(in) :: outline
+    real(wp), intent(in) :: x(:, :)   !! [length] [2, nodes]
+    type(outline_shape) :: shape
+    real(wp) :: control(2)
+    real(wp), allocatable :: high(:, :), low(:, :)
+    integer :: p, s
+
+    shape%outline = outline
+    allocate (shape%x(2, 3, outline%sides), shape%low(2, outline%sides), shape%high(2, outline%sides))
+    do s = 1, outline%sides
+      associate (node => outline%node(:, s), own => shape%x(:, :, s))
+        own(:, :2) = x(:, node(:2))
+        own(:, 3) = 0.5_wp*(own(:, 1) + own(:, 2))
+        if (node(3) > 0) own(:, 3) = x(:, node(3))
+        control = own(:, 3) + (own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
+        shape%low(:, s) = min(own(:, 1), own(:, 2), control)
+        shape%high(:, s) = max(own(:, 1), own(:, 2), control)
+      end associate
+    end do
+    allocate (shape%side_tree(outline%parts), low(2, outline%parts), high(2, outline%parts))
+    do p = 1, outline%parts
+      associate (first => outline%first(p), last => outline%first(p + 1) - 1)
+        shape%side_tree(p) = new_box_tree(shape%low(:, first:last), shape%high(:, first:last))
+        low(:, p) = shape%side_tree(p)%low(:, 1)
+        high(:, p) = shape%side_tree(p)%high(:, 1)
+      end associate
+    end do
+    if (outline%parts > 0) shape%part_tree = new_box_tree(low, high)
+  end function new_outline_shape
+
+  !> A place of a side.
+  pure function at(self, side, s) result(x)
+    class(outline_shape), intent(in) :: self
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s   !! from 0 to 1
+    real(wp) :: x(2)
+
+    associate (own => self%x(:, :, side))
+      x = own(:, 1) + s*(own(:, 2) - own(:, 1))
+      if (self%outline%node(3, side) > 0) x = x + 4.0_wp*s*(1.0_wp - s)*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
+    end associate
+  end function at
+
+  !> Along a side, as long as it would be if it were straight on from there [length].
+  pure function tangent(self, side, s) result(along)
+    class(outline_shape), intent(in) :: self
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    real(wp) :: along(2)
+
+    along = edge_tangent(self%x(:, :merge(3, 2, self%outline%node(3, side) > 0), side), s)
+  end function tangent
+
+  !> From where a side begins to where it ends [length].
+  pure function chord(self, side)
+    class(outline_shape), intent(in) :: self
+    integer, intent(in) :: side
+    real(wp) :: chord(2)
+
+    chord = self%x(:, 2, side) - self%x(:, 1, side)
+  end function chord
+
+  !> The place of a part that is nearest to a point: branch and bound in its tree. `guess` is a side that may be near.
+  pure function nearest_place(self, part, point, guess) result(best)
+    class(outline_shape), intent(in) :: self
+    integer, intent(in) :: part
+    real(wp), intent(in) :: point(2)   !! [length]
+    integer, intent(in), optional :: guess
+    type(near_place) :: best
+    type(near_place) :: place
+    real(wp) :: away(2), bound(most_waiting)
+    integer :: i, waiting(most_waiting), waits
+
+    waiting(1) = 1
+    bound(1) = 0.0_wp
+    waits = 1
+    if (present(guess)) then
+      if (self%outline%part(guess) == part) best = self%near_side(guess, point)
+    end if
+    associate (tree => self%side_tree(part))
+      do while (waits > 0)
+        i = waiting(waits)
+        waits = waits - 1
+        if (bound(waits + 1) > best%distance*best%distance) cycle
+        if (tree%item(i) > 0) then
+          place = self%near_side(self%outline%first(part) + tree%item(i) - 1, point)
+          if (place%side == best%side) cycle
+          if (place%distance > best%distance*(1.0_wp + equal)) cycle
+          if (place%distance >= best%distance*(1.0_wp - equal)) then
+            if (is_inside(self, best, point) .or. .not. is_inside(self, place, point)) cycle
+          end if
+          best = place
+          cycle
+        end if
+        away = [tree%away(2*i, point), tree%away(2*i + 1, point)]
+        ! The nearer one is looked at first.
+        if (away(1) <= away(2)) then
+          waiting(waits + 1:waits + 2) = [2*i + 1, 2*i]
+          bound(waits + 1:waits + 2) = [away(2), away(1)]
+        else
+          waiting(waits + 1:waits + 2) = [2*i, 2*i + 1]
+          bound(waits + 1:waits + 2) = away
+        end if
+        waits = waits + 2
+      end do
+    end associate
+    best%inside = is_inside(self, best, point)
+  end function nearest_place
+
+  !> The place of a side that is nearest to a point; whether the point is inside is not looked at.
+  pure function near_side(self, side, point) result(place)
+    class(outline_shape), intent(in) :: self
+    integer, intent(in) :: side
+    real(wp), intent(in) :: point(2)   !! [length]
+    type(near_place) :: place
+    real(wp) :: along(2)
+
+    place%side = side
+    associate (own => self%x(:, :, side))
+      along = own(:, 2) - own(:, 1)
+      place%s = dot_product(point - own(:, 1), along)/max(dot_product(along, along), tiny(1.0_wp))
+      place%s = min(1.0_wp, max(0.0_wp, place%s))
+    end associate
+    if (self%outline%node(3, side) > 0) place%s = near_curve(self, side, point)
+    if (place%s < at_node) place%s = 0.0_wp
+    if (1.0_wp - place%s < at_node) place%s = 1.0_wp
+    place%x = self%at(side, place%s)
+    place%distance = norm2(point - place%x)
+  end function near_side
+
+  !> Is a point in the body, as seen from the place of the outline that is nearest to it? At a node both sides say so.
+  pure logical function is_inside(self, place, point)
+    class(outline_shape), intent(in) :: self
+    type(near_place), intent(in) :: place
+    real(wp), intent(in) :: point(2)   !! [length]
+    real(wp) :: outward(2)
+
+    associate (side => place%side, before => self%outline%before(place%side), after => self%outline%after(place%side))
+      if (place%s <= 0.0_wp) then
+        outward = normal(self%tangent(before, 1.0_wp)) + normal(self%tangent(side, 0.0_wp))
+      else if (place%s >= 1.0_wp) then
+        outward = normal(self%tangent(side, 1.0_wp)) + normal(self%tangent(after, 0.0_wp))
+      else
+        outward = normal(self%tangent(side, place%s))
+      end if
+    end associate
+    is_inside = dot_product(outward, point - place%x) < 0.0_wp
+  end function is_inside
+
+  !> The place along a parabola: the nearest of a few, and Newton's method from there.
+  pure real(wp) function near_curve(self, side, point) result(s)
+    type(outline_shape), intent(in) :: self
+    integer, intent(in) :: side
+    real(wp), intent(in) :: point(2)
+    real(wp) :: along(2), away(2), bend(2), distance, least, rate, step
+    integer :: k
+
+    least = huge(1.0_wp)
+    s = 0.0_wp
+    do k = 0, tried
+      distance = norm2(point - self%at(side, real(k, wp)/tried))
+      if (distance >= least) cycle
+      least = distance
+      s = real(k, wp)/tried
+    end do
+    associate (own => self%x(:, :, side))
+      bend = -8.0_wp*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
+    end associate
+    do k = 1, most_steps
+      away = self%at(side, s) - point
+      along = self%tangent(side, s)
+      rate = dot_product(along, along) + dot_product(away, bend)
+      if (rate <= 0.0_wp) rate = dot_product(along, along)
+      if (rate == 0.0_wp) return
+      step = min(1.0_wp, max(0.0_wp, s - dot_product(away, along)/rate)) - s
+      s = s + step
+      if (abs(step) <= epsilon(s)) return
+    end do
+  end function near_curve
+
+  !> Outward, of length 1.
+  pure function normal(along)
+    real(wp), intent(in) :: along(2)
+    real(wp) :: normal(2)
+
+    normal = [along(2), -along(1)]/max(norm2(along), tiny(1.0_wp))
+  end function normal
+end module epcont_geometry_outline_shape

@@ -1,0 +1,16 @@
+!> What a linear step finds: displacements, stresses in equilibrium, contact.
+module epcont_plasticity_scene_state
+  use epcont_base_kinds, only: wp
+  use epcont_contact_problem, only: contact_solution
+  implicit none
+  private
+  public :: scene_state
+
+  type :: scene_state
+    real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), allocatable :: deformation(:, :)    !! displacements before the rigid motions are added [length] [2, nodes]
+    real(wp), allocatable :: strain(:, :)         !! xx, yy, zz, xy (engineering) [4, points]
+    real(wp), allocatable :: stress(:, :)         !! xx, yy, zz, xy, in equilibrium [stress] [4, points]
+    type(contact_solution) :: contact
+  end type scene_state
+end module epcont_plasticity_scene_state

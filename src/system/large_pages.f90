@@ -1,0 +1,91 @@
+!> Large pages: one of 2 MB is mapped in one step where 512 of 4 kB take 512, and the processor finds it sooner.
+!> Nothing but speed depends on them.
+module epcont_system_large_pages
+  use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_loc, c_size_t
+  use epcont_base_kinds, only: sp, wp
+  implicit none
+  private
+  public :: use_large_pages, prepare_heap
+
+  integer(c_intptr_t), parameter :: page = 4096            !! where advice may begin [bytes]
+  integer(c_intptr_t), parameter :: large_page = 2097152   !! [bytes]
+  integer(c_int), parameter :: advice_large_pages = 14     !! MADV_HUGEPAGE of Linux; others refuse it, to no harm
+
+  !> Parameters of glibc's `mallopt`.
+  integer(c_int), parameter :: trim_threshold = -1, top_pad = -2, mmap_threshold = -3, arena_max = -8
+  integer(c_int), parameter :: heap_step = 67108864        !! by which the heap grows; memory is taken when touched [bytes]
+  integer(c_int), parameter :: largest_in_heap = 33554432  !! arrays up to here are in the heap: glibc's own limit [bytes]
+
+  interface use_large_pages
+    module procedure use_under_double, use_under_single
+  end interface use_large_pages
+
+  interface
+    integer(c_int) function madvise(address, length, advice) bind(c)
+      import :: c_int, c_intptr_t, c_size_t
+      integer(c_intptr_t), value, intent(in) :: address
+      integer(c_size_t), value, intent(in) :: length
+      integer(c_int), value, intent(in) :: advice
+    end function madvise
+
+    integer(c_int) function mallopt(parameter, value) bind(c)
+      import :: c_int
+      integer(c_int), value, intent(in) :: parameter, value
+    end function mallopt
+
+    integer(c_intptr_t) function sbrk(increment) bind(c)
+      import :: c_intptr_t
+      integer(c_intptr_t), value, intent(in) :: increment
+    end function sbrk
+  end interface
+
+contains
+
+  !> Ask for large pages under an array that has not been touched yet.
+  subroutine use_under_double(array)
+    real(wp), contiguous, target, intent(in) :: array(:)
+    integer(c_intptr_t) :: first
+
+    first = transfer(c_loc(array), first)
+    call advise(first, first + size(array, kind=c_intptr_t)*storage_size(array)/8)
+  end subroutine use_under_double
+
+  subroutine use_under_single(array)
+    real(sp), contiguous, target, intent(in) :: array(:)
+    integer(c_intptr_t) :: first
+
+    first = transfer(c_loc(array), first)
+    call advise(first, first + size(array, kind=c_intptr_t)*storage_size(array)/8)
+  end subroutine use_under_single
+
+  !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them. Threads have no heaps of
+  !! their own: each would take 128 MB of addresses, and keep what it frees from the others.
+  subroutine prepare_heap()
+    integer(c_int) :: ignored
+    integer(c_intptr_t) :: first
+    integer :: status
+    real(wp), allocatable :: array(:)
+
+    ignored = mallopt(mmap_threshold, largest_in_heap)
+    ignored = mallopt(trim_threshold, huge(ignored))
+    ignored = mallopt(top_pad, heap_step)
+    ignored = mallopt(arena_max, 1_c_int)
+    first = sbrk(0_c_intptr_t)
+    allocate (array(heap_step/32), stat=status)   ! too large for what the heap has: it grows
+    if (status == 0) then
+      call advise(first, sbrk(0_c_intptr_t))
+    else
+      ignored = mallopt(top_pad, 0_c_int)   ! memory is short: ask for no more than is needed
+    end if
+  end subroutine prepare_heap
+
+  subroutine advise(first, last)
+    integer(c_intptr_t), intent(in) :: first, last   !! addresses
+    integer(c_intptr_t) :: from
+    integer(c_int) :: ignored
+
+    from = (first + page - 1)/page*page
+    if (last - from < large_page) return
+    ignored = madvise(from, int(last - from, c_size_t), advice_large_pages)
+  end subroutine advise
+end module epcont_system_large_pages

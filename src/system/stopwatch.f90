@@ -1,0 +1,77 @@
+!> Where the time of a run goes. A lap is all the time since the last one, so that the laps add up to the run.
+module epcont_system_stopwatch
+  use epcont_base_kinds, only: i8, wp
+  implicit none
+  private
+  public :: stopwatch
+
+  !> Stages of a run, in their order.
+  integer, parameter, public :: stage_reading = 1         !! lines, cards, fields
+  integer, parameter, public :: stage_model = 2           !! checked cards, lines in contact
+  integer, parameter, public :: stage_plan = 3            !! free motions, methods, memory
+  integer, parameter, public :: stage_numbering = 4       !! of the equations
+  integer, parameter, public :: stage_stiffness = 5       !! strain operator, what has changed
+  integer, parameter, public :: stage_factor = 6          !! of the bodies, with their assembly
+  integer, parameter, public :: stage_flexibility = 7
+  integer, parameter, public :: stage_contact = 8         !! forces and gaps of the pairs
+  integer, parameter, public :: stage_displacements = 9   !! under forces, with their strains
+  integer, parameter, public :: stage_yielding = 10       !! what the iteration does between two solves
+  integer, parameter, public :: stage_stresses = 11       !! and pressures, of the answer
+  integer, parameter, public :: stage_certificate = 12
+  integer, parameter, public :: stage_accuracy = 13       !! the condition of the stiffness with it
+  integer, parameter, public :: stage_writing = 14
+  integer, parameter, public :: stages = 14
+
+  character(len=13), parameter, public :: stage_name(stages) = [character(len=13) :: &
+    'reading', 'model', 'plan', 'numbering', 'stiffness', 'factor', 'flexibility', 'contact', 'displacements', 'yielding', &
+    'stresses', 'certificate', 'accuracy', 'writing']
+
+  type :: stopwatch
+    real(wp) :: wall(stages) = 0.0_wp        !! [s]
+    real(wp) :: processor(stages) = 0.0_wp   !! of all threads, the system's part included [s]
+    real(wp), private :: lap_began(2) = 0.0_wp   !! on the wall and on the processor [s]
+  contains
+    procedure :: start
+    procedure :: lap
+    procedure :: elapsed
+  end type stopwatch
+
+contains
+
+  !> Begin the first lap.
+  subroutine start(self)
+    class(stopwatch), intent(inout) :: self
+
+    self%wall = 0.0_wp
+    self%processor = 0.0_wp
+    self%lap_began = now()
+  end subroutine start
+
+  !> The time since the last lap was that of `stage`.
+  subroutine lap(self, stage)
+    class(stopwatch), intent(inout) :: self
+    integer, intent(in) :: stage
+    real(wp) :: ended(2)
+
+    ended = now()
+    self%wall(stage) = self%wall(stage) + (ended(1) - self%lap_began(1))
+    self%processor(stage) = self%processor(stage) + (ended(2) - self%lap_began(2))
+    self%lap_began = ended
+  end subroutine lap
+
+  !> Up to the last lap [s].
+  pure real(wp) function elapsed(self)
+    class(stopwatch), intent(in) :: self
+
+    elapsed = sum(self%wall)
+  end function elapsed
+
+  function now() result(seconds)
+    real(wp) :: seconds(2)
+    integer(i8) :: count, rate
+
+    call system_clock(count, rate)
+    seconds(1) = real(count, wp)/real(max(rate, 1_i8), wp)
+    call cpu_time(seconds(2))
+  end function now
+end module epcont_system_stopwatch
