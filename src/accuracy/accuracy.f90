@@ -268,7 +268,7 @@ contains
     weights = weights_of(3, model%has_rings(), any(answer%plastic))   ! without a zone
     do z = 1, size(accuracy%zone)
       associate (zone => accuracy%zone(z), force => unit_force(answer%zones(z)%pairs))
-        weights = weights_of(zone%order, model%has_rings(), any(answer%plastic))
+        weights = weights_of(model%kinds(zone%kind)%estimated_as, model%has_rings(), any(answer%plastic))
         at_end = answer%zones(z)%max_pressure*zone%half_length*surface_compliance(model, table, zone%peak)
         between = at_end*zone%resolution**2
         at_end = at_end*zone%end_resolution**2

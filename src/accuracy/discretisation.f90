@@ -6,7 +6,7 @@
 module epcont_accuracy_discretisation
   use epcont_accuracy_patches, only: patch_table
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: local_points, most_nodes, most_points, shape_values
+  use epcont_element_element_kind, only: element_kind, most_places
   use epcont_material_curve, only: material_type
   use epcont_material_elasticity, only: cross_modulus
   use epcont_material_total_theory, only: respond, response_type
@@ -14,25 +14,6 @@ module epcont_accuracy_discretisation
   implicit none
   private
   public :: error_products, stored_energy
-
-  !> Places of an element where strains are compared, at most: those of six-node elements. Their integration points would flatter,
-  !! the error there is least; these are exact for polynomials of the fourth degree (Dunavant 1985).
-  integer, parameter :: most_places = 6
-  real(wp), parameter :: near = 0.091576213509771_wp, far = 0.445948490915965_wp
-  real(wp), parameter :: tria6_place(2, most_places) = &
-    reshape([near, near, 1.0_wp - 2.0_wp*near, near, near, 1.0_wp - 2.0_wp*near, &
-             far, far, 1.0_wp - 2.0_wp*far, far, far, 1.0_wp - 2.0_wp*far], [2, most_places])
-  real(wp), parameter :: tria6_part(most_places) = [0.109951743655322_wp, 0.109951743655322_wp, 0.109951743655322_wp, &
-                                                     0.223381589678011_wp, 0.223381589678011_wp, 0.223381589678011_wp]
-
-  !> What is the same in all elements of so many nodes: at each place the smooth strain is smooth(nodes) n, the element's own
-  !! strain(points) p, and the place has the parts v of the points' volumes.
-  type :: kind_type
-    integer :: places = 0
-    real(wp) :: n(most_nodes, most_places) = 0.0_wp
-    real(wp) :: p(most_points, most_places) = 0.0_wp
-    real(wp) :: v(most_points, most_places) = 0.0_wp
-  end type kind_type
 
 contains
 
@@ -48,33 +29,32 @@ contains
     real(wp), contiguous, intent(in) :: smooth(:, :, :)   !! [4, places, fields]
     real(wp), allocatable, intent(out) :: product(:, :)   !! [energy] [elements, fields]
     real(wp), allocatable, intent(out) :: missing(:)      !! of elastic bodies; that of the first is not found here [fields]
-    type(kind_type) :: kind(most_nodes)
     type(response_type) :: before, after
     real(wp) :: own(4, most_places), error(4, most_places, size(strain, 3)), part(most_places), cross
     real(wp) :: energy(2, size(strain, 3))   !! of each field's error, and of its own strain
     logical :: yielded
     integer :: e, f, k, n
 
-    kind([3, 4, 6]) = [kind_of(3), kind_of(4), kind_of(6)]
     allocate (product(model%elements, size(strain, 3)), missing(size(strain, 3)), source=0.0_wp)
     energy = 0.0_wp
     do e = 1, model%elements
       n = model%order(e)
-      associate (first => model%first_point(e), last => model%first_point(e + 1) - 1, m => material(model%section(e)))
+      associate (first => model%first_point(e), last => model%first_point(e + 1) - 1, m => material(model%section(e)), &
+                 kind => model%kinds(model%kind(e)))
         cross = cross_modulus(m%bulk, m%shear, m%sheet)
-        do k = 1, kind(n)%places
-          part(k) = sum(kind(n)%v(:last - first + 1, k)*volume(first:last))
+        do k = 1, kind%places
+          part(k) = sum(kind%v(:last - first + 1, k)*volume(first:last))
         end do
         do f = size(strain, 3), 1, -1   ! last the first, whose own strain is wanted
-          call compare(kind(n), table%place(:n, e), strain(:, first:last, f), smooth(:, :, f), own, error(:, :, f))
+          call compare(kind, table%place(:n, e), strain(:, first:last, f), smooth(:, :, f), own, error(:, :, f))
           if (f == 1) exit
-          do k = 1, kind(n)%places
+          do k = 1, kind%places
             energy(:, f) = energy(:, f) + part(k)*[elastic_product(cross, m%shear, error(:, k, f), error(:, k, f)), &
                                                    elastic_product(cross, m%shear, own(:, k), own(:, k))]
           end do
         end do
         yielded = .false.
-        do k = 1, kind(n)%places
+        do k = 1, kind%places
           if (m%yields) then
             ! The strain of a three-node element is the same at all its places.
             if (k == 1 .or. n > 3) before = respond(m, own(:, k))
@@ -96,7 +76,7 @@ contains
 
   !> An element's own strain at its places, and what the smooth one is beyond it.
   pure subroutine compare(kind, place, strain, smooth, own, error)
-    type(kind_type), intent(in) :: kind
+    type(element_kind), intent(in) :: kind
     integer, contiguous, intent(in) :: place(:)
     real(wp), contiguous, intent(in) :: strain(:, :)      !! [4, its points]
     real(wp), contiguous, intent(in) :: smooth(:, :)      !! [4, places of all]
@@ -123,40 +103,6 @@ contains
       end do
     end do
   end subroutine compare
-
-  !> Places and shape functions of the elements of so many nodes.
-  pure type(kind_type) function kind_of(nodes) result(kind)
-    integer, intent(in) :: nodes
-    real(wp) :: place(2, most_points), weight(most_points), l(3)
-    integer :: k
-
-    call local_points(nodes, place, weight)
-    select case (nodes)
-    case (3)   ! the middles of the sides, exact for quadratics
-      kind%places = 3
-      do k = 1, 3
-        kind%n(:3, k) = 0.5_wp
-        kind%n(k, k) = 0.0_wp
-        kind%p(1, k) = 1.0_wp
-        kind%v(1, k) = 1.0_wp/3.0_wp
-      end do
-    case (4)
-      kind%places = 4
-      do k = 1, 4
-        kind%n(:4, k) = shape_values(4, place(:, k))
-        kind%p(k, k) = 1.0_wp
-        kind%v(k, k) = 1.0_wp
-      end do
-    case default
-      kind%places = most_places
-      do k = 1, most_places
-        kind%n(:, k) = shape_values(6, tria6_place(:, k))
-        kind%v(:3, k) = tria6_part(k)
-        l = [1.0_wp - sum(tria6_place(:, k)), tria6_place(:, k)]
-        kind%p(:3, k) = 2.0_wp*l - 1.0_wp/3.0_wp   ! linear, from the integration points at (2/3, 1/6, 1/6)
-      end do
-    end select
-  end function kind_of
 
   !> The stress of one strain, elastic, times another strain; in a sheet their components zz are none.
   pure real(wp) function elastic_product(cross, shear, one, other) result(product)

@@ -51,7 +51,7 @@ contains
     integer :: at, e, k
 
     if (all(model%section == model%section(1))) return
-    allocate (next(6*model%elements + model%nodes), source=0)
+    allocate (next(size(model%connectivity) + model%nodes), source=0)
     node = next
     section = next
     node(:model%nodes) = table%node

@@ -1,12 +1,11 @@
 !> Smooth strains from those of the elements (Zienkiewicz and Zhu 1992, superconvergent patch recovery).
 !>
 !> At each corner a polynomial is fitted by least squares to the strains of the elements around it, at the points where they are
-!> best: the middles of three- and four-node elements (linear), the integration points of six-node ones (quadratic). Nodes
+!> best: the middles of three- and four-node elements (linear), places within those with nodes between corners (quadratic). Nodes
 !> between corners take the mean of the polynomials of both.
 module epcont_accuracy_recovery
   use epcont_accuracy_patches, only: patch_table, wide_patch
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: local_points, most_points, shape_values
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -38,14 +37,14 @@ contains
     allocate (smooth(4, table%places, size(strain, 3)), source=0.0_wp)
     allocate (fitted(table%places), source=0)
     do e = 1, model%elements
-      if (model%order(e) == 6) fitted(table%place(4:, e)) = -1
+      fitted(table%place(model%corners(e) + 1:model%order(e), e)) = -1
     end do
     allocate (seen(model%elements), source=0)
     allocate (patch(64))
     do p = 1, table%places
       count = table%around%start(p + 1) - table%around%start(p)
       if (count == 0 .or. fitted(p) /= 0) cycle
-      curved = model%order(table%around%group(table%around%start(p))) == 6
+      curved = is_quadratic(model, table%around%group(table%around%start(p)))
       if (table%inside(p) .and. count >= merge(least_quadratic/3, least_linear, curved)) then
         if (count > size(patch)) patch = [patch, table%around%group]
         patch(:count) = table%around%group(table%around%start(p):table%around%start(p + 1) - 1)
@@ -63,40 +62,45 @@ contains
     end do
   end function recover_strains
 
-  !> Where the strains of the elements are best, and what they are there: at all points of six-node elements, in others in the
-  !! middle, which has the number of the element's first point.
+  !> Are the strains around an element fitted by quadratic polynomials?
+  pure logical function is_quadratic(model, element)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element
+
+    is_quadratic = model%kinds(model%kind(element))%degree > 1
+  end function is_quadratic
+
+  !> Where the strains of the elements are best, and what they are there: the samples of an element have the numbers of its first
+  !! points.
   pure subroutine take_samples(model, volume, strain, x, sample)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: volume(:), strain(:, :, :)
     real(wp), allocatable, intent(out) :: x(:, :)           !! [length] [2, points]
     real(wp), allocatable, intent(out) :: sample(:, :, :)   !! [4, points, fields]
-    real(wp) :: place(2, most_points), weight(most_points), shape(6, most_points)
     integer :: e, f, k, p
 
-    call local_points(6, place, weight)
-    do k = 1, 3
-      shape(:, k) = shape_values(6, place(:, k))
-    end do
     allocate (x(2, model%points))
     allocate (sample, source=strain)
     do e = 1, model%elements
-      associate (node => model%connectivity(:, e), first => model%first_point(e), last => model%first_point(e + 1) - 1)
-        select case (model%order(e))
-        case (3)
-          x(:, first) = (model%x(:, node(1)) + model%x(:, node(2)) + model%x(:, node(3)))/3.0_wp
-        case (4)
-          x(:, first) = 0.25_wp*(model%x(:, node(1)) + model%x(:, node(2)) + model%x(:, node(3)) + model%x(:, node(4)))
-          sample(:, first, :) = 0.0_wp
-          do f = 1, size(strain, 3)
-            do p = first, last
-              sample(:, first, f) = sample(:, first, f) + strain(:, p, f)*(volume(p)/sum(volume(first:last)))
+      associate (node => model%connectivity(:model%order(e), e), kind => model%kinds(model%kind(e)), &
+                 first => model%first_point(e), last => model%first_point(e + 1) - 1)
+        if (kind%degree > 1) then
+          do k = 1, kind%samples
+            x(:, first + k - 1) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
+            do f = 1, size(strain, 3)
+              sample(:, first + k - 1, f) = matmul(strain(:, first:last, f), kind%sample_of(:kind%points, k))
             end do
           end do
-        case default
-          do k = 1, 3
-            x(:, first + k - 1) = matmul(model%x(:, node), shape(:, k))
+          cycle
+        end if
+        x(:, first) = sum(model%x(:, node), dim=2)/kind%nodes
+        if (first == last) cycle
+        sample(:, first, :) = 0.0_wp
+        do f = 1, size(strain, 3)
+          do p = first, last
+            sample(:, first, f) = sample(:, first, f) + strain(:, p, f)*(volume(p)/sum(volume(first:last)))
           end do
-        end select
+        end do
       end associate
     end do
   end subroutine take_samples
@@ -155,7 +159,7 @@ contains
     real(wp), intent(inout) :: smooth(:, :, :)
     integer, intent(inout) :: fitted(:)
     real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic), at(2), reach, weight
-    integer :: e, f, i, j, k, s
+    integer :: corners, e, f, i, j, k, s
 
     at = model%x(:, table%node(p))
     reach = 0.0_wp
@@ -165,8 +169,8 @@ contains
     matrix = 0.0_wp
     coefficient = 0.0_wp
     do i = 1, size(patch)
-      associate (first => model%first_point(patch(i)), last => model%first_point(patch(i) + 1) - 1)
-        do s = first, merge(last, first, model%order(patch(i)) == 6)
+      associate (first => model%first_point(patch(i)))
+        do s = first, first + model%kinds(model%kind(patch(i)))%samples - 1
           term = terms((x(:, s) - at)/reach)
           weight = 1.0_wp/(0.1_wp + sum(term(2:3)**2))**2
           do j = 1, quadratic
@@ -180,10 +184,11 @@ contains
     smooth(:, p, :) = coefficient(:, :, 1)
     do i = table%around%start(p), table%around%start(p + 1) - 1
       e = table%around%group(i)
-      if (model%order(e) /= 6) cycle
-      do k = 1, 3
-        if (table%place(k, e) /= p .and. table%place(mod(k, 3) + 1, e) /= p) cycle
-        associate (middle => table%place(3 + k, e))
+      if (.not. is_quadratic(model, e)) cycle
+      corners = model%corners(e)
+      do k = 1, corners
+        if (table%place(k, e) /= p .and. table%place(mod(k, corners) + 1, e) /= p) cycle
+        associate (middle => table%place(corners + k, e))
           term = terms((model%x(:, table%node(middle)) - at)/reach)
           do f = 1, size(sample, 3)
             smooth(:, middle, f) = smooth(:, middle, f) + matmul(coefficient(:, f, :), term)

@@ -1,6 +1,7 @@
 !> THE table of what the parts of an estimate count, measured on scenes whose answers are known (tests/accuracy).
 module epcont_accuracy_weights
   use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: by_linear_triangles, by_quadrilaterals
   implicit none
   private
   public :: estimate_weights, weights_of
@@ -39,19 +40,19 @@ module epcont_accuracy_weights
 
 contains
 
-  !> Those of elements with so many nodes.
-  pure type(estimate_weights) function weights_of(order, rings, yielded) result(weights)
-    integer, intent(in) :: order      !! 3, 4 or 6
+  !> Those of a kind of elements.
+  pure type(estimate_weights) function weights_of(estimated_as, rings, yielded) result(weights)
+    integer, intent(in) :: estimated_as   !! as the table of elements says
     logical, intent(in) :: rings
     logical, intent(in) :: yielded    !! something in the scene has
     integer :: state
 
     state = merge(2, 1, yielded)
-    select case (order)
-    case (3)
+    select case (estimated_as)
+    case (by_linear_triangles)
       weights = tria3(state)
       if (rings) weights = trax3(state)
-    case (4)
+    case (by_quadrilaterals)
       weights = quad4(state)
     case default
       weights = tria6(state)

@@ -53,7 +53,7 @@ module epcont_accuracy_zone_error
     real(wp) :: half_length = 0.0_wp     !! of the zone, to where the pressure vanishes [length]
     real(wp) :: wave_height = 0.0_wp     !! of waves of its gap [length]
     real(wp) :: waviness = 0.0_wp        !! what flattens these waves, of the largest pressure
-    integer :: order = 3                 !! nodes of the elements there
+    integer :: kind = 1                  !! of the elements there
   end type zone_error
 
 contains
@@ -81,11 +81,11 @@ contains
     peak = peak_of(p, line%tributary(zone%pairs))
     error%peak = zone%pairs(peak)
     largest = p(peak)
-    error%order = order_at(model, table, line%node(zone%first))
+    error%kind = kind_at(model, table, line%node(zone%first))
     if (largest <= 0.0_wp) return
     s = places(model, line, zone%pairs)
     mirrored = line%mirrored(zone%pairs([1, n]))
-    weights = weights_of(error%order, model%has_rings(), any(answer%plastic))
+    weights = weights_of(model%kinds(error%kind)%estimated_as, model%has_rings(), any(answer%plastic))
     beyond = 0.0_wp
     uncertain = 0.0_wp
     widest = 0.0_wp
@@ -120,7 +120,7 @@ contains
       if (error%half_length > spacing .and. n > 1) error%resolution = spacing/error%half_length   ! of a single pair it stays 1
       error%unbounded = edge
       if (.not. edge) error%unbounded = has_tip(model, table, line, zone%pairs, largest)
-      error%resolved = error%unbounded .or. enough(n, mirrored, error%order) .and. .not. cut_off
+      error%resolved = error%unbounded .or. enough(n, mirrored, model%kinds(error%kind)%degree) .and. .not. cut_off
     end if
     error%end_resolution = error%resolution
     if (spacing > 0.0_wp .and. widest > spacing) error%end_resolution = error%resolution*widest/spacing
@@ -141,13 +141,13 @@ contains
   end function estimate_zone
 
   !> Are so many pairs enough to see where the pressure is largest?
-  pure logical function enough(pairs, mirrored, order)
+  pure logical function enough(pairs, mirrored, degree)
     integer, intent(in) :: pairs
     logical, intent(in) :: mirrored(2)   !! the zone goes on beyond its ends
-    integer, intent(in) :: order
+    integer, intent(in) :: degree        !! of the elements' sides
 
     enough = pairs + count(mirrored)*(pairs - 1) >= few
-    if (order == 6) enough = enough .and. pairs > one_side
+    if (degree > 1) enough = enough .and. pairs > one_side
   end function enough
 
   !> How far the elements at a pair that can be strained reach into their bodies; of six-node ones half [length].
@@ -164,7 +164,7 @@ contains
         do i = table%around%start(node), table%around%start(node + 1) - 1
           e = table%around%group(i)
           associate (along => matmul(model%normal(:, pair), model%x(:, model%connectivity(:model%corners(e), e))))
-            depth = max(depth, (maxval(along) - minval(along))*merge(0.5_wp, 1.0_wp, model%order(e) == 6))
+            depth = max(depth, (maxval(along) - minval(along))/model%kinds(model%kind(e))%degree)
           end associate
         end do
       end associate
@@ -186,16 +186,16 @@ contains
     peak = maxloc(area, mask=pressure >= maxval(pressure) - rounding*abs(maxval(pressure)), dim=1)
   end function peak_of
 
-  !> Nodes of the first element at a node; of none: 3.
-  pure integer function order_at(model, table, node) result(order)
+  !> The kind of the first element at a node; of none: the first.
+  pure integer function kind_at(model, table, node) result(kind)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
     integer, intent(in) :: node
 
-    order = 3
+    kind = 1
     if (table%around%start(node + 1) > table%around%start(node)) &
-      order = model%order(table%around%group(table%around%start(node)))
-  end function order_at
+      kind = model%kind(table%around%group(table%around%start(node)))
+  end function kind_at
 
   !> Place of each pair along the zone.
   pure function places(model, line, pairs) result(s)

@@ -7,7 +7,7 @@
 module epcont_assembly_stiffness
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: most_nodes
+  use epcont_element_element_kind, only: most_nodes
   use epcont_linalg_assembled, only: assembled_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   use epcont_linalg_front, only: front_matrix

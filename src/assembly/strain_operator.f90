@@ -2,7 +2,8 @@
 !> displacements, nodal forces of stresses, element stiffness.
 module epcont_assembly_strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: element_point, evaluate_points, most_nodes, most_points
+  use epcont_element_element_kind, only: most_nodes, most_points
+  use epcont_element_integration_point, only: evaluate_points, integration_point
   use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type
   implicit none
@@ -24,7 +25,7 @@ contains
   pure function new_strain_operator(model) result(operator)
     type(model_type), intent(in) :: model
     type(strain_operator) :: operator
-    type(element_point) :: point(most_points)
+    type(integration_point) :: point(most_points)
     real(wp) :: x(2, most_nodes)
     integer :: column, e, k, n, points
 
@@ -37,7 +38,10 @@ contains
       do k = 1, n
         x(:, k) = model%x(:, model%connectivity(k, e))
       end do
-      call evaluate_points(x(:, :n), model%kinematics(model%section(e)), model%thickness(model%section(e)), point(:points))
+      associate (section => model%section(e))
+        call evaluate_points(model%kinds(model%kind(e)), x(:, :n), model%kinematics(section), model%thickness(section), &
+                             point(:points))
+      end associate
       do k = 1, points
         operator%b(:, column + 1:column + 2*n) = point(k)%b(:, :2*n)
         operator%volume(model%first_point(e) + k - 1) = point(k)%volume

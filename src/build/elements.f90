@@ -9,6 +9,7 @@ module epcont_build_elements
                                     card_psolid, card_spc, card_spc1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type
+  use epcont_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric
   use epcont_geometry_plane, only: cross_product, polygon_area
   use epcont_model_model, only: model_type
@@ -18,10 +19,7 @@ module epcont_build_elements
 
   !> The cards of elements, in the order in which they are read.
   integer, parameter :: element_cards(5) = [card_ctria3, card_ctria6, card_cquad4, card_ctrax3, card_ctrax6]
-  integer, parameter :: order_of(5) = [3, 6, 4, 3, 6]
   logical, parameter :: is_ring(5) = [.false., .false., .false., .true., .true.]
-  !> Integration points of an element of 3 to 6 nodes.
-  integer, parameter :: points_of(3:6) = [1, 4, 0, 3]
 
   !> An area up to this part of the square of the longest side is rounding: the corners lie on one line.
   real(wp), parameter :: sliver = 1.0e-12_wp
@@ -37,11 +35,16 @@ contains
     type(model_type), intent(inout) :: model
     type(diagnostics), intent(inout) :: faults
     type(id_index) :: shells, solids
-    integer :: c, e, i
+    integer :: c, e, i, kind_of(size(element_cards))
 
+    model%kinds = element_kinds()
     model%elements = sum(deck%card(element_cards)%count)
-    allocate (model%element_id(model%elements), model%order(model%elements), model%section(model%elements))
-    allocate (model%connectivity(maxval([(order_of(c), c=1, size(element_cards))], mask=deck%card(element_cards)%count > 0), &
+    do c = 1, size(element_cards)
+      kind_of(c) = kind_named(model, deck%entry(element_cards(c))%name)
+    end do
+    allocate (model%element_id(model%elements), model%kind(model%elements), model%order(model%elements))
+    allocate (model%section(model%elements))
+    allocate (model%connectivity(maxval(model%kinds(kind_of)%nodes, mask=deck%card(element_cards)%count > 0), &
                                  model%elements), source=0)
     allocate (model%first_point(model%elements + 1))
     model%first_point(1) = 1
@@ -52,17 +55,18 @@ contains
       do i = 1, deck%card(element_cards(c))%count
         e = e + 1
         model%element_id(e) = int(deck%card(element_cards(c))%value(1, i))
-        model%order(e) = order_of(c)
-        model%first_point(e + 1) = model%first_point(e) + points_of(order_of(c))
+        model%kind(e) = kind_of(c)
+        model%order(e) = model%kinds(kind_of(c))%nodes
+        model%first_point(e + 1) = model%first_point(e) + model%kinds(kind_of(c))%points
         if (is_ring(c)) then
           call resolve(deck, element_cards(c), i, 2, solids, 'PSOLID', faults, model%section(e))
           if (model%section(e) > 0) model%section(e) = model%section(e) + deck%card(card_pshell)%count
         else
           call resolve(deck, element_cards(c), i, 2, shells, 'PSHELL', faults, model%section(e))
         end if
-        call read_nodes(deck, element_cards(c), i, nodes, model%connectivity(:order_of(c), e), faults)
+        call read_nodes(deck, element_cards(c), i, nodes, model%connectivity(:model%order(e), e), faults)
         if (element_cards(c) == card_ctrax6) model%connectivity(:, e) = model%connectivity([1, 3, 5, 2, 4, 6], e)
-        if (all(model%connectivity(:order_of(c), e) > 0)) call check_shape(deck, element_cards(c), i, e, model, faults)
+        if (all(model%connectivity(:model%order(e), e) > 0)) call check_shape(deck, element_cards(c), i, e, model, faults)
       end do
     end do
     model%points = model%first_point(model%elements + 1) - 1
@@ -73,6 +77,14 @@ contains
     model%around = new_incidence(model%connectivity, model%nodes)
     call check_kinds(deck, faults)
   end subroutine build_elements
+
+  !> The kind of elements that a card is of.
+  pure integer function kind_named(model, card) result(kind)
+    type(model_type), intent(in) :: model
+    character(len=*), intent(in) :: card
+
+    kind = findloc(model%kinds%plane_card == card .or. model%kinds%ring_card == card, .true., dim=1)
+  end function kind_named
 
   subroutine read_nodes(deck, card, i, nodes, node, faults)
     type(deck_type), intent(in) :: deck
@@ -123,8 +135,8 @@ contains
                             ' cross over, bend inwards or lie on one line', 'four corners in turn, each bending the same way')
       return
     end if
-    if (area < 0.0_wp) call turn(model%connectivity(:model%order(e), e))
-    if (model%order(e) == 6) call check_middles(deck, card, i, model%coordinates(e), faults)
+    if (area < 0.0_wp) call turn(model%connectivity(:n, e), model%connectivity(n + 1:model%order(e), e))
+    if (model%order(e) > n) call check_middles(deck, card, i, n, model%coordinates(e), faults)
   end subroutine check_shape
 
   !> Does a boundary bend by more than `least` at each corner, to the left where `way` is 1, else to the right?
@@ -158,42 +170,36 @@ contains
   end function corner_ids
 
   !> The same nodes the other way round.
-  pure subroutine turn(node)
-    integer, intent(inout) :: node(:)
+  pure subroutine turn(corner, middle)
+    integer, intent(inout) :: corner(:), middle(:)   !! middle nodes of the sides, of some kinds
 
-    select case (size(node))
-    case (6)
-      node = node([1, 3, 2, 6, 5, 4])
-    case (4)
-      node = node([1, 4, 3, 2])
-    case default
-      node = node([1, 3, 2])
-    end select
+    corner(2:) = corner(size(corner):2:-1)
+    middle = middle(size(middle):1:-1)
   end subroutine turn
 
   !> A side's middle node may leave the middle as long as the element does not fold over at a corner; a side that bulges more
   !! than half a circle does is hardly meant.
-  subroutine check_middles(deck, card, i, x, faults)
+  subroutine check_middles(deck, card, i, corners, x, faults)
     type(deck_type), intent(in) :: deck
-    integer, intent(in) :: card, i
-    real(wp), intent(in) :: x(:, :)   !! [2, 6]
+    integer, intent(in) :: card, i, corners
+    real(wp), intent(in) :: x(:, :)   !! [2, nodes]
     type(diagnostics), intent(inout) :: faults
     integer :: after, before, k
 
-    do k = 1, 3
-      after = mod(k, 3) + 1
-      before = mod(k + 1, 3) + 1
+    do k = 1, corners
+      after = mod(k, corners) + 1
+      before = mod(k + corners - 2, corners) + 1
       ! Tangents of the two sides at the corner.
-      if (cross_product(4.0_wp*x(:, 3 + k) - 3.0_wp*x(:, k) - x(:, after), &
-                        4.0_wp*x(:, 3 + before) - 3.0_wp*x(:, k) - x(:, before)) > 0.0_wp) cycle
+      if (cross_product(4.0_wp*x(:, corners + k) - 3.0_wp*x(:, k) - x(:, after), &
+                        4.0_wp*x(:, corners + before) - 3.0_wp*x(:, k) - x(:, before)) > 0.0_wp) cycle
       call faults%add_error(deck%place(card, i, 3), deck%identity(card, i)// &
                             ': a middle node is so far from the middle of its side that the element folds over', &
                             'nodes near the middles of the sides')
       return
     end do
-    do k = 1, 3
-      after = mod(k, 3) + 1
-      if (norm2(2.0_wp*x(:, 3 + k) - x(:, k) - x(:, after)) <= norm2(x(:, after) - x(:, k))) cycle
+    do k = 1, corners
+      after = mod(k, corners) + 1
+      if (norm2(2.0_wp*x(:, corners + k) - x(:, k) - x(:, after)) <= norm2(x(:, after) - x(:, k))) cycle
       call faults%add_warning(deck%place(card, i, 3), deck%identity(card, i)// &
                               ': a middle node is farther from the middle of its side than half of that side is long', &
                               'nodes near the middles of the sides')
@@ -306,9 +312,8 @@ contains
 
     ring = .false.
     if (model%section(e) > 0) ring = model%kinematics(model%section(e)) == axisymmetric
-    name = 'CTRIA'
-    if (ring) name = 'CTRAX'
-    if (model%order(e) == 4) name = 'CQUAD'
-    name = name//text_of(model%order(e))//' '//text_of(model%element_id(e))
+    associate (kind => model%kinds(model%kind(e)))
+      name = trim(merge(kind%ring_card, kind%plane_card, ring))//' '//text_of(model%element_id(e))
+    end associate
   end function element_name
 end module epcont_build_elements

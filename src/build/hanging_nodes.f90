@@ -52,7 +52,6 @@ contains
         if (first /= last .or. model%is_tied([i])) cycle
         e = model%around%group(first)
       end associate
-      if (model%order(e) /= 6) cycle
       do s = 1, model%corners(e)
         side = model%edge(e, s)
         if (side(3) == i) edge(:, i) = [side(:2), other_of(model, e, side)]

@@ -6,9 +6,9 @@
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
   use epcont_certificate_scene, only: scene_type
-  use epcont_certificate_unit_strains, only: kind_of, kind_type, most_places, unit_strains
+  use epcont_certificate_unit_strains, only: find_slopes, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
-  use epcont_element_element, only: most_nodes
+  use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: axisymmetric, plane_stress
   use epcont_model_model, only: model_type
   implicit none
@@ -152,13 +152,16 @@ contains
     real(wp), intent(inout) :: internal(2, model%nodes), magnitude(model%nodes)
     real(wp), intent(inout) :: stored
     type(certificate_type), intent(inout) :: certificate
-    type(kind_type) :: kind(most_nodes)
     logical :: moves, ring
-    real(wp) :: unit(4, 2, most_nodes, most_places), volume(most_places), u(2, most_nodes), travel(2, most_nodes)
+    real(wp), allocatable :: slope(:, :, :, :)
+    real(wp) :: unit(4, 2, most_nodes, most_points), volume(most_points), u(2, most_nodes), travel(2, most_nodes)
     real(wp) :: strain(4), steepest(4), force(2), largest_stress, off, rounding, rounding_strain, scale, stiffest
     integer :: c, e, k, n, p, point, section
 
-    kind([3, 4, 6]) = [kind_of(3), kind_of(4), kind_of(6)]
+    allocate (slope(2, most_nodes, most_points, size(model%kinds)))
+    do k = 1, size(model%kinds)
+      call find_slopes(model%kinds(k), slope(:, :, :, k))
+    end do
     moves = any(motion /= 0.0_wp)
     largest_stress = maxval(abs(stress))
     do e = 1, model%elements
@@ -166,13 +169,13 @@ contains
       section = model%section(e)
       ring = model%kinematics(section) == axisymmetric
       stiffest = stiffest_modulus(model, section)
-      call unit_strains(model, e, kind(n), unit, volume)
+      call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
       associate (node => model%connectivity(:, e), first => model%first_point(e))
         do k = 1, n
           u(:, k) = deformation(:, node(k))
           travel(:, k) = motion(:, node(k))
         end do
-        do p = 1, kind(n)%places
+        do p = 1, model%kinds(model%kind(e))%points
           point = first + p - 1
           strain = strain_at(n, ring, u, unit(:, :, :, p))
           call measure_stress(model, section, largest_stress, strain, stress(:, point), off, scale)
@@ -193,7 +196,7 @@ contains
         end do
         do k = 1, n
           force = 0.0_wp
-          do p = 1, kind(n)%places
+          do p = 1, model%kinds(model%kind(e))%points
             do c = 1, 2
               force(c) = force(c) + volume(p)*dot_product(stress(:, first + p - 1), unit(:, c, k, p))
             end do

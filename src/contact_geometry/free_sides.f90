@@ -63,7 +63,7 @@ contains
       n = 0
       do i = model%around%start(node), model%around%start(node + 1) - 1
         e = model%around%group(i)
-        corners = merge(4, 3, model%order(e) == 4)
+        corners = model%corners(e)
         do k = corners, 1, -1
           if (model%connectivity(k, e) == node) exit
         end do

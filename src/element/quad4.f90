@@ -1,32 +1,46 @@
 !> Four-node quadrilateral, bilinear: corners in turn at (-1, -1), (1, -1), (1, 1), (-1, 1).
 module epcont_element_quad4
   use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: by_quadrilaterals, element_kind, most_nodes, new_kind
+  use epcont_element_kinematics, only: directions
   implicit none
   private
-  public :: quad4_values, quad4_slopes
+  public :: quad4
 
-  real(wp), parameter :: corner(2, 4) = &
-    reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [2, 4])
+  real(wp), parameter :: corner(directions, 4) = &
+    reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [directions, 4])
   !> Integration points and weights of Gauss, two by two.
-  real(wp), parameter, public :: quad4_point(2, 4) = corner/sqrt(3.0_wp)
-  real(wp), parameter, public :: quad4_weight(4) = 1.0_wp
+  real(wp), parameter :: point(directions, 4) = corner/sqrt(3.0_wp), weight(4) = 1.0_wp
 
 contains
 
-  !> Shape functions at a local place [4].
-  pure function quad4_values(place) result(n)
-    real(wp), intent(in) :: place(2)
-    real(wp) :: n(4)
+  !> The kind, for the table.
+  function quad4() result(kind)
+    type(element_kind) :: kind
 
-    n = 0.25_wp*(1.0_wp + place(1)*corner(1, :))*(1.0_wp + place(2)*corner(2, :))
-  end function quad4_values
+    kind = new_kind(4, 4, values, slopes, point, weight)
+    kind%plane_card = 'CQUAD4'
+    kind%vtk = 9
+    kind%mean_dilatation = .true.
+    kind%estimated_as = by_quadrilaterals
+  end function quad4
 
-  !> Their derivatives by the local coordinates [2, 4].
-  pure function quad4_slopes(place) result(slope)
-    real(wp), intent(in) :: place(2)
-    real(wp) :: slope(2, 4)
+  !> Shape functions at a local place.
+  pure function values(place) result(n)
+    real(wp), intent(in) :: place(directions)
+    real(wp) :: n(most_nodes)
 
-    slope(1, :) = 0.25_wp*corner(1, :)*(1.0_wp + place(2)*corner(2, :))
-    slope(2, :) = 0.25_wp*corner(2, :)*(1.0_wp + place(1)*corner(1, :))
-  end function quad4_slopes
+    n(:4) = 0.25_wp*(1.0_wp + place(1)*corner(1, :))*(1.0_wp + place(2)*corner(2, :))
+    n(5:) = 0.0_wp
+  end function values
+
+  !> Their derivatives by the local coordinates.
+  pure function slopes(place) result(slope)
+    real(wp), intent(in) :: place(directions)
+    real(wp) :: slope(directions, most_nodes)
+
+    slope(1, :4) = 0.25_wp*corner(1, :)*(1.0_wp + place(2)*corner(2, :))
+    slope(2, :4) = 0.25_wp*corner(2, :)*(1.0_wp + place(1)*corner(1, :))
+    slope(:, 5:) = 0.0_wp
+  end function slopes
 end module epcont_element_quad4

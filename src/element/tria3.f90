@@ -1,29 +1,47 @@
 !> Three-node triangle, linear: corners in turn at (0, 0), (1, 0), (0, 1).
 module epcont_element_tria3
   use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: by_linear_triangles, element_kind, most_nodes, new_kind
+  use epcont_element_kinematics, only: directions
   implicit none
   private
-  public :: tria3_values, tria3_slopes
+  public :: tria3
 
   !> Integration point and weight: exact for constant strain.
-  real(wp), parameter, public :: tria3_point(2, 1) = reshape([1.0_wp, 1.0_wp]/3.0_wp, [2, 1])
-  real(wp), parameter, public :: tria3_weight(1) = [0.5_wp]
+  real(wp), parameter :: point(directions, 1) = 1.0_wp/3.0_wp, weight(1) = 0.5_wp
+  !> Strains are compared in the middles of the sides: exact for quadratics.
+  real(wp), parameter :: middle(directions, 3) = reshape([0.5_wp, 0.5_wp, 0.0_wp, 0.5_wp, 0.5_wp, 0.0_wp], [directions, 3])
 
 contains
 
-  !> Shape functions at a local place [3].
-  pure function tria3_values(place) result(n)
-    real(wp), intent(in) :: place(2)
-    real(wp) :: n(3)
+  !> The kind, for the table.
+  function tria3() result(kind)
+    type(element_kind) :: kind
 
-    n = [1.0_wp - place(1) - place(2), place(1), place(2)]
-  end function tria3_values
+    kind = new_kind(3, 3, values, slopes, point, weight)
+    kind%plane_card = 'CTRIA3'
+    kind%ring_card = 'CTRAX3'
+    kind%vtk = 5
+    kind%locks = .true.
+    kind%estimated_as = by_linear_triangles
+    call kind%compare_at(middle, spread([1.0_wp], 2, 3), spread([1.0_wp/3.0_wp], 2, 3))
+  end function tria3
 
-  !> Their derivatives by the local coordinates [2, 3].
-  pure function tria3_slopes(place) result(slope)
-    real(wp), intent(in) :: place(2)
-    real(wp) :: slope(2, 3)
+  !> Shape functions at a local place.
+  pure function values(place) result(n)
+    real(wp), intent(in) :: place(directions)
+    real(wp) :: n(most_nodes)
 
-    slope = reshape([-1.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 3])
-  end function tria3_slopes
+    n(:3) = [1.0_wp - place(1) - place(2), place(1), place(2)]
+    n(4:) = 0.0_wp
+  end function values
+
+  !> Their derivatives by the local coordinates.
+  pure function slopes(place) result(slope)
+    real(wp), intent(in) :: place(directions)
+    real(wp) :: slope(directions, most_nodes)
+
+    slope(:, :3) = reshape([-1.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [directions, 3])
+    slope(:, 4:) = 0.0_wp
+  end function slopes
 end module epcont_element_tria3

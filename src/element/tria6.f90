@@ -1,33 +1,61 @@
 !> Six-node triangle, quadratic: corners in turn at (0, 0), (1, 0), (0, 1), then the middles of the sides behind each.
 module epcont_element_tria6
   use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: by_quadratics, element_kind, most_nodes, new_kind
+  use epcont_element_kinematics, only: directions
   implicit none
   private
-  public :: tria6_values, tria6_slopes
+  public :: tria6
 
   !> Integration points and weights: exact for quadratics, that is for the stiffness of a straight-sided element.
-  real(wp), parameter, public :: tria6_point(2, 3) = &
-    reshape([1.0_wp, 1.0_wp, 4.0_wp, 1.0_wp, 1.0_wp, 4.0_wp]/6.0_wp, [2, 3])
-  real(wp), parameter, public :: tria6_weight(3) = 1.0_wp/6.0_wp
+  real(wp), parameter :: point(directions, 3) = &
+    reshape([1.0_wp, 1.0_wp, 4.0_wp, 1.0_wp, 1.0_wp, 4.0_wp]/6.0_wp, [directions, 3])
+  real(wp), parameter :: weight(3) = 1.0_wp/6.0_wp
+  !> Where strains are compared, and with which parts of the volume. The integration points would flatter, the error there is
+  !! least; these are exact for polynomials of the fourth degree (Dunavant 1985).
+  real(wp), parameter :: near = 0.091576213509771_wp, far = 0.445948490915965_wp
+  real(wp), parameter :: place(directions, 6) = &
+    reshape([near, near, 1.0_wp - 2.0_wp*near, near, near, 1.0_wp - 2.0_wp*near, &
+             far, far, 1.0_wp - 2.0_wp*far, far, far, 1.0_wp - 2.0_wp*far], [directions, 6])
+  real(wp), parameter :: part(6) = [spread(0.109951743655322_wp, 1, 3), spread(0.223381589678011_wp, 1, 3)]
 
 contains
 
-  !> Shape functions at a local place [6].
-  pure function tria6_values(place) result(n)
-    real(wp), intent(in) :: place(2)
-    real(wp) :: n(6)
+  !> The kind, for the table.
+  function tria6() result(kind)
+    type(element_kind) :: kind
+    real(wp) :: from_points(3, 6)
+    integer :: k
+
+    kind = new_kind(3, 6, values, slopes, point, weight)
+    kind%plane_card = 'CTRIA6'
+    kind%ring_card = 'CTRAX6'
+    kind%vtk = 22
+    kind%estimated_as = by_quadratics
+    do k = 1, size(part)
+      from_points(:, k) = 2.0_wp*[1.0_wp - sum(place(:, k)), place(:, k)] - 1.0_wp/3.0_wp   ! linear between the points
+    end do
+    call kind%compare_at(place, from_points, spread(part, 1, 3))
+  end function tria6
+
+  !> Shape functions at a local place.
+  pure function values(place) result(n)
+    real(wp), intent(in) :: place(directions)
+    real(wp) :: n(most_nodes)
     real(wp) :: l(3)
 
     l = [1.0_wp - place(1) - place(2), place(1), place(2)]
-    n = [l*(2.0_wp*l - 1.0_wp), 4.0_wp*l*cshift(l, 1)]
-  end function tria6_values
+    n(:6) = [l*(2.0_wp*l - 1.0_wp), 4.0_wp*l*cshift(l, 1)]
+    n(7:) = 0.0_wp
+  end function values
 
-  !> Their derivatives by the local coordinates [2, 6].
-  pure function tria6_slopes(place) result(slope)
-    real(wp), intent(in) :: place(2)
-    real(wp) :: slope(2, 6)
+  !> Their derivatives by the local coordinates.
+  pure function slopes(place) result(slope)
+    real(wp), intent(in) :: place(directions)
+    real(wp) :: slope(directions, most_nodes)
     integer, parameter :: next(3) = [2, 3, 1]
-    real(wp), parameter :: l_slope(2, 3) = reshape([-1.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 3])
+    real(wp), parameter :: l_slope(directions, 3) = &
+      reshape([-1.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [directions, 3])
     real(wp) :: l(3)
     integer :: i
 
@@ -36,5 +64,6 @@ contains
       slope(:, i) = (4.0_wp*l(i) - 1.0_wp)*l_slope(:, i)
       slope(:, 3 + i) = 4.0_wp*(l(next(i))*l_slope(:, i) + l(i)*l_slope(:, next(i)))
     end do
-  end function tria6_slopes
+    slope(:, 7:) = 0.0_wp
+  end function slopes
 end module epcont_element_tria6

@@ -5,7 +5,7 @@
 module epcont_model_model
   use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: most_nodes
+  use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: axisymmetric
   use epcont_geometry_boxed_line, only: boxed_line
   use epcont_geometry_outline, only: outline_type
@@ -42,9 +42,11 @@ module epcont_model_model
     integer, allocatable :: node_id(:)          !! [nodes]
     real(wp), allocatable :: x(:, :)            !! coordinates [length] [2, nodes]
     integer, allocatable :: element_id(:)       !! [elements]
-    integer, allocatable :: order(:)            !! nodes of each element: 3, 4 or 6 [elements]
+    type(element_kind), allocatable :: kinds(:) !! the table of elements [any]
+    integer, allocatable :: kind(:)             !! of each element: its row there [elements]
+    integer, allocatable :: order(:)            !! nodes of each element [elements]
     !> The nodes of each element: its corners counter-clockwise, then the middles of its sides, the first behind the
-    !! first corner; 0 where it has no more. [most_nodes, elements]
+    !! first corner; 0 where it has no more. [most of all, elements]
     integer, allocatable :: connectivity(:, :)
     type(incidence) :: around                   !! the elements around each node
     integer :: points = 0                       !! integration points of all elements
@@ -109,8 +111,7 @@ contains
     class(model_type), intent(in) :: self
     integer, intent(in) :: element
 
-    corners = self%order(element)
-    if (corners == 6) corners = 3
+    corners = self%kinds(self%kind(element))%corners
   end function corners
 
   !> Nodes of a side of an element: where it begins and ends, counter-clockwise, and its middle, 0 where it has none.
@@ -121,7 +122,7 @@ contains
 
     associate (node => self%connectivity(:, element), n => self%corners(element))
       edge = [node(side), node(mod(side, n) + 1), 0]
-      if (self%order(element) == 6) edge(3) = node(3 + side)
+      if (self%order(element) > n) edge(3) = node(n + side)
     end associate
   end function edge
 

@@ -5,7 +5,7 @@
 module epcont_plan_rigid_parts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
-  use epcont_element_element, only: most_nodes
+  use epcont_element_element_kind, only: most_nodes
   use epcont_element_kinematics, only: axisymmetric
   use epcont_model_model, only: model_type
   implicit none

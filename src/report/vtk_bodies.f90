@@ -4,7 +4,7 @@ module epcont_report_vtk_bodies
   use epcont_base_kinds, only: wp
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_model_model, only: model_type
-  use epcont_report_vtk_grid, only: new_vtk_grid, vtk_cells, vtk_grid, vtk_quad, vtk_quadratic_triangle, vtk_triangle
+  use epcont_report_vtk_grid, only: new_vtk_grid, vtk_cells, vtk_grid
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -89,14 +89,7 @@ contains
     allocate (cells%kind(model%elements), cells%last(model%elements), cells%point(sum(model%order)))
     i = 0
     do e = 1, model%elements
-      select case (model%order(e))
-      case (3)
-        cells%kind(e) = vtk_triangle
-      case (4)
-        cells%kind(e) = vtk_quad
-      case (6)
-        cells%kind(e) = vtk_quadratic_triangle
-      end select
+      cells%kind(e) = model%kinds(model%kind(e))%vtk
       cells%last(e) = i + model%order(e)
       cells%point(i + 1:cells%last(e)) = point(model%connectivity(:model%order(e), e))
       i = cells%last(e)

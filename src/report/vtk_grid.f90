@@ -15,7 +15,7 @@ module epcont_report_vtk_grid
 
   !> Kinds of cells (vtkCellType.h). The nodes of a quadratic triangle: corners counter-clockwise, then the middles of its
   !! sides, the first behind the first corner.
-  integer, parameter, public :: vtk_vertex = 1, vtk_line = 3, vtk_triangle = 5, vtk_quad = 9, vtk_quadratic_triangle = 22
+  integer, parameter, public :: vtk_vertex = 1, vtk_line = 3
 
   type :: vtk_cells
     integer, allocatable :: kind(:)    !! [cells]

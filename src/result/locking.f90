@@ -35,7 +35,7 @@ contains
     allocate (locks(model%elements), source=.false.)
     do e = 1, model%elements
       associate (s => model%section(e))
-        if (model%order(e) /= 3 .or. model%kinematics(s) == plane_stress) cycle
+        if (.not. model%kinds(model%kind(e))%locks .or. model%kinematics(s) == plane_stress) cycle
         locks(e) = 0.5_wp - (0.5_wp - model%poisson(s))*secant_modulus(e)/model%young(s) >= high_poisson
       end associate
       if (.not. locks(e)) cycle

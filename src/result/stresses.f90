@@ -2,7 +2,6 @@
 module epcont_result_stresses
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: local_points, most_points, shape_values
   use epcont_material_curve, only: material_type, section_materials
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_material_total_theory, only: respond, response_type
@@ -71,11 +70,10 @@ contains
   pure function place_of_point(model, point) result(x)
     type(model_type), intent(in) :: model
     integer, intent(in) :: point
-    real(wp) :: x(2), local(2, most_points), weight(most_points)
+    real(wp) :: x(2)
 
     associate (e => model%point_element(point))
-      call local_points(model%order(e), local, weight)
-      x = matmul(model%coordinates(e), shape_values(model%order(e), local(:, point - model%first_point(e) + 1)))
+      x = matmul(model%coordinates(e), model%kinds(model%kind(e))%values(:model%order(e), point - model%first_point(e) + 1))
     end associate
   end function place_of_point
 

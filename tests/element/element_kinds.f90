@@ -2,21 +2,20 @@
 module element_kinds
   use epcont_geometry_plane, only: polygon_area
   use epcont_base_kinds, only: wp
-  use epcont_element_element, only: element_point, evaluate_points, local_points, most_points, point_count, shape_values
-  use epcont_element_quad4, only: quad4_slopes
-  use epcont_element_tria3, only: tria3_slopes
-  use epcont_element_tria6, only: tria6_slopes
+  use epcont_element_element_kind, only: element_kind
+  use epcont_element_integration_point, only: evaluate_points, integration_point
+  use epcont_element_kinds, only: all_kinds => element_kinds
   use epcont_linalg_dense, only: lu_solve
   use epcont_linalg_lapack, only: dsyev
   use epcont_material_elasticity, only: bulk_modulus, isotropic_matrix, shear_modulus
   use epcont_element_kinematics, only: plane_stress
   implicit none
   private
-  public :: sample_shapes, label, sample_place, local_node, slopes, corners_of, centroid_radius
+  public :: sample_shapes, label, sample_place, local_node, kind_with, shape_values, slopes, corners_of, centroid_radius
   public :: points_of, places_of, strains_of, linear_field, elasticity, stiffness, eigenvalues
   public :: patch_of, solved_patch, grid_element
 
-  integer, parameter, public :: node_numbers(3) = [3, 6, 4]
+  integer, parameter, public :: node_numbers(4) = [3, 6, 4, 8]
   real(wp), parameter, public :: thickness = 0.7_wp
   character(len=*), parameter, public :: kinematics_name(3) = [', plane strain', ', plane stress', ', ring        ']
 
@@ -46,13 +45,15 @@ contains
     real(wp), parameter :: none(2, 3) = 0.0_wp
     real(wp), parameter :: one_arc(2, 3) = reshape([0.05_wp, -0.15_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], [2, 3])
     real(wp), parameter :: arcs(2, 3) = reshape([0.0_wp, -0.1_wp, -0.08_wp, -0.06_wp, 0.1_wp, 0.02_wp], [2, 3])
+    real(wp), parameter :: straight(2, 4) = 0.0_wp
+    real(wp), parameter :: four_arcs(2, 4) = reshape([0.0_wp, -0.1_wp, 0.08_wp, 0.05_wp, 0.1_wp, 0.06_wp, 0.0_wp, 0.0_wp], [2, 4])
     real(wp), parameter :: square(8) = [1.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 1.0_wp, 1.0_wp, 1.0_wp]
     real(wp), parameter :: skew(8) = [1.0_wp, 0.0_wp, 2.5_wp, 0.3_wp, 3.3_wp, 1.4_wp, 1.8_wp, 1.1_wp]
     real(wp), parameter :: trapezoid(8) = [1.0_wp, 0.0_wp, 3.0_wp, 0.0_wp, 2.2_wp, 1.0_wp, 1.5_wp, 1.0_wp]
     real(wp), parameter :: irregular(8) = [2.1_wp, 1.3_wp, 0.8_wp, 1.5_wp, 0.4_wp, -0.1_wp, 1.6_wp, -0.6_wp]
     real(wp), parameter :: at_axis(8) = [0.0_wp, 0.0_wp, 0.9_wp, 0.2_wp, 1.1_wp, 0.8_wp, 0.0_wp, 1.2_wp]
 
-    allocate (shape(15))
+    allocate (shape(20))
     call name(shape(1), 'right tria3', right)
     call name(shape(2), 'scalene tria3', scalene)
     call name(shape(3), 'flat tria3', flat)
@@ -69,6 +70,12 @@ contains
     call name(shape(13), 'trapezoid quad4', reshape(trapezoid, [2, 4]))
     call name(shape(14), 'irregular quad4', reshape(irregular, [2, 4]))
     call name(shape(15), 'quad4 at the axis', reshape(at_axis, [2, 4]))
+    call name(shape(16), 'square quad8', with_middles(reshape(square, [2, 4]), straight))
+    call name(shape(17), 'skew quad8', with_middles(reshape(skew, [2, 4]), straight))
+    call name(shape(18), 'irregular quad8', with_middles(reshape(irregular, [2, 4]), straight))
+    call name(shape(19), 'quad8 at the axis', with_middles(reshape(at_axis, [2, 4]), straight))
+    call name(shape(20), 'quad8 with arcs', with_middles(reshape(trapezoid, [2, 4]), four_arcs))
+    shape(20)%straight = .false.
   contains
     ! An array constructor of shapes leaks with gfortran 12.
     subroutine name(one, words, x)
@@ -89,13 +96,13 @@ contains
     text = trim(shape%name)//trim(kinematics_name(kinematics))
   end function label
 
-  !> Six nodes from three corners, the middle ones moved by `bend`.
+  !> Six or eight nodes from three or four corners, the middle ones moved by `bend`.
   pure function with_middles(corner, bend) result(x)
-    real(wp), intent(in) :: corner(2, 3), bend(2, 3)
-    real(wp) :: x(2, 6)
+    real(wp), intent(in) :: corner(:, :), bend(:, :)
+    real(wp) :: x(2, 2*size(corner, 2))
 
-    x(:, :3) = corner
-    x(:, 4:) = 0.5_wp*(corner + cshift(corner, 1, dim=2)) + bend
+    x(:, :size(corner, 2)) = corner
+    x(:, size(corner, 2) + 1:) = 0.5_wp*(corner + cshift(corner, 1, dim=2)) + bend
   end function with_middles
 
   !> Places all over the square from -1 to 1, without pattern.
@@ -112,30 +119,53 @@ contains
     real(wp) :: place(2, nodes)
     real(wp), parameter :: corner(2, 3) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 3])
     real(wp), parameter :: none(2, 3) = 0.0_wp
+    real(wp), parameter :: square(2, 4) = &
+      reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [2, 4])
 
     select case (nodes)
     case (6)
       place = with_middles(corner, none)
     case (4)
-      place = reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [2, 4])
+      place = square
+    case (8)
+      place = with_middles(square, spread([0.0_wp, 0.0_wp], 2, 4))
     case default
       place = corner
     end select
   end function local_node
 
-  pure function slopes(nodes, place) result(slope)
+  !> The row of the table with so many nodes.
+  function kind_with(nodes) result(kind)
+    integer, intent(in) :: nodes
+    type(element_kind) :: kind
+    type(element_kind), allocatable :: kinds(:)
+
+    kinds = all_kinds()
+    kind = kinds(findloc(kinds%nodes, nodes, dim=1))
+  end function kind_with
+
+  function shape_values(nodes, place) result(n)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: place(2)
+    real(wp) :: n(nodes)
+    type(element_kind) :: kind
+    real(wp), allocatable :: all_values(:)
+
+    kind = kind_with(nodes)
+    all_values = kind%shape(place)
+    n = all_values(:nodes)
+  end function shape_values
+
+  function slopes(nodes, place) result(slope)
     integer, intent(in) :: nodes
     real(wp), intent(in) :: place(2)
     real(wp) :: slope(2, nodes)
+    type(element_kind) :: kind
+    real(wp), allocatable :: all_slopes(:, :)
 
-    select case (nodes)
-    case (6)
-      slope = tria6_slopes(place)
-    case (4)
-      slope = quad4_slopes(place)
-    case default
-      slope = tria3_slopes(place)
-    end select
+    kind = kind_with(nodes)
+    all_slopes = kind%slope(place)
+    slope = all_slopes(:, :nodes)
   end function slopes
 
   !> The nodes at corners.
@@ -143,7 +173,7 @@ contains
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: corner(:, :)
 
-    corner = x(:, :merge(4, 3, size(x, 2) == 4))
+    corner = x(:, :merge(4, 3, modulo(size(x, 2), 4) == 0))
   end function corners_of
 
   !> Distance of a polygon's centroid from the axis.
@@ -159,37 +189,38 @@ contains
   end function centroid_radius
 
   !> What `evaluate_points` gives.
-  pure function points_of(x, kinematics) result(point)
+  function points_of(x, kinematics) result(point)
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: kinematics
-    type(element_point) :: point(point_count(size(x, 2)))
+    type(integration_point), allocatable :: point(:)
 
-    call evaluate_points(x, kinematics, thickness, point)
+    associate (kind => kind_with(size(x, 2)))
+      allocate (point(kind%points))
+      call evaluate_points(kind, x, kinematics, thickness, point)
+    end associate
   end function points_of
 
   !> Where the integration points are.
-  pure function places_of(x) result(place)
+  function places_of(x) result(place)
     real(wp), intent(in) :: x(:, :)
-    real(wp) :: place(2, point_count(size(x, 2)))
-    real(wp) :: local(2, most_points), weight(most_points)
-    integer :: p
+    real(wp), allocatable :: place(:, :)
 
-    call local_points(size(x, 2), local, weight)
-    do p = 1, size(place, 2)
-      place(:, p) = matmul(x, shape_values(size(x, 2), local(:, p)))
-    end do
+    associate (kind => kind_with(size(x, 2)))
+      place = matmul(x, kind%values(:kind%nodes, :kind%points))
+    end associate
   end function places_of
 
   !> Strains at the integration points.
-  pure function strains_of(x, kinematics, u) result(strain)
+  function strains_of(x, kinematics, u) result(strain)
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: kinematics
     real(wp), intent(in) :: u(:, :)   !! displacements of the nodes [2, nodes]
-    real(wp) :: strain(4, point_count(size(x, 2)))
-    type(element_point) :: point(size(strain, 2))
+    real(wp), allocatable :: strain(:, :)
+    type(integration_point), allocatable :: point(:)
     integer :: p
 
     point = points_of(x, kinematics)
+    allocate (strain(4, size(point)))
     do p = 1, size(point)
       strain(:, p) = matmul(point(p)%b(:, :size(u)), reshape(u, [size(u)]))
     end do
@@ -212,12 +243,12 @@ contains
     d = isotropic_matrix(bulk_modulus(1.0_wp, poisson), shear_modulus(1.0_wp, poisson), kinematics == plane_stress)
   end function elasticity
 
-  pure function stiffness(x, kinematics, poisson) result(k)
+  function stiffness(x, kinematics, poisson) result(k)
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: kinematics
     real(wp), intent(in) :: poisson
     real(wp) :: k(2*size(x, 2), 2*size(x, 2))
-    type(element_point) :: point(point_count(size(x, 2)))
+    type(integration_point), allocatable :: point(:)
     integer :: p
 
     point = points_of(x, kinematics)
@@ -248,28 +279,48 @@ contains
     type(patch) :: made
     real(wp), parameter :: outer(8) = [1.0_wp, 0.0_wp, 3.0_wp, 0.2_wp, 3.3_wp, 2.1_wp, 0.8_wp, 1.7_wp]
     real(wp), parameter :: within(8) = [1.6_wp, 0.5_wp, 2.3_wp, 0.7_wp, 2.6_wp, 1.6_wp, 1.2_wp, 1.1_wp]
-    integer, parameter :: next(4) = [2, 3, 4, 1], inner_nodes(3:6) = [1, 4, 0, 5], all_nodes(3:6) = [5, 8, 0, 13]
+    integer, parameter :: next(4) = [2, 3, 4, 1]
     integer :: k
 
-    allocate (made%x(2, all_nodes(nodes)), made%inner(all_nodes(nodes)))
-    made%inner(:) = [(k > all_nodes(nodes) - inner_nodes(nodes), k=1, all_nodes(nodes))]
-    made%x(:, :4) = reshape(outer, [2, 4])
-    if (nodes == 4) then
-      made%x(:, 5:) = reshape(within, [2, 4])
+    if (modulo(nodes, 4) == 0) then
+      made%x = reshape([outer, within], [2, 8])
       made%connectivity = reshape([([k, next(k), 4 + next(k), 4 + k], k=1, 4), [5, 6, 7, 8]], [4, 5])
-    else if (nodes == 3) then
-      made%x(:, 5) = [1.9_wp, 0.7_wp]
-      made%connectivity = reshape([([k, next(k), 5], k=1, 4)], [3, 4])
     else
-      ! The inner corner takes the place after the middles of the outer sides.
-      made%x(:, 9) = [1.9_wp, 0.7_wp]
-      do k = 1, 4
-        made%x(:, 4 + k) = 0.5_wp*(made%x(:, k) + made%x(:, next(k))) + bend*[sin(2.0_wp*k), cos(3.0_wp*k)]
-        made%x(:, 9 + k) = 0.5_wp*(made%x(:, k) + made%x(:, 9)) + bend*[cos(5.0_wp*k), sin(7.0_wp*k)]
-      end do
-      made%connectivity = reshape([([k, next(k), 9, 4 + k, 9 + next(k), 9 + k], k=1, 4)], [6, 4])
+      made%x = reshape([outer, [1.9_wp, 0.7_wp]], [2, 5])
+      made%connectivity = reshape([([k, next(k), 5], k=1, 4)], [3, 4])
     end if
+    made%inner = [(k > 4, k=1, size(made%x, 2))]
+    if (nodes > 4) call add_middles(made, bend)
   end function patch_of
+
+  !> Nodes in the middles of all sides; those of the outer sides, which one element alone has, are on the boundary.
+  subroutine add_middles(made, bend)
+    type(patch), intent(inout) :: made
+    real(wp), intent(in) :: bend
+    integer, allocatable :: ends(:, :), node(:, :)
+    integer :: corners, e, k, middle, side(2)
+
+    corners = size(made%connectivity, 1)
+    allocate (node(2*corners, size(made%connectivity, 2)), ends(2, 0))
+    node(:corners, :) = made%connectivity
+    do e = 1, size(node, 2)
+      do k = 1, corners
+        side = [minval(node([k, modulo(k, corners) + 1], e)), maxval(node([k, modulo(k, corners) + 1], e))]
+        middle = findloc(ends(1, :) == side(1) .and. ends(2, :) == side(2), .true., dim=1)
+        if (middle == 0) then
+          ends = reshape([ends, side], [2, size(ends, 2) + 1])
+          middle = size(ends, 2)
+          made%x = reshape([made%x, 0.5_wp*(made%x(:, side(1)) + made%x(:, side(2))) &
+                            + bend*[sin(2.0_wp*middle), cos(3.0_wp*middle)]], [2, size(made%x, 2) + 1])
+          made%inner = [made%inner, .false.]
+        else
+          made%inner(size(made%inner) - size(ends, 2) + middle) = .true.
+        end if
+        node(corners + k, e) = size(made%inner) - size(ends, 2) + middle
+      end do
+    end do
+    made%connectivity = node
+  end subroutine add_middles
 
   !> Displacements of a patch whose inner nodes are free of forces; those of the others are given.
   function solved_patch(given, kinematics, poisson, u) result(solved)
@@ -316,6 +367,8 @@ contains
       local = with_middles(corner(:, merge([1, 2, 3], [1, 3, 4], half == 1)), none)
     case (4)
       local = corner
+    case (8)
+      local = with_middles(corner, spread([0.0_wp, 0.0_wp], 2, 4))
     case default
       local = corner(:, merge([1, 2, 3], [1, 3, 4], half == 1))
     end select

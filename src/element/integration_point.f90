@@ -1,0 +1,81 @@
+!> Strains of an element at its integration points, and the volume that belongs to each.
+!>
+!> A strain is xx, yy, zz, xy (engineering). In a ring x is the radius and zz the hoop: u_x/x. Some kinds have their volume
+!> change averaged over the element (B-bar), so that they do not lock where the material cannot change its volume; in plane
+!> stress, where the sheet gives way, there is no need.
+module epcont_element_integration_point
+  use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: element_kind, most_nodes
+  use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
+  implicit none
+  private
+  public :: integration_point, evaluate_points
+
+  real(wp), parameter :: full_turn = 2.0_wp*acos(-1.0_wp)
+
+  type :: integration_point
+    !> strain = b u, u = (ux, uy) of each node in turn; set for its nodes [1/length]
+    real(wp) :: b(components, directions*most_nodes)
+    real(wp) :: volume              !! [length**3]
+  end type integration_point
+
+contains
+
+  !> All integration points of an element.
+  pure subroutine evaluate_points(kind, x, kinematics, thickness, point)
+    type(element_kind), intent(in) :: kind
+    real(wp), intent(in) :: x(:, :)          !! of its nodes [length] [directions, nodes]
+    integer, intent(in) :: kinematics        !! plane_strain, plane_stress or axisymmetric
+    real(wp), intent(in) :: thickness        !! of plane ones [length]
+    type(integration_point), intent(out) :: point(:)   !! [kind%points]
+    real(wp) :: jacobian(directions, directions), determinant, radius, from_first(directions, most_nodes)
+    integer :: i, n, p
+
+    n = kind%nodes
+    do i = 1, n
+      from_first(:, i) = x(:, i) - x(:, 1)   ! far from the origin the sums below would lose the digits of the size
+    end do
+    do p = 1, kind%points
+      associate (slope => kind%slopes(:, :n, p), values => kind%values(:n, p))
+        jacobian = matmul(slope, transpose(from_first(:, :n)))   ! d x_j/d local_i
+        determinant = jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1)
+        point(p)%volume = kind%weight(p)*determinant*thickness
+        point(p)%b(:, :2*n) = 0.0_wp
+        do i = 1, n
+          associate (dx => (jacobian(2, 2)*slope(1, i) - jacobian(1, 2)*slope(2, i))/determinant, &
+                     dy => (jacobian(1, 1)*slope(2, i) - jacobian(2, 1)*slope(1, i))/determinant)
+            point(p)%b(1, 2*i - 1) = dx
+            point(p)%b(2, 2*i) = dy
+            point(p)%b(4, 2*i - 1) = dy
+            point(p)%b(4, 2*i) = dx
+          end associate
+        end do
+        if (kinematics /= axisymmetric) cycle
+        radius = dot_product(values, x(1, :))
+        point(p)%b(3, 1:2*n - 1:2) = values/radius
+        point(p)%volume = kind%weight(p)*determinant*full_turn*radius
+      end associate
+    end do
+    if (kind%mean_dilatation .and. kinematics /= plane_stress) call average_dilatation(point, 2*n)
+  end subroutine evaluate_points
+
+  !> B-bar: the volume change at each point is the mean over the element.
+  pure subroutine average_dilatation(point, freedoms)
+    type(integration_point), intent(inout) :: point(:)
+    integer, intent(in) :: freedoms
+    real(wp) :: mean(freedoms), own(freedoms)
+    integer :: i, p
+
+    mean = 0.0_wp
+    do p = 1, size(point)
+      mean = mean + point(p)%volume*sum(point(p)%b(:3, :freedoms), dim=1)
+    end do
+    mean = mean/sum(point%volume)
+    do p = 1, size(point)
+      own = sum(point(p)%b(:3, :freedoms), dim=1)
+      do i = 1, 3
+        point(p)%b(i, :freedoms) = point(p)%b(i, :freedoms) + (mean - own)/3.0_wp
+      end do
+    end do
+  end subroutine average_dilatation
+end module epcont_element_integration_point

@@ -1,0 +1,100 @@
+!> Eight-node quadrilateral, serendipity: corners in turn at (-1, -1), (1, -1), (1, 1), (-1, 1), then the middles of the sides behind
+!> each.
+module epcont_element_quad8
+  use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: by_quadratics, element_kind, most_nodes, new_kind
+  use epcont_element_kinematics, only: directions
+  implicit none
+  private
+  public :: quad8
+
+  real(wp), parameter :: node(directions, 8) = &
+    reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, &
+             0.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, -1.0_wp, 0.0_wp], [directions, 8])
+  !> Places and weights of Gauss along a line. Three by three points integrate the stiffness; two by two would leave a motion without
+  !> energy, but there the strains are best (Barlow 1976), and there they are sampled.
+  real(wp), parameter :: three(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)], part(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
+  real(wp), parameter :: two(2) = [-1.0_wp, 1.0_wp]/sqrt(3.0_wp)
+
+contains
+
+  !> The kind, for the table.
+  function quad8() result(kind)
+    type(element_kind) :: kind
+    real(wp) :: sample_of(9, 4)
+    integer :: i, j
+
+    kind = new_kind(4, 8, values, slopes, grid(three), reshape(spread(part, 1, 3)*spread(part, 2, 3), [9]))
+    kind%plane_card = 'CQUAD8'
+    kind%vtk = 23
+    kind%estimated_as = by_quadratics
+    do j = 1, 2
+      do i = 1, 2
+        sample_of(:, i + 2*j - 2) = reshape(spread(between(two(i)), 2, 3)*spread(between(two(j)), 1, 3), [9])
+      end do
+    end do
+    call kind%sample_at(grid(two), sample_of)
+  end function quad8
+
+  !> All places whose coordinates are among these, the first running first [directions, size**2].
+  pure function grid(along) result(place)
+    real(wp), intent(in) :: along(:)
+    real(wp) :: place(directions, size(along)**2)
+
+    place(1, :) = reshape(spread(along, 2, size(along)), [size(along)**2])
+    place(2, :) = reshape(spread(along, 1, size(along)), [size(along)**2])
+  end function grid
+
+  !> What the three places of Gauss count in a parabola through them, elsewhere along the line.
+  pure function between(at) result(n)
+    real(wp), intent(in) :: at
+    real(wp) :: n(3)
+
+    n = [0.5_wp*at*(at - three(3)), 0.6_wp - at**2, 0.5_wp*at*(at + three(3))]/0.6_wp
+  end function between
+
+  !> Shape functions at a local place.
+  pure function values(place) result(n)
+    real(wp), intent(in) :: place(directions)
+    real(wp) :: n(most_nodes)
+    integer :: i
+
+    do i = 1, 8
+      associate (a => node(1, i)*place(1), b => node(2, i)*place(2))
+        if (i <= 4) then
+          n(i) = 0.25_wp*(1.0_wp + a)*(1.0_wp + b)*(a + b - 1.0_wp)
+        else
+          n(i) = 0.5_wp*(1.0_wp + a + b)*(1.0_wp - across(i, place)**2)
+        end if
+      end associate
+    end do
+    n(9:) = 0.0_wp
+  end function values
+
+  !> The local coordinate in which a node between corners lies in the middle.
+  pure real(wp) function across(i, place)
+    integer, intent(in) :: i
+    real(wp), intent(in) :: place(directions)
+
+    across = place(merge(1, 2, node(1, i) == 0.0_wp))
+  end function across
+
+  !> Their derivatives by the local coordinates.
+  pure function slopes(place) result(slope)
+    real(wp), intent(in) :: place(directions)
+    real(wp) :: slope(directions, most_nodes)
+    integer :: i
+
+    do i = 1, 8
+      associate (a => node(1, i)*place(1), b => node(2, i)*place(2))
+        if (i <= 4) then
+          slope(:, i) = 0.25_wp*node(:, i)*[(1.0_wp + b)*(2.0_wp*a + b), (1.0_wp + a)*(2.0_wp*b + a)]
+        else
+          slope(:, i) = merge(-(1.0_wp + a + b)*across(i, place), 0.5_wp*node(:, i)*(1.0_wp - across(i, place)**2), &
+                              node(:, i) == 0.0_wp)
+        end if
+      end associate
+    end do
+    slope(:, 9:) = 0.0_wp
+  end function slopes
+end module epcont_element_quad8
