@@ -95,7 +95,7 @@ contains
   subroutine evaluate(model, plan, run, line, answer, certificate, watch)
     type(model_type), intent(in) :: model
     type(iteration_plan), intent(in) :: plan
-    type(plastic_run), intent(in) :: run
+    type(plastic_run), intent(inout) :: run   !! states of the points are found where they are not
     type(contact_line), intent(in) :: line
     type(answer_type), intent(inout) :: answer
     type(certificate_type), intent(out) :: certificate
@@ -103,11 +103,14 @@ contains
     real(wp), allocatable :: load(:, :)
     logical, allocatable :: touching(:)
 
+    if (run%materials%yields .and. .not. allocated(run%state%point)) &
+      run%state%point = run%materials%states(run%state%strain)
     answer%contact = run%state%contact
     answer%displacement = run%state%displacement
     answer%deformation = run%state%deformation
     load = run%load_factor*model%load
-    call recover_stresses(model, run%scene%operator, run%state, load + pair_forces(model, answer%contact%force), answer)
+    call recover_stresses(model, run%scene%operator, run%materials, run%state, &
+                          load + pair_forces(model, answer%contact%force), answer)
     answer%locking = find_locking(model, run%scene%operator%volume, answer%stress, answer%equivalent_stress, answer%secant_modulus)
     answer%gradient = find_gradients(model, run%scene%operator%volume, answer%displacement)
     touching = in_contact(line, answer%contact%touching)

@@ -14,7 +14,6 @@ module epcont_accuracy_accuracy
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, new_basis
   use epcont_contact_scaling, only: scale_problem, scaled_problem
-  use epcont_material_curve, only: section_materials
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
@@ -112,7 +111,7 @@ contains
     allocate (accuracy%zone(0))
     if (.not. pressed) return
 
-    call assess_zones(model, table, line, answer, smooth_pressures(model, table, section_materials(model), field%smooth), &
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, run%materials, field%smooth), &
                       accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads(model, motions, table)), &
                                                    sum(accuracy%element)), accuracy)
     if (.not. carried) return

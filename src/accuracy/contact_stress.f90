@@ -3,8 +3,8 @@ module epcont_accuracy_contact_stress
   use epcont_accuracy_patches, only: patch_table
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_stress
-  use epcont_material_curve, only: material_type
-  use epcont_material_total_theory, only: respond, response_type
+  use epcont_material_material_law, only: point_state
+  use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -17,10 +17,10 @@ contains
 
   !> The normal stress at each pair, as a pressure: the mean of both sides', of which each has errors of its own; 0 where neither
   !! gives way [stress] [pairs].
-  pure function smooth_pressures(model, table, material, smooth) result(pressure)
+  pure function smooth_pressures(model, table, materials, smooth) result(pressure)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
-    type(material_type), intent(in) :: material(:)   !! of each section
+    type(scene_materials), intent(in) :: materials
     real(wp), intent(in) :: smooth(:, :)             !! strains [4, places]
     real(wp), allocatable :: pressure(:)
     real(wp) :: side(2), weight(2)
@@ -35,7 +35,8 @@ contains
         associate (node => model%row_node(i))
           if (.not. gives_way(model, table, node)) cycle
           n = merge(1, 2, i == model%row_start(k))   ! the row's first node is one side, the others share the other
-          side(n) = side(n) + model%row_weight(i)*normal_pressure(model, table, material, smooth(:, node), node, model%normal(:, k))
+          side(n) = side(n) + model%row_weight(i)* &
+                    normal_pressure(model, table, materials, smooth(:, node), node, model%normal(:, k))
           weight(n) = weight(n) + model%row_weight(i)
         end associate
       end do
@@ -61,17 +62,19 @@ contains
   end function gives_way
 
   !> Normal stress of a smooth strain at a node, as a pressure.
-  pure real(wp) function normal_pressure(model, table, material, strain, node, n)
+  pure real(wp) function normal_pressure(model, table, materials, strain, node, n)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
-    type(material_type), intent(in) :: material(:)
+    type(scene_materials), intent(in) :: materials
     real(wp), intent(in) :: strain(4), n(2)
     integer, intent(in) :: node
-    type(response_type) :: response
+    type(point_state) :: state
+    integer :: section
 
     ! The first place of a node has its own number, and that of an element around it.
-    response = respond(material(model%section(table%around%group(table%around%start(node)))), strain)
-    associate (s => response%stress)
+    section = model%section(table%around%group(table%around%start(node)))
+    call materials%section(section)%law%update(strain, point_state(), state)
+    associate (s => state%stress)
       normal_pressure = -(s(1)*n(1)**2 + s(2)*n(2)**2 + 2.0_wp*s(4)*n(1)*n(2))
     end associate
   end function normal_pressure

@@ -7,72 +7,99 @@ module epcont_accuracy_discretisation
   use epcont_accuracy_patches, only: patch_table
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_places
-  use epcont_material_curve, only: material_type
   use epcont_material_elasticity, only: cross_modulus
-  use epcont_material_total_theory, only: respond, response_type
+  use epcont_material_material_law, only: material_law, point_state
+  use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: error_products, stored_energy
+  public :: error_product, error_products, stored_energy
+
+  !> What the errors of fields of strain have in common, and what each misses.
+  type :: error_product
+    real(wp), allocatable :: element(:, :)   !! [energy] [elements, fields]
+    real(wp), allocatable :: missing(:)      !! part of the energy, of elastic bodies; not found of the first field [fields]
+  end type error_product
 
 contains
 
   !> Integrals of error times error: what the stress of the first field, on the material's curve, is off by, times what the strain
   !! of each field is off by. Of the first field that is the square of its error. Each of the other fields by itself misses a part
   !! of its energy, too.
-  pure subroutine error_products(model, table, material, volume, strain, smooth, product, missing)
+  pure function error_products(model, table, materials, volume, strain, smooth, state) result(product)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
-    type(material_type), intent(in) :: material(:)   !! of each section
-    real(wp), intent(in) :: volume(:)                !! of the integration points [points]
+    type(scene_materials), intent(in) :: materials
+    real(wp), intent(in) :: volume(:)                     !! of the integration points [points]
     real(wp), contiguous, intent(in) :: strain(:, :, :)   !! [4, points, fields]
     real(wp), contiguous, intent(in) :: smooth(:, :, :)   !! [4, places, fields]
-    real(wp), allocatable, intent(out) :: product(:, :)   !! [energy] [elements, fields]
-    real(wp), allocatable, intent(out) :: missing(:)      !! of elastic bodies; that of the first is not found here [fields]
-    type(response_type) :: before, after
+    type(point_state), allocatable, intent(in) :: state(:)   !! of the first field, where anything yields [points]
+    type(error_product) :: product
     real(wp) :: own(4, most_places), error(4, most_places, size(strain, 3)), part(most_places), cross
     real(wp) :: energy(2, size(strain, 3))   !! of each field's error, and of its own strain
-    logical :: yielded
-    integer :: e, f, k, n
+    integer :: e, f, k
 
-    allocate (product(model%elements, size(strain, 3)), missing(size(strain, 3)), source=0.0_wp)
+    allocate (product%element(model%elements, size(strain, 3)), product%missing(size(strain, 3)), source=0.0_wp)
     energy = 0.0_wp
     do e = 1, model%elements
-      n = model%order(e)
-      associate (first => model%first_point(e), last => model%first_point(e + 1) - 1, m => material(model%section(e)), &
-                 kind => model%kinds(model%kind(e)))
-        cross = cross_modulus(m%bulk, m%shear, m%sheet)
+      associate (first => model%first_point(e), last => model%first_point(e + 1) - 1, &
+                 law => materials%section(model%section(e))%law, kind => model%kinds(model%kind(e)))
+        cross = cross_modulus(law%bulk, law%shear, law%sheet)
         do k = 1, kind%places
           part(k) = sum(kind%v(:last - first + 1, k)*volume(first:last))
         end do
         do f = size(strain, 3), 1, -1   ! last the first, whose own strain is wanted
-          call compare(kind, table%place(:n, e), strain(:, first:last, f), smooth(:, :, f), own, error(:, :, f))
+          call compare(kind, table%place(:kind%nodes, e), strain(:, first:last, f), smooth(:, :, f), own, error(:, :, f))
           if (f == 1) exit
           do k = 1, kind%places
-            energy(:, f) = energy(:, f) + part(k)*[elastic_product(cross, m%shear, error(:, k, f), error(:, k, f)), &
-                                                   elastic_product(cross, m%shear, own(:, k), own(:, k))]
+            energy(:, f) = energy(:, f) + part(k)*[elastic_product(cross, law%shear, error(:, k, f), error(:, k, f)), &
+                                                   elastic_product(cross, law%shear, own(:, k), own(:, k))]
           end do
         end do
-        yielded = .false.
-        do k = 1, kind%places
-          if (m%yields) then
-            ! The strain of a three-node element is the same at all its places.
-            if (k == 1 .or. n > 3) before = respond(m, own(:, k))
-            after = respond(m, own(:, k) + error(:, k, 1))
-            yielded = before%curve%yielded .or. after%curve%yielded
-          end if
-          do f = 1, size(strain, 3)
-            if (yielded) then
-              product(e, f) = product(e, f) + part(k)*dot_product(after%stress - before%stress, error(:, k, f))
-            else
-              product(e, f) = product(e, f) + part(k)*elastic_product(cross, m%shear, error(:, k, 1), error(:, k, f))
-            end if
+        if (law%yields) then
+          call add_yielding(kind, law, state(first:last), own, error, part, product%element(e, :))
+        else
+          do k = 1, kind%places
+            do f = 1, size(strain, 3)
+              product%element(e, f) = product%element(e, f) + &
+                                      part(k)*elastic_product(cross, law%shear, error(:, k, 1), error(:, k, f))
+            end do
           end do
-        end do
+        end if
       end associate
     end do
-    where (energy(1, :) > 0.0_wp) missing = energy(1, :)/sum(energy, dim=1)
-  end subroutine error_products
+    where (energy(1, :) > 0.0_wp) product%missing = energy(1, :)/sum(energy, dim=1)
+  end function error_products
+
+  !> Add the products of an element that can yield.
+  pure subroutine add_yielding(kind, law, state, own, error, part, product)
+    type(element_kind), intent(in) :: kind
+    class(material_law), intent(in) :: law
+    type(point_state), intent(in) :: state(:)           !! of its points [points]
+    real(wp), intent(in) :: own(:, :), error(:, :, :)   !! [4, places], [4, places, fields]
+    real(wp), intent(in) :: part(:)                     !! of the volume [places]
+    real(wp), intent(inout) :: product(:)               !! [energy] [fields]
+    type(point_state) :: before, after
+    real(wp) :: cross
+    integer :: f, k
+
+    cross = cross_modulus(law%bulk, law%shear, law%sheet)
+    do k = 1, kind%places
+      if (kind%sees_points) then
+        before = state(min(k, kind%points))
+      else
+        call law%update(own(:, k), point_state(), before)
+      end if
+      call law%update(own(:, k) + error(:, k, 1), point_state(), after)
+      do f = 1, size(product)
+        if (before%yielded .or. after%yielded) then
+          product(f) = product(f) + part(k)*dot_product(after%stress - before%stress, error(:, k, f))
+        else
+          product(f) = product(f) + part(k)*elastic_product(cross, law%shear, error(:, k, 1), error(:, k, f))
+        end if
+      end do
+    end do
+  end subroutine add_yielding
 
   !> An element's own strain at its places, and what the smooth one is beyond it.
   pure subroutine compare(kind, place, strain, smooth, own, error)

@@ -1,11 +1,10 @@
 !> The strains of the answer and of unit loads against smooth ones: what their errors have in common.
 module epcont_accuracy_error_fields
-  use epcont_accuracy_discretisation, only: error_products, stored_energy
+  use epcont_accuracy_discretisation, only: error_product, error_products, stored_energy
   use epcont_accuracy_patches, only: patch_table
   use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_unit_motion, only: unit_strains
   use epcont_base_kinds, only: wp
-  use epcont_material_curve, only: material_type, section_materials
   use epcont_model_model, only: model_type
   use epcont_plan_forecast, only: loads_at_once
   use epcont_plan_numbering, only: numbering_type
@@ -34,12 +33,9 @@ contains
     real(wp), intent(in) :: unit_force(:, :)   !! contact forces under each unit load [pairs, loads]
     type(error_fields), intent(out) :: field
     real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)   !! of the answer, then of some unit loads [4, any, 1 + loads]
-    real(wp), allocatable :: product(:, :)                      !! [energy] [elements, 1 + loads]
-    real(wp), allocatable :: missing(:)                         !! [1 + loads]
-    type(material_type), allocatable :: material(:)
+    type(error_product) :: product
     integer :: first, j, loads
 
-    material = section_materials(model)
     allocate (field%along(2, size(unit_force, 2)), field%missing(size(unit_force, 2)))
     associate (volume => run%scene%operator%volume)
       do first = 1, max(1, size(unit_force, 2)), loads_at_once
@@ -50,16 +46,16 @@ contains
           strain(:, :, 1 + j) = unit_strains(model, numbering, run%scene, unit_force(:, first - 1 + j))
         end do
         smooth = recover_strains(model, table, volume, strain)
-        call error_products(model, table, material, volume, strain, smooth, product, missing)
+        product = error_products(model, table, run%materials, volume, strain, smooth, run%state%point)
         do j = 1, loads
-          field%along(:, first - 1 + j) = [sum(product(:, 1 + j)), sum(abs(product(:, 1 + j)))]
+          field%along(:, first - 1 + j) = [sum(product%element(:, 1 + j)), sum(abs(product%element(:, 1 + j)))]
         end do
-        field%missing(first:first + loads - 1) = missing(2:)
+        field%missing(first:first + loads - 1) = product%missing(2:)
         deallocate (strain)
       end do
       field%energy = stored_energy(volume, run%state%strain, run%state%stress)
     end associate
-    field%element = product(:, 1)
+    field%element = product%element(:, 1)
     field%smooth = smooth(:, :, 1)
   end subroutine compare_fields
 end module epcont_accuracy_error_fields

@@ -117,7 +117,7 @@ contains
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
-    type(linear_law), allocatable, intent(in) :: law   !! that the bodies which may yield were factored with
+    type(linear_law), intent(in) :: law   !! that the bodies were factored with
     type(numbering_type), intent(in) :: numbering
     real(wp), intent(out) :: condition
     integer :: b
@@ -125,7 +125,7 @@ contains
     condition = 1.0_wp
     do b = 1, size(self%body)
       associate (body => numbering%body(b), stiffness => self%body(b))
-        if (body%can_yield .and. allocated(law)) &
+        if (body%can_yield) &
           stiffness%matrix%norm = norm_of(model, operator, law, numbering%equation, body, stiffness)
         condition = max(condition, stiffness%matrix%condition())
       end associate

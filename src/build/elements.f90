@@ -9,7 +9,7 @@ module epcont_build_elements
                                     card_psolid, card_spc, card_spc1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type
-  use epcont_element_kinds, only: element_kinds
+  use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric
   use epcont_geometry_plane, only: cross_product, polygon_area
   use epcont_model_model, only: model_type

@@ -1,4 +1,4 @@
-!> What is the same in all elements of one kind. `kinds.f90` has a row for each, and a file of its own says what is in it.
+!> What is the same in all elements of one kind. `element_kinds.f90` has a row for each, and a file of its own says what is in it.
 !>
 !> Corners come first, counter-clockwise; then the middles of the sides, the first behind the first corner. Sides are straight, or
 !> parabolas through their middle nodes.
@@ -40,6 +40,7 @@ module epcont_element_element_kind
     !> Strains are compared at places. There the smooth one is smooth(nodes) n, the element's own strain(points) p, and the place
     !! has the parts v of the points' volumes.
     integer :: places = 0
+    logical :: sees_points = .true.   !! its own strain at a place is that of the only point, or of the one with the same number
     real(wp) :: n(most_nodes, most_places) = 0.0_wp
     real(wp) :: p(most_points, most_places) = 0.0_wp
     real(wp) :: v(most_points, most_places) = 0.0_wp
@@ -91,6 +92,7 @@ contains
       unit(p, p) = 1.0_wp
     end do
     call kind%compare_at(point, unit, unit)
+    kind%sees_points = .true.
     if (kind%degree > 1) call kind%sample_at(point, unit)
   end function new_kind
 
@@ -102,6 +104,7 @@ contains
     integer :: k
 
     self%places = size(place, 2)
+    self%sees_points = self%points == 1
     do k = 1, self%places
       self%n(:, k) = self%shape(place(:, k))
     end do

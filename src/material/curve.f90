@@ -6,27 +6,21 @@
 !> e = eps_i (1 - (1 - 2 nu) sigma_s/(3 sigma_i)): a quadratic for eps_i on each segment.
 module epcont_material_curve
   use epcont_base_kinds, only: wp
-  use epcont_element_kinematics, only: plane_stress
-  use epcont_material_elasticity, only: bulk_modulus, shear_modulus
-  use epcont_model_model, only: model_type
+  use epcont_model_controls, only: uniaxial_curve
   implicit none
   private
-  public :: material_type, curve_value, section_materials
+  public :: curve_value, deviatoric_curve, new_curve
 
   !> A strain is beyond the last point of a table by more than this part of it.
   real(wp), parameter :: rounding = 1.0e-9_wp
 
-  !> The material of a section.
-  type :: material_type
+  type :: deviatoric_curve
     real(wp) :: young = 1.0_wp              !! E [stress]
-    real(wp) :: bulk = 1.0_wp               !! K [stress]
     real(wp) :: shear = 1.0_wp              !! G [stress]
     real(wp) :: shift = 0.0_wp              !! (1 - 2 nu)/(3E): eps_i = e + shift*sigma_i
-    logical :: sheet = .false.              !! plane stress
-    logical :: yields = .false.
     logical :: paper_ratio = .false.        !! MUP PAPER
     logical :: ends = .false.               !! beyond the last point there is no table
-    ! From the yield point on; the last slope goes on without end:
+    ! From the yield point on; the last slope goes on without end. Not allocated: no yielding.
     real(wp), allocatable :: deviatoric(:)  !! e at the points [points]
     real(wp), allocatable :: total(:)       !! eps at the points [points]
     real(wp), allocatable :: stress(:)      !! [stress] [points]
@@ -34,7 +28,7 @@ module epcont_material_curve
     real(wp), allocatable :: total_slope(:) !! d sigma/d eps behind each point [stress] [points]
   contains
     procedure :: at_strain
-  end type material_type
+  end type deviatoric_curve
 
   !> The curve at a strain.
   type :: curve_value
@@ -47,48 +41,38 @@ module epcont_material_curve
 
 contains
 
-  !> The materials of all sections.
-  pure function section_materials(model) result(material)
-    type(model_type), intent(in) :: model
-    type(material_type), allocatable :: material(:)
-    integer :: s
-
-    allocate (material(size(model%young)))
-    do s = 1, size(material)
-      material(s)%young = model%young(s)
-      material(s)%bulk = bulk_modulus(model%young(s), model%poisson(s))
-      material(s)%shear = shear_modulus(model%young(s), model%poisson(s))
-      material(s)%shift = (1.0_wp - 2.0_wp*model%poisson(s))/(3.0_wp*model%young(s))
-      material(s)%sheet = model%kinematics(s) == plane_stress
-      material(s)%yields = allocated(model%curve(s)%strain)
-      if (.not. material(s)%yields) cycle
-      material(s)%paper_ratio = model%controls%paper_ratio
-      material(s)%ends = model%curve(s)%ends
-      call shift_curve(model%curve(s)%strain, model%curve(s)%stress, material(s))
-    end do
-  end function section_materials
-
   !> The curve over e, from that over total strain.
-  pure subroutine shift_curve(strain, stress, material)
-    real(wp), intent(in) :: strain(:), stress(:)   !! from (0, 0) on
-    type(material_type), intent(inout) :: material
+  pure function new_curve(uniaxial, young, shear, shift, paper_ratio) result(curve)
+    type(uniaxial_curve), intent(in) :: uniaxial   !! from (0, 0) on
+    real(wp), intent(in) :: young, shear           !! E, G [stress]
+    real(wp), intent(in) :: shift                  !! (1 - 2 nu)/(3E) [1/stress]
+    logical, intent(in) :: paper_ratio             !! MUP PAPER
+    type(deviatoric_curve) :: curve
     real(wp), allocatable :: rise(:), width(:)
     integer :: n
 
-    n = size(strain)
-    rise = stress(3:) - stress(2:n - 1)
-    width = strain(3:) - strain(2:n - 1)
-    material%total = strain(2:)
-    material%stress = stress(2:)
-    material%deviatoric = strain(2:) - material%shift*stress(2:)
-    if (material%paper_ratio) material%deviatoric = strain(2:)*(1.0_wp - material%young*material%shift*stress(2)/stress(2:))
-    material%total_slope = [rise/width, rise(n - 2)/width(n - 2)]
-    material%slope = [rise/(width - material%shift*rise), rise(n - 2)/(width(n - 2) - material%shift*rise(n - 2))]
-  end subroutine shift_curve
+    curve%young = young
+    curve%shear = shear
+    curve%shift = shift
+    if (.not. allocated(uniaxial%strain)) return
+    curve%paper_ratio = paper_ratio
+    curve%ends = uniaxial%ends
+    associate (strain => uniaxial%strain, stress => uniaxial%stress)
+      n = size(strain)
+      rise = stress(3:) - stress(2:n - 1)
+      width = strain(3:) - strain(2:n - 1)
+      curve%total = strain(2:)
+      curve%stress = stress(2:)
+      curve%deviatoric = strain(2:) - shift*stress(2:)
+      if (paper_ratio) curve%deviatoric = strain(2:)*(1.0_wp - young*shift*stress(2)/stress(2:))
+      curve%total_slope = [rise/width, rise(n - 2)/width(n - 2)]
+      curve%slope = [rise/(width - shift*rise), rise(n - 2)/(width(n - 2) - shift*rise(n - 2))]
+    end associate
+  end function new_curve
 
   !> The curve at a deviatoric equivalent strain.
   pure function at_strain(self, e) result(point)
-    class(material_type), intent(in) :: self
+    class(deviatoric_curve), intent(in) :: self
     real(wp), intent(in) :: e
     type(curve_value) :: point
     real(wp) :: secant
@@ -97,7 +81,7 @@ contains
     point%modulus = 3.0_wp*self%shear
     point%slope = point%modulus
     point%total = e*(1.0_wp + self%shift*point%modulus)
-    if (.not. self%yields) return
+    if (.not. allocated(self%deviatoric)) return
     if (e <= self%deviatoric(1)) return
     point%yielded = .true.
     k = segment(self%deviatoric, e)
@@ -131,7 +115,7 @@ contains
 
   !> eps_i, and E' = sigma_i/eps_i, with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 + (a - c - b e) eps = e a.
   pure subroutine find_paper_secant(self, k, e, strain, secant)
-    class(material_type), intent(in) :: self
+    class(deviatoric_curve), intent(in) :: self
     integer, intent(in) :: k
     real(wp), intent(in) :: e
     real(wp), intent(out) :: strain, secant

@@ -1,9 +1,9 @@
 !> Stress as a linear function of strain at each integration point: what a stiffness matrix can be made of.
 module epcont_material_linear_law
   use epcont_base_kinds, only: wp
-  use epcont_material_curve, only: material_type
+  use epcont_element_kinematics, only: components
   use epcont_material_elasticity, only: isotropic_matrix
-  use epcont_model_model, only: model_type
+  use epcont_material_scene_materials, only: scene_materials
   implicit none
   private
   public :: linear_law, elastic_law
@@ -13,35 +13,51 @@ module epcont_material_linear_law
     real(wp), allocatable :: matrix(:, :, :)        !! [stress] [4, 4, any]
     integer, allocatable :: matrix_of(:)            !! each point: its own where the material yields, else its section's [points]
     real(wp), allocatable :: initial_stress(:, :)   !! [stress] [4, points]
+    logical, allocatable :: changed(:)              !! its matrix is not that of the last stiffness [points]
   contains
     procedure :: stress
     procedure :: increment
+    procedure :: set_matrix
   end type linear_law
 
 contains
 
   !> The law of bodies that do not yield.
-  pure function elastic_law(model, material) result(law)
-    type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)   !! of each section
+  pure function elastic_law(materials) result(law)
+    type(scene_materials), intent(in) :: materials
     type(linear_law) :: law
     integer :: last, p, s
 
-    allocate (law%initial_stress(4, model%points), source=0.0_wp)
-    law%matrix_of = model%section(model%point_element)
-    allocate (law%matrix(4, 4, size(material) + count(material(law%matrix_of)%yields)))
-    do s = 1, size(material)
-      law%matrix(:, :, s) = isotropic_matrix(material(s)%bulk, material(s)%shear, material(s)%sheet)
+    last = size(materials%section)
+    law%matrix_of = materials%of_point
+    allocate (law%initial_stress(components, size(law%matrix_of)), source=0.0_wp)
+    allocate (law%changed(size(law%matrix_of)), source=.true.)
+    allocate (law%matrix(components, components, last + count(materials%can_yield())))
+    do s = 1, last
+      associate (m => materials%section(s)%law)
+        law%matrix(:, :, s) = isotropic_matrix(m%bulk, m%shear, m%sheet)
+      end associate
     end do
-    last = size(material)
-    do p = 1, model%points
+    do p = 1, size(law%matrix_of)
       s = law%matrix_of(p)
-      if (.not. material(s)%yields) cycle
+      if (.not. materials%section(s)%law%yields) cycle
       last = last + 1
       law%matrix(:, :, last) = law%matrix(:, :, s)
       law%matrix_of(p) = last
     end do
   end function elastic_law
+
+  !> The matrix of a point that yields.
+  pure subroutine set_matrix(self, point, matrix)
+    class(linear_law), intent(inout) :: self
+    integer, intent(in) :: point
+    real(wp), intent(in) :: matrix(components, components)   !! [stress]
+
+    associate (now => self%matrix(:, :, self%matrix_of(point)))
+      if (any(now /= matrix)) self%changed(point) = .true.
+      now = matrix
+    end associate
+  end subroutine set_matrix
 
   !> Stress of each point [4, points].
   pure function stress(self, strain)

@@ -2,11 +2,10 @@
 !> the right-hand side. Accelerated as MODSEC is.
 module epcont_plasticity_initial_stress
   use epcont_base_kinds, only: wp
-  use epcont_material_curve, only: material_type
   use epcont_material_linear_law, only: linear_law
-  use epcont_material_total_theory, only: respond, response_type
-  use epcont_model_model, only: model_type
+  use epcont_material_scene_materials, only: scene_materials
   use epcont_plasticity_mixing_method, only: mixing_method
+  use epcont_plasticity_scene_state, only: scene_state
   implicit none
   private
   public :: initial_stress_method
@@ -19,23 +18,18 @@ module epcont_plasticity_initial_stress
 contains
 
   !> Initial stress: that of the curve less the elastic one.
-  pure subroutine linearise(self, model, material, strain, law)
+  pure subroutine linearise(self, materials, about, law)
     class(initial_stress_method), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: strain(:, :)
+    type(scene_materials), intent(in) :: materials
+    type(scene_state), intent(in) :: about
     type(linear_law), intent(inout) :: law
-    type(response_type) :: response
     integer :: p
 
-    do p = 1, model%points
-      associate (m => material(model%section(model%point_element(p))))
-        if (.not. m%yields) cycle
-        response = respond(m, strain(:, p))
-        law%initial_stress(:, p) = 0.0_wp
-        if (response%curve%yielded) &
-          law%initial_stress(:, p) = response%stress - matmul(law%matrix(:, :, law%matrix_of(p)), strain(:, p))
-      end associate
+    do p = 1, size(about%point)
+      if (.not. materials%section(materials%of_point(p))%law%yields) cycle
+      law%initial_stress(:, p) = 0.0_wp
+      if (about%point(p)%yielded) law%initial_stress(:, p) = &
+        about%point(p)%stress - matmul(law%matrix(:, :, law%matrix_of(p)), about%strain(:, p))
     end do
   end subroutine linearise
 end module epcont_plasticity_initial_stress

@@ -3,9 +3,8 @@ module epcont_plasticity_iteration
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solved, contact_stalled
-  use epcont_material_curve, only: material_type, section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
-  use epcont_material_total_theory, only: distance_from_curve, respond, response_type
+  use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: method_newton, method_secant, precision_single
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
@@ -42,6 +41,7 @@ module epcont_plasticity_iteration
 
   !> What came of the loads, and how.
   type :: plastic_run
+    type(scene_materials) :: materials
     type(scene_state), allocatable :: state    !! the answer, or what came nearest to one
     type(linear_scene), allocatable :: scene   !! as the last solve left it, if there is an answer
     type(linear_law), allocatable :: law       !! of that solve
@@ -62,7 +62,7 @@ module epcont_plasticity_iteration
   !> What the loop works on.
   type :: loop_type
     type(iteration_plan) :: plan
-    type(material_type), allocatable :: material(:)   !! [sections]
+    type(scene_materials) :: materials
     type(linear_scene), allocatable :: scene
     type(linear_law), allocatable :: law
     type(scene_state) :: about                        !! the state that the law is about
@@ -109,7 +109,7 @@ contains
       if (run%state%contact%state /= contact_solved) return
       if (converged .or. step == 1) then
         run%load_factor = part
-        call loop%scene%estimate_condition(model, numbering, run%condition)
+        call loop%scene%estimate_condition(model, numbering, loop%law, run%condition)
         run%weakest = loop%scene%bodies%weakest()
         if (plan%precision == precision_single) &
           call loop%scene%rounding_error(model, numbering, loop%law, part, run%state, run%rounding_error)
@@ -122,6 +122,7 @@ contains
     run%converged = converged
     call move_alloc(loop%scene, run%scene)
     call move_alloc(loop%law, run%law)
+    run%materials = loop%materials
   end subroutine follow_loads
 
   subroutine begin(model, motions, plan, loop)
@@ -132,8 +133,9 @@ contains
 
     loop%plan = plan
     loop%scene = new_linear_scene(model, motions, plan%body, plan%contact%by_blocks, plan%precision, plan%threads)
-    loop%material = section_materials(model)
+    call find_materials(model, loop%materials)
     allocate (loop%about%displacement(2, model%nodes), loop%about%strain(4, model%points), source=0.0_wp)
+    if (loop%materials%yields) loop%about%point = loop%materials%states(loop%about%strain)
     allocate (loop%force(model%pairs), source=0.0_wp)
   end subroutine begin
 
@@ -157,7 +159,7 @@ contains
     converged = .false.
     least_residual = huge(1.0_wp)
     allocate (state, found)
-    if (.not. loop%stiff) loop%law = elastic_law(model, loop%material)   ! it may be a last step's tangent
+    if (.not. loop%stiff) loop%law = elastic_law(loop%materials)   ! it may be a last step's tangent
     call method%restart()
     call loop%estimator%restart()
     loop%doubt = 1.0_wp
@@ -172,6 +174,7 @@ contains
       end if
       now%load_factor = part
       now%iteration = iteration
+      if (loop%materials%yields) found%point = loop%materials%states(found%strain)
       call measure(model, loop, found, now)
       call loop%estimator%estimate(method%telling_steps, loop%about, found, now)
       if (now%yielded + loop%yielded == 0 .or. now%residual <= rounding .and. now%error < 0.0_wp) then
@@ -189,17 +192,20 @@ contains
       ! A state far away is none to show: its numbers may be at the end of their range.
       run%runs_away = .not. converged .and. model%has_flat_curve() .and. travel > farthest
       if (run%runs_away) return
-      if (now%residual <= least_residual .and. .not. converged) state = found
-      least_residual = min(least_residual, now%residual)
       loop%touching = found%contact%touching
       loop%force = found%contact%force
       loop%yielded = now%yielded
-      call method%advance(model, loop%material, part, found, loop%about)
+      ! Behind the last load step nothing is linearised any more.
+      if (loop%materials%yields .and. .not. (converged .and. part >= 1.0_wp)) &
+        call method%advance(model, loop%materials, part, found, loop%about)
       call watch%lap(stage_yielding)
       call watch%solved(now, converged)
-      if (converged) then
+      if (converged .or. now%residual <= least_residual) then
+        least_residual = now%residual
         call move_alloc(found, state)
-        return
+        if (converged) return
+        if (allocated(state%point)) deallocate (state%point)
+        allocate (found)
       end if
     end do
   end subroutine iterate
@@ -215,15 +221,15 @@ contains
     logical :: possible
 
     singular = 0
-    call method%linearise(model, loop%material, loop%about%strain, loop%law)
+    if (loop%materials%yields) call method%linearise(loop%materials, loop%about, loop%law)
     call watch%lap(stage_yielding)
     if (loop%stiff .and. (method%keeps_stiffness .or. loop%elastic .and. loop%yielded == 0)) return
     loop%elastic = loop%yielded == 0
     do
       call loop%scene%set_stiffness(model, numbering, loop%law, singular, watch)
       loop%stiff = .true.
-      if (singular == 0 .or. loop%scene%bodies%lacks_memory()) return
-      call method%stiffen(model, loop%material, loop%about%strain, loop%law, possible)
+      if (singular == 0 .or. loop%scene%bodies%lacks_memory() .or. .not. loop%materials%yields) return
+      call method%stiffen(loop%materials, loop%about, loop%law, possible)
       if (.not. possible) return
     end do
   end subroutine set_law
@@ -235,9 +241,7 @@ contains
     type(loop_type), intent(in) :: loop
     type(scene_state), intent(in) :: found
     type(iteration_record), intent(inout) :: now
-    type(response_type) :: response
     logical, allocatable :: yielded(:)
-    real(wp) :: off
     integer :: p
 
     now%change = ratio(maxval(abs(found%displacement - loop%about%displacement)), maxval(abs(found%displacement)))
@@ -245,18 +249,18 @@ contains
     if (model%pairs > 0) now%force_change = ratio(maxval(abs(found%contact%force - loop%force)), maxval(found%contact%force))
     now%touching = count(found%contact%touching)
     now%pivots = found%contact%pivots
+    now%yielded = 0
+    now%residual = 0.0_wp
+    if (.not. loop%materials%yields) return
     allocate (yielded(model%elements), source=.false.)
-    off = 0.0_wp
     do p = 1, model%points
-      associate (e => model%point_element(p), m => loop%material(model%section(model%point_element(p))))
-        if (.not. m%yields) cycle
-        response = respond(m, found%strain(:, p))
-        yielded(e) = yielded(e) .or. response%curve%yielded
-        off = max(off, distance_from_curve(m, response, found%stress(:, p)))
+      associate (e => model%point_element(p), law => loop%materials%section(loop%materials%of_point(p))%law)
+        if (.not. law%yields) cycle
+        yielded(e) = yielded(e) .or. found%point(p)%yielded
+        now%residual = max(now%residual, law%distance(found%point(p), found%stress(:, p)))
       end associate
     end do
     now%yielded = count(yielded)
-    now%residual = off
   end subroutine measure
 
   !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than the tolerance.
@@ -320,7 +324,10 @@ contains
     call set_law(model, numbering, tangent, loop, singular, watch)
     if (singular == 0 .and. tangent%blended() < too_stiff) then
       call loop%scene%solve(model, motions, numbering, loop%law, part, found%contact%touching, next, watch)
-      if (next%contact%state == contact_solved) call measure(model, loop, next, now)
+      if (next%contact%state == contact_solved) then
+        next%point = loop%materials%states(next%strain)
+        call measure(model, loop, next, now)
+      end if
     end if
     holds = now%change <= loop%plan%tolerance .and. now%residual <= loop%plan%off_curve
     if (holds) then
@@ -332,7 +339,7 @@ contains
     else
       loop%doubt = max(2.0_wp*loop%doubt, min(now%change/history(size(history))%error, most_doubt))
       loop%about = about
-      loop%law = elastic_law(model, loop%material)
+      loop%law = elastic_law(loop%materials)
     end if
     loop%stiff = .false.
   end subroutine step_by_tangent
@@ -343,16 +350,14 @@ contains
     type(loop_type), intent(in) :: loop
     real(wp), intent(inout) :: strained(:)    !! e of the points that yielded in the last load step, else 0 [points]
     type(plastic_run), intent(inout) :: run
-    type(response_type) :: response
     logical, allocatable :: fell(:)
     integer :: p
 
     allocate (fell(model%elements), source=.false.)
     do p = 1, model%points
-      associate (e => model%point_element(p))
-        response = respond(loop%material(model%section(e)), run%state%strain(:, p))
-        fell(e) = fell(e) .or. response%e < (1.0_wp - max(loop%plan%tolerance, least_fall))*strained(p)
-        strained(p) = merge(response%e, 0.0_wp, response%curve%yielded)
+      associate (e => model%point_element(p), now => run%state%point(p))
+        fell(e) = fell(e) .or. now%deviatoric < (1.0_wp - max(loop%plan%tolerance, least_fall))*strained(p)
+        strained(p) = merge(now%deviatoric, 0.0_wp, now%yielded)
       end associate
     end do
     run%unloaded = run%unloaded + count(fell)

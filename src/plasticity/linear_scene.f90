@@ -29,7 +29,6 @@ module epcont_plasticity_linear_scene
   type :: linear_scene
     type(strain_operator), allocatable :: operator
     type(factored_bodies) :: bodies
-    type(linear_law), allocatable :: law             !! that the bodies were factored with, where any yields
     type(contact_problem) :: problem
     logical, allocatable :: yields(:)                !! the body has elements that can yield [bodies]
     real(wp), allocatable :: lasting_flexibility(:, :)  !! of the bodies that cannot, factored once [pairs, pairs]
@@ -47,7 +46,6 @@ module epcont_plasticity_linear_scene
     procedure :: estimate_condition
     procedure, private :: factor_bodies
     procedure, private :: add_flexibilities
-    procedure, private :: changed_elements
   end type linear_scene
 
 contains
@@ -80,15 +78,15 @@ contains
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(in) :: law
+    type(linear_law), intent(inout) :: law   !! from here on it counts as unchanged
     integer, intent(out) :: singular
     class(stopwatch), intent(inout) :: watch
     logical, allocatable :: changed(:), chosen(:)
     logical :: first
 
     first = .not. allocated(self%lasting_flexibility)
-    changed = self%changed_elements(model, law)
-    if (any(self%yields)) self%law = law
+    changed = changed_elements(model, law)
+    law%changed = .false.
     chosen = self%yields .or. first
     call watch%lap(stage_stiffness)
     call self%factor_bodies(model, numbering, law, changed, chosen, singular)
@@ -155,20 +153,16 @@ contains
     !$omp end parallel do
   end subroutine add_flexibilities
 
-  !> Elements whose law is not that of the factors; all of them the first time [elements].
-  pure function changed_elements(self, model, law) result(changed)
-    class(linear_scene), intent(in) :: self
+  !> Elements whose law is not that of the factors [elements].
+  pure function changed_elements(model, law) result(changed)
     type(model_type), intent(in) :: model
     type(linear_law), intent(in) :: law
     logical, allocatable :: changed(:)
     integer :: p
 
-    allocate (changed(model%elements), source=.not. allocated(self%law))
-    if (.not. allocated(self%law)) return
+    allocate (changed(model%elements), source=.false.)
     do p = 1, model%points
-      associate (i => law%matrix_of(p))
-        if (any(law%matrix(:, :, i) /= self%law%matrix(:, :, i))) changed(model%point_element(p)) = .true.
-      end associate
+      if (law%changed(p)) changed(model%point_element(p)) = .true.
     end do
   end function changed_elements
 
@@ -222,6 +216,7 @@ contains
     call correct(self, model, numbering, law, part, refined, strained)
     call complete_state(model, motions, law, self%problem, part, refined)
     change = change_of(state, refined)
+    if (allocated(refined%point)) deallocate (refined%point)   ! those of the strain before
     state = refined
     call watch%lap(stage_displacements)
   end subroutine sharpen
@@ -372,12 +367,13 @@ contains
   end subroutine rounding_error
 
   !> Estimate of the condition of the stiffness in the 1-norm.
-  pure subroutine estimate_condition(self, model, numbering, condition)
+  pure subroutine estimate_condition(self, model, numbering, law, condition)
     class(linear_scene), intent(inout) :: self
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
+    type(linear_law), intent(in) :: law   !! of the last solve
     real(wp), intent(out) :: condition
 
-    call self%bodies%estimate_condition(model, self%operator, self%law, numbering, condition)
+    call self%bodies%estimate_condition(model, self%operator, law, numbering, condition)
   end subroutine estimate_condition
 end module epcont_plasticity_linear_scene

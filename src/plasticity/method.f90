@@ -1,8 +1,8 @@
 !> What the loop asks of an iteration method: a linear law about a state, and from what that law finds the next state.
 module epcont_plasticity_method
   use epcont_base_kinds, only: wp
-  use epcont_material_curve, only: material_type
   use epcont_material_linear_law, only: linear_law
+  use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
   use epcont_plasticity_scene_state, only: scene_state
   implicit none
@@ -21,25 +21,24 @@ module epcont_plasticity_method
   end type plastic_method
 
   abstract interface
-    !> The law about a state of strain, for the points that can yield; that of the others stays as it is.
-    pure subroutine linearise_about(self, model, material, strain, law)
-      import :: linear_law, material_type, model_type, plastic_method, wp
+    !> The law about a state, for the points that can yield; that of the others stays as it is.
+    pure subroutine linearise_about(self, materials, about, law)
+      import :: linear_law, plastic_method, scene_materials, scene_state
       class(plastic_method), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(material_type), intent(in) :: material(:)   !! [sections]
-      real(wp), intent(in) :: strain(:, :)             !! [4, points]
+      type(scene_materials), intent(in) :: materials
+      type(scene_state), intent(in) :: about           !! its strain, and its points
       type(linear_law), intent(inout) :: law
     end subroutine linearise_about
 
     !> The state to linearise about next, when the law about `about` has led to `found`.
-    pure subroutine advance_from(self, model, material, part, found, about)
-      import :: material_type, model_type, plastic_method, scene_state, wp
+    pure subroutine advance_from(self, model, materials, part, found, about)
+      import :: model_type, plastic_method, scene_materials, scene_state, wp
       class(plastic_method), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(material_type), intent(in) :: material(:)
+      type(scene_materials), intent(in) :: materials
       real(wp), intent(in) :: part                     !! of the loads
       type(scene_state), intent(in) :: found
-      type(scene_state), intent(inout) :: about        !! displacement and strain
+      type(scene_state), intent(inout) :: about        !! displacement and strain; points only where they are known by then
     end subroutine advance_from
   end interface
 
@@ -51,11 +50,10 @@ contains
   end subroutine restart
 
   !> Another law, where a stiffness made of the last could not be factored. Most methods have none.
-  pure subroutine stiffen(self, model, material, strain, law, possible)
+  pure subroutine stiffen(self, materials, about, law, possible)
     class(plastic_method), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: strain(:, :)
+    type(scene_materials), intent(in) :: materials
+    type(scene_state), intent(in) :: about
     type(linear_law), intent(inout) :: law
     logical, intent(out) :: possible
 

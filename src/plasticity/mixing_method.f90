@@ -1,7 +1,7 @@
 !> A method that goes on from a mixture of what it found last (Anderson's), not from the last alone.
 module epcont_plasticity_mixing_method
   use epcont_base_kinds, only: wp
-  use epcont_material_curve, only: material_type
+  use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
   use epcont_plasticity_anderson, only: anderson_mixer
   use epcont_plasticity_method, only: plastic_method
@@ -25,14 +25,15 @@ contains
     call self%mixer%forget()
   end subroutine restart
 
-  pure subroutine advance(self, model, material, part, found, about)
+  pure subroutine advance(self, model, materials, part, found, about)
     class(mixing_method), intent(inout) :: self
     type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)
+    type(scene_materials), intent(in) :: materials
     real(wp), intent(in) :: part
     type(scene_state), intent(in) :: found
     type(scene_state), intent(inout) :: about
 
     call self%mixer%mix(model, self%volume, found, about)
+    about%point = materials%states(about%strain)
   end subroutine advance
 end module epcont_plasticity_mixing_method

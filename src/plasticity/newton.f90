@@ -5,9 +5,10 @@
 !> (f_int - f).d, since differences of the energy itself drown in rounding.
 module epcont_plasticity_newton
   use epcont_base_kinds, only: wp
-  use epcont_material_curve, only: material_type
+  use epcont_element_kinematics, only: components
   use epcont_material_linear_law, only: linear_law
-  use epcont_material_total_theory, only: respond, response_type, secant_matrix, tangent_matrix
+  use epcont_material_material_law, only: point_state
+  use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_scene_state, only: scene_state
@@ -46,15 +47,14 @@ contains
   end subroutine restart
 
   !> Tangents: stress(strain) + D_t (d strain).
-  pure subroutine linearise(self, model, material, strain, law)
+  pure subroutine linearise(self, materials, about, law)
     class(newton_method), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: strain(:, :)
+    type(scene_materials), intent(in) :: materials
+    type(scene_state), intent(in) :: about
     type(linear_law), intent(inout) :: law
 
     self%blend = 0
-    call set_law(model, material, strain, 0.0_wp, law)
+    call set_law(materials, about, 0.0_wp, law)
   end subroutine linearise
 
   !> Part of the secant matrix in the last tangent.
@@ -66,95 +66,102 @@ contains
   end function blended
 
   !> D_t + w (D_secant - D_t): a flat curve makes D_t semidefinite.
-  pure subroutine stiffen(self, model, material, strain, law, possible)
+  pure subroutine stiffen(self, materials, about, law, possible)
     class(newton_method), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: strain(:, :)
+    type(scene_materials), intent(in) :: materials
+    type(scene_state), intent(in) :: about
     type(linear_law), intent(inout) :: law
     logical, intent(out) :: possible
 
     possible = self%blend < size(blends)
     if (.not. possible) return
     self%blend = self%blend + 1
-    call set_law(model, material, strain, blends(self%blend), law)
+    call set_law(materials, about, blends(self%blend), law)
   end subroutine stiffen
 
-  pure subroutine set_law(model, material, strain, blend, law)
-    type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)
-    real(wp), intent(in) :: strain(:, :)
+  pure subroutine set_law(materials, about, blend, law)
+    type(scene_materials), intent(in) :: materials
+    type(scene_state), intent(in) :: about
     real(wp), intent(in) :: blend
     type(linear_law), intent(inout) :: law
-    type(response_type) :: response
+    real(wp) :: matrix(components, components)
     integer :: p
 
-    do p = 1, model%points
-      associate (m => material(model%section(model%point_element(p))), matrix => law%matrix(:, :, law%matrix_of(p)))
+    do p = 1, size(about%point)
+      associate (m => materials%section(materials%of_point(p))%law, strain => about%strain(:, p), &
+                 state => about%point(p))
         if (.not. m%yields) cycle
-        response = respond(m, strain(:, p))
         law%initial_stress(:, p) = 0.0_wp
-        matrix = secant_matrix(m, response)
-        if (.not. response%curve%yielded) cycle
-        matrix = blend*matrix + (1.0_wp - blend)*tangent_matrix(m, response)
-        law%initial_stress(:, p) = response%stress - matmul(matrix, strain(:, p))
+        matrix = m%secant_matrix(state)
+        if (state%yielded) then
+          matrix = blend*matrix + (1.0_wp - blend)*m%tangent_matrix(strain, state)
+          law%initial_stress(:, p) = state%stress - matmul(matrix, strain)
+        end if
+        call law%set_matrix(p, matrix)
       end associate
     end do
   end subroutine set_law
 
   !> Go along the step as far as the energy falls.
-  pure subroutine advance(self, model, material, part, found, about)
+  pure subroutine advance(self, model, materials, part, found, about)
     class(newton_method), intent(inout) :: self
     type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)
+    type(scene_materials), intent(in) :: materials
     real(wp), intent(in) :: part
     type(scene_state), intent(in) :: found
     type(scene_state), intent(inout) :: about
+    type(point_state), allocatable :: point(:)
     real(wp) :: length
 
     length = 1.0_wp
-    if (.not. self%takes_full_step) length = step_length(model, material, self%volume, part, about, found)
+    if (.not. self%takes_full_step) call find_length(model, materials, self%volume, part, about, found, length, point)
     self%takes_full_step = .false.
-    about%displacement = about%displacement + length*(found%displacement - about%displacement)
-    about%strain = about%strain + length*(found%strain - about%strain)
-    if (length < 1.0_wp) return
-    about%displacement = found%displacement
-    about%strain = found%strain
+    if (length < 1.0_wp) then
+      about%displacement = about%displacement + length*(found%displacement - about%displacement)
+      about%strain = about%strain + length*(found%strain - about%strain)
+      call move_alloc(point, about%point)
+    else
+      about%displacement = found%displacement
+      about%strain = found%strain
+      about%point = found%point
+    end if
   end subroutine advance
 
   !> The zero of the slope of the energy, from 0 to 1: regula falsi of Illinois.
-  pure real(wp) function step_length(model, material, volume, part, about, found)
+  pure subroutine find_length(model, materials, volume, part, about, found, length, point)
     type(model_type), intent(in) :: model
-    type(material_type), intent(in) :: material(:)
+    type(scene_materials), intent(in) :: materials
     real(wp), intent(in) :: volume(:)   !! of each point
     real(wp), intent(in) :: part
     type(scene_state), intent(in) :: about, found
-    real(wp), allocatable :: along(:, :)
-    real(wp) :: begin, low, high, slope, slope_low, slope_high, terms, work, work_terms
+    real(wp), intent(out) :: length
+    type(point_state), allocatable, intent(out) :: point(:)   !! at that length; not allocated for 1
+    real(wp), allocatable :: along(:, :), travel(:, :)
+    real(wp) :: begin, low, high, slope, slope_low, slope_high, terms
     integer :: k, side
 
-    step_length = 1.0_wp
+    length = 1.0_wp
     along = found%strain - about%strain
-    work = part*sum(model%load*(found%displacement - about%displacement))
-    work_terms = part*sum(abs(model%load*(found%displacement - about%displacement)))
-    call find_slope(0.0_wp, begin, terms)
-    call find_slope(1.0_wp, slope_high, terms)
+    travel = found%displacement - about%displacement
+    call find_slope(about%point, begin, terms)
+    call find_slope(found%point, slope_high, terms)
     if (begin >= -noise*terms .or. slope_high <= -flat_enough*begin) return
     low = 0.0_wp
     high = 1.0_wp
     slope_low = begin
     side = 0
     do k = 1, most_slopes
-      step_length = (low*slope_high - high*slope_low)/(slope_high - slope_low)
-      call find_slope(step_length, slope, terms)
+      length = (low*slope_high - high*slope_low)/(slope_high - slope_low)
+      point = materials%states(about%strain + length*along)
+      call find_slope(point, slope, terms)
       if (abs(slope) <= -found_enough*begin) return
       if (slope > 0.0_wp) then
-        high = step_length
+        high = length
         slope_high = slope
         if (side > 0) slope_low = 0.5_wp*slope_low
         side = 1
       else
-        low = step_length
+        low = length
         slope_low = slope
         if (side < 0) slope_high = 0.5_wp*slope_high
         side = -1
@@ -163,23 +170,20 @@ contains
 
   contains
 
-    !> (f_int - f).d at a length, and the sum of the magnitudes of its terms.
-    pure subroutine find_slope(length, value, magnitude)
-      real(wp), intent(in) :: length
+    !> (f_int - f).d with the stresses of some states, and the sum of the magnitudes of its terms.
+    pure subroutine find_slope(state, value, magnitude)
+      type(point_state), intent(in) :: state(:)
       real(wp), intent(out) :: value, magnitude
-      type(response_type) :: response
-      real(wp) :: strain(4), term
+      real(wp) :: term
       integer :: p
 
-      value = -work
-      magnitude = work_terms
-      do p = 1, model%points
-        strain = about%strain(:, p) + length*along(:, p)
-        response = respond(material(model%section(model%point_element(p))), strain)
-        term = volume(p)*dot_product(response%stress, along(:, p))
+      value = -part*sum(model%load*travel)
+      magnitude = part*sum(abs(model%load*travel))
+      do p = 1, size(state)
+        term = volume(p)*dot_product(state(p)%stress, along(:, p))
         value = value + term
         magnitude = magnitude + abs(term)
       end do
     end subroutine find_slope
-  end function step_length
+  end subroutine find_length
 end module epcont_plasticity_newton

@@ -2,6 +2,7 @@
 module epcont_plasticity_scene_state
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solution
+  use epcont_material_material_law, only: point_state
   implicit none
   private
   public :: scene_state
@@ -11,6 +12,8 @@ module epcont_plasticity_scene_state
     real(wp), allocatable :: deformation(:, :)    !! displacements before the rigid motions are added [length] [2, nodes]
     real(wp), allocatable :: strain(:, :)         !! xx, yy, zz, xy (engineering) [4, points]
     real(wp), allocatable :: stress(:, :)         !! xx, yy, zz, xy, in equilibrium [stress] [4, points]
+    !> Of the materials at that strain, where any yields [points]; not allocated: not found yet.
+    type(point_state), allocatable :: point(:)
     type(contact_solution) :: contact
   end type scene_state
 end module epcont_plasticity_scene_state

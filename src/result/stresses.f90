@@ -2,9 +2,9 @@
 module epcont_result_stresses
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_material_curve, only: material_type, section_materials
   use epcont_material_elasticity, only: equivalent_stress
-  use epcont_material_total_theory, only: respond, response_type
+  use epcont_material_material_law, only: point_state
+  use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
   use epcont_plasticity_scene_state, only: scene_state
   use epcont_result_answer, only: answer_type
@@ -18,19 +18,18 @@ module epcont_result_stresses
 contains
 
   !> Fill in stresses, strains, moduli and reactions. `applied` are the nodal forces of loads and pairs [2, nodes].
-  pure subroutine recover_stresses(model, operator, state, applied, answer)
+  pure subroutine recover_stresses(model, operator, materials, state, applied, answer)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
+    type(scene_materials), intent(in) :: materials
     type(scene_state), intent(in) :: state
     real(wp), intent(in) :: applied(:, :)
     type(answer_type), intent(inout) :: answer
-    type(material_type), allocatable :: material(:)
-    type(response_type) :: response
+    type(point_state) :: point
     real(wp), allocatable :: mises(:)   !! at each point
     real(wp) :: modulus, share, whole
     integer :: e, p
 
-    material = section_materials(model)
     allocate (answer%point_stress, source=state%stress)
     allocate (answer%stress(4, model%elements), answer%equivalent_stress(model%elements), source=0.0_wp)
     allocate (answer%equivalent_strain(model%elements), answer%secant_modulus(model%elements), source=0.0_wp)
@@ -38,21 +37,26 @@ contains
     allocate (answer%largest_stress(model%elements), answer%largest_at(model%elements))
     mises = [(equivalent_stress(state%stress(:, p)), p=1, model%points)]
     do e = 1, model%elements
-      associate (m => material(model%section(e)), first => model%first_point(e), last => model%first_point(e + 1) - 1)
+      associate (law => materials%section(model%section(e))%law, first => model%first_point(e), &
+                 last => model%first_point(e + 1) - 1)
         whole = sum(operator%volume(first:last))
         answer%largest_stress(e) = maxval(mises(first:last))
         answer%largest_at(e) = first - 1 + first_largest(mises(first:last))
         do p = first, last
-          response = respond(m, state%strain(:, p))
-          modulus = m%young
-          if (response%curve%yielded) modulus = 1.0_wp/(1.0_wp/response%curve%modulus + m%shift)
+          if (allocated(state%point)) then
+            point = state%point(p)
+          else
+            call law%update(state%strain(:, p), point_state(), point)
+          end if
+          modulus = law%young
+          if (point%yielded) modulus = 1.0_wp/(1.0_wp/point%modulus + law%shift)
           share = operator%volume(p)/whole
           answer%stress(:, e) = answer%stress(:, e) + share*state%stress(:, p)
           answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*mises(p)
-          answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*response%curve%total
+          answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*point%total
           answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
-          answer%plastic(e) = answer%plastic(e) .or. response%curve%yielded
-          answer%beyond(e) = answer%beyond(e) .or. response%curve%beyond
+          answer%plastic(e) = answer%plastic(e) .or. point%yielded
+          answer%beyond(e) = answer%beyond(e) .or. point%beyond
         end do
       end associate
     end do

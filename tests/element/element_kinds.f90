@@ -4,7 +4,7 @@ module element_kinds
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind
   use epcont_element_integration_point, only: evaluate_points, integration_point
-  use epcont_element_kinds, only: all_kinds => element_kinds
+  use epcont_element_element_kinds, only: all_kinds => element_kinds
   use epcont_linalg_dense, only: lu_solve
   use epcont_linalg_lapack, only: dsyev
   use epcont_material_elasticity, only: bulk_modulus, isotropic_matrix, shear_modulus

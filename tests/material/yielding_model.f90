@@ -1,11 +1,13 @@
 !> A model of sections that yield, without a mesh, and strains to try them with.
 module yielding_model
   use epcont_base_kinds, only: wp
-  use epcont_model_model, only: model_type
   use epcont_element_kinematics, only: plane_strain, plane_stress
+  use epcont_material_material_law, only: point_state
+  use epcont_material_scene_materials, only: scene_materials
+  use epcont_model_model, only: model_type
   implicit none
   private
-  public :: new_yielding_model, strain_path
+  public :: new_yielding_model, state_at, strain_path
 
   !> Sections: five points in plane strain and in plane stress, flat in both, nearly incompressible, elastic.
   integer, parameter, public :: sections = 6
@@ -20,7 +22,7 @@ contains
     model%young = [200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp]
     model%poisson = [0.3_wp, 0.3_wp, 0.25_wp, 0.25_wp, 0.4999_wp, 0.3_wp]
     model%kinematics = [plane_strain, plane_stress, plane_strain, plane_stress, plane_strain, plane_strain]
-    allocate (model%curve(sections))
+    allocate (model%curve(sections), model%section(0), model%point_element(0))
     do s = 1, 2
       model%curve(s)%strain = [0.0_wp, 0.005_wp, 0.01_wp, 0.02_wp, 0.05_wp]
       model%curve(s)%stress = [0.0_wp, 1.0_wp, 1.4_wp, 1.6_wp, 1.9_wp]
@@ -32,6 +34,16 @@ contains
     end do
     model%controls%paper_ratio = paper_ratio
   end function new_yielding_model
+
+  !> What the law of a section finds at a strain, whatever was committed.
+  pure function state_at(materials, section, strain) result(state)
+    type(scene_materials), intent(in) :: materials
+    integer, intent(in) :: section
+    real(wp), intent(in) :: strain(4)
+    type(point_state) :: state
+
+    call materials%section(section)%law%update(strain, point_state(), state)
+  end function state_at
 
   !> Strains of all directions and sizes, from elastic to 50 times yield; every third in the plane only.
   pure function strain_path(k) result(strain)

@@ -19,8 +19,8 @@ program bench_ours
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
                                             motion_resultants, pair_forces
-  use epcont_material_curve, only: section_materials
   use epcont_material_linear_law, only: elastic_law, linear_law
+  use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_build_build, only: build_model
   use epcont_model_controls, only: solver_frontal
   use epcont_model_model, only: model_type
@@ -40,12 +40,12 @@ program bench_ours
   type(free_motions) :: motions
   type(strain_operator) :: operator
   type(linear_law) :: law
+  type(scene_materials) :: materials
   type(numbering_type) :: numbering
   type(factored_bodies) :: bodies
   type(contact_problem) :: problem
   type(contact_solution) :: solution
   type(contact_plan) :: plan
-  type(linear_law), allocatable :: elastic   !! not there: nothing yields
   real(wp), allocatable, save :: displacement(:, :)   ! said, since gfortran 12 puts it where no leak detector looks at the end
   real(wp) :: seconds(times, most_runs), condition, spent
   real(wp) :: begun = 0.0_wp   !! of what `lap` measures
@@ -90,7 +90,8 @@ contains
     call find_free_motions(model, motions, loose)
     plan = plan_contact(model)
     operator = new_strain_operator(model)
-    law = elastic_law(model, section_materials(model))
+    call find_materials(model, materials)
+    law = elastic_law(materials)
     problem%initial_gap = model%initial_gap
     problem%motion = motion_columns(model, motions)
     problem%resultant = motion_resultants(model, motions)
@@ -110,7 +111,7 @@ contains
     call solve_once(spent)
     spent(all_stages) = sum(spent(ordering:displacing))
     begun = now()
-    call bodies%estimate_condition(model, operator, elastic, numbering, condition)
+    call bodies%estimate_condition(model, operator, law, numbering, condition)
     spent(conditioning) = lap()
     do k = 1, further
       call solve_once(again)

@@ -1,5 +1,5 @@
 !> THE table of elements: a new kind is a file here, and a row.
-module epcont_element_kinds
+module epcont_element_element_kinds
   use epcont_element_element_kind, only: element_kind
   use epcont_element_quad4, only: quad4
   use epcont_element_quad8, only: quad8
@@ -17,4 +17,4 @@ contains
 
     kind = [tria3(), tria6(), quad4(), quad8()]
   end function element_kinds
-end module epcont_element_kinds
+end module epcont_element_element_kinds
