@@ -60,8 +60,9 @@ contains
     integer, intent(in) :: side                 !! of the outlines
     type(meeting_type), intent(in) :: meeting   !! how it meets that
 
-    of = factor*(curve_over(self, side, meeting) + bend_over(self, side, max(self%length(side), meeting%longest))) &
-         + self%of_motion(side, meeting) + self%gap(side)
+    of = bend_over(self, side, max(self%length(side), meeting%longest))
+    if (is_curve(self, side, meeting)) of = self%sag(side) + of
+    of = factor*of + self%of_motion(side, meeting) + self%gap(side)
   end function of
 
   !> What of that no shorter sides would heal: slides and turns [length].
@@ -69,12 +70,12 @@ contains
     class(allowance_type), intent(in) :: self
     integer, intent(in) :: side                 !! of the outlines
     type(meeting_type), intent(in) :: meeting   !! how it meets another
-    real(wp) :: curvature
+    real(wp) :: explained   ! by the slide
 
-    curvature = merge(self%curvature(side), 0.0_wp, is_curve(self, side, meeting))
     associate (slide => meeting%slide, length => self%length(side))
-      of_motion = factor*(min(slide*self%turn(side) + 0.5_wp*slide**2*curvature, most_by_slide*length) &
-                          + 0.5_wp*length*self%change(side)**2)
+      explained = slide*self%turn(side)
+      if (is_curve(self, side, meeting)) explained = explained + 0.5_wp*slide**2*self%curvature(side)
+      of_motion = factor*(min(explained, most_by_slide*length) + 0.5_wp*length*self%change(side)**2)
     end associate
   end function of_motion
 
@@ -84,7 +85,8 @@ contains
     integer, intent(in) :: side                 !! of the outlines
     type(meeting_type), intent(in) :: meeting   !! how it meets another
 
-    of_drawing = curve_over(self, side, meeting) + self%gap(side)
+    of_drawing = self%gap(side)
+    if (is_curve(self, side, meeting)) of_drawing = self%sag(side) + self%gap(side)
   end function of_drawing
 
   !> How far the outline bends over so long a part of it, from a side on, either way [length].
@@ -115,16 +117,7 @@ contains
     bend = length*theta/8.0_wp
   end function bend_over
 
-  !> How far the smooth curve is above a side's chord, where it lies on that side or pairs take it.
-  pure real(wp) function curve_over(self, side, meeting)
-    type(allowance_type), intent(in) :: self
-    integer, intent(in) :: side
-    type(meeting_type), intent(in) :: meeting
-
-    curve_over = merge(self%sag(side), 0.0_wp, is_curve(self, side, meeting))
-  end function curve_over
-
-  !> Is there more of a side than its chord?
+  !> Does the smooth curve above a side's chord count? It does where it lies on that side, or pairs take it.
   pure logical function is_curve(self, side, meeting)
     type(allowance_type), intent(in) :: self
     integer, intent(in) :: side

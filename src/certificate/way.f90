@@ -130,40 +130,30 @@ contains
     end do
   end subroutine look_at_way
 
-  !> When a point passes between the ends of a side that moves too. Curved sides are two chords.
+  !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area between the point and a
+  !! chord is a square function of time; on the chord it vanishes.
   pure subroutine cross_side(search, point, side, time)
     type(search_type), intent(in) :: search
     type(point_type), intent(in) :: point
     integer, intent(in) :: side
     real(wp), allocatable, intent(inout) :: time(:)   !! ascending
-
-    if (search%now%outline%node(3, side) == 0) then
-      call cross_chord(search, point, side, [1, 2], time)
-    else
-      call cross_chord(search, point, side, [1, 3], time)
-      call cross_chord(search, point, side, [3, 2], time)
-    end if
-  end subroutine cross_side
-
-  !> The area between the point and a chord is a square function of time; on the chord it vanishes.
-  pure subroutine cross_chord(search, point, side, ends, time)
-    type(search_type), intent(in) :: search
-    type(point_type), intent(in) :: point
-    integer, intent(in) :: side, ends(2)
-    real(wp), allocatable, intent(inout) :: time(:)
     real(wp) :: a(2), b(2), da(2), db(2), root(2)
-    integer :: i
+    integer :: chord, ends(3), i
 
-    a = search%drawn%x(:, ends(1), side) - point%drawn
-    b = search%drawn%x(:, ends(2), side) - point%drawn
-    da = search%motion(:, ends(1), side) - point%motion
-    db = search%motion(:, ends(2), side) - point%motion
-    root = roots_of_square(cross_product(a, b), cross_product(a, db) + cross_product(da, b), cross_product(da, db))
-    do i = 1, 2
-      if (root(i) < 0.0_wp .or. root(i) > 1.0_wp) cycle
-      if (dot_product(a + root(i)*da, b + root(i)*db) <= 0.0_wp) call insert(root(i), time)
+    ends = [1, 2, 0]
+    if (search%now%outline%node(3, side) > 0) ends = [1, 3, 2]
+    do chord = 1, count(ends > 0) - 1
+      a = search%drawn%x(:, ends(chord), side) - point%drawn
+      b = search%drawn%x(:, ends(chord + 1), side) - point%drawn
+      da = search%motion(:, ends(chord), side) - point%motion
+      db = search%motion(:, ends(chord + 1), side) - point%motion
+      root = roots_of_square(cross_product(a, b), cross_product(a, db) + cross_product(da, b), cross_product(da, db))
+      do i = 1, 2
+        if (root(i) < 0.0_wp .or. root(i) > 1.0_wp) cycle
+        if (dot_product(a + root(i)*da, b + root(i)*db) <= 0.0_wp) call insert(root(i), time)
+      end do
     end do
-  end subroutine cross_chord
+  end subroutine cross_side
 
   !> The real roots of a + b t + c t**2 between -1 and 1; 2 stands for one that is not there.
   pure function roots_of_square(a, b, c) result(root)
