@@ -119,8 +119,7 @@ contains
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
     answer%bodies = find_body_forces(model, answer%contact%force)
     call watch%lap(stage_stresses)
-    call certify(model, load, plan%off_curve, answer%deformation, answer%displacement, answer%reaction, answer%point_stress, &
-                 answer%contact%force, certificate, answer%rounding_error)
+    call certify(model, answer, plan%off_curve, certificate)
     if (answer%converged .and. certificate%valid) &
       certificate%scene = look_through(model, answer%displacement, answer%contact%force)
     call watch%lap(stage_certificate)

@@ -12,7 +12,7 @@
 !>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
 module epcont_certificate_allowance
   use epcont_base_kinds, only: wp
-  use epcont_geometry_edge, only: edge_tangent
+  use epcont_geometry_outline_shape, only: outline_shape
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
   implicit none
@@ -24,9 +24,6 @@ module epcont_certificate_allowance
   real(wp), parameter :: corner_angle = 35.0_wp*acos(-1.0_wp)/180.0_wp
   !> Lengths that differ by this part are equal.
   real(wp), parameter :: equal = 1.0e-6_wp
-  !> The least that is allowed: as a part of the scene's extent, and in roundings of its coordinates.
-  real(wp), parameter :: least_part = 1.0e-8_wp, roundings = 16.0_wp
-
   !> Of a side's length: more than this a slide does not explain, however far it goes.
   real(wp), parameter :: most_by_slide = 0.1_wp
 
@@ -38,20 +35,17 @@ module epcont_certificate_allowance
   end type meeting_type
 
   type :: allowance_type
-    real(wp) :: least = 0.0_wp             !! between any two sides [length]
+    real(wp), allocatable :: length(:)     !! h, as drawn [length] [sides]
     real(wp), allocatable :: sag(:)        !! s [length] [sides]
+    real(wp), allocatable :: gap(:)        !! that CGAPs there give, less that of the coordinates [length] [sides]
     logical, allocatable :: hollow(:)      !! the outline is concave at an end of the side, and smooth [sides]
+    logical, allocatable :: smooth(:)      !! it does not end at a corner [sides]
     real(wp), allocatable :: bend(:)       !! turn that displacements add where a side ends, 0 at corners [rad] [sides]
     real(wp), allocatable :: arch(:)       !! the same along a side of six-node elements, from end to end [rad] [sides]
-    logical, allocatable :: smooth(:)      !! it does not end at a corner [sides]
-    integer, allocatable :: beside(:, :)   !! the sides before and after [2, sides]
-    real(wp), allocatable :: turn(:)       !! w, of the displaced side from that drawn [rad] [sides]
+    real(wp), allocatable :: turn(:)       !! w, of the displaced side from that drawn, 0 or more [rad] [sides]
+    real(wp), allocatable :: change(:)     !! e, its turn or the size of its stretch, the larger [sides]
     real(wp), allocatable :: curvature(:)  !! c [1/length] [sides]
-    real(wp), allocatable :: stretch(:)    !! of the side, whatever its sign [sides]
-    real(wp), allocatable :: length(:)     !! h [length] [sides]
-    !> Of a circle whose outline is as long as the part's: however it lies, it is the same [length] [parts]
-    real(wp), allocatable :: width(:)
-    real(wp), allocatable :: gap(:)        !! that CGAPs there give, less that of the coordinates [length] [sides]
+    integer, allocatable :: beside(:, :)   !! the sides before and after [2, sides]
   contains
     procedure :: of
     procedure :: of_drawing
@@ -60,36 +54,39 @@ module epcont_certificate_allowance
 
 contains
 
-  !> What a side allows where it meets another.
+  !> What a side allows where it meets another [length].
   pure real(wp) function of(self, side, meeting)
     class(allowance_type), intent(in) :: self
-    integer, intent(in) :: side
-    type(meeting_type), intent(in) :: meeting
+    integer, intent(in) :: side                 !! of the outlines
+    type(meeting_type), intent(in) :: meeting   !! how it meets that
 
-    of = factor*(curve_over(self, side, meeting) + bend_over(self, side, max(self%length(side), meeting%longest))) &
-         + self%of_motion(side, meeting) + self%gap(side)
+    of = bend_over(self, side, max(self%length(side), meeting%longest))
+    if (is_curve(self, side, meeting)) of = self%sag(side) + of
+    of = factor*of + self%of_motion(side, meeting) + self%gap(side)
   end function of
 
-  !> What of that no shorter sides would heal: slides and turns.
+  !> What of that no shorter sides would heal: slides and turns [length].
   pure real(wp) function of_motion(self, side, meeting)
     class(allowance_type), intent(in) :: self
-    integer, intent(in) :: side
-    type(meeting_type), intent(in) :: meeting
+    integer, intent(in) :: side                 !! of the outlines
+    type(meeting_type), intent(in) :: meeting   !! how it meets another
+    real(wp) :: explained   ! by the slide
 
-    associate (slide => meeting%slide, turn => abs(self%turn(side)))
-      of_motion = factor*(min(slide*turn + merge(0.5_wp*slide**2*self%curvature(side), 0.0_wp, is_curve(self, side, meeting)), &
-                              most_by_slide*self%length(side)) &
-                          + 0.5_wp*self%length(side)*max(turn, self%stretch(side))**2)
+    associate (slide => meeting%slide, length => self%length(side))
+      explained = slide*self%turn(side)
+      if (is_curve(self, side, meeting)) explained = explained + 0.5_wp*slide**2*self%curvature(side)
+      of_motion = factor*(min(explained, most_by_slide*length) + 0.5_wp*length*self%change(side)**2)
     end associate
   end function of_motion
 
-  !> What of that was there before anything moved, and no more than there was: curves above chords, gaps of CGAPs.
+  !> What of that was there before anything moved, and no more than there was: curves above chords, gaps of CGAPs [length].
   pure real(wp) function of_drawing(self, side, meeting)
     class(allowance_type), intent(in) :: self
-    integer, intent(in) :: side
-    type(meeting_type), intent(in) :: meeting
+    integer, intent(in) :: side                 !! of the outlines
+    type(meeting_type), intent(in) :: meeting   !! how it meets another
 
-    of_drawing = curve_over(self, side, meeting) + self%gap(side)
+    of_drawing = self%gap(side)
+    if (is_curve(self, side, meeting)) of_drawing = self%sag(side) + self%gap(side)
   end function of_drawing
 
   !> How far the outline bends over so long a part of it, from a side on, either way [length].
@@ -120,16 +117,7 @@ contains
     bend = length*theta/8.0_wp
   end function bend_over
 
-  !> How far the smooth curve is above a side's chord, where it lies on that side or pairs take it.
-  pure real(wp) function curve_over(self, side, meeting)
-    type(allowance_type), intent(in) :: self
-    integer, intent(in) :: side
-    type(meeting_type), intent(in) :: meeting
-
-    curve_over = merge(self%sag(side), 0.0_wp, is_curve(self, side, meeting))
-  end function curve_over
-
-  !> Is there more of a side than its chord?
+  !> Does the smooth curve above a side's chord count? It does where it lies on that side, or pairs take it.
   pure logical function is_curve(self, side, meeting)
     type(allowance_type), intent(in) :: self
     integer, intent(in) :: side
@@ -139,68 +127,43 @@ contains
   end function is_curve
 
   !> For all sides of the outlines.
-  pure function new_allowance(model, displacement) result(allowance)
+  pure function new_allowance(model, drawn, now) result(allowance)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    type(outline_shape), intent(in) :: drawn, now   !! the outlines as drawn, and displaced
     type(allowance_type) :: allowance
-    real(wp), allocatable :: drawn(:, :, :), moved(:, :), now(:, :, :), theta(:)
-    real(wp) :: before
-    integer :: i, s, n
+    real(wp), allocatable :: joint(:)               !! turn of the outline as drawn where a side ends, 0 at corners [rad]
+    real(wp) :: arch
+    integer :: n, s
 
-    n = model%body_outline%sides
-    allocate (allowance%sag(n), allowance%bend(n), allowance%arch(n), allowance%turn(n), allowance%curvature(n), &
-              allowance%stretch(n), allowance%length(n), theta(n), source=0.0_wp)
-    allocate (drawn(2, 2, n), now(2, 2, n))
-    allocate (allowance%hollow(n), allowance%smooth(n), source=.false.)
-    allowance%beside = transpose(reshape([model%body_outline%before, model%body_outline%after], [n, 2]))
-    moved = model%x + displacement
-    associate (chord => allowance%length)
-      do s = 1, n
-        call side_ends(model%body_outline%node(:, s), model%x, drawn(:, :, s), chord(s))
-        call side_ends(model%body_outline%node(:, s), moved, now(:, :, s), allowance%stretch(s))
-        allowance%stretch(s) = abs(allowance%stretch(s)/chord(s) - 1.0_wp)
-        allowance%turn(s) = angle(sum(drawn(:, :, s), dim=2), sum(now(:, :, s), dim=2))
-        before = angle(drawn(:, 1, s), drawn(:, 2, s))
-        allowance%curvature(s) = abs(before)/chord(s)
-        allowance%arch(s) = angle(now(:, 1, s), now(:, 2, s)) - before
-      end do
-      do s = 1, n
-        associate (next => model%body_outline%after(s))
-          before = angle(drawn(:, 2, s), drawn(:, 1, next))
-          if (abs(before) > corner_angle) cycle
-          allowance%smooth(s) = .true.
-          allowance%bend(s) = angle(now(:, 2, s), now(:, 1, next)) - before
-          do i = 1, 2
-            associate (side => merge(s, next, i == 1))
-              theta(side) = max(theta(side), abs(before))
-              allowance%hollow(side) = allowance%hollow(side) .or. before < 0.0_wp
-            end associate
-          end do
-        end associate
-      end do
-      allowance%sag = chord*theta/8.0_wp
-      call take_lines(model, drawn, chord, allowance%sag)
-      allowance%curvature = allowance%curvature + 8.0_wp*allowance%sag/chord**2
+    n = drawn%outline%sides
+    allocate (allowance%length(n), allowance%bend(n), allowance%arch(n), allowance%turn(n), allowance%change(n), &
+              allowance%curvature(n), joint(n), source=0.0_wp)
+    do s = 1, n
+      associate (length => allowance%length(s), next => drawn%outline%after(s))
+        length = norm2(drawn%chord(s))
+        allowance%turn(s) = abs(angle(drawn%chord(s), now%chord(s)))
+        allowance%change(s) = max(allowance%turn(s), abs(norm2(now%chord(s))/length - 1.0_wp))
+        arch = angle(drawn%tangent(s, 0.0_wp), drawn%tangent(s, 1.0_wp))
+        allowance%curvature(s) = abs(arch)/length
+        allowance%arch(s) = angle(now%tangent(s, 0.0_wp), now%tangent(s, 1.0_wp)) - arch
+        joint(s) = angle(drawn%tangent(s, 1.0_wp), drawn%tangent(next, 0.0_wp))
+        allowance%bend(s) = angle(now%tangent(s, 1.0_wp), now%tangent(next, 0.0_wp)) - joint(s)
+      end associate
+    end do
+    allowance%smooth = abs(joint) <= corner_angle
+    where (.not. allowance%smooth)
+      joint = 0.0_wp
+      allowance%bend = 0.0_wp
+    end where
+    associate (before => drawn%outline%before, length => allowance%length)
+      allowance%beside = transpose(reshape([before, drawn%outline%after], [n, 2]))
+      allowance%hollow = min(joint, joint(before)) < 0.0_wp
+      allowance%sag = length*max(abs(joint), abs(joint(before)))/8.0_wp
+      if (allocated(model%boundary%element)) allowance%sag = length*turns_of_lines(model, drawn)/8.0_wp
+      allowance%curvature = allowance%curvature + 8.0_wp*allowance%sag/length**2
     end associate
-    allowance%width = [(sum(allowance%length(model%body_outline%first(s):model%body_outline%first(s + 1) - 1))/acos(-1.0_wp), &
-                        s=1, model%body_outline%parts)]
-    call take_gaps(model, allowance%gap)
-    allowance%least = least_part*maxval(maxval(model%x, dim=2) - minval(model%x, dim=2)) &
-                      + roundings*epsilon(1.0_wp)*(maxval(abs(model%x)) + maxval(abs(displacement)))
+    allowance%gap = gaps_of_cards(model)
   end function new_allowance
-
-  !> Directions of a side where it begins and where it ends, and its length from the one to the other.
-  pure subroutine side_ends(node, x, along, length)
-    integer, intent(in) :: node(3)
-    real(wp), intent(in) :: x(:, :)
-    real(wp), intent(out) :: along(2, 2), length
-
-    associate (own => x(:, node(:merge(3, 2, node(3) > 0))))
-      along(:, 1) = edge_tangent(own, 0.0_wp)
-      along(:, 2) = edge_tangent(own, 1.0_wp)
-      length = norm2(own(:, 2) - own(:, 1))
-    end associate
-  end subroutine side_ends
 
   !> From one direction to another, counter-clockwise [rad].
   pure real(wp) function angle(from, to)
@@ -209,49 +172,41 @@ contains
     angle = atan2(cross_product(from, to), dot_product(from, to))
   end function angle
 
-  !> Where lines are in contact: over its chord each side has the curve with the normals of contact at its ends.
-  pure subroutine take_lines(model, along, chord, sag)
+  !> Where lines are in contact: over its chord each side has the curve with the normals of contact at its ends. The angle between
+  !! normal and side is half the turn [rad] [sides].
+  pure function turns_of_lines(model, drawn) result(turn)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: along(:, :, :), chord(:)
-    real(wp), intent(inout) :: sag(:)
-    real(wp) :: most
+    type(outline_shape), intent(in) :: drawn
+    real(wp) :: turn(drawn%outline%sides), along(2)
     integer :: k, s
 
-    if (.not. allocated(model%boundary%element)) return
-    do s = 1, size(sag)
-      most = 0.0_wp
+    turn = 0.0_wp
+    do s = 1, size(turn)
       do k = 1, 2
-        most = max(most, abs(angle([along(2, k, s), -along(1, k, s)], model%boundary%normal(:, k, s))))
+        along = drawn%tangent(s, real(k - 1, wp))
+        turn(s) = max(turn(s), 2.0_wp*abs(angle([along(2), -along(1)], model%boundary%normal(:, k, s))))
       end do
-      ! The angle between normal and side is half the turn.
-      sag(s) = chord(s)*most/4.0_wp
     end do
-  end subroutine take_lines
+  end function turns_of_lines
 
-  !> By how much the gaps of CGAPs between two bodies differ from those of the coordinates.
-  pure subroutine take_gaps(model, gap)
+  !> By how much the gaps of CGAPs between two bodies differ from those of the coordinates [length] [sides].
+  pure function gaps_of_cards(model) result(gap)
     type(model_type), intent(in) :: model
-    real(wp), allocatable, intent(out) :: gap(:)
-    real(wp) :: at_node(model%nodes), drawn
-    integer :: c, k, last, s
+    real(wp) :: gap(model%body_outline%sides), at_node(model%nodes), drawn
+    integer :: k, s
 
-    last = model%pairs
-    do c = 1, size(model%line_contact)
-      last = last - (model%line_contact(c)%last - model%line_contact(c)%first + 1)
-    end do
     at_node = 0.0_wp
-    do k = 1, last
+    do k = 1, model%pairs - sum(model%line_contact%last - model%line_contact%first + 1)
       associate (pair => model%pair_node(:, k))
         if (any(model%body_outline%part_of(pair) == 0)) cycle
         drawn = dot_product(model%normal(:, k), model%x(:, pair(2)) - model%x(:, pair(1)))
         at_node(pair) = max(at_node(pair), abs(model%initial_gap(k) - drawn))
       end associate
     end do
-    allocate (gap(model%body_outline%sides))
-    do s = 1, model%body_outline%sides
+    do s = 1, size(gap)
       associate (node => model%body_outline%node(:, s))
         gap(s) = maxval(at_node(node(:merge(3, 2, node(3) > 0))))
       end associate
     end do
-  end subroutine take_gaps
+  end function gaps_of_cards
 end module epcont_certificate_allowance

@@ -11,6 +11,7 @@ module epcont_certificate_certificate
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: axisymmetric, plane_stress
   use epcont_model_model, only: model_type
+  use epcont_result_answer, only: answer_type
   implicit none
   private
   public :: certificate_type, certify
@@ -65,48 +66,56 @@ module epcont_certificate_certificate
     'gaps overlap, by', 'pressed gaps are open, by', 'the rounding of gaps and travels is, of what the bodies give way,', &
     'rigid motions strain the bodies; their roundings are']
 
+  !> What is summed over elements and pairs.
+  type :: balance_type
+    real(wp), allocatable :: residual(:, :)     !! what the forces at each node lack of balance [force] [2, nodes]
+    real(wp), allocatable :: element_force(:)   !! sum of the sizes of the elements' forces at each node [force] [nodes]
+    real(wp) :: stored = 0.0_wp                 !! work of the stresses
+    real(wp) :: work = 0.0_wp                   !! of the forces
+    real(wp) :: terms = 0.0_wp                  !! sum of the sizes of all that these two are sums of
+    real(wp) :: largest_stress = 0.0_wp         !! largest component of any [stress]
+  end type balance_type
+
 contains
 
-  !> `curve_tolerance` is how far off its curve the iteration may leave a stress; less than the tolerance is not asked.
-  pure subroutine certify(model, load, curve_tolerance, deformation, displacement, reaction, stress, force, certificate, &
-                          rounding_error)
+  !> Of an answer the certificate takes the displacements, with rigid motions and without, the reactions, the stresses at the points,
+  !! the contact forces, the part of the loads, and what single precision may have left.
+  pure subroutine certify(model, answer, curve_tolerance, certificate)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: load(2, model%nodes)          !! [force]
-    real(wp), intent(in) :: curve_tolerance
-    real(wp), intent(in) :: deformation(2, model%nodes)   !! displacements without rigid motions
-    real(wp), intent(in) :: displacement(2, model%nodes)  !! with them
-    real(wp), intent(in) :: reaction(2, model%nodes)
-    real(wp), intent(in) :: stress(4, model%points)       !! xx, yy, zz, xy
-    real(wp), intent(in) :: force(:)                      !! contact forces [pairs]
+    type(answer_type), intent(in) :: answer
+    real(wp), intent(in) :: curve_tolerance   !! how far off its curve the iteration may leave a stress; less than the tolerance is not asked
     type(certificate_type), intent(out) :: certificate
-    real(wp), intent(in), optional :: rounding_error  !! of strains and contact forces; not given: that of double precision
-    real(wp), allocatable :: residual(:, :), element_force(:)
+    type(balance_type) :: balance
+    real(wp), allocatable :: load(:, :)
+    real(wp) :: forces, largest_force
     real(wp), dimension(size(figure_name)) :: figure, largest
-    real(wp) :: forces, stored, terms, work
 
-    if (present(rounding_error)) certificate%tolerance = max(exact_tolerance, rounding_errors*rounding_error)
-    allocate (residual(2, model%nodes), element_force(model%nodes), source=0.0_wp)
-    stored = 0.0_wp
-    call sum_elements(model, deformation, displacement - deformation, stress, residual, element_force, stored, certificate)
-    residual = residual - load - reaction
+    certificate%tolerance = max(exact_tolerance, rounding_errors*answer%rounding_error)
+    load = answer%load_factor*model%load
+    allocate (balance%residual(2, model%nodes), balance%element_force(model%nodes), source=0.0_wp)
+    call add_elements(model, answer, balance, certificate)
+    balance%residual = balance%residual - load - answer%reaction
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
-    forces = sum(abs(load + reaction)) + sum(abs(force))
-    certificate%length_scale = ratio(abs(stored), forces)
-    ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there is.
-    if (forces == 0.0_wp) certificate%length_scale = maxval(abs(displacement))
-    certificate%length_scale = max(certificate%length_scale, least_length)
-    call check_pairs(model, maxval(abs(load)), displacement, force, residual, certificate)
-    call gather_ties(model, residual)
-    certificate%equilibrium = ratio(maxval(abs(residual)), max(maxval(element_force), maxval(abs(load)), &
-                                                               certificate%force_scale*merge(1, 0, any(force > 0.0_wp))))
-    work = sum(load*displacement) + sum(reaction*displacement)
-    terms = sum(abs(load*displacement)) + sum(abs(reaction*displacement)) + abs(stored)
-    call add_pair_work(model, displacement, force, work, terms)
+    forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
+    certificate%length_scale = ratio(abs(balance%stored), forces)
+    associate (u => answer%displacement, reaction => answer%reaction)
+      ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there is.
+      if (forces == 0.0_wp) certificate%length_scale = maxval(abs(u))
+      certificate%length_scale = max(certificate%length_scale, least_length)
+      balance%work = sum(load*u) + sum(reaction*u)
+      balance%terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(balance%stored)
+    end associate
+    call add_pairs(model, answer, maxval(abs(load)), balance, certificate)
+    call gather_ties(model, balance%residual)
+    largest_force = max(maxval(balance%element_force), maxval(abs(load)))
+    if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, certificate%force_scale)
+    certificate%equilibrium = ratio(maxval(abs(balance%residual)), largest_force)
     ! On its curve no stress does less than no work; as far off it as the iteration may leave it, it can.
-    certificate%energy = ratio(max(abs(work - stored), -stored), terms)
+    certificate%energy = ratio(max(abs(balance%work - balance%stored), -balance%stored), balance%terms)
     certificate%curve_tolerance = max(certificate%tolerance, curve_tolerance)
-    certificate%off_curve_limit = certificate%curve_tolerance + min(several*certificate%lost_stress, certificate%curve_tolerance)
+    certificate%off_curve_limit = certificate%curve_tolerance &
+                                  + min(several*certificate%lost_stress, certificate%curve_tolerance)
     call certificate%figures(figure, largest)
     certificate%valid = all(figure <= largest)
     certificate%balanced = all(figure <= largest .or. figure_name == off_the_curve)
@@ -115,19 +124,20 @@ contains
   !> All figures and the largest of each in a valid answer, as `figure_name` has them.
   pure subroutine figures(self, figure, largest)
     class(certificate_type), intent(in) :: self
-    real(wp), intent(out) :: figure(:), largest(:)
+    real(wp), intent(out) :: figure(:), largest(:)   !! [size(figure_name)]
     real(wp) :: exact
 
     exact = self%tolerance*self%length_scale + self%gap_rounding
     figure = [self%equilibrium, self%off_curve, self%energy, ratio(-self%smallest_force, self%force_scale), self%overlap, &
               ratio(self%force_gap, self%force_scale), self%gap_rounding/self%length_scale, self%motion_strain]
-    largest = [self%tolerance, self%off_curve_limit, self%tolerance, self%tolerance, exact, exact, largest_rounding, most_roundings]
+    largest = [self%tolerance, self%off_curve_limit, self%tolerance, self%tolerance, exact, exact, largest_rounding, &
+               most_roundings]
   end subroutine figures
 
   !> Is a figure beyond its limit that was not before?
   pure logical function has_spoilt(self, before)
     class(certificate_type), intent(in) :: self
-    type(certificate_type), intent(in) :: before
+    type(certificate_type), intent(in) :: before   !! the other certificate
     real(wp), dimension(size(figure_name)) :: figure, largest, figure_before, largest_before
 
     call self%figures(figure, largest)
@@ -143,91 +153,107 @@ contains
     if (.not. a <= 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
   end function ratio
 
-  !> Internal forces at the nodes, work of the stresses on the strains; the stresses' largest distance from the curve
+  !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance from the curve
   !! and what roundings and rigid motions strain go into the certificate.
-  pure subroutine sum_elements(model, deformation, motion, stress, internal, magnitude, stored, certificate)
+  pure subroutine add_elements(model, answer, balance, certificate)
     type(model_type), intent(in) :: model
-    real(wp), dimension(2, model%nodes), intent(in) :: deformation, motion
-    real(wp), intent(in) :: stress(4, model%points)
-    real(wp), intent(inout) :: internal(2, model%nodes), magnitude(model%nodes)
-    real(wp), intent(inout) :: stored
+    type(answer_type), intent(in) :: answer
+    type(balance_type), intent(inout) :: balance
     type(certificate_type), intent(inout) :: certificate
-    logical :: moves, ring
-    real(wp), allocatable :: slope(:, :, :, :)
-    real(wp) :: unit(4, 2, most_nodes, most_points), volume(most_points), u(2, most_nodes), travel(2, most_nodes)
-    real(wp) :: strain(4), steepest(4), force(2), largest_stress, off, rounding, rounding_strain, scale, stiffest
-    integer :: c, e, k, n, p, point, section
+    real(wp) :: slope(2, most_nodes, most_points, size(model%kinds))
+    real(wp) :: unit(4, 2, most_nodes, most_points), volume(most_points), force(2)
+    integer :: c, e, k, p
 
-    allocate (slope(2, most_nodes, most_points, size(model%kinds)))
     do k = 1, size(model%kinds)
       call find_slopes(model%kinds(k), slope(:, :, :, k))
     end do
-    moves = any(motion /= 0.0_wp)
-    largest_stress = maxval(abs(stress))
+    balance%largest_stress = maxval(abs(answer%point_stress))
     do e = 1, model%elements
-      n = model%order(e)
-      section = model%section(e)
-      ring = model%kinematics(section) == axisymmetric
-      stiffest = stiffest_modulus(model, section)
-      call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
-      associate (node => model%connectivity(:, e), first => model%first_point(e))
-        do k = 1, n
-          u(:, k) = deformation(:, node(k))
-          travel(:, k) = motion(:, node(k))
-        end do
-        do p = 1, model%kinds(model%kind(e))%points
-          point = first + p - 1
-          strain = strain_at(n, ring, u, unit(:, :, :, p))
-          call measure_stress(model, section, largest_stress, strain, stress(:, point), off, scale)
-          certificate%off_curve = max(certificate%off_curve, off)
-          stored = stored + volume(p)*dot_product(stress(:, point), strain)
-          steepest = 0.0_wp
-          do k = 1, n
-            steepest = max(steepest, abs(unit(:, 1, k, p)), abs(unit(:, 2, k, p)))
-          end do
-          rounding = epsilon(1.0_wp)*largest(steepest)   ! of a strain by unit displacements
-          rounding_strain = rounding*maxval(abs(u(:, :n)))
-          certificate%lost_stress = max(certificate%lost_stress, ratio(model%young(section)*rounding_strain, scale), &
-                                        ratio(stiffest*rounding_strain, largest_stress))
-          if (.not. moves) cycle
-          strain = strain_at(n, ring, travel, unit(:, :, :, p))
-          rounding = rounding*maxval(abs(travel(:, :n)) + abs(u(:, :n)))
-          certificate%motion_strain = max(certificate%motion_strain, ratio(largest(strain), rounding))
-        end do
+      associate (n => model%order(e), first => model%first_point(e), places => model%kinds(model%kind(e))%points)
+        call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
+        call check_points(model, answer, e, unit, volume(:places), balance, certificate)
         do k = 1, n
           force = 0.0_wp
-          do p = 1, model%kinds(model%kind(e))%points
+          do p = 1, places
             do c = 1, 2
-              force(c) = force(c) + volume(p)*dot_product(stress(:, first + p - 1), unit(:, c, k, p))
+              force(c) = force(c) + volume(p)*dot_product(answer%point_stress(:, first + p - 1), unit(:, c, k, p))
             end do
           end do
-          internal(:, node(k)) = internal(:, node(k)) + force
-          magnitude(node(k)) = magnitude(node(k)) + max(abs(force(1)), abs(force(2)))
+          associate (node => model%connectivity(k, e))
+            balance%residual(:, node) = balance%residual(:, node) + force
+            balance%element_force(node) = balance%element_force(node) + max(abs(force(1)), abs(force(2)))
+          end associate
         end do
       end associate
     end do
-  end subroutine sum_elements
+  end subroutine add_elements
+
+  !> The integration points of an element.
+  pure subroutine check_points(model, answer, e, unit, volume, balance, certificate)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    integer, intent(in) :: e
+    real(wp), intent(in) :: unit(4, 2, most_nodes, most_points), volume(:)
+    type(balance_type), intent(inout) :: balance
+    type(certificate_type), intent(inout) :: certificate
+    real(wp), dimension(2, most_nodes) :: motion, u
+    real(wp) :: rounding, steepest(4), strain(4)
+    integer :: k, n, p
+    logical :: moves, ring
+
+    n = model%order(e)
+    ring = model%kinematics(model%section(e)) == axisymmetric
+    do k = 1, n
+      associate (node => model%connectivity(k, e))
+        u(:, k) = answer%deformation(:, node)
+        motion(:, k) = answer%displacement(:, node) - u(:, k)
+      end associate
+    end do
+    moves = any(motion(:, :n) /= 0.0_wp)
+    do p = 1, size(volume)
+      associate (stress => answer%point_stress(:, model%first_point(e) + p - 1))
+        strain = strain_at(n, ring, u, unit(:, :, :, p))
+        balance%stored = balance%stored + volume(p)*dot_product(stress, strain)
+        steepest = 0.0_wp
+        do k = 1, n
+          steepest = max(steepest, abs(unit(:, 1, k, p)), abs(unit(:, 2, k, p)))
+        end do
+        rounding = epsilon(1.0_wp)*largest(steepest)   ! of a strain by unit displacements
+        call check_stress(model, model%section(e), balance%largest_stress, strain, stress, &
+                          rounding*maxval(abs(u(:, :n))), certificate)
+      end associate
+      if (.not. moves) cycle
+      strain = strain_at(n, ring, motion, unit(:, :, :, p))
+      certificate%motion_strain = max(certificate%motion_strain, &
+                                      ratio(largest(strain), rounding*maxval(abs(motion(:, :n)) + abs(u(:, :n)))))
+    end do
+  end subroutine check_points
 
   !> How far a stress is off its curve. Of a material that yields: von Mises stress of the difference over the curve's stress
   !! there, or below yield the yield stress (a larger one than any stress is no measure), and the difference of the mean parts,
   !! which are elastic, over the largest stress: hydrostatic stress says nothing of the curve. Of an elastic one: the largest
-  !! difference over the largest stress. `scale` is what rounding is to be compared with.
-  pure subroutine measure_stress(model, section, largest_stress, strain, stress, off, scale)
+  !! difference over the largest stress. What rounding strains makes a stress that is compared with the same.
+  pure subroutine check_stress(model, section, largest_stress, strain, stress, rounding, certificate)
     type(model_type), intent(in) :: model
     integer, intent(in) :: section
     real(wp), intent(in) :: largest_stress   !! in the scene
     real(wp), intent(in) :: strain(4), stress(4)
-    real(wp), intent(out) :: off, scale
-    real(wp) :: apart(4), on_curve(4)
+    real(wp), intent(in) :: rounding         !! of the strain
+    type(certificate_type), intent(inout) :: certificate
+    real(wp) :: apart(4), off, on_curve(4), scale
 
     on_curve = stress_on_curve(model, section, strain)
     apart = stress - on_curve
     scale = largest_stress
     off = ratio(largest(apart), largest_stress)
-    if (.not. allocated(model%curve(section)%strain)) return
-    scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
-    off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
-  end subroutine measure_stress
+    if (allocated(model%curve(section)%strain)) then
+      scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
+      off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
+    end if
+    certificate%off_curve = max(certificate%off_curve, off)
+    certificate%lost_stress = max(certificate%lost_stress, ratio(model%young(section)*rounding, scale), &
+                                  ratio(stiffest_modulus(model, section)*rounding, largest_stress))
+  end subroutine check_stress
 
   !> Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5 far above E [stress].
   pure real(wp) function stiffest_modulus(model, section) result(modulus)
@@ -252,8 +278,7 @@ contains
   pure function strain_at(nodes, ring, displacement, unit) result(strain)
     integer, intent(in) :: nodes
     logical, intent(in) :: ring
-    real(wp), intent(in) :: displacement(2, most_nodes)
-    real(wp), intent(in) :: unit(4, 2, most_nodes)
+    real(wp), intent(in) :: displacement(2, most_nodes), unit(4, 2, most_nodes)
     real(wp) :: strain(4), apart(2)
     integer :: k
 
@@ -265,57 +290,44 @@ contains
     end do
   end function strain_at
 
-  !> Smallest force and gap, largest product; the pairs' forces are taken off the residual.
-  pure subroutine check_pairs(model, largest_load, displacement, force, residual, certificate)
+  !> Smallest force and gap, largest product; the work of the pairs' forces, which are taken off the residual.
+  pure subroutine add_pairs(model, answer, largest_load, balance, certificate)
     type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
     real(wp), intent(in) :: largest_load
-    real(wp), intent(in) :: displacement(2, model%nodes), force(:)
-    real(wp), intent(inout) :: residual(2, model%nodes)
+    type(balance_type), intent(inout) :: balance
     type(certificate_type), intent(inout) :: certificate
-    real(wp) :: gap, apart(2), rounding, travel
+    real(wp) :: apart(2), opening, rounding, travel
     integer :: i, k
 
     if (model%pairs == 0) return
-    certificate%smallest_force = minval(force)
+    certificate%smallest_force = minval(answer%contact%force)
     certificate%smallest_gap = huge(1.0_wp)
-    certificate%force_scale = max(maxval(abs(force)), largest_load, tiny(1.0_wp))
+    certificate%force_scale = max(maxval(abs(answer%contact%force)), largest_load, tiny(1.0_wp))
     do k = 1, model%pairs
-      apart = 0.0_wp
-      travel = 0.0_wp
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        associate (node => model%row_node(i))
-          apart = apart + model%row_weight(i)*displacement(:, node)
-          travel = max(travel, maxval(abs(displacement(:, node))))
-          residual(:, node) = residual(:, node) - model%row_weight(i)*force(k)*model%normal(:, k)
+      associate (force => answer%contact%force(k), normal => model%normal(:, k), initial_gap => model%initial_gap(k))
+        apart = 0.0_wp
+        travel = 0.0_wp
+        do i = model%row_start(k), model%row_start(k + 1) - 1
+          associate (node => model%row_node(i))
+            apart = apart + model%row_weight(i)*answer%displacement(:, node)
+            travel = max(travel, maxval(abs(answer%displacement(:, node))))
+            balance%residual(:, node) = balance%residual(:, node) - model%row_weight(i)*force*normal
+          end associate
+        end do
+        opening = sum(normal*apart)
+        balance%work = balance%work + force*opening
+        balance%terms = balance%terms + abs(force*opening)
+        rounding = roundings*epsilon(1.0_wp)*max(abs(initial_gap), travel)
+        if (force > 0.0_wp) certificate%gap_rounding = max(certificate%gap_rounding, rounding)
+        associate (gap => initial_gap + opening)
+          certificate%smallest_gap = min(certificate%smallest_gap, gap)
+          certificate%overlap = max(certificate%overlap, -gap - rounding)
+          certificate%force_gap = max(certificate%force_gap, abs(gap*force))
         end associate
-      end do
-      gap = model%initial_gap(k) + sum(model%normal(:, k)*apart)
-      rounding = roundings*epsilon(1.0_wp)*max(abs(model%initial_gap(k)), travel)
-      certificate%smallest_gap = min(certificate%smallest_gap, gap)
-      certificate%overlap = max(certificate%overlap, -gap - rounding)
-      certificate%force_gap = max(certificate%force_gap, abs(gap*force(k)))
-      if (force(k) > 0.0_wp) certificate%gap_rounding = max(certificate%gap_rounding, rounding)
+      end associate
     end do
-  end subroutine check_pairs
-
-  !> Work of the contact forces on the displacements.
-  pure subroutine add_pair_work(model, displacement, force, work, terms)
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: displacement(2, model%nodes), force(:)
-    real(wp), intent(inout) :: work, terms
-    real(wp) :: apart(2), done
-    integer :: i, k
-
-    do k = 1, model%pairs
-      apart = 0.0_wp
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        apart = apart + model%row_weight(i)*displacement(:, model%row_node(i))
-      end do
-      done = force(k)*sum(model%normal(:, k)*apart)
-      work = work + done
-      terms = terms + abs(done)
-    end do
-  end subroutine add_pair_work
+  end subroutine add_pairs
 
   !> A tied freedom hands its forces to its leader.
   pure subroutine gather_ties(model, residual)

@@ -1,22 +1,27 @@
 !> What looking through a scene finds: places where bodies lie in each other, and which of two is the worse.
 module epcont_certificate_findings
   use epcont_base_kinds, only: wp
+  use epcont_certificate_allowance, only: meeting_type
   implicit none
   private
-  public :: overlap_place, beyond_place, scene_type, is_worse, take_deeper, take_worse
+  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, take_deeper, take_worse
 
   !> Of places that differ by less than this part the first counts: rounding decides nothing.
-  real(wp), parameter, public :: more = 1.0_wp + 1.0e-9_wp
+  real(wp), parameter :: more = 1.0_wp + 1.0e-9_wp
 
   !> Where a body lies in another, or in itself.
   type :: overlap_place
     real(wp) :: ratio = 0.0_wp     !! depth, of what is allowed
     real(wp) :: depth = 0.0_wp     !! [length]
     real(wp) :: allowed = 0.0_wp   !! [length]
+    real(wp) :: distance = 0.0_wp  !! of the point from the other outline: the depth, if nothing else is said [length]
     real(wp) :: x(2) = 0.0_wp      !! of the point that lies inside, displaced [length]
     integer :: side = 0            !! of the outlines, on which the point is; 0: there is no such place
     integer :: other = 0           !! the side of the other body that it is nearest to
+    type(meeting_type) :: meeting  !! of these two
     logical :: moving = .false.    !! it is for slides and turns that most of the depth is allowed
+    integer :: pair = 0            !! that presses there
+    integer :: node = 0            !! that the point is; 0: none
   end type overlap_place
 
   !> A node that is displaced beyond a line to which its body ends: the axis of rings, or a line of symmetry.
@@ -32,14 +37,11 @@ module epcont_certificate_findings
     type(overlap_place) :: inside          !! deepest in another body, by what is allowed
     type(overlap_place) :: deepest         !! deepest in another body
     type(overlap_place) :: itself          !! deepest in its own body
-    type(overlap_place) :: apart           !! the depth is that of a gap across which `pair` presses
+    type(overlap_place) :: apart           !! the depth is that of a gap across which a pair presses
     type(overlap_place) :: widest          !! the widest of such gaps
-    integer :: pair = 0
-    type(overlap_place) :: beside          !! the depth is how far off the end of the other body a node stands on which
-    integer :: beside_pair = 0             !! this pair presses
+    type(overlap_place) :: beside          !! the depth is how far off the end of the other body a pressed node stands
     type(overlap_place) :: slid            !! the depth is how far the sides of a pressed pair slid along each other
     type(overlap_place) :: passed          !! deepest in another body on the way to where it comes out of it again
-    integer :: passing_node = 0            !! which passes; 0: the element at that side
     type(overlap_place) :: deep            !! deepest in another body, by what is told
     type(overlap_place) :: wide            !! the same of a gap across which a pair presses
     type(beyond_place) :: axis, mirror     !! farthest beyond the axis of rings, beyond a line of symmetry
@@ -57,33 +59,45 @@ contains
   pure logical function sound(self)
     class(scene_type), intent(in) :: self
 
-    sound = max(self%inside%ratio, self%apart%ratio, self%beside%ratio, self%passed%ratio) <= 1.0_wp .and. self%axis%node == 0
+    sound = max(self%inside%ratio, self%apart%ratio, self%beside%ratio, self%passed%ratio) <= 1.0_wp &
+            .and. self%axis%node == 0
   end function sound
 
-  !> Is one place worse than another, by what is allowed there?
-  pure logical function is_worse(one, other)
-    type(overlap_place), intent(in) :: one, other
+  !> Is a place worse, by what is allowed there?
+  pure logical function is_worse(found, than)
+    type(overlap_place), intent(in) :: found, than   !! the latter with its ratio
 
-    is_worse = one%depth > more*one%allowed*other%ratio
+    is_worse = found%depth > more*found%allowed*than%ratio
   end function is_worse
+
+  !> Is a place deeper?
+  pure logical function is_deeper(found, than)
+    type(overlap_place), intent(in) :: found, than   !! the two places
+
+    is_deeper = found%depth > more*than%depth
+  end function is_deeper
 
   !> Keep the worse of two places.
   pure subroutine take_worse(found, worst)
-    type(overlap_place), intent(in) :: found
-    type(overlap_place), intent(inout) :: worst
+    type(overlap_place), intent(in) :: found      !! its ratio is not looked at
+    type(overlap_place), intent(inout) :: worst   !! with its ratio
 
-    if (.not. is_worse(found, worst)) return
-    worst = found
-    worst%ratio = found%depth/found%allowed
+    if (is_worse(found, worst)) call take(found, worst)
   end subroutine take_worse
 
   !> Keep the deeper of two places.
   pure subroutine take_deeper(found, deepest)
-    type(overlap_place), intent(in) :: found
-    type(overlap_place), intent(inout) :: deepest
+    type(overlap_place), intent(in) :: found        !! its ratio is not looked at
+    type(overlap_place), intent(inout) :: deepest   !! with its ratio
 
-    if (found%depth <= more*deepest%depth) return
-    deepest = found
-    deepest%ratio = found%depth/found%allowed
+    if (is_deeper(found, deepest)) call take(found, deepest)
   end subroutine take_deeper
+
+  pure subroutine take(found, kept)
+    type(overlap_place), intent(in) :: found
+    type(overlap_place), intent(out) :: kept
+
+    kept = found
+    kept%ratio = found%depth/found%allowed
+  end subroutine take
 end module epcont_certificate_findings

@@ -1,16 +1,16 @@
 !> What a scene is looked through with: the outlines displaced and as drawn, how their sides meet, and what these allow there.
 module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
-  use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
-  use epcont_certificate_findings, only: overlap_place
+  use epcont_certificate_allowance, only: allowance_type, new_allowance
+  use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, take_deeper, take_worse
   use epcont_contact_geometry_mates, only: find_mates, is_mate
-  use epcont_geometry_edge, only: edge_tangent
+  use epcont_geometry_box_tree, only: box_tree
+  use epcont_geometry_outline, only: outline_type
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: search_type, new_search, is_paired, is_joined, meeting_of, middle_of, along_side, place_allowance, widen_allowance, &
-            take_told, note_crossing
+  public :: point_type, search_type, new_search, point_on, boxes_meeting, sides_meeting, part_along, motion_at, meet, keep, insert
 
   !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
   !! though it be allowed.
@@ -18,238 +18,304 @@ module epcont_certificate_meeting
   !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths off the largest
   !! allowance counts.
   real(wp), parameter :: about = 1.5_wp
+  !> The least that is allowed: as a part of the scene's extent, and in roundings of its coordinates.
+  real(wp), parameter :: least_part = 1.0e-8_wp, roundings = 16.0_wp
+
+  !> A point of a body.
+  type :: point_type
+    integer :: side = 0                !! of the outlines
+    real(wp) :: s = 0.5_wp             !! along it, from 0 to 1
+    logical :: in_element = .false.    !! it is the middle of that side's element
+    real(wp) :: drawn(2) = 0.0_wp      !! where it was drawn [length]
+    real(wp) :: motion(2) = 0.0_wp     !! its displacement [length]
+    real(wp) :: x(2) = 0.0_wp          !! where it is then [length]
+  end type point_type
 
   !> What is worked with.
   type :: search_type
-    type(outline_shape) :: now, drawn      !! displaced; as drawn, made where it is asked for
+    type(outline_shape) :: drawn, now      !! the outlines as drawn, and displaced
+    real(wp), allocatable :: motion(:, :, :)      !! of where each side begins and ends, and of its middle [length] [2, 3, sides]
     type(allowance_type) :: allowance
-    real(wp) :: moved = 0.0_wp             !! largest displacement [length]
-    real(wp) :: told = 0.0_wp              !! depths beyond this and the curves that were drawn are told [length]
-    real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
+    type(point_type), allocatable :: middle(:)    !! a point within each part [parts]
+    !> Of a circle whose outline is as long as the part's: however it lies, it is the same [length] [parts]
+    real(wp), allocatable :: width(:)
     logical, allocatable :: in_line(:)     !! sides of lines [sides]
     integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
-    integer, allocatable :: near(:), nearer(:)    !! room for what trees find
-    real(wp), allocatable :: crossing(:)   !! room for where a side crosses others
+    real(wp) :: least = 0.0_wp             !! what is allowed between any two sides [length]
+    real(wp) :: moved = 0.0_wp             !! largest displacement [length]
     integer :: last = 1                    !! the side that was nearest to the point before: the next is not far from it
   end type search_type
 
 contains
 
-  !> All but what is made where it is asked for.
+  !> For a scene that has outlines.
   pure function new_search(model, displacement) result(search)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     type(search_type) :: search
-    integer :: line
+    integer :: k
 
-    search%displacement = displacement
-    search%now = new_outline_shape(model%body_outline, model%x + displacement)
-    search%allowance = new_allowance(model, displacement)
-    search%moved = maxval(norm2(displacement, dim=1))
-    search%told = search%allowance%least + told*search%moved
-    search%mate = find_mates(model)
-    allocate (search%in_line(model%body_outline%sides), source=.false.)
-    if (allocated(model%line)) then
-      do line = 1, size(model%line)
-        search%in_line(model%line(line)%side) = .true.
+    associate (outline => model%body_outline, x => model%x)
+      search%drawn = new_outline_shape(outline, x)
+      search%now = new_outline_shape(outline, x + displacement)
+      allocate (search%motion(2, 3, outline%sides), source=0.0_wp)
+      do k = 1, outline%sides
+        associate (node => pack(outline%node(:, k), outline%node(:, k) > 0))
+          search%motion(:, :size(node), k) = displacement(:, node)
+        end associate
       end do
-    end if
-    allocate (search%near(16), search%nearer(16), search%crossing(16))
+      search%allowance = new_allowance(model, search%drawn, search%now)
+      search%mate = find_mates(model)
+      search%moved = maxval(norm2(displacement, dim=1))
+      search%least = least_part*maxval(maxval(x, dim=2) - minval(x, dim=2)) &
+                     + roundings*epsilon(1.0_wp)*(maxval(abs(x)) + maxval(abs(displacement)))
+      allocate (search%in_line(outline%sides), source=.false.)
+      if (allocated(model%line)) then
+        do k = 1, size(model%line)
+          search%in_line(model%line(k)%side) = .true.
+        end do
+      end if
+      allocate (search%width(outline%parts), search%middle(outline%parts))
+      do k = 1, outline%parts
+        associate (first => outline%first(k), last => outline%first(k + 1) - 1)
+          search%width(k) = sum(search%allowance%length(first:last))/acos(-1.0_wp)
+          search%middle(k) = middle_of(model, first, displacement)
+        end associate
+      end do
+    end associate
   end function new_search
 
-  !> Does a pair join the two bodies at one of two sides?
-  pure logical function is_paired(model, search, side, other)
+  !> The middle of the element that a side is of.
+  pure type(point_type) function middle_of(model, side, displacement) result(point)
     type(model_type), intent(in) :: model
+    integer, intent(in) :: side
+    real(wp), intent(in) :: displacement(:, :)
+
+    point = point_type(side=side, in_element=.true.)
+    associate (element => model%body_outline%element(side))
+      associate (corner => model%connectivity(:model%corners(element), element))
+        point%drawn = sum(model%x(:, corner), dim=2)/size(corner)
+        point%motion = sum(displacement(:, corner), dim=2)/size(corner)
+        point%x = point%drawn + point%motion
+      end associate
+    end associate
+  end function middle_of
+
+  !> A point of the outlines.
+  pure type(point_type) function point_on(search, side, s) result(point)
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s   !! along the side, from 0 to 1
+
+    point = point_type(side, s, .false., search%drawn%at(side, s), motion_at(search, side, s), search%now%at(side, s))
+  end function point_on
+
+  !> The boxes of a tree that meet the one from `low` to `high`.
+  pure function boxes_meeting(tree, low, high) result(box)
+    type(box_tree), intent(in) :: tree
+    real(wp), intent(in) :: low(2), high(2)   !! [length]
+    integer, allocatable :: box(:)
+    integer :: n
+
+    allocate (box(16))
+    call tree%meeting(low, high, box, n)
+    box = box(:n)
+  end function boxes_meeting
+
+  !> The sides of a part whose boxes do.
+  pure function sides_meeting(shape, part, low, high) result(side)
+    type(outline_shape), intent(in) :: shape
+    integer, intent(in) :: part
+    real(wp), intent(in) :: low(2), high(2)   !! [length]
+    integer, allocatable :: side(:)
+
+    side = shape%outline%first(part) - 1 + boxes_meeting(shape%side_tree(part), low, high)
+  end function sides_meeting
+
+  !> Displacement of a place of a side [length].
+  pure function motion_at(search, side, s) result(motion)
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s   !! from 0 to 1
+    real(wp) :: motion(2)
+
+    associate (own => search%motion(:, :, side))
+      motion = (1.0_wp - s)*own(:, 1) + s*own(:, 2)
+      if (search%now%outline%node(3, side) > 0) &
+        motion = motion + 4.0_wp*s*(1.0_wp - s)*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
+    end associate
+  end function motion_at
+
+  !> How much of a motion goes along a side, either way [length].
+  pure real(wp) function part_along(shape, side, s, motion) result(part)
+    type(outline_shape), intent(in) :: shape
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s           !! where on it, from 0 to 1
+    real(wp), intent(in) :: motion(2)   !! [length]
+
+    associate (along => shape%tangent(side, s))
+      part = abs(dot_product(along, motion))/max(norm2(along), tiny(1.0_wp))
+    end associate
+  end function part_along
+
+  !> A point at the place of another outline, or of its own, that it is near to, and what is allowed there: by the two sides, and
+  !! at a node by the one with which the side shares that, too.
+  pure type(overlap_place) function meet(search, point, place) result(found)
+    type(search_type), intent(in) :: search
+    type(point_type), intent(in) :: point
+    type(near_place), intent(in) :: place
+    integer :: i, k, side(2, 2)
+    real(wp) :: longest(2), moved(2), own(2), s(2), slide(2)
+
+    found = overlap_place(depth=place%distance, distance=place%distance, x=point%x, side=point%side, other=place%side)
+    found%meeting%joined = is_joined(search, point%side, place%side)
+    s = [point%s, place%s]
+    side(:, 1) = sides_at(search%now%outline, point%side, point%s)
+    side(:, 2) = sides_at(search%now%outline, place%side, place%s)
+    moved = motion_at(search, point%side, point%s) - motion_at(search, place%side, place%s)
+    do i = 1, 2
+      ! Along a side as drawn, from which gaps are measured, either way. At a node it is the lesser of those along its two sides:
+      ! on which of them a point is, rounding decides.
+      slide(i) = part_along(search%drawn, side(1, i), s(i), moved)
+      if (side(2, i) > 0) slide(i) = min(slide(i), part_along(search%drawn, side(2, i), 1.0_wp - s(i), moved))
+      associate (here => side(:count(side(:, i) > 0), i))
+        longest(i) = maxval(merge(search%allowance%length(here), 0.0_wp, search%in_line(here)))
+      end associate
+    end do
+    found%meeting%slide = maxval(slide)
+    if (all(longest > 0.0_wp)) found%meeting%longest = maxval(longest)
+    own = 0.0_wp
+    do i = 1, 2
+      do k = 1, count(side(:, i) > 0)
+        own(i) = max(own(i), search%allowance%of(side(k, i), found%meeting))
+      end do
+    end do
+    found%allowed = search%least + own(1) + own(2)
+  end function meet
+
+  !> A side, and at a node the one with which it shares that; else 0.
+  pure function sides_at(outline, side, s) result(sides)
+    type(outline_type), intent(in) :: outline
+    integer, intent(in) :: side
+    real(wp), intent(in) :: s
+    integer :: sides(2)
+
+    sides = [side, 0]
+    if (s <= 0.0_wp) sides(2) = outline%before(side)
+    if (s >= 1.0_wp) sides(2) = outline%after(side)
+  end function sides_at
+
+  !> Does a pair join the two bodies at one of two sides, or of the sides beside them? Pairs end with lines, the smooth curve one
+  !! side later. A body is joined with itself.
+  pure logical function is_joined(search, side, other)
     type(search_type), intent(in) :: search
     integer, intent(in) :: side, other
 
-    associate (outline => model%body_outline)
+    associate (outline => search%now%outline)
+      is_joined = outline%part(side) == outline%part(other) .or. is_paired(search, side, other) .or. &
+                  is_paired(search, outline%before(side), outline%before(other)) .or. &
+                  is_paired(search, outline%after(side), outline%after(other))
+    end associate
+  end function is_joined
+
+  !> Does a pair join the two bodies at one of two sides?
+  pure logical function is_paired(search, side, other)
+    type(search_type), intent(in) :: search
+    integer, intent(in) :: side, other
+
+    associate (outline => search%now%outline)
       is_paired = is_mate(search%mate, outline%node(:, side), outline%part(other)) .or. &
                   is_mate(search%mate, outline%node(:, other), outline%part(side))
     end associate
   end function is_paired
 
-  !> The same, or at the sides beside them: pairs end with lines, the smooth curve one side later.
-  pure logical function is_joined(model, search, side, other)
-    type(model_type), intent(in) :: model
+  !> Keep a place if it is the worst by what is allowed about it, the deepest, or the worst by what is not told. Where bodies may
+  !! have overlapped as drawn, that is taken off, and the deepest such overlap kept too.
+  pure subroutine keep(search, found, worst, deepest, not_told, point, drawn)
     type(search_type), intent(in) :: search
-    integer, intent(in) :: side, other
+    type(overlap_place), intent(in) :: found
+    type(overlap_place), intent(inout) :: worst, deepest, not_told   !! those kept so far
+    type(point_type), intent(in), optional :: point                  !! the one that is there
+    type(overlap_place), intent(inout), optional :: drawn
+    type(overlap_place) :: place, telling
 
-    associate (before => model%body_outline%before, after => model%body_outline%after)
-      is_joined = is_paired(model, search, side, other) .or. &
-                  is_paired(model, search, before(side), before(other)) .or. is_paired(model, search, after(side), after(other))
-    end associate
-  end function is_joined
-
-  !> How a point of a side meets the place that it is near to: one has slid along the other.
-  pure type(meeting_type) function meeting_of(model, search, side, s, place, joined) result(meeting)
-    type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s
-    type(near_place), intent(in) :: place
-    logical, intent(in) :: joined
-    real(wp) :: long(2), moved(2)
-
-    meeting%joined = joined
-    long = [longest_at(model, search, side, s), longest_at(model, search, place%side, place%s)]
-    if (all(long > 0.0_wp)) meeting%longest = maxval(long)
-    moved = along_side(model, side, s, search%displacement) - along_side(model, place%side, place%s, search%displacement)
-    meeting%slide = max(part_along(model, side, s, moved), part_along(model, place%side, place%s, moved))
-  end function meeting_of
-
-  !> How much of a motion goes along a side as drawn, from which gaps are measured, either way. At a node it is the lesser of those
-  !! along its two sides: on which of them a point is, rounding decides [length].
-  pure real(wp) function part_along(model, side, s, moved) result(slide)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s, moved(2)
-
-    slide = along(side, s)
-    if (s <= 0.0_wp) slide = min(slide, along(model%body_outline%before(side), 1.0_wp))
-    if (s >= 1.0_wp) slide = min(slide, along(model%body_outline%after(side), 0.0_wp))
-
-  contains
-
-    pure real(wp) function along(side, s)
-      integer, intent(in) :: side
-      real(wp), intent(in) :: s
-      real(wp) :: tangent(2)
-
-      tangent = edge_tangent(model%edge_coordinates(model%body_outline%node(:, side)), s)
-      along = abs(dot_product(tangent, moved))/max(norm2(tangent), tiny(1.0_wp))
-    end function along
-  end function part_along
-
-  !> Length of a side of a line, or of the longer one of two that share a node; 0: of no line [length].
-  pure real(wp) function longest_at(model, search, side, s) result(length)
-    type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s
-    integer :: sides(2)
-
-    sides = side
-    if (s <= 0.0_wp) sides(2) = model%body_outline%before(side)
-    if (s >= 1.0_wp) sides(2) = model%body_outline%after(side)
-    length = maxval(merge(search%allowance%length(sides), 0.0_wp, search%in_line(sides)))
-  end function longest_at
-
-  !> What a side allows, and at a node also the one with which it shares that [length].
-  pure real(wp) function own_allowance(model, search, side, s, meeting) result(allowed)
-    type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s
-    type(meeting_type), intent(in) :: meeting
-
-    allowed = search%allowance%of(side, meeting)
-    if (s <= 0.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%before(side), meeting))
-    if (s >= 1.0_wp) allowed = max(allowed, search%allowance%of(model%body_outline%after(side), meeting))
-  end function own_allowance
-
-  !> What is allowed at a place: where the two sides meet [length].
-  pure real(wp) function place_allowance(model, search, side, s, place, meeting) result(allowed)
-    type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s
-    type(near_place), intent(in) :: place
-    type(meeting_type), intent(in) :: meeting
-
-    allowed = search%allowance%least + own_allowance(model, search, side, s, meeting) &
-              + own_allowance(model, search, place%side, place%s, meeting)
-  end function place_allowance
-
-  !> Allow what sides about a place allow, where more was found than the nearest two do.
-  pure subroutine widen_allowance(search, place, distance, meeting)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(inout) :: place
-    real(wp), intent(in) :: distance   !! of the two sides there [length]
-    type(meeting_type), intent(in) :: meeting
-
-    if (place%depth <= place%allowed) return
-    associate (part => search%now%outline%part)
-      place%allowed = search%allowance%least &
-                      + allowance_about(search, part(place%side), place%x, about*distance, place%side, meeting) &
-                      + allowance_about(search, part(place%other), place%x, about*distance, place%other, meeting)
-    end associate
-  end subroutine widen_allowance
-
-  !> The most that sides of a part within a distance of a point allow, and one of them at least [length].
-  pure real(wp) function allowance_about(search, part, x, distance, side, meeting) result(allowed)
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: part
-    real(wp), intent(in) :: x(2), distance
-    integer, intent(in) :: side
-    type(meeting_type), intent(in) :: meeting
-    type(near_place) :: place
-    integer, allocatable :: near(:)
-    integer :: k, n, other
-
-    allowed = search%allowance%of(side, meeting)
-    allocate (near(16))
-    call search%now%side_tree(part)%meeting(x - distance, x + distance, near, n)
-    do k = 1, n
-      other = search%now%outline%first(part) + near(k) - 1
-      place = search%now%near_side(other, x)
-      if (place%distance <= distance) allowed = max(allowed, search%allowance%of(other, meeting))
-    end do
-  end function allowance_about
+    telling = found
+    call take_told(search, telling)
+    if (.not. (is_worse(found, worst) .or. is_deeper(found, deepest) .or. is_worse(telling, not_told))) return
+    place = found
+    call widen_allowance(search, place)
+    if (present(drawn)) then
+      if (place%distance > min(place%allowed, telling%allowed)) call take_drawn(search, point, place, drawn)
+      telling%depth = place%depth
+    end if
+    call take_worse(place, worst)
+    call take_deeper(place, deepest)
+    call take_worse(telling, not_told)
+  end subroutine keep
 
   !> Of a place where more or less is allowed: how much is not told.
-  pure subroutine take_told(search, meeting, place)
+  pure subroutine take_told(search, place)
     type(search_type), intent(in) :: search
-    type(meeting_type), intent(in) :: meeting
     type(overlap_place), intent(inout) :: place
 
-    associate (allowance => search%allowance)
-      place%moving = 2.0_wp*(allowance%of_motion(place%side, meeting) + allowance%of_motion(place%other, meeting)) > place%allowed
-      place%allowed = search%told + allowance%of_drawing(place%side, meeting) + allowance%of_drawing(place%other, meeting)
+    associate (allowance => search%allowance, side => place%side, other => place%other, meeting => place%meeting)
+      place%moving = 2.0_wp*(allowance%of_motion(side, meeting) + allowance%of_motion(other, meeting)) > place%allowed
+      place%allowed = search%least + told*search%moved + allowance%of_drawing(side, meeting) &
+                      + allowance%of_drawing(other, meeting)
     end associate
   end subroutine take_told
 
-  !> What a field has at a place of a side.
-  pure function along_side(model, side, s, field) result(there)
-    type(model_type), intent(in) :: model
+  !> Allow what sides about a place allow, where more was found than the nearest two do.
+  pure subroutine widen_allowance(search, place)
+    type(search_type), intent(in) :: search
+    type(overlap_place), intent(inout) :: place
+
+    if (place%depth <= place%allowed) return
+    place%allowed = search%least + allowance_about(search, place, place%side) + allowance_about(search, place, place%other)
+  end subroutine widen_allowance
+
+  !> The most that a side at a place allows, or others of its part that are about as near to that as the two there to each other
+  !! [length].
+  pure real(wp) function allowance_about(search, place, side) result(allowed)
+    type(search_type), intent(in) :: search
+    type(overlap_place), intent(in) :: place
     integer, intent(in) :: side
-    real(wp), intent(in) :: s             !! from 0 to 1
-    real(wp), intent(in) :: field(:, :)   !! coordinates, or displacements [length] [2, nodes]
-    real(wp) :: there(2)
+    type(near_place) :: near
+    integer, allocatable :: others(:)
+    integer :: k
 
-    associate (node => model%body_outline%node(:, side), v => field)
-      there = (1.0_wp - s)*v(:, node(1)) + s*v(:, node(2))
-      if (node(3) > 0) there = there + 4.0_wp*s*(1.0_wp - s)*(v(:, node(3)) - 0.5_wp*(v(:, node(1)) + v(:, node(2))))
+    allowed = search%allowance%of(side, place%meeting)
+    associate (within => about*place%distance)
+      others = sides_meeting(search%now, search%now%outline%part(side), place%x - within, place%x + within)
+      do k = 1, size(others)
+        near = search%now%near_side(others(k), place%x)
+        if (near%distance <= within) allowed = max(allowed, search%allowance%of(others(k), place%meeting))
+      end do
     end associate
-  end function along_side
+  end function allowance_about
 
-  !> Middle of the element that a side is of, or what a field has there.
-  pure function middle_of(model, side, field) result(mean)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: side
-    real(wp), intent(in) :: field(:, :)   !! coordinates, or displacements [length] [2, nodes]
-    real(wp) :: mean(2)
+  !> Take off the depth at a place what the bodies overlapped as drawn, if no pair is to close that.
+  pure subroutine take_drawn(search, point, place, drawn)
+    type(search_type), intent(in) :: search
+    type(point_type), intent(in) :: point
+    type(overlap_place), intent(inout) :: place
+    type(overlap_place), intent(inout) :: drawn     !! the deepest such overlap
+    type(overlap_place) :: found
+    type(near_place) :: before
 
-    associate (element => model%body_outline%element(side))
-      mean = sum(field(:, model%connectivity(:model%corners(element), element)), dim=2)/model%corners(element)
-    end associate
-  end function middle_of
+    if (is_paired(search, place%side, place%other)) return
+    before = search%drawn%nearest_place(search%drawn%outline%part(place%other), point%drawn)
+    if (.not. before%inside) return
+    found = overlap_place(depth=before%distance, allowed=place%allowed, x=point%drawn, side=place%side, other=before%side)
+    if (found%depth > found%allowed) call take_deeper(found, drawn)
+    place%depth = place%depth - before%distance
+  end subroutine take_drawn
 
-  !> Add one to the crossings that were found, which ascend.
-  pure subroutine note_crossing(search, s, crossings)
-    type(search_type), intent(inout) :: search
-    real(wp), intent(in) :: s
-    integer, intent(inout) :: crossings
-    integer :: i
+  !> Put a number into an ascending list.
+  pure subroutine insert(number, list)
+    real(wp), intent(in) :: number
+    real(wp), allocatable, intent(inout) :: list(:)   !! made longer by one
 
-    if (crossings == size(search%crossing)) search%crossing = [search%crossing, search%crossing]
-    i = crossings
-    do while (i > 0)
-      if (search%crossing(i) <= s) exit
-      search%crossing(i + 1) = search%crossing(i)
-      i = i - 1
-    end do
-    search%crossing(i + 1) = s
-    crossings = crossings + 1
-  end subroutine note_crossing
+    list = [pack(list, list <= number), number, pack(list, list > number)]
+  end subroutine insert
 end module epcont_certificate_meeting

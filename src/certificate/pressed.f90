@@ -2,9 +2,8 @@
 !> node stands, and how far the two sides have slid along each other.
 module epcont_certificate_pressed
   use epcont_base_kinds, only: wp
-  use epcont_certificate_allowance, only: meeting_type
-  use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_deeper, take_worse
-  use epcont_certificate_meeting, only: along_side, meeting_of, place_allowance, search_type, take_told, widen_allowance
+  use epcont_certificate_findings, only: overlap_place, scene_type, take_worse
+  use epcont_certificate_meeting, only: keep, meet, motion_at, part_along, point_on, point_type, search_type
   use epcont_geometry_outline_shape, only: near_place
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
@@ -26,108 +25,67 @@ contains
     type(search_type), intent(in) :: search
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
     type(scene_type), intent(inout) :: scene
+    type(point_type) :: point
     real(wp) :: least
-    integer :: i, k, side_of(model%nodes)
+    integer :: k, side, side_of(model%nodes)
 
     if (model%pairs == 0) return
     least = pressing*maxval(force)
     side_of = 0
-    do i = 1, model%body_outline%sides
-      if (model%body_outline%node(3, i) > 0) side_of(model%body_outline%node(3, i)) = i
-      side_of(model%body_outline%node(1, i)) = i
+    do side = 1, model%body_outline%sides
+      associate (node => model%body_outline%node(:, side))
+        if (node(3) > 0) side_of(node(3)) = side
+        side_of(node(1)) = side
+      end associate
     end do
     do k = 1, model%pairs
-      associate (ends => model%pair_node(:, k), part => model%body_outline%part_of)
-        if (force(k) <= least .or. side_of(ends(2)) == 0 .or. part(ends(1)) == 0 .or. part(ends(1)) == part(ends(2))) cycle
-        call look_at_pair(model, search, k, side_of(ends(2)), scene)
+      associate (a => model%pair_node(1, k), b => model%pair_node(2, k), part => model%body_outline%part_of)
+        if (force(k) <= least .or. side_of(b) == 0 .or. part(a) == 0 .or. part(a) == part(b)) cycle
+        point = point_on(search, side_of(b), merge(0.5_wp, 0.0_wp, model%body_outline%node(3, side_of(b)) == b))
+        call look_at_pair(search, k, model%normal(:, k), point, part(a), scene)
       end associate
     end do
   end subroutine look_at_pairs
 
-  !> One pressed pair.
-  pure subroutine look_at_pair(model, search, k, side, scene)
-    type(model_type), intent(in) :: model
+  !> One pressed pair: its node B, at the part that A is of.
+  pure subroutine look_at_pair(search, pair, normal, point, part, scene)
     type(search_type), intent(in) :: search
-    integer, intent(in) :: k, side                !! the pair, and a side that its node B is on
+    integer, intent(in) :: pair, part
+    real(wp), intent(in) :: normal(2)
+    type(point_type), intent(in) :: point
     type(scene_type), intent(inout) :: scene
     type(near_place) :: place
-    type(meeting_type) :: meeting
     type(overlap_place) :: found, slid
-    real(wp) :: allowed, gap, off, s
+    real(wp) :: off
 
-    associate (b => model%pair_node(2, k), part => model%body_outline%part_of(model%pair_node(1, k)))
-      found%x = model%x(:, b) + search%displacement(:, b)
-      place = search%now%nearest_place(part, found%x)
-      s = merge(0.5_wp, 0.0_wp, model%body_outline%node(3, side) == b)
-    end associate
-    meeting = meeting_of(model, search, side, s, place, joined=.true.)
-    found%side = side
-    found%other = place%side
+    place = search%now%nearest_place(part, point%x)
+    found = meet(search, point, place)
+    found%pair = pair
     slid = found
-    slid%depth = slide_along(model, search, side, s, place)
+    slid%depth = part_along(search%now, place%side, place%s, point%motion - motion_at(search, place%side, place%s))
     slid%allowed = small_slide(search, found)
     call take_worse(slid, scene%slid)
     if (place%inside) return
 
-    allowed = place_allowance(model, search, side, s, place, meeting)
-    gap = abs(dot_product(found%x - place%x, model%normal(:, k)))
-    off = abs(cross_product(found%x - place%x, model%normal(:, k)))
-    if (off > gap) then   ! the other body ends before it
+    found%depth = abs(dot_product(point%x - place%x, normal))
+    off = abs(cross_product(point%x - place%x, normal))
+    if (off <= found%depth) then
+      call keep(search, found, scene%apart, scene%widest, scene%wide)
+    else   ! the other body ends before it
       found%depth = off
-      found%allowed = allowed + slid%allowed
-      if (is_worse(found, scene%beside)) scene%beside_pair = k
+      found%allowed = found%allowed + slid%allowed
       call take_worse(found, scene%beside)
-      return
     end if
-    found%depth = gap
-    found%allowed = allowed
-    call look_at_gap(search, place%distance, meeting, k, found, scene)
   end subroutine look_at_pair
-
-  !> A gap across which a pair presses.
-  pure subroutine look_at_gap(search, distance, meeting, k, found, scene)
-    type(search_type), intent(in) :: search
-    real(wp), intent(in) :: distance              !! from the other body [length]
-    type(meeting_type), intent(in) :: meeting
-    integer, intent(in) :: k
-    type(overlap_place), intent(inout) :: found
-    type(scene_type), intent(inout) :: scene
-    type(overlap_place) :: wide
-
-    wide = found
-    call take_told(search, meeting, wide)
-    if (wide%depth > wide%allowed) call take_worse(wide, scene%wide)
-    if (.not. (is_worse(found, scene%apart) .or. found%depth > scene%widest%depth)) return
-    call widen_allowance(search, found, distance, meeting)
-    if (is_worse(found, scene%apart)) scene%pair = k
-    call take_worse(found, scene%apart)
-    call take_deeper(found, scene%widest)
-  end subroutine look_at_gap
-
-  !> How far a point of a side has slid along the place that it is near to, either way [length].
-  pure real(wp) function slide_along(model, search, side, s, place) result(slide)
-    type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s
-    type(near_place), intent(in) :: place
-    real(wp) :: along(2)
-
-    along = search%now%tangent(place%side, place%s)
-    associate (u => search%displacement)
-      slide = abs(dot_product(along, along_side(model, side, s, u) - along_side(model, place%side, place%s, u))) &
-              /max(norm2(along), tiny(1.0_wp))
-    end associate
-  end function slide_along
 
   !> How far sides may slide along each other and be where they were drawn [length].
   pure real(wp) function small_slide(search, place) result(small)
     type(search_type), intent(in) :: search
     type(overlap_place), intent(in) :: place
 
-    associate (part => search%now%outline%part, length => search%allowance%length, width => search%allowance%width)
-      small = max(part_of_side*max(length(place%side), length(place%other)), &
-                  part_of_body*min(width(part(place%side)), width(part(place%other))))
+    associate (side => [place%side, place%other])
+      small = max(part_of_side*maxval(search%allowance%length(side)), &
+                  part_of_body*minval(search%width(search%now%outline%part(side))))
     end associate
   end function small_slide
 end module epcont_certificate_pressed

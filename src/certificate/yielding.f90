@@ -3,6 +3,7 @@
 module epcont_certificate_yielding
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_stress
+  use epcont_model_controls, only: uniaxial_curve
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -54,49 +55,46 @@ contains
     integer, intent(in) :: section
     real(wp), intent(in) :: strain(4)
     real(wp), intent(inout) :: secant, mu   !! the elastic ones, which stay below yield
-    real(wp) :: low, high, middle, stress
+    real(wp) :: low, high, middle
     integer :: k
 
-    associate (curve => model%curve(section), young => model%young(section), nu => model%poisson(section))
-      low = curve%strain(2)
-      high = low
-      if (excess(low) <= 0.0_wp) return
-      do while (excess(high) > 0.0_wp)
-        high = 2.0_wp*high
-      end do
-      do k = 1, halvings
-        middle = 0.5_wp*(low + high)
-        if (excess(middle) > 0.0_wp) then
-          low = middle
-        else
-          high = middle
-        end if
-      end do
-      stress = stress_at(curve%strain, curve%stress, low)
-      secant = stress/low
-      mu = poisson_ratio(low)
-    end associate
+    low = model%curve(section)%strain(2)
+    high = low
+    if (.not. is_beyond(low)) return
+    do while (is_beyond(high))
+      high = 2.0_wp*high
+    end do
+    do k = 1, halvings
+      middle = 0.5_wp*(low + high)
+      if (is_beyond(middle)) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+    secant = stress_at(model%curve(section), low)/low
+    mu = poisson_ratio(low)
 
   contains
 
-    !> The strain's eps_i, taken with the mu of a point of the curve, beyond that point.
-    pure real(wp) function excess(total)
+    !> Is the strain's eps_i, taken with the mu of a point of the curve, beyond that point?
+    pure logical function is_beyond(total)
       real(wp), intent(in) :: total
 
       associate (ratio => poisson_ratio(total))
-        excess = equivalent_strain(strain, strain_across(model%kinematics(section), ratio, strain), ratio) - total
+        is_beyond = equivalent_strain(strain, strain_across(model%kinematics(section), ratio, strain), ratio) > total
       end associate
-    end function excess
+    end function is_beyond
 
     !> Exact for a secant body, or (2-4).
     pure real(wp) function poisson_ratio(total)
       real(wp), intent(in) :: total
 
-      associate (curve => model%curve(section), young => model%young(section), nu => model%poisson(section))
+      associate (curve => model%curve(section), compressible => 0.5_wp - model%poisson(section))
         if (model%controls%paper_ratio) then
-          poisson_ratio = 0.5_wp - (0.5_wp - nu)*curve%stress(2)/stress_at(curve%strain, curve%stress, total)
+          poisson_ratio = 0.5_wp - compressible*curve%stress(2)/stress_at(curve, total)
         else
-          poisson_ratio = 0.5_wp - (0.5_wp - nu)*stress_at(curve%strain, curve%stress, total)/total/young
+          poisson_ratio = 0.5_wp - compressible*stress_at(curve, total)/total/model%young(section)
         end if
       end associate
     end function poisson_ratio
@@ -119,16 +117,15 @@ contains
     if (kinematics == plane_stress) strain_across = -mu/(1.0_wp - mu)*(strain(1) + strain(2))
   end function strain_across
 
-  !> Stress of the uniaxial curve at a total strain; the last slope goes on. From the lower point up: nothing cancels.
-  pure real(wp) function stress_at(strain, stress, total)
-    real(wp), intent(in) :: strain(:), stress(:), total
+  !> Stress at a total strain; the last slope goes on. From the lower point up: nothing cancels.
+  pure real(wp) function stress_at(curve, total)
+    type(uniaxial_curve), intent(in) :: curve
+    real(wp), intent(in) :: total
     integer :: k
 
-    k = 2
-    do while (k < size(strain))
-      if (strain(k) >= total) exit
-      k = k + 1
-    end do
-    stress_at = stress(k - 1) + (stress(k) - stress(k - 1))/(strain(k) - strain(k - 1))*(total - strain(k - 1))
+    k = count(curve%strain(2:size(curve%strain) - 1) < total) + 2
+    associate (strain => curve%strain(k - 1:k), stress => curve%stress(k - 1:k))
+      stress_at = stress(1) + (stress(2) - stress(1))/(strain(2) - strain(1))*(total - strain(1))
+    end associate
   end function stress_at
 end module epcont_certificate_yielding

@@ -35,11 +35,11 @@ contains
       text = 'bodies pass through each other: '//inside(model, scene%inside)//'; '//short_real(scene%inside%allowed)// &
              ' is allowed'//deepest(scene)//'. What may mend it: '//remedy(model, scene%inside)
     case (2)
-      text = 'pair '//text_of(model%pair_id(scene%pair))//' presses across a gap: '//where_is(model, scene%apart)//' is '// &
+      text = 'pair '//text_of(model%pair_id(scene%apart%pair))//' presses across a gap: '//where_is(model, scene%apart)//' is '// &
              short_real(scene%apart%depth)//' off '//side_name(model, scene%apart%other)//'; '// &
              short_real(scene%apart%allowed)//' is allowed. What may mend it: pairs of nodes, or lines, that face each other'
     case (3)
-      text = 'pair '//text_of(model%pair_id(scene%beside_pair))//' presses beside the other body: '// &
+      text = 'pair '//text_of(model%pair_id(scene%beside%pair))//' presses beside the other body: '// &
              where_is(model, scene%beside)//' is '//short_real(scene%beside%depth)//' beside the end of '// &
              side_name(model, scene%beside%other)//'; '//short_real(scene%beside%allowed)//' is allowed. What may mend it: '// &
              'bodies drawn where they come to, or longer ones: contact is that of undeformed places'
@@ -58,7 +58,7 @@ contains
 
     associate (place => scene%passed)
       text = element_name(model, model%body_outline%element(place%side))
-      if (scene%passing_node > 0) text = 'GRID '//text_of(model%node_id(scene%passing_node))
+      if (scene%passed%node > 0) text = 'GRID '//text_of(model%node_id(scene%passed%node))
       text = text//' of the body of GRID '//first_node(model, place%side)// &
              ' goes through that of GRID '//first_node(model, place%other)//', '//short_real(place%depth)//' deep at '// &
              short_real(place%x(1))//' '//short_real(place%x(2))//', behind '//side_name(model, place%other)
