@@ -13,7 +13,7 @@ module epcont_contact_block_factor
   use epcont_base_sorting, only: sorted_order
   use epcont_contact_basis, only: gaps_under, rank_tolerance, weight_of_motions
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_linalg_dense, only: add_product, cholesky_factor, cholesky_solve, extend_cholesky, leading_solve
+  use epcont_linalg_dense, only: add_product, cholesky_factor, cholesky_solve, extend_cholesky
   implicit none
   private
   public :: block_factor, new_block_factor, change_set, solve_set
@@ -121,7 +121,7 @@ contains
     answer(:, :m) = problem%motion(factor%pairs, :)
     answer(:, m + 1) = problem%gap(factor%pairs)
     transposed = transpose(answer(:, :m))
-    call leading_solve(factor%lower, answer)
+    call cholesky_solve(factor%lower, answer)
     allocate (carried(m, m + 1), source=0.0_wp)
     call add_product(1.0_wp, transposed, answer, carried)
     resistance = carried(:, :m)

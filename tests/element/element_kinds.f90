@@ -7,9 +7,9 @@ module element_kinds
   use epcont_element_tria3, only: tria3_slopes
   use epcont_element_tria6, only: tria6_slopes
   use epcont_linalg_dense, only: lu_solve
-  use epcont_linalg_lapack, only: dsyev
   use epcont_material_elasticity, only: bulk_modulus, isotropic_matrix, shear_modulus
   use epcont_element_kinematics, only: plane_stress
+  use lapack_checks, only: dsyev
   implicit none
   private
   public :: sample_shapes, label, sample_place, local_node, slopes, corners_of, centroid_radius
