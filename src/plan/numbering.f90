@@ -126,14 +126,14 @@ contains
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
     integer, allocatable :: numbers(:, :)
-    integer :: e
+    integer :: e, i
 
     associate (element => numbering%body(b)%element)
       allocate (numbers(2*maxval([model%order(element), 0]), size(element)), source=0)
       do e = 1, size(element)
-        associate (n => model%order(element(e)))
-          numbers(:2*n, e) = reshape(numbering%equation(:, model%connectivity(:n, element(e))), [2*n])
-        end associate
+        do i = 1, model%order(element(e))
+          numbers(2*i - 1:2*i, e) = numbering%equation(:, model%connectivity(i, element(e)))
+        end do
       end do
     end associate
   end function element_numbers
