@@ -87,7 +87,7 @@ contains
     integer, intent(in) :: b
     type(level_order) :: outward
     type(dissection) :: found
-    real(wp) :: coordinate(3, model%nodes)
+    real(wp) :: distance(model%nodes)
     integer, allocatable :: first(:), roots(:)
     integer :: i, p
 
@@ -95,9 +95,10 @@ contains
       roots = pack(body%node, numbering%at_contact(body%node))
       if (size(roots) == 0) roots = body%node(:1)
       outward = sweep(model, roots, body%node)
-      coordinate(:2, :) = model%x
-      coordinate(3, outward%node) = [(real(i, wp), i=1, size(outward%node))]
-      found = dissect(coordinate, model%connectivity, model%around, body%element, body%node, numbering%at_contact)
+      do i = 1, size(outward%node)
+        distance(outward%node(i)) = i
+      end do
+      found = dissect(model, distance, body%element, body%node, numbering%at_contact)
       call number_nodes(model, found%node, numbering, b)
       if (body%equations == 0) then
         call find_panels(model, numbering, b)
