@@ -191,24 +191,28 @@ contains
     type(single_front_matrix), allocatable :: single_fronts
     type(panel_matrix), allocatable :: panels
     type(single_panel_matrix), allocatable :: single_panels
+    integer :: trailing
 
-    if (body%solver == solver_frontal .and. single) then
-      allocate (single_fronts)
-      call single_fronts%begin(body%fronts, body%can_yield, body%contact_equations)
-      call move_alloc(single_fronts, matrix)
-    else if (body%solver == solver_frontal) then
-      allocate (fronts)
-      call fronts%begin(body%fronts, body%can_yield, body%contact_equations)
-      call move_alloc(fronts, matrix)
-    else if (single) then
-      allocate (single_panels)
-      call single_panels%begin(body%reach, .not. body%can_yield, merge(body%contact_equations, 0, body%contact_last))
-      call move_alloc(single_panels, matrix)
-    else
-      allocate (panels)
-      call panels%begin(body%reach, .not. body%can_yield, merge(body%contact_equations, 0, body%contact_last))
-      call move_alloc(panels, matrix)
-    end if
+    trailing = merge(body%contact_equations, 0, body%contact_last)
+    associate (once => .not. body%can_yield)
+      if (body%solver == solver_frontal .and. single) then
+        allocate (single_fronts)
+        call single_fronts%begin(body%fronts, once, trailing)
+        call move_alloc(single_fronts, matrix)
+      else if (body%solver == solver_frontal) then
+        allocate (fronts)
+        call fronts%begin(body%fronts, once, trailing)
+        call move_alloc(fronts, matrix)
+      else if (single) then
+        allocate (single_panels)
+        call single_panels%begin(body%panels, once, trailing)
+        call move_alloc(single_panels, matrix)
+      else
+        allocate (panels)
+        call panels%begin(body%panels, once, trailing)
+        call move_alloc(panels, matrix)
+      end if
+    end associate
   end subroutine begin
 
   !> Add an element matrix to the coupling and the border.

@@ -1,4 +1,4 @@
-!> Solution of the contact equations for a given set S of pairs in contact, fresh from F and A.
+!> The contact equations for a given set S of pairs in contact, factored afresh from F and A.
 !>
 !>     F_SS R_S - A_S q = -h,   A_S' R_S = p
 !>
@@ -11,7 +11,7 @@ module epcont_contact_basis
   use epcont_linalg_dense, only: add_product, cholesky_factor, cholesky_solve, pivoted_cholesky
   implicit none
   private
-  public :: contact_basis, new_basis, respond, basic_solution, gaps_under
+  public :: contact_basis, new_basis, hold_motions, respond
   public :: regular_flexibility, rank_tolerance, weight_of_motions
 
   !> Pivots of F_g, parts of the largest flexibility, from which on no force depends on the others whatever the order.
@@ -19,10 +19,10 @@ module epcont_contact_basis
 
   !> A set of pairs in contact whose forces are unique, and the factors that give them.
   type :: contact_basis
-    logical :: sound = .false.                !! the pairs hold every motion
-    integer, allocatable :: pairs(:)          !! S [s]
+    logical :: sound = .false.                !! the forces are unique, and the pairs hold every motion
+    integer, allocatable :: pairs(:)          !! S, in the order of the factor [s]
     real(wp) :: gamma = 0.0_wp                !! weight of A A' in F_g
-    real(wp), allocatable :: factor(:, :)     !! Cholesky factor of F_g,SS [s, s]
+    real(wp), allocatable :: factor(:, :)     !! its leading rows: Cholesky factor of F_g,SS [>= s, >= s]
     real(wp), allocatable :: carried(:, :)    !! forces that hold S closed under unit motions, F_g,SS^-1 A_S [s, m]
     real(wp), allocatable :: resistance(:, :) !! Cholesky factor of A_S' F_g,SS^-1 A_S [m, m]
   end type contact_basis
@@ -30,15 +30,12 @@ module epcont_contact_basis
 contains
 
   !> Factor the equations of the chosen pairs. Pairs whose force depends on that of others are left out.
-  pure function new_basis(problem, chosen) result(basis)
+  pure type(contact_basis) function new_basis(problem, chosen) result(basis)
     type(scaled_problem), intent(in) :: problem
     logical, intent(in) :: chosen(:)   !! [n]
-    type(contact_basis) :: basis
     integer, allocatable :: order(:)
-    real(wp), allocatable :: transposed(:, :)
-    integer :: info, k, m, rank
+    integer :: info, k, rank
 
-    m = size(problem%resultant)
     basis%pairs = pack([(k, k=1, size(chosen))], chosen)
     basis%gamma = weight_of_motions(problem)
     basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
@@ -52,20 +49,31 @@ contains
       basis%pairs = basis%pairs(order(:rank))
       basis%factor = basis%factor(:rank, :rank)
     end if
+    call hold_motions(basis, problem)
+  end function new_basis
+
+  !> What the motions do to a set whose F_g is factored; it is sound if it holds all of them.
+  pure subroutine hold_motions(basis, problem)
+    type(contact_basis), intent(inout) :: basis
+    type(scaled_problem), intent(in) :: problem
+    real(wp) :: resistance(size(problem%resultant), size(problem%resultant))
+    real(wp), allocatable :: transposed(:, :)
+    integer :: info
 
     basis%carried = problem%motion(basis%pairs, :)
     transposed = transpose(basis%carried)
     call cholesky_solve(basis%factor, basis%carried)
-    allocate (basis%resistance(m, m), source=0.0_wp)
-    call add_product(1.0_wp, transposed, basis%carried, basis%resistance)
-    call cholesky_factor(basis%resistance, info)
+    resistance = 0.0_wp
+    call add_product(1.0_wp, transposed, basis%carried, resistance)
+    call cholesky_factor(resistance, info)
+    basis%resistance = resistance
     basis%sound = info == 0
-  end function new_basis
+  end subroutine hold_motions
 
   !> Forces and motions for right-hand sides h and p; call only if the basis is sound.
   pure subroutine respond(basis, opening, load, force, approach)
     type(contact_basis), intent(in) :: basis
-    real(wp), contiguous, intent(in) :: opening(:, :)                  !! h, gaps of the pairs without forces [s, k]
+    real(wp), contiguous, intent(in) :: opening(:, :)      !! h, gaps of the pairs without forces [s, k]
     real(wp), intent(in) :: load(:, :)                     !! p [m, k]
     real(wp), allocatable, intent(out) :: force(:, :)      !! R_S [s, k]
     real(wp), allocatable, intent(out) :: approach(:, :)   !! q [m, k]
@@ -81,52 +89,11 @@ contains
     approach = approach - basis%gamma*load
   end subroutine respond
 
-  !> Forces, gaps and motions with the pairs of the basis closed and the others free of force.
-  pure subroutine basic_solution(basis, problem, opening, load, force, gap, approach)
-    type(contact_basis), intent(in) :: basis
-    type(scaled_problem), intent(in) :: problem
-    real(wp), intent(in) :: opening(:)                  !! gaps without forces [n]
-    real(wp), intent(in) :: load(:)                     !! [m]
-    real(wp), allocatable, intent(out) :: force(:)      !! zero outside the basis [n]
-    real(wp), allocatable, intent(out) :: gap(:)        !! zero up to rounding in the basis [n]
-    real(wp), allocatable, intent(out) :: approach(:)   !! [m]
-    real(wp), allocatable :: force_change(:, :), approach_change(:, :)
-    real(wp), allocatable :: excess(:, :), unbalanced(:, :)   !! what is not closed or carried yet [s, 1], [m, 1]
-    integer :: step
-
-    allocate (force(size(opening)), source=0.0_wp)
-    allocate (approach(size(load)), source=0.0_wp)
-    gap = opening
-    allocate (excess(size(basis%pairs), 1), unbalanced(size(load), 1))
-    unbalanced(:, 1) = load
-    do step = 1, 2   ! the solution, then one step of iterative refinement
-      excess(:, 1) = gap(basis%pairs)
-      call respond(basis, excess, unbalanced, force_change, approach_change)
-      force(basis%pairs) = force(basis%pairs) + force_change(:, 1)
-      approach = approach + approach_change(:, 1)
-      gap = gaps_under(problem, opening, force, approach)
-      unbalanced(:, 1) = load - matmul(force, problem%motion)
-    end do
-  end subroutine basic_solution
-
-  !> w = g + F R - A q.
-  pure function gaps_under(problem, opening, force, approach) result(gap)
-    type(scaled_problem), intent(in) :: problem
-    real(wp), intent(in) :: opening(:), force(:), approach(:)
-    real(wp), allocatable :: gap(:)
-    integer :: k
-
-    gap = opening - matmul(problem%motion, approach)
-    do k = 1, size(force)
-      if (force(k) /= 0.0_wp) gap = gap + force(k)*problem%flexibility(:, k)
-    end do
-  end function gaps_under
-
   !> A block of F_g = F + gamma A A'.
   pure function regular_flexibility(problem, gamma, rows, columns) result(block)
     type(scaled_problem), intent(in) :: problem
-    real(wp), intent(in) :: gamma
-    integer, intent(in) :: rows(:), columns(:)
+    real(wp), intent(in) :: gamma                  !! from `weight_of_motions`
+    integer, intent(in) :: rows(:), columns(:)     !! pairs
     real(wp), allocatable :: block(:, :)
     real(wp), allocatable :: left(:, :), right(:, :)
 
@@ -137,9 +104,8 @@ contains
   end function regular_flexibility
 
   !> gamma, such that F and gamma A A' are of one size.
-  pure function weight_of_motions(problem) result(gamma)
+  pure real(wp) function weight_of_motions(problem) result(gamma)
     type(scaled_problem), intent(in) :: problem
-    real(wp) :: gamma
     real(wp) :: largest
 
     largest = maxval([sum(problem%motion**2, dim=2), 0.0_wp])
@@ -147,18 +113,16 @@ contains
     if (largest > 0.0_wp) gamma = gamma/largest
   end function weight_of_motions
 
-  !> A pivot of F_g up to this is rounding.
-  pure function rank_tolerance(problem) result(tolerance)
+  !> A pivot of F_g up to this is rounding: a hundredth of a negligible flexibility, or that of n sums.
+  pure real(wp) function rank_tolerance(problem)
     type(scaled_problem), intent(in) :: problem
-    real(wp) :: tolerance
 
-    tolerance = max(negligible/100, 4*size(problem%gap)*epsilon(1.0_wp))*largest_flexibility(problem)
+    rank_tolerance = max(negligible/100, 4*size(problem%gap)*epsilon(1.0_wp))*largest_flexibility(problem)
   end function rank_tolerance
 
   !> max F_kk; 1 if nothing is flexible.
-  pure function largest_flexibility(problem) result(largest)
+  pure real(wp) function largest_flexibility(problem) result(largest)
     type(scaled_problem), intent(in) :: problem
-    real(wp) :: largest
     integer :: k
 
     largest = maxval([(problem%flexibility(k, k), k=1, size(problem%gap)), 0.0_wp])

@@ -10,8 +10,9 @@
 !> says so, and RULE CONRY has the problem.
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
-  use epcont_contact_block_factor, only: block_factor, change_set, new_block_factor, solve_set
-  use epcont_contact_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, sign_tolerance
+  use epcont_contact_block_factor, only: begin_blocks, change_set
+  use epcont_contact_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, sign_tolerance, &
+    solve_set
   use epcont_contact_problem, only: contact_solution, contact_solved
   use epcont_contact_scaling, only: scaled_problem
   implicit none
@@ -32,6 +33,7 @@ module epcont_contact_block_pivoting
 
   !> How far the exchanges have come.
   type :: progress_type
+    integer :: stride = 1                   !! of the candidates
     integer :: fewest = huge(1)             !! wrong pairs, at best
     integer :: patience = patience_limit    !! steps left to come below it
   end type progress_type
@@ -39,85 +41,79 @@ module epcont_contact_block_pivoting
 contains
 
   !> Look for the set of contacts. `found`: its fresh solution passes the test of signs and its forces are unique.
-  pure subroutine find_by_blocks(scaled, first_touching, guess, solution, state, found)
+  pure subroutine find_by_blocks(scaled, solution, state, found)
     type(scaled_problem), intent(in) :: scaled
-    logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
-    logical, allocatable, intent(in) :: guess(:)        !! of the pairs in contact, if allocated [n]
     type(contact_solution), intent(inout) :: solution   !! steps, and pairs exchanged
     type(contact_state), intent(out) :: state
     logical, intent(out) :: found
     logical, allocatable :: closed(:)
 
     found = .false.
-    if (allocated(guess)) then
-      closed = guess .or. first_touching
+    if (allocated(scaled%guess)) then
+      closed = scaled%guess .or. scaled%first_touching
       solution%block_steps = solution%block_steps + 1
-      call test_afresh(scaled, closed, first_touching, guess_tolerance, state, found)
-      if (.not. found) call exchange_blocks(scaled, first_touching, 1, guess_tolerance, solution, closed, state, found)
+      call test_afresh(scaled, closed, guess_tolerance, state, found)
+      if (.not. found) call exchange_blocks(scaled, 1, guess_tolerance, solution, closed, state, found)
     end if
     if (.not. found) then
-      closed = first_touching
-      call exchange_blocks(scaled, first_touching, first_stride(size(closed)), sign_tolerance, solution, closed, state, found)
+      closed = scaled%first_touching
+      call exchange_blocks(scaled, first_stride(size(closed)), sign_tolerance, solution, closed, state, found)
     end if
     if (found) solution%state = contact_solved
   end subroutine find_by_blocks
 
   !> The fresh solution of a set: are its forces unique and its signs right?
-  pure subroutine test_afresh(scaled, closed, first_touching, tolerance, state, right)
+  pure subroutine test_afresh(scaled, closed, tolerance, state, right)
     type(scaled_problem), intent(in) :: scaled
-    logical, intent(in) :: closed(:), first_touching(:)   !! [n]
+    logical, intent(in) :: closed(:)   !! [n]
     real(wp), intent(in) :: tolerance
     type(contact_state), intent(out) :: state
     logical, intent(out) :: right
 
-    state = fresh_state(scaled, closed, first_touching)
-    right = state%basis%sound .and. size(state%basis%pairs) == count(closed)
+    state = fresh_state(scaled, closed)
+    right = size(state%basis%pairs) == count(closed)
     if (right) right = has_right_signs(scaled, state, tolerance)
   end subroutine test_afresh
 
   !> Exchange until no pair is wrong, or no more steps are left, and test the set. Not if there were sets without an own solution.
-  pure subroutine exchange_blocks(scaled, first_touching, first, tolerance, solution, closed, state, found)
+  pure subroutine exchange_blocks(scaled, stride, tolerance, solution, closed, state, found)
     type(scaled_problem), intent(in) :: scaled
-    logical, intent(in) :: first_touching(:)            !! [n]
-    integer, intent(in) :: first                        !! distance of the first candidates
+    integer, intent(in) :: stride                       !! of the first candidates
     real(wp), intent(in) :: tolerance                   !! of the test
     type(contact_solution), intent(inout) :: solution
     logical, intent(inout) :: closed(:)                 !! the set [n]
     type(contact_state), intent(inout) :: state
     logical, intent(out) :: found
-    type(block_factor) :: factor
+    type(contact_state) :: trial
     type(progress_type) :: progress
-    real(wp), allocatable :: firmness(:), force(:), gap(:)
-    logical, allocatable :: wrong(:)
-    integer :: repairs, step, stride
-    logical :: sound
+    real(wp) :: firmness(size(closed))
+    logical :: wrong(size(closed))
+    integer :: repairs, step
 
-    allocate (firmness(size(closed)), force(size(closed)), gap(size(closed)), source=0.0_wp)
-    call new_block_factor(scaled, factor)
-    stride = first
+    call begin_blocks(trial%basis, scaled)
+    progress%stride = stride
+    firmness = 0.0_wp
     repairs = 0
     do step = 1, step_limit
       if (repairs > repair_limit) exit
       solution%block_steps = solution%block_steps + 1
-      call change_set(factor, scaled, closed, firmness)
-      sound = factor%sound
-      if (sound) call solve_set(factor, scaled, force, gap, sound)
-      if (.not. sound) then
+      call change_set(trial%basis, scaled, closed, firmness)
+      if (trial%basis%sound) then
+        call solve_set(trial, scaled, scaled%gap, scaled%resultant, refinements=0)
+        call find_wrong(scaled, closed, trial, progress, wrong)
+        if (.not. any(wrong)) exit
+        call choose_exchange(wrong, progress)
+        solution%pivots = solution%pivots + count(wrong)
+        firmness = part_of_largest(trial%force) + part_of_largest(-trial%gap)
+        closed = closed .neqv. wrong
+      else
         ! More pairs may hold the motions; forces that depend on each other they do not mend.
-        repairs = repairs + 1
-        if (all(closed .or. .not. first_touching)) repairs = repair_limit + 1
-        closed = closed .or. first_touching
-        cycle
+        repairs = merge(repair_limit, repairs, all(closed .or. .not. scaled%first_touching)) + 1
+        closed = closed .or. scaled%first_touching
       end if
-      call find_wrong(scaled, closed, force, gap, first_touching, stride, progress, wrong)
-      if (.not. any(wrong)) exit
-      call choose_exchange(wrong, progress)
-      solution%pivots = solution%pivots + count(wrong)
-      firmness = part_of_largest(force) + part_of_largest(-gap)
-      closed = closed .neqv. wrong
     end do
     found = repairs <= repair_limit
-    if (found) call test_afresh(scaled, closed, first_touching, tolerance, state, found)
+    if (found) call test_afresh(scaled, closed, tolerance, state, found)
   end subroutine exchange_blocks
 
   !> Positive values as parts of the largest.
@@ -129,9 +125,8 @@ contains
   end function part_of_largest
 
   !> Distance of the first candidates, a power of two.
-  pure function first_stride(n) result(stride)
+  pure integer function first_stride(n) result(stride)
     integer, intent(in) :: n
-    integer :: stride
 
     stride = 1
     do while (n/(2*stride) >= fewest_candidates)
@@ -140,25 +135,24 @@ contains
   end function first_stride
 
   !> The wrong pairs among the candidates; where there is none, among more of them.
-  pure subroutine find_wrong(scaled, closed, force, gap, first_touching, stride, progress, wrong)
+  pure subroutine find_wrong(scaled, closed, trial, progress, wrong)
     type(scaled_problem), intent(in) :: scaled
-    logical, intent(in) :: closed(:), first_touching(:)   !! [n]
-    real(wp), intent(in) :: force(:), gap(:)              !! [n]
-    integer, intent(inout) :: stride
+    logical, intent(in) :: closed(:)                      !! [n]
+    type(contact_state), intent(in) :: trial
     type(progress_type), intent(inout) :: progress
-    logical, allocatable, intent(out) :: wrong(:)
-    logical, allocatable :: all_wrong(:)
+    logical, intent(out) :: wrong(:)                      !! [n]
+    logical :: all_wrong(size(closed))
     real(wp) :: force_tolerance, gap_tolerance
     integer :: k
 
-    force_tolerance = exchange_tolerance*maxval([abs(force), 1.0_wp])
+    force_tolerance = exchange_tolerance*maxval([abs(trial%force), 1.0_wp])
     gap_tolerance = force_tolerance + exchange_tolerance*maxval([abs(scaled%gap), 0.0_wp])
-    all_wrong = merge(force < -force_tolerance, gap < -gap_tolerance, closed)
+    all_wrong = merge(trial%force < -force_tolerance, trial%gap < -gap_tolerance, closed)
     do
-      wrong = all_wrong .and. (closed .or. first_touching .or. [(mod(k - 1, stride) == 0, k=1, size(gap))])
-      if (any(wrong) .or. stride == 1) exit
-      stride = stride/2
-      progress = progress_type()
+      wrong = all_wrong .and. (closed .or. scaled%first_touching .or. &
+                               [(mod(k - 1, progress%stride) == 0, k=1, size(closed))])
+      if (any(wrong) .or. progress%stride == 1) exit
+      progress = progress_type(stride=progress%stride/2)
     end do
   end subroutine find_wrong
 
@@ -175,8 +169,7 @@ contains
       progress%patience = progress%patience - 1
     else
       last = findloc(wrong, .true., dim=1, back=.true.)
-      wrong = .false.
-      wrong(last) = .true.
+      wrong(:last - 1) = .false.
     end if
   end subroutine choose_exchange
 end module epcont_contact_block_pivoting

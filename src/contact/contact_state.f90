@@ -1,11 +1,11 @@
 !> A set of contacts with its solution at full load, fresh from F and A, and the test of its signs.
 module epcont_contact_contact_state
   use epcont_base_kinds, only: wp
-  use epcont_contact_basis, only: basic_solution, contact_basis, new_basis
+  use epcont_contact_basis, only: contact_basis, new_basis, respond
   use epcont_contact_scaling, only: scaled_problem
   implicit none
   private
-  public :: contact_state, fresh_state, basic_values, has_right_signs, terms_of_gaps
+  public :: contact_state, fresh_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
 
   !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can be asked where
   !! the flexibility is badly conditioned, and what is asked of a guess, from which better sets may be found.
@@ -16,28 +16,63 @@ module epcont_contact_contact_state
   !> Without forces where the basis is not sound.
   type :: contact_state
     type(contact_basis) :: basis
-    real(wp), allocatable :: force(:), gap(:)   !! [n]
+    real(wp), allocatable :: force(:)           !! zero outside the basis [n]
+    real(wp), allocatable :: gap(:)             !! zero up to rounding in the basis [n]
     real(wp), allocatable :: approach(:)        !! [m]
   end type contact_state
 
 contains
 
-  !> Forces, gaps and motions of a set of contacts, from F and A.
-  pure function fresh_state(scaled, closed, first_touching) result(state)
+  !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every motion.
+  pure type(contact_state) function fresh_state(scaled, closed) result(state)
     type(scaled_problem), intent(in) :: scaled
-    logical, intent(in) :: closed(:)
-    logical, intent(in) :: first_touching(:)   !! pairs that hold every motion, should `closed` not do so
-    type(contact_state) :: state
+    logical, intent(in) :: closed(:)   !! [n]
 
     state%basis = new_basis(scaled, closed)
-    if (.not. state%basis%sound) state%basis = new_basis(scaled, closed .or. first_touching)
-    if (state%basis%sound) then
-      call basic_solution(state%basis, scaled, scaled%gap, scaled%resultant, state%force, state%gap, state%approach)
-    else
-      state%gap = scaled%gap
-      allocate (state%force(size(scaled%gap)), state%approach(size(scaled%resultant)), source=0.0_wp)
-    end if
+    if (.not. state%basis%sound) state%basis = new_basis(scaled, closed .or. scaled%first_touching)
+    call solve_set(state, scaled, scaled%gap, scaled%resultant, refinements=1)
   end function fresh_state
+
+  !> Forces, gaps and motions with the pairs of the basis closed and the others free of force.
+  pure subroutine solve_set(state, scaled, opening, load, refinements)
+    type(contact_state), intent(inout) :: state   !! its basis is solved with
+    type(scaled_problem), intent(in) :: scaled
+    real(wp), intent(in) :: opening(:)            !! gaps without forces [n]
+    real(wp), intent(in) :: load(:)               !! [m]
+    integer, intent(in) :: refinements            !! steps that follow the solution
+    real(wp), allocatable :: force(:, :), approach(:, :)
+    real(wp), allocatable :: excess(:, :), unbalanced(:, :)   !! what is not closed or carried yet [s, 1], [m, 1]
+    integer :: step
+
+    state%gap = opening
+    state%force = spread(0.0_wp, 1, size(opening))
+    state%approach = spread(0.0_wp, 1, size(load))
+    if (.not. state%basis%sound) return
+    unbalanced = reshape(load, [size(load), 1])
+    do step = 0, refinements
+      excess = reshape(state%gap(state%basis%pairs), [size(state%basis%pairs), 1])
+      call respond(state%basis, excess, unbalanced, force, approach)
+      state%force(state%basis%pairs) = state%force(state%basis%pairs) + force(:, 1)
+      state%approach = state%approach + approach(:, 1)
+      state%gap = gaps_under(scaled, opening, state%force, state%approach)
+      unbalanced(:, 1) = load - matmul(state%force, scaled%motion)
+    end do
+  end subroutine solve_set
+
+  !> w = g + F R - A q.
+  pure function gaps_under(scaled, opening, force, approach) result(gap)
+    type(scaled_problem), intent(in) :: scaled
+    real(wp), intent(in) :: opening(:)            !! g [n]
+    real(wp), intent(in) :: force(:)              !! R [n]
+    real(wp), intent(in) :: approach(:)           !! q [m]
+    real(wp), allocatable :: gap(:)
+    integer :: k
+
+    gap = opening - matmul(scaled%motion, approach)
+    do k = 1, size(force)
+      if (force(k) /= 0.0_wp) gap = gap + force(k)*scaled%flexibility(:, k)
+    end do
+  end function gaps_under
 
   !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
   pure function basic_values(state) result(values)
@@ -49,11 +84,10 @@ contains
   end function basic_values
 
   !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the largest force and gap.
-  pure function has_right_signs(scaled, state, tolerance) result(right)
+  pure logical function has_right_signs(scaled, state, tolerance) result(right)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(in) :: state
     real(wp), intent(in) :: tolerance   !! one of the above
-    logical :: right
     real(wp) :: force_tolerance, gap_noise
 
     force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])

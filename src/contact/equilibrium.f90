@@ -61,10 +61,9 @@ contains
   end subroutine find_rigid_start
 
   !> Are there R >= 0 with A'R = P?
-  pure function can_carry(motion, resultant) result(carried)
+  pure logical function can_carry(motion, resultant) result(carried)
     real(wp), intent(in) :: motion(:, :)    !! A, largest entry about one [n, m]
     real(wp), intent(in) :: resultant(:)    !! P [m]
-    logical :: carried
     type(programme) :: lp
 
     lp = first_programme(motion, resultant)
@@ -73,19 +72,17 @@ contains
   end function can_carry
 
   !> Do the true forces, variables up to n, carry all of the load?
-  pure function is_balanced(lp, n) result(balanced)
+  pure logical function is_balanced(lp, n) result(balanced)
     type(programme), intent(in) :: lp
     integer, intent(in) :: n
-    logical :: balanced
 
     balanced = sum(lp%value, mask=lp%basic > n) <= balance_tolerance
   end function is_balanced
 
   !> Phase 1: the artificial forces carry all of the load and cost one a unit.
-  pure function first_programme(motion, resultant) result(lp)
+  pure type(programme) function first_programme(motion, resultant) result(lp)
     real(wp), intent(in) :: motion(:, :)    !! [n, m]
     real(wp), intent(in) :: resultant(:)    !! [m]
-    type(programme) :: lp
     real(wp) :: size_of_load
     integer :: i, m, n
 
@@ -144,10 +141,9 @@ contains
   end subroutine minimise
 
   !> The first of those that are the largest but for rounding, so that it is the same on every processor; 0: none is above `least`.
-  pure function first_largest(values, least) result(at)
+  pure integer function first_largest(values, least) result(at)
     real(wp), intent(in) :: values(:)
     real(wp), intent(in) :: least     !! > 0
-    integer :: at
     real(wp) :: largest
 
     at = 0
@@ -156,11 +152,10 @@ contains
   end function first_largest
 
   !> Least ratio; of ties, the first of the largest pivots, or the variable of least index (Bland). 0: none decreases.
-  pure function leaving_row(lp, column, by_index) result(row)
+  pure integer function leaving_row(lp, column, by_index) result(row)
     type(programme), intent(in) :: lp
     integer, intent(in) :: column
     logical, intent(in) :: by_index
-    integer :: row
     real(wp) :: least, ratio, zero
     integer :: i
 

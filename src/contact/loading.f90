@@ -1,7 +1,6 @@
 !> The simplex on the load not carried yet: follow the contact as the load factor t grows from 0 to 1.
 module epcont_contact_loading
   use epcont_base_kinds, only: wp
-  use epcont_contact_entry_rule, only: next_to_enter
   use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
   use epcont_contact_ratio_test, only: step_type, test_ratios
   use epcont_contact_scaling, only: negligible
@@ -20,7 +19,8 @@ module epcont_contact_loading
 
 contains
 
-  !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens.
+  !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The partner of the
+  !! variable that left enters next (Conry and Seireg 1971).
   pure subroutine follow_load(tableau, pivot_limit, solution, outcome, closed, ray)
     type(contact_tableau), intent(inout) :: tableau
     integer, intent(in) :: pivot_limit
@@ -29,7 +29,7 @@ contains
     logical, allocatable, intent(out) :: closed(:)      !! pairs with a basic force at the end [n]
     real(wp), allocatable, intent(out) :: ray(:)        !! growth of the forces along a ray [n]
     type(step_type) :: step
-    integer :: column, count, entering, left
+    integer :: column, count, entering, k, left
 
     allocate (ray(size(tableau%basic)), source=0.0_wp)
     outcome = path_endless
@@ -47,33 +47,23 @@ contains
       left = tableau%basic(step%row)
       call pivot(tableau, step%row, column, step%slope)
       call record(tableau, entering, left, step%ratio, solution)
-      entering = next_to_enter(left)
+      entering = -left   ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
     end do
-    closed = basic_forces(tableau)
+    closed = [(row_of(tableau, k) > 0, k=1, size(tableau%basic))]
     ! The force on its way in at full load is positive; where it moved no load it stays out.
     if (entering > 0 .and. step%load_rate > 0.0_wp) closed(entering) = .true.
   end subroutine follow_load
 
   !> Is all of the load carried before another variable blocks, or together with it?
-  pure function is_complete(tableau, step) result(complete)
+  pure logical function is_complete(tableau, step) result(complete)
     type(contact_tableau), intent(in) :: tableau
     type(step_type), intent(in) :: step
-    logical :: complete
     integer :: row
 
     complete = step%load_rate > 0.0_wp .and. step%full_load*(1.0_wp - load_tolerance) <= step%ratio
     row = row_of(tableau, load_factor)
     if (row > 0) complete = complete .or. tableau%value(row) >= 1.0_wp - load_tolerance
   end function is_complete
-
-  !> Pairs whose force is basic.
-  pure function basic_forces(tableau) result(closed)
-    type(contact_tableau), intent(in) :: tableau
-    logical, allocatable :: closed(:)
-    integer :: k
-
-    closed = [(row_of(tableau, k) > 0, k=1, size(tableau%basic))]
-  end function basic_forces
 
   !> Growth of each force with the entering variable.
   pure function force_growth(tableau, column, slope) result(growth)

@@ -17,10 +17,9 @@ module epcont_contact_ratio_test
 
 contains
 
-  pure function test_ratios(tableau, column) result(step)
+  pure type(step_type) function test_ratios(tableau, column) result(step)
     type(contact_tableau), intent(in) :: tableau
     integer, intent(in) :: column   !! of the entering variable
-    type(step_type) :: step
     logical, allocatable :: blocking(:), tied(:)
     real(wp), allocatable :: ratio(:)
 
@@ -57,11 +56,10 @@ contains
   !> The one of the tied rows that would block first if the basic variables of the start were larger by e, e^2, ...
   !> (lexicographic order). Without it ties could make the simplex go round in circles. Row i changes with such a variable
   !> by 1 if it is basic in it, not at all if it is basic elsewhere, and else by minus the entry of its column.
-  pure function least_row(tableau, slope, tied) result(row)
+  pure integer function least_row(tableau, slope, tied) result(row)
     type(contact_tableau), intent(in) :: tableau
     real(wp), intent(in) :: slope(:)   !! of the entering column [n]
     logical, intent(in) :: tied(:)     !! [n]
-    integer :: row
     logical :: left(size(tied))
     integer, allocatable :: rows(:)
     real(wp), allocatable :: ratio(:)

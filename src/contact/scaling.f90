@@ -30,13 +30,14 @@ module epcont_contact_scaling
     real(wp) :: gap_unit = 1.0_wp               !! omega
     real(wp), allocatable :: motion_size(:)     !! largest entry of each column of the given A [all motions]
     integer, allocatable :: kept(:)             !! which of the given motions these are [m]
+    logical, allocatable :: first_touching(:)   !! pairs that hold every motion [n]
+    logical, allocatable :: guess(:)            !! of the pairs in contact; not allocated where there is none [n]
   end type scaled_problem
 
 contains
 
-  pure function scale_problem(problem) result(scaled)
+  pure type(scaled_problem) function scale_problem(problem) result(scaled)
     type(contact_problem), intent(in) :: problem
-    type(scaled_problem) :: scaled
     real(wp) :: driving   !! largest gap that asks for forces
     real(wp) :: largest   !! max|F|
     integer :: j, m
@@ -69,12 +70,11 @@ contains
   end function scale_problem
 
   !> rho, from max|F|, the largest driving gap and the largest load; 0 if there is nothing to measure.
-  pure function force_unit(flexibility, gap, load) result(unit)
+  pure real(wp) function force_unit(flexibility, gap, load)
     real(wp), intent(in) :: flexibility, gap, load
-    real(wp) :: unit
 
-    unit = load
-    if (flexibility > 0.0_wp) unit = max(unit, gap/flexibility)
+    force_unit = load
+    if (flexibility > 0.0_wp) force_unit = max(load, gap/flexibility)
   end function force_unit
 
   !> Hold the motions in `dropped` at zero: they leave the problem.
@@ -84,7 +84,7 @@ contains
     integer, allocatable :: kept(:)
     integer :: j
 
-    kept = pack([(j, j=1, size(dropped))],.not. dropped)
+    kept = pack([(j, j=1, size(dropped))], .not. dropped)
     scaled%motion = scaled%motion(:, kept)
     scaled%resultant = scaled%resultant(kept)
     scaled%kept = scaled%kept(kept)
@@ -105,22 +105,18 @@ contains
   !> Largest absolute entry of each column; that of the whole matrix (or 1) for a column of zeros.
   pure function maximum_of_columns(matrix) result(largest)
     real(wp), intent(in) :: matrix(:, :)
-    real(wp), allocatable :: largest(:)
-    real(wp) :: overall
+    real(wp) :: largest(size(matrix, 2))
     integer :: j
 
-    largest = [(largest_of(matrix(:, j)), j=1, size(matrix, 2))]
-    overall = largest_of(largest)
-    if (overall <= 0.0_wp) overall = 1.0_wp
-    where (largest <= 0.0_wp) largest = overall
+    largest = [(largest_of(matrix(:, j)), j=1, size(largest))]
+    where (largest <= 0.0_wp) largest = largest_of(largest)
+    where (largest <= 0.0_wp) largest = 1.0_wp
   end function maximum_of_columns
 
   !> Largest absolute value; 0 of none.
-  pure function largest_of(values) result(largest)
+  pure real(wp) function largest_of(values)
     real(wp), intent(in) :: values(:)
-    real(wp) :: largest
 
-    largest = 0.0_wp
-    if (size(values) > 0) largest = maxval(abs(values))
+    largest_of = maxval([abs(values), 0.0_wp])
   end function largest_of
 end module epcont_contact_scaling

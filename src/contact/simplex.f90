@@ -9,10 +9,9 @@
 !> depend on each other, once each pair has a hair of flexibility of its own.
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
-  use epcont_contact_basis, only: basic_solution
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, has_right_signs, &
-    noise, sign_tolerance
+    noise, sign_tolerance, solve_set
   use epcont_contact_loading, only: follow_load, path_complete, path_ray
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: negligible, scaled_problem
@@ -33,10 +32,8 @@ module epcont_contact_simplex
 contains
 
   !> Follow the load from one set of contacts to the next until a fresh solution passes the test of signs.
-  pure subroutine find_contacts(scaled, first_touching, guess, solution, state, ray)
+  pure subroutine find_contacts(scaled, solution, state, ray)
     type(scaled_problem), intent(in) :: scaled
-    logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
-    logical, allocatable, intent(in) :: guess(:)        !! of the pairs in contact, if allocated [n]
     type(contact_solution), intent(inout) :: solution   !! state, and the record of the pivots
     type(contact_state), intent(out) :: state
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
@@ -45,11 +42,11 @@ contains
     integer :: attempt, outcome
     logical :: found
 
-    closed = first_touching
-    if (allocated(guess)) closed = closed .or. guess
-    state = fresh_state(scaled, closed, first_touching)
+    closed = scaled%first_touching
+    if (allocated(scaled%guess)) closed = closed .or. scaled%guess
+    state = fresh_state(scaled, closed)
     lifted = max(basic_values(state), 0.0_wp)
-    if (state%basis%sound .and. .not. allocated(guess)) lifted = unloaded_values(scaled, state)
+    if (state%basis%sound .and. .not. allocated(scaled%guess)) lifted = unloaded_values(scaled, state)
     do attempt = 0, restart_limit
       if (.not. state%basis%sound) exit   ! the motions are held too badly to be computed
       solution%state = contact_solved
@@ -61,15 +58,15 @@ contains
         return
       end if
       if (outcome == path_complete .and. mod(attempt, 2) == 0) then
-        state = fresh_state(scaled, closed, first_touching)
+        state = fresh_state(scaled, closed)
         lifted = max(basic_values(state), 0.0_wp)
         if (has_right_signs(scaled, state, sign_tolerance)) return
       else
-        state = fresh_state(scaled, first_touching, first_touching)
+        state = fresh_state(scaled, scaled%first_touching)
         lifted = lifted_apart(state, attempt)
       end if
       if (attempt > 1) cycle
-      call exchange_afresh(scaled, attempt*own_flexibility, first_touching, solution, state, found)
+      call exchange_afresh(scaled, attempt*own_flexibility, solution, state, found)
       if (found) return
     end do
     if (.not. has_right_signs(scaled, state, sign_tolerance)) solution%state = contact_stalled
@@ -77,29 +74,29 @@ contains
 
   !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless the set is right
   !! without that too.
-  pure subroutine exchange_afresh(scaled, own, first_touching, solution, state, found)
+  pure subroutine exchange_afresh(scaled, own, solution, state, found)
     type(scaled_problem), intent(in) :: scaled
     real(wp), intent(in) :: own                         !! part of the largest flexibility
-    logical, intent(in) :: first_touching(:)            !! [n]
     type(contact_solution), intent(inout) :: solution
     type(contact_state), intent(inout) :: state
     logical, intent(out) :: found
     type(scaled_problem) :: softer
     type(contact_solution) :: trial
     type(contact_state) :: better
-    logical, allocatable :: closed(:)   !! no guess, then the set found [n]
+    logical, allocatable :: closed(:)
     integer :: k
 
     softer = scaled
+    if (allocated(softer%guess)) deallocate (softer%guess)
     do k = 1, size(scaled%gap)
       softer%flexibility(k, k) = softer%flexibility(k, k) + own*maxval(abs(scaled%flexibility))
     end do
     trial%pivots = solution%pivots
-    call find_by_blocks(softer, first_touching, closed, trial, better, found)
+    call find_by_blocks(softer, trial, better, found)
     if (.not. found) return
-    closed = first_touching
+    closed = scaled%first_touching
     closed(better%basis%pairs) = .true.
-    better = fresh_state(scaled, closed, first_touching)
+    better = fresh_state(scaled, closed)
     found = has_right_signs(scaled, better, sign_tolerance)
     if (.not. found) return
     solution%pivots = trial%pivots
@@ -132,8 +129,7 @@ contains
     type(contact_state) :: rest
 
     rest%basis = state%basis
-    call basic_solution(rest%basis, scaled, scaled%unloaded_gap, 0.0_wp*scaled%resultant, &
-                        rest%force, rest%gap, rest%approach)
+    call solve_set(rest, scaled, scaled%unloaded_gap, 0.0_wp*scaled%resultant, refinements=1)
     values = max(basic_values(rest), 0.0_wp)
   end function unloaded_values
 
@@ -150,11 +146,10 @@ contains
   end function lifted_apart
 
   !> Is z = `ray` really a proof that no solution exists: F z = 0, A'z = 0, z >= 0 and g'z < 0?
-  pure function is_overlap(scaled, ray) result(overlap)
+  pure logical function is_overlap(scaled, ray) result(overlap)
     type(scaled_problem), intent(in) :: scaled
     real(wp), intent(in) :: ray(:)
-    logical :: overlap
-    real(wp), allocatable :: nothing(:)   !! what of F z may be rounding [n]
+    real(wp) :: nothing(size(ray))   !! what of F z may be rounding [n]
     real(wp) :: largest
 
     largest = maxval([abs(ray), 0.0_wp])

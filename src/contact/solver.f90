@@ -1,9 +1,9 @@
 !> From a contact problem to its answer: scaling, rigid start, the set of contacts by one rule or the other, units.
 module epcont_contact_solver
   use epcont_base_kinds, only: wp
-  use epcont_contact_basis, only: gaps_under
+  use epcont_contact_basis, only: new_basis
   use epcont_contact_block_pivoting, only: find_by_blocks
-  use epcont_contact_contact_state, only: contact_state, fresh_state, noise, terms_of_gaps
+  use epcont_contact_contact_state, only: contact_state, gaps_under, noise, solve_set, terms_of_gaps
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, contact_solution, contact_stalled
   use epcont_contact_scaling, only: drop_motions, negligible, restore_units, scale_problem, scaled_problem
@@ -25,14 +25,10 @@ contains
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
     logical, intent(in), optional :: by_blocks  !! RULE BLOCK; not given: CONRY
     type(scaled_problem) :: scaled
-    type(contact_solution) :: begun
     type(rigid_start) :: rigid
-    type(contact_state) :: state
-    real(wp), allocatable :: ray(:)
-    logical, allocatable :: guess(:)   !! allocated where there is one
 
-    if (present(start)) guess = start
     scaled = scale_problem(problem)
+    if (present(start)) scaled%guess = start
     call clear(scaled, solution)
     call find_rigid_start(scaled, rigid)
     if (.not. rigid%balanced) then
@@ -40,42 +36,25 @@ contains
       solution%escape = rigid%escape/scaled%motion_size
       return
     end if
+    scaled%first_touching = rigid%touching
     call drop_motions(scaled, rigid%redundant)
     solution%motion_free = rigid%redundant
-
     if (present(by_blocks)) then
-      if (by_blocks) call solve_by_blocks(scaled, rigid%touching, guess, solution)
-      if (solution%by_blocks) return
+      if (by_blocks) call solve_by_blocks(scaled, solution)
     end if
-    begun = solution
-    call find_contacts(scaled, rigid%touching, guess, solution, state, ray)
-    if (solution%state == contact_stalled) then
-      ! Ties may have led the path round in a circle: blocks know of no path.
-      call solve_by_blocks(scaled, rigid%touching, guess, begun)
-      if (begun%by_blocks) then
-        solution = begun
-        return
-      end if
-    end if
-    if (solution%state == contact_overlap) then
-      solution%overlapping = ray > ray_tolerance*maxval(ray)
-    else
-      call settle(scaled, state, solution)
-    end if
+    if (.not. solution%by_blocks) call solve_by_simplex(scaled, solution)
   end subroutine solve_contact
 
   !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left of it.
-  pure subroutine solve_by_blocks(scaled, first_touching, guess, solution)
+  pure subroutine solve_by_blocks(scaled, solution)
     type(scaled_problem), intent(in) :: scaled
-    logical, intent(in) :: first_touching(:)            !! pairs that hold every motion [n]
-    logical, allocatable, intent(in) :: guess(:)        !! of the pairs in contact, if allocated [n]
     type(contact_solution), intent(inout) :: solution
     type(contact_solution) :: trial
     type(contact_state) :: state
     logical, allocatable :: pressed(:)
 
     trial = solution
-    call find_by_blocks(scaled, first_touching, guess, trial, state, trial%by_blocks)
+    call find_by_blocks(scaled, trial, state, trial%by_blocks)
     solution%block_steps = trial%block_steps
     if (.not. trial%by_blocks) return
     call settle(scaled, state, trial)
@@ -84,6 +63,26 @@ contains
     if (any(trial%indeterminate) .or. any(find_free_motions(scaled, pressed, pressed))) return
     solution = trial
   end subroutine solve_by_blocks
+
+  !> RULE CONRY. Where ties may have led the path round in a circle blocks are tried, which know of no path.
+  pure subroutine solve_by_simplex(scaled, solution)
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_solution), intent(inout) :: solution
+    type(contact_solution) :: trial
+    type(contact_state) :: state
+    real(wp), allocatable :: ray(:)
+
+    trial = solution
+    call find_contacts(scaled, trial, state, ray)
+    if (trial%state == contact_stalled) call solve_by_blocks(scaled, solution)
+    if (solution%by_blocks) return
+    solution = trial
+    if (solution%state == contact_overlap) then
+      solution%overlapping = ray > ray_tolerance*maxval(ray)
+    else
+      call settle(scaled, state, solution)
+    end if
+  end subroutine solve_by_simplex
 
   !> An answer of no contact at all, to be filled in.
   pure subroutine clear(scaled, solution)
@@ -142,8 +141,9 @@ contains
       terms = terms_of_gaps(scaled, state)
       state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
       if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. all(pressed(state%basis%pairs))) return
-      fewer = fresh_state(scaled, pressed, pressed)
+      fewer%basis = new_basis(scaled, pressed)
       if (.not. fewer%basis%sound) return   ! a motion is held by rounding
+      call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
       state = fewer
     end do
   end subroutine cut_rounding

@@ -43,12 +43,11 @@ module epcont_contact_tableau
 contains
 
   !> The tableau of a sound basis, from `start` at t = 0 to `goal` at t = 1.
-  pure function new_tableau(problem, basis, start, goal) result(tableau)
+  pure type(contact_tableau) function new_tableau(problem, basis, start, goal) result(tableau)
     type(scaled_problem), intent(in) :: problem
     type(contact_basis), intent(in) :: basis
     real(wp), intent(in) :: start(:)   !! basic variable of each pair at t = 0, all >= 0 [n]
     real(wp), intent(in) :: goal(:)    !! the same at t = 1 [n]
-    type(contact_tableau) :: tableau
     integer :: k, n
 
     n = size(start)
@@ -93,19 +92,17 @@ contains
   end subroutine fill_entries
 
   !> Row of a variable; 0 while it is nonbasic.
-  elemental function row_of(tableau, variable) result(row)
+  elemental integer function row_of(tableau, variable) result(row)
     type(contact_tableau), intent(in) :: tableau
     integer, intent(in) :: variable
-    integer :: row
 
     row = max(tableau%place(variable), 0)
   end function row_of
 
   !> Column of a variable; 0 while it is basic.
-  elemental function column_of(tableau, variable) result(column)
+  elemental integer function column_of(tableau, variable) result(column)
     type(contact_tableau), intent(in) :: tableau
     integer, intent(in) :: variable
-    integer :: column
 
     column = max(-tableau%place(variable), 0)
   end function column_of

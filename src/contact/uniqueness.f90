@@ -91,10 +91,9 @@ contains
   end subroutine share_equally
 
   !> Have two pairs the same flexibility and the same motion?
-  pure function are_alike(problem, i, k) result(alike)
+  pure logical function are_alike(problem, i, k) result(alike)
     type(scaled_problem), intent(in) :: problem
     integer, intent(in) :: i, k
-    logical :: alike
     real(wp) :: zero
 
     zero = negligible*max(problem%flexibility(i, i), problem%flexibility(k, k))

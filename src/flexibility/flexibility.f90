@@ -2,6 +2,7 @@
 module epcont_flexibility_flexibility
   use epcont_assembly_stiffness, only: body_stiffness
   use epcont_base_kinds, only: wp
+  use epcont_linalg_assembled, only: sparse_rows
   use epcont_linalg_dense, only: cholesky_solve
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
@@ -28,15 +29,14 @@ contains
     integer, intent(in) :: b                       !! the body
     type(body_stiffness), intent(in) :: stiffness  !! factored
     type(body_flexibility), intent(out) :: part
-    real(wp), allocatable :: weight(:)
-    integer, allocatable :: start(:), equation(:)
+    type(sparse_rows) :: rows
 
-    call body_rows(model, numbering, b, part%pair, start, equation, weight)
+    call find_rows(model, numbering, b, part%pair, rows)
     allocate (part%matrix(size(part%pair), size(part%pair)), source=0.0_wp)
     if (size(part%pair) == 0) return
-    weight = weight/sqrt(stiffness%unit)
-    call stiffness%matrix%add_gram(start, equation, weight, part%matrix)
-    if (numbering%body(b)%border > 0) call add_border(stiffness, start, equation, weight, part%matrix)
+    rows%weight = rows%weight/sqrt(stiffness%unit)
+    call stiffness%matrix%add_compliance(rows, part%matrix)
+    if (numbering%body(b)%border > 0) call add_border(stiffness, rows, part%matrix)
   end subroutine find_flexibility
 
   !> Add a body's part to F.
@@ -52,23 +52,20 @@ contains
     end do
   end subroutine add_flexibility
 
-  !> Rows of N in one body, of the pairs that have any entry there: start(k) to start(k+1)-1 of pair(k) are equations, negative ones
-  !! of the border, and their weights in the gap. Freedoms that are held, across the normal or of another body are left out.
-  pure subroutine body_rows(model, numbering, b, pair, start, equation, weight)
+  !> Rows of N in one body, of the pairs that have any entry there; negative equations are of the border. Freedoms that are
+  !! held, across the normal or of another body are left out.
+  pure subroutine find_rows(model, numbering, b, pair, rows)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
     integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
-    integer, allocatable, intent(out) :: start(:)     !! [its pairs + 1]
-    integer, allocatable, intent(out) :: equation(:)  !! [entries]
-    real(wp), allocatable, intent(out) :: weight(:)   !! [entries]
-    integer :: c, i, k, last, rows
+    type(sparse_rows), intent(out) :: rows
+    integer :: c, found, i, k, last
 
-    allocate (pair(model%pairs), start(model%pairs + 1))
-    allocate (equation(2*size(model%row_node)), weight(2*size(model%row_node)))
-    start(1) = 1
+    allocate (pair(model%pairs), rows%start(model%pairs + 1), source=1)
+    allocate (rows%equation(2*size(model%row_node)), rows%weight(2*size(model%row_node)))
     last = 0
-    rows = 0
+    found = 0
     do k = 1, model%pairs
       do i = model%row_start(k), model%row_start(k + 1) - 1
         if (model%body(model%row_node(i)) /= b) cycle
@@ -76,39 +73,38 @@ contains
           associate (number => numbering%equation(c, model%row_node(i)))
             if (number == 0 .or. model%normal(c, k) == 0.0_wp) cycle
             last = last + 1
-            equation(last) = number
-            weight(last) = model%row_weight(i)*model%normal(c, k)
+            rows%equation(last) = number
+            rows%weight(last) = model%row_weight(i)*model%normal(c, k)
           end associate
         end do
       end do
-      if (last < start(rows + 1)) cycle
-      rows = rows + 1
-      pair(rows) = k
-      start(rows + 1) = last + 1
+      if (last < rows%start(found + 1)) cycle
+      found = found + 1
+      pair(found) = k
+      rows%start(found + 1) = last + 1
     end do
-    pair = pair(:rows)
-    start = start(:rows + 1)
-    equation = equation(:last)
-    weight = weight(:last)
-  end subroutine body_rows
+    pair = pair(:found)
+    rows = sparse_rows(rows%start(:found + 1), rows%equation(:last), rows%weight(:last))
+  end subroutine find_rows
 
   !> What the border adds: K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'.
-  pure subroutine add_border(stiffness, start, equation, weight, flexibility)
+  pure subroutine add_border(stiffness, rows, flexibility)
     type(body_stiffness), intent(in) :: stiffness
-    integer, intent(in) :: start(:), equation(:)
-    real(wp), intent(in) :: weight(:)
+    type(sparse_rows), intent(in) :: rows
     real(wp), intent(inout) :: flexibility(:, :)
     real(wp), allocatable :: response(:, :), solved(:, :)
     integer :: i, k
 
-    allocate (response(size(start) - 1, size(stiffness%schur, 1)), source=0.0_wp)
-    do k = 1, size(start) - 1
-      do i = start(k), start(k + 1) - 1
-        if (equation(i) > 0) then
-          response(k, :) = response(k, :) + weight(i)*stiffness%coupling(equation(i), :)
-        else
-          response(k, -equation(i)) = response(k, -equation(i)) - weight(i)
-        end if
+    allocate (response(size(flexibility, 1), size(stiffness%schur, 1)), source=0.0_wp)
+    do k = 1, size(response, 1)
+      do i = rows%start(k), rows%start(k + 1) - 1
+        associate (equation => rows%equation(i))
+          if (equation > 0) then
+            response(k, :) = response(k, :) + rows%weight(i)*stiffness%coupling(equation, :)
+          else
+            response(k, -equation) = response(k, -equation) - rows%weight(i)
+          end if
+        end associate
       end do
     end do
     solved = transpose(response)

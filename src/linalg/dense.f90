@@ -4,10 +4,10 @@
 !> is a fault is for the caller to say, in the words of the problem.
 module epcont_linalg_dense
   use epcont_base_kinds, only: wp
-  use epcont_linalg_lapack, only: dgemm, dgesvd, dgetrf, dgetrs, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
+  use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
   implicit none
   private
-  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky, leading_solve, pivoted_cholesky
+  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky, pivoted_cholesky
   public :: lu_solve, add_product, null_space
 
 contains
@@ -21,13 +21,13 @@ contains
     if (size(a, 1) > 0) call dpotrf('L', size(a, 1), a, size(a, 1), info)
   end subroutine cholesky_factor
 
-  !> Replace each column of `b` by the solution x of LL'x = b.
+  !> Replace each column of `b` by the solution of LL'x = b, L being the leading rows of `factor`.
   pure subroutine cholesky_solve(factor, b)
-    real(wp), contiguous, intent(in) :: factor(:, :)  !! from `cholesky_factor` [n, n]
+    real(wp), contiguous, intent(in) :: factor(:, :)  !! from `cholesky_factor` or `extend_cholesky` [>= n, >= n]
     real(wp), contiguous, intent(inout) :: b(:, :)    !! right-hand sides, then solutions [n, k]
     integer :: info
 
-    if (size(b) > 0) call dpotrs('L', size(factor, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
+    if (size(b) > 0) call dpotrs('L', size(b, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
   end subroutine cholesky_solve
 
   !> Carry a factor on: of the leading n rows of `a` the first `done` hold L, the others the matrix; then all hold L.
@@ -54,15 +54,6 @@ contains
     call dpotrf('L', rest, a(done + 1, done + 1), lda, info)
     if (info > 0) info = info + done
   end subroutine extend_cholesky
-
-  !> Replace each column of `b` by the solution of LL'x = b, L being the leading rows of `factor`.
-  pure subroutine leading_solve(factor, b)
-    real(wp), contiguous, intent(in) :: factor(:, :)  !! from `extend_cholesky` [>= n, >= n]
-    real(wp), contiguous, intent(inout) :: b(:, :)    !! right-hand sides, then solutions [n, k]
-    integer :: info
-
-    if (size(b) > 0) call dpotrs('L', size(b, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
-  end subroutine leading_solve
 
   !> Replace a Cholesky factor L by the inverse of LL', whole.
   pure subroutine cholesky_inverse(a)
@@ -100,15 +91,10 @@ contains
     real(wp), contiguous, intent(inout) :: a(:, :)    !! [n, n]
     real(wp), contiguous, intent(inout) :: b(:, :)    !! right-hand sides, then solutions [n, k]
     integer, intent(out) :: info          !! 0, or the first pivot that is exactly zero (`b` is then untouched)
-    integer, allocatable :: pivots(:)
-    integer :: n
+    integer :: pivots(size(a, 1))
 
-    n = size(a, 1)
     info = 0
-    if (n == 0) return
-    allocate (pivots(n))
-    call dgetrf(n, n, a, n, pivots, info)
-    if (info == 0 .and. size(b) > 0) call dgetrs('N', n, size(b, 2), a, n, pivots, b, n, info)
+    if (size(a) > 0) call dgesv(size(a, 1), size(b, 2), a, size(a, 1), pivots, b, size(a, 1), info)
   end subroutine lu_solve
 
   !> c = c + factor a b.

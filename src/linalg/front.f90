@@ -11,9 +11,8 @@
 !> Where nested dissection has found the fronts, few operations are done, and all of them on full matrices.
 module epcont_linalg_front
   use epcont_base_kinds, only: i8, rp => wp, wp
-  use epcont_linalg_assembled, only: add_seen_through, assembled_matrix
+  use epcont_linalg_assembled, only: add_seen_through, assembled_matrix, probes, sparse_rows
   use epcont_linalg_dense, only: cholesky_inverse
-  use epcont_linalg_factored, only: probes
   use epcont_linalg_front_layout, only: front_layout
   use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
   use epcont_system_large_pages, only: use_large_pages
@@ -21,7 +20,7 @@ module epcont_linalg_front
   private
   public :: front_matrix
 
+  include 'blocks.inc'
   include 'front_kernel.inc'
-  include 'front_solve.inc'
-  include 'columns.inc'
+  include 'blocks_kernel.inc'
 end module epcont_linalg_front

@@ -22,65 +22,75 @@ module epcont_linalg_front_layout
     integer, allocatable :: element(:)     !! the elements in the order of the first fronts that they have equations of
   contains
     procedure :: places
+    procedure :: reached_by
     procedure :: entries
-    procedure :: remainder_starts
-    procedure :: remainders
+    procedure :: update_starts
     procedure :: operations
   end type front_layout
 
 contains
 
-  !> The layout of the fronts that begin at these equations, for elements with these equations. A front reaches what elements
-  !! join to its equations and what the fronts below it reach, as far as that comes later.
+  !> The layout of the fronts that begin at these equations, for elements with these equations.
   pure function new_front_layout(first, numbers) result(layout)
     integer, intent(in) :: first(:)         !! [fronts + 1]
     integer, intent(in) :: numbers(:, :)    !! equations of each element; 0 and less: none [any, elements]
     type(front_layout) :: layout
-    type(incidence) :: at
-    logical, allocatable :: seen(:)
-    integer, allocatable :: child(:), next(:), reached(:), row(:)
+    type(incidence) :: at                   !! elements of each front
     integer, allocatable :: home(:, :)
-    integer :: c, e, found, fronts, k, p
+    integer :: e, p
 
-    fronts = size(first) - 1
     layout%first = first
-    allocate (layout%front_of(first(fronts + 1) - 1))
-    do p = 1, fronts
+    layout%own = first(2:) - first(:size(first) - 1)
+    allocate (layout%front_of(first(size(first)) - 1))
+    do p = 1, size(layout%own)
       layout%front_of(first(p):first(p + 1) - 1) = p
     end do
     home = lowest_front(layout%front_of, numbers)
-    at = new_incidence(home, fronts)
+    at = new_incidence(home, size(layout%own))
     layout%element = [at%group, pack([(e, e=1, size(home))], home(1, :) == 0)]
-    allocate (layout%parent(fronts), child(fronts), next(fronts), source=0)
-    allocate (layout%row_start(fronts + 1), source=1)
-    allocate (seen(size(layout%front_of)), source=.false.)
-    allocate (reached(size(seen)), row(size(seen)))
-    do p = 1, fronts
-      found = 0
+    call find_rows(layout, at, numbers)
+    layout%reached = layout%row_start(2:) - layout%row_start(:size(layout%own))
+    layout%in_sequence = stand_in_sequence(layout%parent)
+  end function new_front_layout
+
+  !> The rows of each front, and its parent. A front reaches what elements join to its equations and what the fronts below it
+  !! reach, as far as that comes later.
+  pure subroutine find_rows(layout, at, numbers)
+    type(front_layout), intent(inout) :: layout
+    type(incidence), intent(in) :: at
+    integer, intent(in) :: numbers(:, :)
+    logical :: seen(size(layout%front_of))
+    integer :: found(size(layout%front_of))
+    integer, allocatable :: child(:), next(:), row(:)   !! the last front below each, and the one before that
+    integer :: c, count, k, p
+
+    allocate (layout%parent(size(layout%own)), child(size(layout%own)), next(size(layout%own)), source=0)
+    allocate (layout%row_start(size(layout%first)), source=1)
+    allocate (row(size(found)))
+    seen = .false.
+    do p = 1, size(layout%own)
+      count = 0
       do k = at%start(p), at%start(p + 1) - 1
-        call add_new(numbers(:, at%group(k)), first(p + 1), seen, reached, found)
+        call add_new(numbers(:, at%group(k)), layout%first(p + 1), seen, found, count)
       end do
       c = child(p)
       do while (c > 0)
-        call add_new(row(layout%row_start(c):layout%row_start(c + 1) - 1), first(p + 1), seen, reached, found)
+        call add_new(row(layout%row_start(c):layout%row_start(c + 1) - 1), layout%first(p + 1), seen, found, count)
         c = next(c)
       end do
-      layout%row_start(p + 1) = layout%row_start(p) + found
-      if (found == 0) cycle
+      layout%row_start(p + 1) = layout%row_start(p) + count
+      if (count == 0) cycle
       if (layout%row_start(p + 1) - 1 > size(row)) row = [row, row]
-      row(layout%row_start(p):layout%row_start(p + 1) - 1) = in_order(reached(:found))
-      seen(reached(:found)) = .false.
+      row(layout%row_start(p):layout%row_start(p + 1) - 1) = in_order(found(:count))
+      seen(found(:count)) = .false.
       associate (above => layout%parent(p))
         above = layout%front_of(row(layout%row_start(p)))
         next(p) = child(above)
         child(above) = p
       end associate
     end do
-    layout%row = row(:layout%row_start(fronts + 1) - 1)
-    layout%own = first(2:) - first(:fronts)
-    layout%reached = layout%row_start(2:) - layout%row_start(:fronts)
-    layout%in_sequence = stand_in_sequence(layout%parent)
-  end function new_front_layout
+    layout%row = row(:layout%row_start(size(layout%first)) - 1)
+  end subroutine find_rows
 
   !> The first front that each element has equations of; 0 where it has none [1, elements].
   pure function lowest_front(front_of, numbers) result(front)
@@ -137,11 +147,23 @@ contains
     end do
   end function places
 
-  !> Entries that the factor takes.
-  pure integer(i8) function entries(self)
+  !> The equations that a front reaches, ascending.
+  pure function reached_by(self, front) result(row)
     class(front_layout), intent(in) :: self
+    integer, intent(in) :: front
+    integer :: row(self%reached(front))
 
-    entries = sum(int(self%own, i8)*(self%own + self%reached))
+    row = self%row(self%row_start(front):self%row_start(front + 1) - 1)
+  end function reached_by
+
+  !> Entries of the factor, and of what is kept with it.
+  pure integer(i8) function entries(self, kept)
+    class(front_layout), intent(in) :: self
+    logical, intent(in) :: kept          !! all update matrices are kept
+    integer(i8) :: start(size(self%first))
+
+    start = self%update_starts(kept)
+    entries = sum(int(self%own, i8)*(self%own + self%reached)) + start(size(start)) - 1
   end function entries
 
   !> Whether the fronts below each stand right before it: else what one leaves may still be wanted when others, not below the
@@ -161,41 +183,28 @@ contains
     end do
   end function stand_in_sequence
 
-  !> Where to put what each front leaves to the later equations when it has been eliminated: each in its own place where all are
-  !! kept, else each behind that of its parent, where those that are done with were before. And one behind the last [fronts + 1].
-  pure function remainder_starts(self, kept) result(start)
+  !> Where the update matrix of each front, what it leaves to the later equations, begins: in its own place where all are
+  !! kept, else behind that of its parent, where those that are done with were before. And one behind the last [fronts + 1].
+  pure function update_starts(self, kept) result(start)
     class(front_layout), intent(in) :: self
     logical, intent(in) :: kept
-    integer(i8), allocatable :: start(:)
+    integer(i8) :: start(size(self%first))
     integer(i8) :: last
     integer :: p
 
-    associate (fronts => size(self%parent))
-      allocate (start(fronts + 1))
-      last = 0
-      do p = fronts, 1, -1
-        if (kept .or. .not. self%in_sequence) then
-          start(p) = last + 1
-        else if (self%parent(p) == 0) then
-          start(p) = 1
-        else
-          start(p) = start(self%parent(p)) + int(self%reached(self%parent(p)), i8)**2
-        end if
-        last = max(last, start(p) - 1 + int(self%reached(p), i8)**2)
-      end do
-      start(fronts + 1) = last + 1
-    end associate
-  end function remainder_starts
-
-  !> Entries that these take.
-  pure integer(i8) function remainders(self, kept)
-    class(front_layout), intent(in) :: self
-    logical, intent(in) :: kept
-    integer(i8), allocatable :: start(:)
-
-    start = self%remainder_starts(kept)
-    remainders = start(size(start)) - 1
-  end function remainders
+    last = 0
+    do p = size(self%parent), 1, -1
+      if (kept .or. .not. self%in_sequence) then
+        start(p) = last + 1
+      else if (self%parent(p) == 0) then
+        start(p) = 1
+      else
+        start(p) = start(self%parent(p)) + int(self%reached(self%parent(p)), i8)**2
+      end if
+      last = max(last, start(p) - 1 + int(self%reached(p), i8)**2)
+    end do
+    start(size(start)) = last + 1
+  end function update_starts
 
   !> Operations that the factorization takes.
   pure real(wp) function operations(self)

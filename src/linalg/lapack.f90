@@ -8,8 +8,7 @@ module epcont_linalg_lapack
   private
   public :: dgemm, dgemv, dsyrk, dtrsm
   public :: sgemm, sgemv, ssyrk, strsm, spotrf
-  public :: dpotrf, dpotrs, dpotri, dpstrf, dpbtrf, dpbtrs
-  public :: dgetrf, dgetrs, dgesvd, dsyev
+  public :: dpotrf, dpotrs, dpotri, dpstrf, dgesv, dgesvd
 
   ! BLAS
   interface
@@ -22,7 +21,6 @@ module epcont_linalg_lapack
       real(wp), intent(in) :: a(lda, *), b(ldb, *)
       real(wp), intent(inout) :: c(ldc, *)
     end subroutine dgemm
-
 
     !> y = alpha op(A) x + beta y
     pure subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
@@ -95,40 +93,10 @@ module epcont_linalg_lapack
       real(wp), intent(in) :: tol
       real(wp), intent(out) :: work(*)
     end subroutine dpstrf
-
-    !> Cholesky factor of a band matrix
-    pure subroutine dpbtrf(uplo, n, kd, ab, ldab, info)
-      import :: wp
-      character(len=1), intent(in) :: uplo
-      integer, intent(in) :: n, kd, ldab
-      real(wp), intent(inout) :: ab(ldab, *)
-      integer, intent(out) :: info
-    end subroutine dpbtrf
-
-    !> Solution with the factor of dpbtrf
-    pure subroutine dpbtrs(uplo, n, kd, nrhs, ab, ldab, b, ldb, info)
-      import :: wp
-      character(len=1), intent(in) :: uplo
-      integer, intent(in) :: n, kd, nrhs, ldab, ldb
-      real(wp), intent(in) :: ab(ldab, *)
-      real(wp), intent(inout) :: b(ldb, *)
-      integer, intent(out) :: info
-    end subroutine dpbtrs
-
-    !> Eigenvalues, ascending, and eigenvectors of a symmetric matrix
-    pure subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
-      import :: wp
-      character(len=1), intent(in) :: jobz, uplo
-      integer, intent(in) :: n, lda, lwork
-      real(wp), intent(inout) :: a(lda, *)
-      real(wp), intent(out) :: w(*), work(*)
-      integer, intent(out) :: info
-    end subroutine dsyev
   end interface
 
-  ! Those of the above that panels in single precision take
+  ! Those of the above that factors in single precision take
   interface
-
     pure subroutine sgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
       import :: sp
       character(len=1), intent(in) :: trans
@@ -176,24 +144,14 @@ module epcont_linalg_lapack
 
   ! General matrices
   interface
-    !> LU factor with row interchanges
-    pure subroutine dgetrf(m, n, a, lda, ipiv, info)
+    !> Solution by LU factors with row interchanges, which replace A
+    pure subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
       import :: wp
-      integer, intent(in) :: m, n, lda
+      integer, intent(in) :: n, nrhs, lda, ldb
       real(wp), intent(inout) :: a(lda, *)
       integer, intent(out) :: ipiv(*), info
-    end subroutine dgetrf
-
-    !> Solution with the factor of dgetrf
-    pure subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
-      import :: wp
-      character(len=1), intent(in) :: trans
-      integer, intent(in) :: n, nrhs, lda, ldb
-      real(wp), intent(in) :: a(lda, *)
-      integer, intent(in) :: ipiv(*)
       real(wp), intent(inout) :: b(ldb, *)
-      integer, intent(out) :: info
-    end subroutine dgetrs
+    end subroutine dgesv
 
     !> Singular values, descending, and singular vectors
     pure subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)

@@ -1,81 +1,81 @@
-!> Panels of a variable-band matrix: where each begins and ends, the memory they take and the operations.
+!> Panels of a variable-band matrix: where each begins and how high it is, the memory they take and the operations.
 module epcont_linalg_panel_layout
   use epcont_base_kinds, only: i8, wp
   implicit none
   private
-  public :: find_panels, panel_entries, panel_operations, gram_operations
+  public :: panel_layout, new_panel_layout
 
   !> Columns of a panel, as a part of the mean height, and at least and at most.
   integer, parameter :: heights_a_width = 4, least_width = 16, most_width = 64
 
+  type :: panel_layout
+    integer :: width = least_width       !! columns of a panel; the last may have fewer
+    integer, allocatable :: first(:)     !! column of each panel [panels + 1]
+    integer, allocatable :: height(:)    !! rows of each, from its first column's on [panels]
+  contains
+    procedure :: entries
+    procedure :: operations
+    procedure :: compliance_operations
+  end type panel_layout
+
 contains
 
-  !> Panels of a matrix: where each begins, and its last row.
-  pure subroutine find_panels(reach, width, first, last)
-    integer, intent(in) :: reach(:)
-    integer, intent(out) :: width
-    integer, allocatable, intent(out) :: first(:), last(:)
+  !> The panels of a matrix. Their last rows never go back where they overlap, so that the factor fills what is stored.
+  pure function new_panel_layout(profile) result(layout)
+    integer, intent(in) :: profile(:)      !! the last row that each column is coupled with [order]
+    type(panel_layout) :: layout
     integer(i8) :: heights
-    integer :: p, panels
+    integer :: last, p, panels
 
-    heights = 0
-    do p = 1, size(reach)
-      heights = heights + (reach(p) - p + 1)
-    end do
-    width = int(heights/max(1, size(reach)))/heights_a_width
-    width = min(most_width, max(least_width, width - mod(width, 8)))
-    panels = (size(reach) + width - 1)/width
-    first = [(1 + (p - 1)*width, p=1, panels), size(reach) + 1]
-    allocate (last(panels))
+    heights = sum([(int(profile(p) - p + 1, i8), p=1, size(profile))])
+    associate (width => layout%width)
+      width = int(heights/max(1, size(profile)))/heights_a_width
+      width = min(most_width, max(least_width, width - mod(width, 8)))
+      panels = (size(profile) + width - 1)/width
+      layout%first = [(1 + (p - 1)*width, p=1, panels), size(profile) + 1]
+    end associate
+    allocate (layout%height(panels))
+    last = 0
     do p = 1, panels
-      last(p) = max(first(p + 1) - 1, maxval(reach(first(p):first(p + 1) - 1)))
-      if (p > 1) then
-        if (last(p - 1) >= first(p)) last(p) = max(last(p), last(p - 1))
-      end if
+      associate (first => layout%first(p), next => layout%first(p + 1))
+        last = max(next - 1, maxval(profile(first:next - 1)), merge(last, 0, last >= first))
+        layout%height(p) = last - first + 1
+      end associate
     end do
-  end subroutine find_panels
+  end function new_panel_layout
 
-  !> Entries that a matrix takes.
-  pure integer(i8) function panel_entries(reach) result(entries)
-    integer, intent(in) :: reach(:)
-    integer, allocatable :: first(:), last(:)
-    integer :: p, width
+  !> Entries that the factor takes.
+  pure integer(i8) function entries(self)
+    class(panel_layout), intent(in) :: self
 
-    call find_panels(reach, width, first, last)
-    entries = 0
-    do p = 1, size(last)
-      entries = entries + int(last(p) - first(p) + 1, i8)*(first(p + 1) - first(p))
-    end do
-  end function panel_entries
+    entries = sum(int(self%height, i8)*columns(self))
+  end function entries
 
-  !> Operations that its factorization takes.
-  pure real(wp) function panel_operations(reach) result(operations)
-    integer, intent(in) :: reach(:)
-    integer, allocatable :: first(:), last(:)
-    integer :: p, width
+  !> Operations that the factorization takes.
+  pure real(wp) function operations(self)
+    class(panel_layout), intent(in) :: self
 
-    call find_panels(reach, width, first, last)
+    operations = sum(real(columns(self), wp)*real(self%height, wp)**2)
+  end function operations
+
+  !> Operations of `add_compliance`.
+  pure real(wp) function compliance_operations(self, begins) result(operations)
+    class(panel_layout), intent(in) :: self
+    integer, intent(in) :: begins(:)     !! the first equation of each row of N
+    integer :: active, p
+
     operations = 0.0_wp
-    do p = 1, size(last)
-      operations = operations + real(first(p + 1) - first(p), wp)*real(last(p) - first(p) + 1, wp)**2
+    do p = 1, size(self%height)
+      active = count(begins < self%first(p + 1))
+      operations = operations + real(self%width, wp)*active*(2.0_wp*self%height(p) + active)
     end do
-  end function panel_operations
+  end function compliance_operations
 
-  !> Operations of `add_gram` for columns that begin at these equations, ascending.
-  pure real(wp) function gram_operations(reach, begins) result(operations)
-    integer, intent(in) :: reach(:), begins(:)
-    integer, allocatable :: first(:), last(:)
-    integer :: active, p, width
+  !> Columns of each panel.
+  pure function columns(self)
+    class(panel_layout), intent(in) :: self
+    integer :: columns(size(self%height))
 
-    call find_panels(reach, width, first, last)
-    operations = 0.0_wp
-    active = 0
-    do p = 1, size(last)
-      do while (active < size(begins))
-        if (begins(active + 1) >= first(p + 1)) exit
-        active = active + 1
-      end do
-      operations = operations + real(width, wp)*active*(2.0_wp*(last(p) - first(p) + 1) + active)
-    end do
-  end function gram_operations
+    columns = self%first(2:) - self%first(:size(columns))
+  end function columns
 end module epcont_linalg_panel_layout

@@ -3,7 +3,6 @@ module epcont_plan_forecast
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: short_real
-  use epcont_linalg_panel_layout, only: panel_entries
   use epcont_model_controls, only: precision_double, solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
@@ -110,9 +109,9 @@ contains
     type(body_numbering), intent(in) :: body
 
     if (body%solver == solver_frontal) then
-      entries = body%fronts%entries() + body%fronts%remainders(body%can_yield)
+      entries = body%fronts%entries(kept=body%can_yield)
     else
-      entries = panel_entries(body%reach)
+      entries = body%panels%entries()
     end if
   end function factor_entries
 

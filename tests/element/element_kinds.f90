@@ -6,9 +6,9 @@ module element_kinds
   use epcont_element_integration_point, only: evaluate_points, integration_point
   use epcont_element_element_kinds, only: all_kinds => element_kinds
   use epcont_linalg_dense, only: lu_solve
-  use epcont_linalg_lapack, only: dsyev
   use epcont_material_elasticity, only: bulk_modulus, isotropic_matrix, shear_modulus
   use epcont_element_kinematics, only: plane_stress
+  use lapack_checks, only: dsyev
   implicit none
   private
   public :: sample_shapes, label, sample_place, local_node, kind_with, shape_values, slopes, corners_of, centroid_radius

@@ -1,7 +1,7 @@
 !> Solves in two halves, against whole ones.
 module solve_halves
   use epcont_base_kinds, only: wp
-  use epcont_linalg_factored, only: factored_matrix
+  use epcont_linalg_assembled, only: assembled_matrix
   implicit none
   private
   public :: error_of_halves
@@ -11,7 +11,7 @@ contains
   !> Two right-hand sides, the second zero but in the last rows, added between the halves; the rows from each third of the order on
   !! wanted: largest difference from the whole solve of their sum, as a part of its largest value.
   function error_of_halves(matrix) result(error)
-    class(factored_matrix), intent(in) :: matrix   !! factored
+    class(assembled_matrix), intent(in) :: matrix   !! factored
     real(wp) :: error
     real(wp), dimension(matrix%order, 1) :: early, late, half, whole
     integer :: first, i, k, n

@@ -4,8 +4,9 @@
 !> each matrix: N, W, seconds of processor (median), operations, operations a second, and their part of dgemm's.
 program bench_factor
   use epcont_base_kinds, only: wp
-  use epcont_linalg_band, only: band_matrix, new_band_matrix
   use epcont_linalg_lapack, only: dgemm
+  use epcont_linalg_panel, only: panel_matrix
+  use epcont_linalg_panel_layout, only: new_panel_layout
   use statistics, only: median
   implicit none
   integer, parameter :: dense = 1000
@@ -62,17 +63,20 @@ contains
   !> A matrix of the band, factored as often as it takes to be timed.
   real(wp) function factor_time(n, w)
     integer, intent(in) :: n, w
-    type(band_matrix) :: given, matrix
+    type(panel_matrix) :: matrix
     real(wp) :: begun, ended, ratio, spent
-    integer :: at, times
+    logical :: stale(n)
+    integer :: at, k, times
 
-    given = new_band_matrix(n, w)
-    given%entries = -1.0_wp
-    given%entries(1, :) = 2*w + 1
+    call matrix%begin(new_panel_layout([(min(n, k + w), k=1, n)]), .false., 0)
     spent = 0
     times = 0
     do while (spent < least)
-      matrix = given
+      stale = .true.
+      call matrix%clear(stale)
+      do k = 1, n
+        call matrix%add(1, [k], reshape([1.0_wp], [1, 1]))
+      end do
       call cpu_time(begun)
       call matrix%factor(ratio, at)
       call cpu_time(ended)
