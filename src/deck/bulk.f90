@@ -11,7 +11,7 @@ module epcont_deck_bulk
   use epcont_deck_list, only: read_list
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: likely_name
-  use epcont_deck_table, only: card_table, new_table
+  use epcont_deck_table, only: card_table
   use epcont_deck_value, only: field_value, read_slot
   implicit none
   private
@@ -39,7 +39,7 @@ contains
     kind = kinds_of_lines(lines, first, entry%name)
     allocate (table(card_kinds))
     do k = 1, card_kinds
-      table(k) = new_table(entry(k), count(kind == k))
+      call table(k)%begin(entry(k), count(kind == k))
     end do
     do line = first, lines%count
       k = kind(line)
@@ -83,8 +83,8 @@ contains
         end if
         begun = .true.
         text = lines%text(line%first:min(line%last, line%first + 7))
-        if (line%special <= line%last .or. text /= before) &
-          found = kind_of(lines%text(line%first:line%last), names)
+        if (line%special <= line%last) text = ''   ! with a comma the name may be longer
+        if (text /= before .or. text == '') found = kind_of(lines%text(line%first:line%last), names)
         before = text
         kind(i) = found
       end associate
@@ -99,7 +99,7 @@ contains
     integer :: first, last
     logical :: large
 
-    call find_name(text, first, last, large)
+    call find_name(text, index(text, ','), first, last, large)
     name = upper(text(first:min(last, first + 7)))
     do kind = 1, size(names)
       if (names(kind) == name) return
@@ -140,15 +140,19 @@ contains
     type(card_table), intent(inout) :: table
     type(diagnostics), intent(inout) :: faults
     integer :: slot, column
+    logical :: blank
 
     do slot = 1, min(max(card%count, size(table%entry%column_at)), table%entry%list_slot - 1)
-      column = table%entry%column_of(slot)
-      if (column == 0) then
-        if (card%filled(slot)) call add_surplus(card, table, slot, faults)
-      else if (card%filled(slot)) then
-        call read_field(card, table, column, faults)
-      else
+      column = 0
+      if (slot <= size(table%entry%column_at)) column = table%entry%column_at(slot)
+      blank = slot > card%count
+      if (.not. blank) blank = card%last(slot) < card%first(slot)
+      if (blank .and. column > 0) then
         call take_blank(card, table, column, faults)
+      else if (column > 0) then
+        call read_field(card, table, column, faults)
+      else if (.not. blank) then
+        call add_surplus(card, table, slot, faults)
       end if
     end do
     if (table%entry%has_list()) call read_list(card, table, faults)

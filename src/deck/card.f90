@@ -17,7 +17,6 @@ module epcont_deck_card
   public :: card_fields, gather, continues, find_name
 
   integer, parameter :: width = 8            !! columns of a small field
-  integer, parameter :: last_data = 72       !! columns behind are never data
   integer, parameter :: longest_fixed = 80   !! columns of a fixed line
   integer, parameter :: longest_free = 256   !! columns of a free line
 
@@ -60,7 +59,8 @@ contains
     type(diagnostics), intent(inout) :: faults
 
     if (.not. allocated(card%at)) then
-      allocate (card%at(16), card%first(64), card%last(64))
+      allocate (card%at(16))
+      allocate (card%first(64), card%last(64), source=1)
       card%text = repeat(' ', longest_free)
     end if
     card%lines = 0
@@ -100,26 +100,29 @@ contains
     integer, intent(in) :: line
     type(card_fields), intent(inout) :: card
     type(diagnostics), intent(inout) :: faults
-    type(card_line) :: at
     logical :: large
-    integer :: first, last
+    integer :: length, first, last
 
-    at%line = line
-    at%first = card%used + 1
-    at%last = card%used + lines%line(line)%last - lines%line(line)%first + 1
-    do while (len(card%text) < at%last)
+    length = lines%line(line)%last - lines%line(line)%first + 1
+    do while (len(card%text) < card%used + length)
       card%text = card%text//card%text
     end do
-    card%text(at%first:at%last) = lines%text(lines%line(line)%first:lines%line(line)%last)
-    card%used = at%last
-    call inspect(lines, at, card%sound, faults)
-    if (card%lines == 0) then
-      call find_name(card%text(:at%last), first, last, large)
-    else
-      large = card%text(at%first:at%first) == '*'
-    end if
-    call open_slots(card, at, large)
-    if (card%sound) call cut(card, at, faults)
+    if (card%lines == size(card%at)) card%at = [card%at, card%at]
+    card%lines = card%lines + 1
+    associate (at => card%at(card%lines))
+      at = card_line(line, card%used + 1, card%used + length, slot=card%count + 1)
+      card%used = at%last
+      card%text(at%first:at%last) = lines%text(lines%line(line)%first:lines%line(line)%last)
+      call inspect(lines, at, card%sound, faults)
+      if (card%lines == 1) then
+        call find_name(card%text(:at%last), at%comma, first, last, large)
+      else
+        large = card%text(at%first:at%first) == '*'
+      end if
+      if (.not. card%sound) return
+      call open_slots(card, at, large)
+      call cut(card, at, faults)
+    end associate
   end subroutine add_line
 
   !> Look through a line: its first comma, and what may not be there.
@@ -162,14 +165,15 @@ contains
   end subroutine add_character_fault
 
   !> The name of a card in its first line; a `*` behind it means large fields.
-  pure subroutine find_name(text, first, last, large)
+  pure subroutine find_name(text, comma, first, last, large)
     character(len=*), intent(in) :: text     !! the line
+    integer, intent(in) :: comma             !! the first; 0: none
     integer, intent(out) :: first, last      !! the name, without `*`
     logical, intent(out) :: large
 
     first = 1
-    last = index(text, ',') - 1
-    if (last < 0) last = min(width, len(text))
+    last = min(width, len(text))
+    if (comma > 0) last = comma - 1
     call trim_blanks(text, first, last)
     large = .false.
     if (last > first) large = text(last:last) == '*'
@@ -185,7 +189,6 @@ contains
     logical, intent(in) :: large
 
     at%fields = merge(fields_a_line/2, fields_a_line, large)
-    at%slot = card%count + 1
     if (large .and. card%half_open) then
       at%slot = at%slot - at%fields
     else
@@ -195,12 +198,8 @@ contains
         card%last = [card%last, card%last]
       end if
       card%last(at%slot:card%count) = 0
-      card%first(at%slot:card%count) = 1
     end if
     card%half_open = large .and. .not. card%half_open
-    if (card%lines == size(card%at)) card%at = [card%at, card%at]
-    card%lines = card%lines + 1
-    card%at(card%lines) = at
   end subroutine open_slots
 
   !> Cut a line into its fields. Behind those of a free line only a continuation mark may stand.
@@ -221,7 +220,7 @@ contains
         card%first(slot) = from
         card%last(slot) = to
       else if (at%comma == 0) then
-        return
+        return   ! columns behind the fields are never data
       else if (from <= to .and. (slot > at%slot + at%fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
         card%sound = .false.
         call faults%add_error(columns(at, from, at%last), 'more than '//text_of(at%fields)//' data fields on a line', &
@@ -259,7 +258,7 @@ contains
   pure integer function field_width(at)
     type(card_line), intent(in) :: at
 
-    field_width = (last_data - width)/at%fields
+    field_width = merge(width, 2*width, at%fields == fields_a_line)
   end function field_width
 
   !> Move `from` and `to` inwards over blanks. These are compared by their codes: a character compared with a blank
@@ -307,7 +306,7 @@ contains
     integer :: first, last
     logical :: large
 
-    call find_name(self%text(:self%at(1)%last), first, last, large)
+    call find_name(self%text(:self%at(1)%last), self%at(1)%comma, first, last, large)
     name = self%text(first:last)
   end function name
 
@@ -330,7 +329,7 @@ contains
     logical :: large
 
     if (slot < 1 .or. slot > self%count) then
-      call find_name(self%text(:self%at(1)%last), first, last, large)
+      call find_name(self%text(:self%at(1)%last), self%at(1)%comma, first, last, large)
       place = columns(self%at(1), first, last)
       return
     end if

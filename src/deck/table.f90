@@ -6,7 +6,7 @@ module epcont_deck_table
   use epcont_deck_entry, only: card_entry, kind_word
   implicit none
   private
-  public :: card_table, list_item, new_table
+  public :: card_table, list_item
 
   !> One item of the open list of a card: the ids from one to another, or a point.
   type :: list_item
@@ -30,6 +30,7 @@ module epcont_deck_table
     type(list_item), allocatable :: list(:)            !! of all cards [items]
     integer, allocatable :: list_start(:)              !! card i has the items list_start(i) to list_start(i+1)-1 [count + 1]
   contains
+    procedure :: begin
     procedure :: column
     procedure :: identity
     procedure :: add_card
@@ -40,21 +41,22 @@ module epcont_deck_table
 
 contains
 
-  !> A table with room for `cards` cards, which are still to come.
-  pure type(card_table) function new_table(entry, cards) result(table)
+  !> An empty table with room for cards that are still to come.
+  subroutine begin(self, entry, cards)
+    class(card_table), intent(out) :: self
     type(card_entry), intent(in) :: entry   !! what the catalogue says of them
-    integer, intent(in) :: cards            !! how many
+    integer, intent(in) :: cards            !! how many there will be
     integer :: columns
 
     columns = size(entry%field)
-    table%entry = entry
-    allocate (table%value(columns, cards), source=0.0_wp)
-    allocate (table%given(columns, cards), source=.false.)
-    if (any(entry%field%kind == kind_word)) allocate (table%word(columns, cards), source=repeat(' ', 8))
-    allocate (table%sound(cards), table%line(cards), table%list_start(cards + 1), table%list(16))
-    allocate (table%noted(columns), table%noted_card(columns), source=0)
-    table%list_start(1) = 1
-  end function new_table
+    self%entry = entry
+    allocate (self%value(columns, cards), source=0.0_wp)
+    allocate (self%given(columns, cards), source=.false.)
+    if (any(entry%field%kind == kind_word)) allocate (self%word(columns, cards), source=repeat(' ', 8))
+    allocate (self%sound(cards), self%line(cards), self%list_start(cards + 1), self%list(16))
+    allocate (self%noted(columns), self%noted_card(columns), source=0)
+    self%list_start(1) = 1
+  end subroutine begin
 
   !> The column of a field by name. A name that the catalogue has not is a fault of the program.
   pure integer function column(self, name)

@@ -19,11 +19,11 @@ module epcont_deck_value
   character(len=*), parameter :: noun(4) = [character(len=20) :: &
     'a whole number', 'a real number', 'a list of directions', 'a word']
 
-  !> What a field says.
+  !> What a field says. (Not initialised: that would take longer than reading it.)
   type :: field_value
-    real(wp) :: number = 0.0_wp
-    character(len=8) :: word = ''   !! in capitals
-    logical :: sound = .false.      !! it can be taken
+    real(wp) :: number
+    character(len=8) :: word   !! in capitals
+    logical :: sound           !! it can be taken
   end type field_value
 
 contains
@@ -39,6 +39,7 @@ contains
     character(len=:), allocatable :: what, remedy
     integer :: outcome
 
+    value%sound = .false.
     if (.not. card%filled(slot)) then
       call add_fault(card, table, slot, 'is blank', entry%allowed(), faults)
       return
@@ -57,11 +58,13 @@ contains
   pure subroutine read_value(text, entry, value, outcome)
     character(len=*), intent(in) :: text     !! without blanks around it
     type(field_entry), intent(in) :: entry
-    type(field_value), intent(inout) :: value
+    type(field_value), intent(out) :: value
     integer, intent(out) :: outcome
     integer(i8) :: whole
 
     outcome = scan_sound
+    value%number = 0.0_wp
+    value%word = ''
     select case (entry%kind)
     case (kind_integer)
       call scan_integer(text, whole, outcome)
@@ -83,12 +86,15 @@ contains
     type(field_entry), intent(in) :: entry
 
     outcome = scan_sound
+    if (entry%kind == kind_word) then
+      if (entry%choices /= '' .and. index(' '//entry%choices//' ', ' '//trim(value%word)//' ') == 0) &
+        outcome = out_of_range
+      return
+    end if
     associate (number => value%number)
       if (number < entry%lowest .or. (entry%above_lowest .and. number <= entry%lowest) .or. &
           number > entry%highest .or. (entry%below_highest .and. number >= entry%highest)) then
         outcome = out_of_range
-      else if (entry%kind == kind_word .and. entry%choices /= '') then
-        if (index(' '//entry%choices//' ', ' '//trim(value%word)//' ') == 0) outcome = out_of_range
       else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
         if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) outcome = out_of_reach
       end if
