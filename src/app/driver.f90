@@ -99,17 +99,17 @@ contains
     written = .false.
     call prepare(path, run, watch, error)
     if (.not. allocated(error)) then
+      if (run%faults%error_count() > 0) then
+        status = status_deck
+        call say(arguments, name//'  rejected', status)
+      else if (arguments%check) then
+        call say(arguments, name//'  checked', status)
+      else
+        call make_plan(run, plan, watch)
+        if (arguments%plan) call print_text(name//run%plan, status)
+      end if
       call print_error(render(run%faults, run%deck%source))
-      if (run%faults%error_count() > 0) status = status_deck
-      if (status == status_deck .or. arguments%check) then
-        call say(arguments, name//'  '//trim(merge('rejected', 'checked ', status == status_deck)), status)
-        return
-      end if
-      call make_plan(run, plan, watch)
-      if (arguments%plan) then
-        call print_text(name//run%plan, status)
-        return
-      end if
+      if (run%faults%error_count() > 0 .or. arguments%check .or. arguments%plan) return
       call solve(run, plan, arguments%memory, watch, error)
       if (allocated(error)) error%message = path//': '//error%message
     end if
