@@ -1,93 +1,90 @@
-!> Standard output, and how the program ends. Fortran's WRITE does not say whether its text arrived; C does.
+!> Standard output and standard error. Fortran's WRITE does not say whether its text arrived; the system does.
 module epcont_app_console
-  use, intrinsic :: iso_c_binding, only: c_bool, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, &
-                                         c_null_char, c_null_ptr, c_ptr
-  use, intrinsic :: iso_fortran_env, only: error_unit
-  use epcont_base_error, only: status_internal, status_usage
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_size_t
+  use epcont_base_error, only: status_usage
   use epcont_base_version, only: program_name
   implicit none
   private
-  public :: print_text, watch_exit, stop_with
+  public :: print_text, print_error, is_terminal, terminal_columns
+
+  character(len=1), parameter, public :: newline = new_line('a')
+  integer(c_int), parameter :: standard_output = 1, standard_error = 2
+
+  !> What Linux says of a window.
+  type, bind(c) :: window_type
+    integer(c_short) :: rows, columns, width, height
+  end type window_type
 
   interface
-    integer(c_int) function c_puts(text) bind(c, name='puts')
-      import :: c_char, c_int
+    integer(c_size_t) function c_write(descriptor, text, length) bind(c, name='write')
+      import :: c_char, c_int, c_size_t
+      integer(c_int), value :: descriptor
       character(kind=c_char), intent(in) :: text(*)
-    end function c_puts
-    integer(c_int) function c_fflush(stream) bind(c, name='fflush')
-      import :: c_int, c_ptr
-      type(c_ptr), value :: stream
-    end function c_fflush
-    integer(c_int) function c_sigignore(signal) bind(c, name='sigignore')
+      integer(c_size_t), value :: length
+    end function c_write
+    integer(c_int) function c_isatty(descriptor) bind(c, name='isatty')
       import :: c_int
-      integer(c_int), value :: signal
-    end function c_sigignore
-    integer(c_int) function c_on_exit(handler, argument) bind(c, name='on_exit')
-      import :: c_funptr, c_int, c_ptr
-      type(c_funptr), value :: handler
-      type(c_ptr), value :: argument
-    end function c_on_exit
-    subroutine c_exit(status) bind(c, name='exit')
-      import :: c_int
-      integer(c_int), value :: status
-    end subroutine c_exit
-    subroutine c_exit_now(status) bind(c, name='_exit')
-      import :: c_int
-      integer(c_int), value :: status
-    end subroutine c_exit_now
+      integer(c_int), value :: descriptor
+    end function c_isatty
+    integer(c_int) function c_ioctl(descriptor, request, window) bind(c, name='ioctl')
+      import :: c_int, c_long, window_type
+      integer(c_int), value :: descriptor
+      integer(c_long), value :: request
+      type(window_type), intent(out) :: window
+    end function c_ioctl
   end interface
 
 contains
 
-  !> Print text on standard output, at once, and a newline where it does not end with one. Where that cannot be done,
-  !! `status` becomes at least that of files.
+  !> Print text on standard output, at once, and a newline where it does not end with one.
   subroutine print_text(text, status)
     character(len=*), intent(in) :: text
-    integer, intent(inout) :: status
-    integer(c_int) :: printed
+    integer, intent(inout) :: status   !! where that cannot be done, at least that of files afterwards
     integer :: last
 
     last = len(text)
-    if (last > 0) last = last - merge(1, 0, text(last:) == new_line('a'))
-    printed = c_puts(text(:last)//c_null_char)
-    if (c_fflush(c_null_ptr) == 0 .and. printed >= 0) return
-    if (status < status_usage) write (error_unit, '(a)') program_name//': standard output cannot be written'
+    if (last > 0) last = last - merge(1, 0, text(last:) == newline)
+    if (is_written(standard_output, text(:last)//newline)) return
+    if (status < status_usage) call print_error(program_name//': standard output cannot be written'//newline)
     status = max(status, status_usage)
   end subroutine print_text
 
-  !> From here on the program ends by `stop_with`, or else with the exit status of its fault: the Fortran runtime and OpenBLAS
-  !! have statuses of their own, which here would mean that there is an answer. A closed pipe, or a file above the size allowed,
-  !! is a fault of that file.
-  subroutine watch_exit(ended)
-    logical(c_bool), target, intent(in) :: ended   !! lives as long as the program; true when `stop_with` is called
-    integer(c_int), parameter :: broken_pipe = 13, file_size = 25
-    integer(c_int) :: ignored
+  !> Print on standard error, at once and as it is. Nothing comes of it where that cannot be written.
+  subroutine print_error(text)
+    character(len=*), intent(in) :: text
+    logical :: ignored
 
-    ignored = c_sigignore(broken_pipe)
-    ignored = c_sigignore(file_size)
-    ignored = c_on_exit(c_funloc(judge_exit), c_loc(ended))
-  end subroutine watch_exit
+    ignored = is_written(standard_error, text)
+  end subroutine print_error
 
-  !> What `exit` calls. Status 1 is that of memory that could not be had, with the Fortran runtime and with OpenBLAS.
-  subroutine judge_exit(status, ended) bind(c)
-    integer(c_int), value :: status
-    type(c_ptr), value :: ended
-    logical(c_bool), pointer :: in_order
+  !> Write text; a pipe may take it in parts.
+  logical function is_written(descriptor, text)
+    integer(c_int), intent(in) :: descriptor
+    character(len=*), intent(in) :: text
+    integer(c_size_t) :: done, part
 
-    call c_f_pointer(ended, in_order)
-    if (in_order) return
-    if (status == 1) then
-      write (error_unit, '(a)') program_name//': there is not enough memory, or less is allowed (ulimit)'
-      call c_exit_now(int(status_usage, c_int))
-    else
-      write (error_unit, '(a)') program_name//': internal error: please report it with the deck'
-      call c_exit_now(int(status_internal, c_int))
-    end if
-  end subroutine judge_exit
+    done = 0
+    do while (done < len(text))
+      part = c_write(descriptor, text(done + 1:), len(text, kind=c_size_t) - done)
+      if (part <= 0) exit
+      done = done + part
+    end do
+    is_written = done == len(text)
+  end function is_written
 
-  subroutine stop_with(status)
-    integer, intent(in) :: status
+  !> Is standard error a terminal?
+  logical function is_terminal()
+    is_terminal = c_isatty(standard_error) == 1
+  end function is_terminal
 
-    call c_exit(int(status, c_int))
-  end subroutine stop_with
+  !> Columns of that terminal; where it does not say, as many as any has.
+  integer function terminal_columns() result(columns)
+    integer(c_long), parameter :: window_size = 21523_c_long   !! TIOCGWINSZ of Linux
+    integer, parameter :: usual = 80
+    type(window_type) :: window
+
+    columns = 0
+    if (c_ioctl(standard_error, window_size, window) == 0) columns = window%columns
+    if (columns <= 0) columns = usual
+  end function terminal_columns
 end module epcont_app_console

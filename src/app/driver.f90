@@ -1,12 +1,10 @@
 !> One deck from file to results.
 module epcont_app_driver
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use epcont_accuracy_accuracy, only: accuracy_type
   use epcont_analysis, only: analyse
   use epcont_app_arguments, only: arguments_type, stem_of
-  use epcont_app_console, only: print_text
+  use epcont_app_console, only: newline, print_error, print_text
   use epcont_app_progress_display, only: progress_type
-  use epcont_app_terminal, only: print_error
   use epcont_base_error, only: error_type, status_deck, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: shown
@@ -39,13 +37,20 @@ module epcont_app_driver
   !> A scene is solved again while nodes come near that had no pair, but not more often.
   integer, parameter :: most_solves = 8
 
+  !> What will be solved, and how.
+  type :: scene_plan
+    type(numbering_type) :: numbering
+    type(iteration_plan) :: iteration
+    type(forecast_type) :: expected
+  end type scene_plan
+
 contains
 
-  !> Run one deck; `status` is its exit status.
+  !> Run one deck.
   subroutine run_deck(path, arguments, status)
     character(len=*), intent(in) :: path
     type(arguments_type), intent(in) :: arguments
-    integer, intent(out) :: status
+    integer, intent(out) :: status   !! its exit status
     type(progress_type) :: watch
 
     call watch%begin(shown(stem_of(path)), arguments%progress, arguments%quiet)
@@ -69,8 +74,7 @@ contains
     end if
     call lock_files(output_stem(path, arguments), lock, error)
     if (allocated(error)) then
-      status = error%status
-      write (error_unit, '(a)') shown(error%message)
+      call refuse(error, status)
       return
     end if
     call solve_deck(path, arguments, watch, status, written)
@@ -85,66 +89,86 @@ contains
     type(progress_type), intent(inout) :: watch
     integer, intent(out) :: status
     logical, intent(out) :: written   !! results, as far as that could be done
-    type(error_type), allocatable :: error, in_double
+    type(error_type), allocatable :: error
     type(run_results) :: run
-    type(numbering_type) :: numbering
-    type(iteration_plan) :: iteration
-    type(forecast_type) :: expected
-    integer :: singular, solve
-    logical :: entered
+    type(scene_plan) :: plan
+    character(len=:), allocatable :: name
 
+    name = shown(stem_of(path))
     status = status_valid
     written = .false.
     call prepare(path, run, watch, error)
     if (.not. allocated(error)) then
-      write (error_unit, '(a)', advance='no') render(run%faults, run%deck%source)
-      if (run%faults%error_count() > 0) status = status_deck
-      if (status == status_deck .or. arguments%check) then
-        call say(arguments, shown(stem_of(path))//'  '//trim(merge('rejected', 'checked ', status == status_deck)), status)
-        return
-      end if
-      call make_plan(run, numbering, iteration, expected, watch)
-      if (arguments%plan) then
-        call print_text(shown(stem_of(path))//run%plan, status)
-        return
-      end if
-      run%remarks = remarks_of_deck(run%faults, run%deck%source)
-      call run%deck%forget_text()
-      do solve = 1, most_solves
-        call check_memory(expected%bytes, arguments%memory, error)
-        call check_memory(expected%double_bytes, arguments%memory, in_double)
-        if (allocated(in_double)) iteration%against_double = in_double%message
-        if (allocated(error)) exit
-        iteration%threads = plan_threads(numbering, expected%bytes, granted_threads())
-        call watch%expect(iteration, run%model%controls%most_iterations, expected%operations)
-        call analyse(run%model, run%motions, numbering, iteration, run%answer, run%certificate, run%accuracy, singular, watch)
-        if (singular > 0 .or. solve == most_solves) exit
-        call enter_nodes_that_came_near(run%model, run%answer%displacement, run%answer%contact%touching, entered)
-        if (.not. entered) exit
-        call make_plan(run, numbering, iteration, expected, watch)
-      end do
-      if (allocated(error)) then
-        error%message = path//': '//error%message
+      if (run%faults%error_count() > 0) then
+        status = status_deck
+        call say(arguments, name//'  rejected', status)
+      else if (arguments%check) then
+        call say(arguments, name//'  checked', status)
       else
-        run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
-        status = run%outcome%status
-        if (run%outcome%has_answer) &
-          call remark_answer(run%model, run%motions, run%answer, run%certificate%scene, run%remarks)
-        call write_results(run, output_stem(path, arguments), arguments%all_tables, arguments%vtk, error)
-        written = .true.
-        call watch%lap(stage_writing)
-        call watch%erase()
+        call make_plan(run, plan, watch)
+        if (arguments%plan) call print_text(name//run%plan, status)
       end if
+      call print_error(render(run%faults, run%deck%source))
+      if (run%faults%error_count() > 0 .or. arguments%check .or. arguments%plan) return
+      call solve(run, plan, arguments%memory, watch, error)
+      if (allocated(error)) error%message = path//': '//error%message
+    end if
+    if (.not. allocated(error)) then
+      status = run%outcome%status
+      call write_results(run, output_stem(path, arguments), arguments%all_tables, arguments%vtk, error)
+      written = .true.
+      call watch%lap(stage_writing)
+      call watch%erase()
     end if
     if (allocated(error)) then
-      status = error%status
-      write (error_unit, '(a)') shown(error%message)
+      call refuse(error, status)
     else
       call tell(shown(path)//': ', run%remarks%of_answer)
-      if (len(run%outcome%sentence) > 0) write (error_unit, '(a)') shown(path)//': '//run%outcome%sentence
-      call say(arguments, one_line(shown(stem_of(path)), run%answer, run%accuracy, run%outcome), status)
+      if (len(run%outcome%sentence) > 0) call tell(shown(path)//': ', run%outcome%sentence//newline)
+      call say(arguments, one_line(name, run%answer, run%accuracy, run%outcome), status)
     end if
   end subroutine solve_deck
+
+  !> Solve, anew with more pairs while nodes come near that had none, and judge the answer.
+  subroutine solve(run, plan, limit, watch, error)
+    type(run_results), intent(inout) :: run
+    type(scene_plan), intent(inout) :: plan
+    real(wp), intent(in) :: limit   !! of memory [GB]
+    type(progress_type), intent(inout) :: watch
+    type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable :: in_double
+    integer :: singular, count
+    logical :: entered
+
+    run%remarks = remarks_of_deck(run%faults, run%deck%source)
+    call run%deck%forget_text()
+    do count = 1, most_solves
+      call check_memory(plan%expected%bytes, limit, error)
+      if (allocated(error)) return
+      call check_memory(plan%expected%double_bytes, limit, in_double)
+      if (allocated(in_double)) plan%iteration%against_double = in_double%message
+      plan%iteration%threads = plan_threads(plan%numbering, plan%expected%bytes, granted_threads())
+      call watch%expect(plan%iteration, run%model%controls%most_iterations, plan%expected%operations)
+      call analyse(run%model, run%motions, plan%numbering, plan%iteration, run%answer, run%certificate, run%accuracy, &
+                   singular, watch)
+      if (singular > 0 .or. count == most_solves) exit
+      call enter_nodes_that_came_near(run%model, run%answer%displacement, run%answer%contact%touching, entered)
+      if (.not. entered) exit
+      call make_plan(run, plan, watch)
+    end do
+    run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
+    if (run%outcome%has_answer) &
+      call remark_answer(run%model, run%motions, run%answer, run%certificate%scene, run%remarks)
+  end subroutine solve
+
+  !> Say what is wrong.
+  subroutine refuse(error, status)
+    type(error_type), intent(in) :: error
+    integer, intent(out) :: status
+
+    call print_error(shown(error%message)//newline)
+    status = error%status
+  end subroutine refuse
 
   !> Lines on standard error, each behind the name of the deck.
   subroutine tell(name, text)
@@ -153,8 +177,8 @@ contains
 
     from = 1
     do while (from <= len(text))
-      to = from + index(text(from:), new_line('a')) - 2
-      write (error_unit, '(a)') name//text(from:to)
+      to = from + index(text(from:), newline) - 2
+      call print_error(name//text(from:to + 1))
       from = to + 2
     end do
   end subroutine tell
@@ -189,18 +213,16 @@ contains
   end subroutine prepare
 
   !> What will be solved, and how; in words, too.
-  subroutine make_plan(run, numbering, iteration, expected, watch)
+  subroutine make_plan(run, plan, watch)
     type(run_results), intent(inout) :: run
-    type(numbering_type), intent(out) :: numbering
-    type(iteration_plan), intent(out) :: iteration
-    type(forecast_type), intent(out) :: expected
+    type(scene_plan), intent(out) :: plan
     class(stopwatch), intent(inout) :: watch
 
-    numbering = number_equations(run%model)
+    plan%numbering = number_equations(run%model)
     call watch%lap(stage_numbering)
-    iteration = plan_iteration(run%model)
-    expected = forecast(run%model, run%motions, numbering, iteration)
-    run%plan = plan_text(run%model, run%motions, iteration, numbering, expected)
+    plan%iteration = plan_iteration(run%model)
+    plan%expected = forecast(run%model, run%motions, plan%numbering, plan%iteration)
+    run%plan = plan_text(run%model, run%motions, plan%iteration, plan%numbering, plan%expected)
     call watch%lap(stage_plan)
   end subroutine make_plan
 

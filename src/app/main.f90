@@ -1,10 +1,10 @@
 !> epcont: contact of plane bodies and rings, from card decks. The only place that sets the exit status.
 program epcont
   use, intrinsic :: iso_c_binding, only: c_bool
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use epcont_app_arguments, only: arguments_type, command_line, read_arguments
-  use epcont_app_console, only: print_text, stop_with, watch_exit
+  use epcont_app_console, only: newline, print_error, print_text
   use epcont_app_driver, only: run_deck
+  use epcont_app_ending, only: stop_with, watch_exit
   use epcont_app_help, only: help_text
   use epcont_app_man_page, only: man_page
   use epcont_base_error, only: error_type, raise, status_usage, status_valid
@@ -33,8 +33,6 @@ contains
     integer, intent(out) :: worst
     type(arguments_type) :: arguments
     type(error_type), allocatable :: error
-    character(len=:), allocatable :: text
-    logical :: found
     integer :: i, one
 
     worst = status_valid
@@ -42,8 +40,7 @@ contains
     if (.not. allocated(error) .and. .not. has_memory(memory_of_libraries)) &
       call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs')
     if (allocated(error)) then
-      write (error_unit, '(a)') program_name//': '//shown(error%message)
-      worst = error%status
+      call refuse(error, worst)
     else if (arguments%help) then
       call print_text(help_text(), worst)
     else if (arguments%man) then
@@ -51,13 +48,7 @@ contains
     else if (arguments%version) then
       call print_text(program_name//' '//program_version, worst)
     else if (arguments%cards) then
-      text = manual(arguments%card, found)
-      if (found) then
-        call print_text(text, worst)
-      else
-        worst = status_usage
-        write (error_unit, '(a)') program_name//': '//shown(arguments%card)//': no such card; epcont --cards lists them'
-      end if
+      call print_manual(arguments%card, worst)
     else
       if (len(arguments%directory) > 0) call make_directory(arguments%directory)
       do i = 1, size(arguments%deck)
@@ -66,4 +57,29 @@ contains
       end do
     end if
   end subroutine run
+
+  !> The manual of the cards, or of the card `name`.
+  subroutine print_manual(name, status)
+    character(len=*), intent(in) :: name
+    integer, intent(inout) :: status
+    type(error_type), allocatable :: error
+    character(len=:), allocatable :: text
+    logical :: found
+
+    text = manual(name, found)
+    if (found) then
+      call print_text(text, status)
+    else
+      call raise(error, status_usage, name//': no such card; epcont --cards lists them')
+      call refuse(error, status)
+    end if
+  end subroutine print_manual
+
+  subroutine refuse(error, status)
+    type(error_type), intent(in) :: error
+    integer, intent(out) :: status
+
+    call print_error(program_name//': '//shown(error%message)//newline)
+    status = error%status
+  end subroutine refuse
 end program epcont

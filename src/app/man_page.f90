@@ -2,7 +2,7 @@
 module epcont_app_man_page
   use epcont_app_options, only: option_type, options
   use epcont_base_error, only: status_meaning
-  use epcont_base_text, only: text_of, upper
+  use epcont_base_text, only: upper
   use epcont_base_version, only: program_date, program_name, program_version
   use epcont_report_results, only: result_files
   implicit none
@@ -26,6 +26,7 @@ module epcont_app_man_page
 
 contains
 
+  !> The whole page.
   pure function man_page() result(text)
     character(len=:), allocatable :: text
 
@@ -44,9 +45,11 @@ contains
            paragraph('A deck is named DECK.dat; the same deck gives the same files, byte for byte.')// &
            paragraph('Faults go to standard error, one line of outcome for each deck to standard output.')// &
            '.SH OPTIONS'//newline//option_list()// &
-           '.SH EXIT STATUS'//newline//paragraph('Of several decks the largest counts.')//status_list()// &
-           '.SH FILES'//newline//paragraph('In the current directory, or in DIR.')//file_list()// &
-           '.SH EXAMPLES'//newline//example_list()// &
+           '.SH EXIT STATUS'//newline//paragraph('Of several decks the largest counts.')// &
+           entries('.B', ['0', '1', '2', '3', '4', '5'], status_meaning)// &
+           '.SH FILES'//newline//paragraph('In the current directory, or in DIR.')// &
+           entries('.IB DECK', result_files%suffix, result_files%text)// &
+           '.SH EXAMPLES'//newline//entries('.B', examples%command, examples%text)// &
            '.SH ENVIRONMENT'//newline// &
            paragraph('OMP_NUM_THREADS: threads that may work on bodies side by side, where a scene has several large ones; '// &
                      'one if it is not set. Results are the same bytes on any number.')// &
@@ -84,35 +87,18 @@ contains
     end if
   end function heading
 
-  pure function status_list() result(text)
+  !> An entry for each name.
+  pure function entries(macro, name, explanation) result(text)
+    character(len=*), intent(in) :: macro   !! the font of the names, and what stands before them
+    character(len=*), intent(in) :: name(:), explanation(:)
     character(len=:), allocatable :: text
     integer :: k
 
     text = ''
-    do k = lbound(status_meaning, dim=1), ubound(status_meaning, dim=1)
-      text = text//entry('.B '//text_of(k), status_meaning(k))
+    do k = 1, size(name)
+      text = text//entry(macro//' '//roff(trim(name(k))), explanation(k))
     end do
-  end function status_list
-
-  pure function file_list() result(text)
-    character(len=:), allocatable :: text
-    integer :: k
-
-    text = ''
-    do k = 1, size(result_files)
-      text = text//entry('.IB DECK '//roff(trim(result_files(k)%suffix)), result_files(k)%text)
-    end do
-  end function file_list
-
-  pure function example_list() result(text)
-    character(len=:), allocatable :: text
-    integer :: k
-
-    text = ''
-    do k = 1, size(examples)
-      text = text//entry('.B '//roff(trim(examples(k)%command)), examples(k)%text)
-    end do
-  end function example_list
+  end function entries
 
   !> What is explained, in its own line, and the explanation.
   pure function entry(name, explanation) result(text)

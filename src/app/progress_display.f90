@@ -1,7 +1,7 @@
 !> How far a run is, on standard error: on a terminal one line, drawn anew after each solve and erased at the end; else, where
 !> it is asked for, a line a solve.
 module epcont_app_progress_display
-  use epcont_app_terminal, only: is_terminal, print_error, terminal_columns
+  use epcont_app_console, only: is_terminal, newline, print_error, terminal_columns
   use epcont_base_kinds, only: wp
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plasticity_expectation, only: expectation_type, new_expectation
@@ -80,7 +80,7 @@ contains
       call print_error(achar(13)//line//repeat(' ', max(0, self%drawn - len(line))))
       self%drawn = max(self%drawn, len(line))
     else
-      call print_error(progress_line(self%stem, self%elapsed(), self%expected, now, huge(1))//new_line('a'))
+      call print_error(progress_line(self%stem, self%elapsed(), self%expected, now, huge(1))//newline)
     end if
   end subroutine show
 

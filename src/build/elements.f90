@@ -40,7 +40,7 @@ contains
     model%kinds = element_kinds()
     model%elements = sum(deck%card(element_cards)%count)
     do c = 1, size(element_cards)
-      kind_of(c) = kind_named(model, deck%entry(element_cards(c))%name)
+      kind_of(c) = kind_named(model, deck%card(element_cards(c))%entry%name)
     end do
     allocate (model%element_id(model%elements), model%kind(model%elements), model%order(model%elements))
     allocate (model%section(model%elements))

@@ -77,7 +77,7 @@ contains
     found = 0
     associate (blseg => deck%card(card_blseg))
       do k = blseg%list_start(i), blseg%list_start(i + 1) - 1
-        do id = blseg%list_from(k), blseg%list_to(k), blseg%list_step(k)
+        do id = blseg%list(k)%from, blseg%list(k)%to, blseg%list(k)%step
           if (found == size(walk%node)) walk%node = [walk%node, walk%node]   ! room for twice as many
           if (found == size(walk%item)) walk%item = [walk%item, walk%item]
           found = found + 1

@@ -142,9 +142,11 @@ contains
     real(wp) :: limit
     integer :: first, point, wrong
 
-    first = deck%card(card_tables1)%list_start(table)
-    strain = deck%card(card_tables1)%list_point(1, first:deck%card(card_tables1)%list_start(table + 1) - 1)
-    stress = deck%card(card_tables1)%list_point(2, first:deck%card(card_tables1)%list_start(table + 1) - 1)
+    associate (tables => deck%card(card_tables1))
+      first = tables%list_start(table)
+      strain = tables%list(first:tables%list_start(table + 1) - 1)%point(1)
+      stress = tables%list(first:tables%list_start(table + 1) - 1)%point(2)
+    end associate
     call check_table(strain, stress, material%young, wrong, what, remedy)
     if (wrong == 0) then
       point = deck%card(card_mats1)%column('LIMIT1')

@@ -66,9 +66,9 @@ contains
     if (position > 0 .or. .not. deck%card(card)%sound(i)) return
     article = 'the id of a '
     if (wanted == 'element') article = 'the id of an '
-    call faults%add_error(deck%place(card, i, column), deck%identity(card, i)//': field '// &
-                          text_of(deck%entry(card)%field(column)%number)//' ('// &
-                          trim(deck%card(card)%name(column))//'): there is no '//wanted//' '// &
+    call faults%add_error(deck%place(card, i, column), deck%identity(card, i)//': '// &
+                          deck%card(card)%entry%field_text(deck%card(card)%entry%field(column)%slot)// &
+                          ': there is no '//wanted//' '// &
                           text_of(nint(deck%card(card)%value(column, i))), article//wanted)
   end subroutine resolve
 end module epcont_build_reference

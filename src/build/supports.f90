@@ -46,10 +46,10 @@ contains
       end do
       do i = 1, spc1%count
         do k = spc1%list_start(i), spc1%list_start(i + 1) - 1
-          found = nodes%within(spc1%list_from(k), spc1%list_to(k))
+          found = nodes%within(spc1%list(k)%from, spc1%list(k)%to)
           if (size(found) == 0) then
             call faults%add_error(deck%list_place(card_spc1, k), deck%identity(card_spc1, i)//': there is no GRID '// &
-                                  range_text(spc1%list_from(k), spc1%list_to(k)), 'the id of a GRID')
+                                  range_text(spc1%list(k)%from, spc1%list(k)%to), 'the id of a GRID')
           end if
           if (nint(spc1%value(1, i)) /= set) cycle
           do node = 1, size(found)
@@ -122,10 +122,10 @@ contains
       do i = 1, rbe2%count
         call resolve(deck, card_rbe2, i, 2, nodes, 'GRID', faults, leader)
         do k = rbe2%list_start(i), rbe2%list_start(i + 1) - 1
-          node = nodes%find(rbe2%list_from(k))
+          node = nodes%find(rbe2%list(k)%from)
           if (node == 0) then
             call faults%add_error(deck%list_place(card_rbe2, k), deck%identity(card_rbe2, i)//': there is no GRID '// &
-                                  text_of(rbe2%list_from(k)), 'the id of a GRID')
+                                  text_of(rbe2%list(k)%from), 'the id of a GRID')
           else if (leader > 0) then
             do c = 1, 2
               objection = ''

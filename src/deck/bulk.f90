@@ -1,272 +1,229 @@
 !> The bulk data: each card checked field by field against the catalogue, and stored in its table.
 module epcont_deck_bulk
-  use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
-  use epcont_deck_card, only: card_fields, gather
+  use epcont_base_text, only: text_of, upper
+  use epcont_deck_card, only: card_fields, continues, find_name, gather
   use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_catalogue, only: catalogue, parameters
-  use epcont_deck_complaint, only: add_fault, add_unknown, add_value_fault, field_text, identity
+  use epcont_deck_complaint, only: add_fault, add_unknown
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_deck_entry, only: card_entry, field_entry, kind_word, number_of, slot_of
-  use epcont_deck_field, only: scan_no_point, scan_sound, scan_word
-  use epcont_deck_id_list, only: read_list
-  use epcont_deck_point_list, only: read_points
+  use epcont_deck_entry, only: card_entry, field_entry, kind_word, number_of
+  use epcont_deck_field, only: scan_sound, scan_word
+  use epcont_deck_list, only: read_list
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: likely_name
-  use epcont_deck_table, only: card_table, new_table
-  use epcont_deck_value, only: read_value
+  use epcont_deck_table, only: card_table
+  use epcont_deck_value, only: field_value, read_slot
   implicit none
   private
   public :: read_bulk
 
+  !> Kinds of lines beside those of the cards that begin there.
+  integer, parameter :: no_card = -1, unknown_card = 0
+
 contains
 
-  !> Read the cards from line `first` on into `table`, one element for each entry of the catalogue.
+  !> Read the cards from line `first` on.
   subroutine read_bulk(lines, first, table, faults)
     type(source), intent(in) :: lines
-    integer, intent(in) :: first
-    type(card_table), allocatable, intent(out) :: table(:)
+    integer, intent(in) :: first                              !! the first line that is not of case control
+    type(card_table), allocatable, intent(out) :: table(:)    !! the cards of each kind [card_kinds]
     type(diagnostics), intent(inout) :: faults
     type(card_entry) :: entry(card_kinds)
     type(field_entry), allocatable :: parameter_entry(:)
     type(card_fields) :: card
+    integer, allocatable :: kind(:)
     integer :: line, k, errors
 
     entry = catalogue()
     parameter_entry = parameters()
+    kind = kinds_of_lines(lines, first, entry%name)
     allocate (table(card_kinds))
     do k = 1, card_kinds
-      table(k) = new_table(entry(k))
+      call table(k)%begin(entry(k), count(kind == k))
     end do
-    call reserve(lines, first, entry, table)
-    k = 1
-    line = first
-    do while (line <= lines%count)
-      card%next = line + 1
-      if (.not. lines%blank(line)) then
-        errors = faults%error_count()
-        call gather(lines, line, card, faults)
-        call find_card(card%name, entry, k)
-        if (k == 0) then
-          if (card%sound) call add_unknown(lines, card, entry, faults)
-        else
-          call table(k)%add_card(line)
-          if (card%sound .and. k == card_param) then
-            call read_parameter(lines, card, entry(k), parameter_entry, table(k), faults)
-          else if (card%sound) then
-            call read_card(lines, card, entry(k), table(k), faults)
-          end if
-          table(k)%sound(table(k)%count) = faults%error_count() == errors
-        end if
+    do line = first, lines%count
+      k = kind(line)
+      if (k == no_card) cycle
+      errors = faults%error_count()
+      call gather(lines, line, card, faults)
+      if (k == unknown_card) then
+        if (card%sound) call add_unknown(card, entry%name, faults)
+        cycle
       end if
-      line = card%next
+      call table(k)%add_card(line)
+      if (k == card_param .and. card%sound) &
+        call choose_parameter(card, parameter_entry, table(k)%entry%field(2), faults)
+      if (faults%error_count() == errors) call read_card(card, table(k), faults)
+      table(k)%sound(table(k)%count) = faults%error_count() == errors
     end do
     do k = 1, card_kinds
       call table(k)%finish()
-      call add_notes(lines, entry(k), table(k), faults)
+      call add_notes(lines, table(k), faults)
     end do
   end subroutine read_bulk
 
-  !> Room in each table for the cards that seem to be there, so that a large deck need not move its tables about.
-  subroutine reserve(lines, first, entry, table)
+  !> The kind of the card that begins on each line. Cards of one name mostly follow each other.
+  pure function kinds_of_lines(lines, first, names) result(kind)
     type(source), intent(in) :: lines
     integer, intent(in) :: first
-    type(card_entry), intent(in) :: entry(:)
-    type(card_table), intent(inout) :: table(:)
-    character(len=8) :: text, before, name
-    integer :: cards(size(entry))
-    integer :: line, k, at, cut
+    character(len=8), intent(in) :: names(:)
+    integer, allocatable :: kind(:)
+    character(len=8) :: text, before
+    logical :: begun
+    integer :: i, found
 
-    cards = 0
-    k = 0
+    allocate (kind(lines%count), source=no_card)
+    begun = .false.
     before = ''
-    do line = first, lines%count
-      at = lines%first(line)
-      if (lines%last(line) - at >= 7) then
-        text = lines%text(at:at + 7)   ! of known length: no call
-      else
-        text = lines%text(at:lines%last(line))
-      end if
-      if (text(1:1) < 'A') cycle
-      if (text /= before) then
-        cut = scan(text//',', ',*')
-        name = text(:cut - 1)
-        call find_card(name, entry, k)
+    do i = first, lines%count
+      associate (line => lines%line(i))
+        if (line%last < line%first) cycle
+        if (begun) then
+          if (continues(lines%text(line%first:line%last))) cycle
+        end if
+        begun = .true.
+        text = lines%text(line%first:min(line%last, line%first + 7))
+        if (line%special <= line%last) text = ''   ! with a comma the name may be longer
+        if (text /= before .or. text == '') found = kind_of(lines%text(line%first:line%last), names)
         before = text
-      end if
-      if (k > 0) cards(k) = cards(k) + 1
+        kind(i) = found
+      end associate
     end do
-    do k = 1, size(entry)
-      call table(k)%reserve(cards(k))
+  end function kinds_of_lines
+
+  !> The kind of the card that a line begins.
+  pure integer function kind_of(text, names) result(kind)
+    character(len=*), intent(in) :: text
+    character(len=8), intent(in) :: names(:)
+    character(len=8) :: name
+    integer :: first, last
+    logical :: large
+
+    call find_name(text, index(text, ','), first, last, large)
+    name = upper(text(first:min(last, first + 7)))
+    do kind = 1, size(names)
+      if (names(kind) == name) return
     end do
-  end subroutine reserve
+    kind = unknown_card
+  end function kind_of
 
-  !> The entry of a name, tried first where the last card had its; 0 where there is none.
-  pure subroutine find_card(name, entry, k)
-    character(len=8), intent(in) :: name
-    type(card_entry), intent(in) :: entry(:)
-    integer, intent(inout) :: k
-
-    if (k > 0) then
-      if (entry(k)%name == name) return
-    end if
-    do k = size(entry), 1, -1
-      if (entry(k)%name == name) return
-    end do
-  end subroutine find_card
-
-  !> Read one PARAM: what its second field may hold depends on its first.
-  subroutine read_parameter(lines, card, entry, parameter_entry, table, faults)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    type(card_entry), intent(in) :: entry
-    type(field_entry), intent(in) :: parameter_entry(:)
-    type(card_table), intent(inout) :: table
-    type(diagnostics), intent(inout) :: faults
-    type(card_entry) :: with_value
-    integer :: named
-
-    call find_parameter(lines, card, parameter_entry, faults, named)
-    if (named < 0) return
-    with_value = entry
-    if (named > 0) with_value%field(2) = parameter_entry(named)
-    call read_card(lines, card, with_value, table, faults)
-  end subroutine read_parameter
-
-  !> Read one card into the last row of its table.
-  subroutine read_card(lines, card, entry, table, faults)
-    type(source), intent(in) :: lines
-    type(card_fields), intent(in) :: card
-    type(card_entry), intent(in) :: entry
-    type(card_table), intent(inout) :: table
-    type(diagnostics), intent(inout) :: faults
-    integer :: slot, last, column
-    logical :: blank
-
-    last = max(card%count, size(entry%column_at))   ! behind `count` all are blank
-    if (entry%list_number > 0) last = slot_of(entry%list_number) - 1
-    do slot = 1, last
-      column = 0
-      if (slot <= size(entry%column_at)) column = entry%column_at(slot)
-      blank = slot > card%count
-      if (.not. blank) blank = card%last(slot) < card%first(slot)
-      if (blank) then
-        if (column > 0) call take_blank(lines, card, entry%field(column), column, table, faults)
-      else if (column > 0) then
-        call read_field(lines, card, slot, entry%field(column), column, table, faults)
-      else
-        call add_surplus(lines, card, slot, entry, faults)
-      end if
-    end do
-    if (entry%has_points) then
-      call read_points(lines, card, entry, table, faults)
-    else if (entry%list_number > 0) then
-      call read_list(lines, card, entry, table, faults)
-    end if
-  end subroutine read_card
-
-  !> Which PARAM it is; 0 where the name is no word, -1 (with a fault) where it is unknown.
-  subroutine find_parameter(lines, card, parameter_entry, faults, named)
-    type(source), intent(in) :: lines
+  !> Which PARAM it is, and so what its value may be: any word where the name is none, and a fault where it is unknown.
+  subroutine choose_parameter(card, parameter_entry, value_entry, faults)
     type(card_fields), intent(in) :: card
     type(field_entry), intent(in) :: parameter_entry(:)
+    type(field_entry), intent(out) :: value_entry
     type(diagnostics), intent(inout) :: faults
-    integer, intent(out) :: named
-    character(len=8) :: word, names(size(parameter_entry))
+    character(len=8) :: word
     character(len=:), allocatable :: remedy
     integer :: outcome, i
 
-    named = 0
-    if (.not. card%filled(1)) return
-    call scan_word(lines%text(card%first(1):card%last(1)), word, outcome)
+    value_entry = field_entry(2, 'VALUE', kind_word, required=.true.)
+    outcome = -1
+    if (card%filled(1)) call scan_word(card%text(card%first(1):card%last(1)), word, outcome)
     if (outcome /= scan_sound) return
-    do named = 1, size(parameter_entry)
-      if (parameter_entry(named)%name == word) return
+    do i = 1, size(parameter_entry)
+      if (parameter_entry(i)%name == word) then
+        value_entry = parameter_entry(i)
+        value_entry%name = 'VALUE'
+        return
+      end if
     end do
-    named = -1
-    names = parameter_entry%name
-    i = likely_name(word, names)
-    if (i > 0) then
-      remedy = 'did you mean '//trim(parameter_entry(i)%name)//'?'
-    else
-      remedy = 'epcont --cards PARAM lists the parameters'
-    end if
-    call faults%add_error(card%place(lines, 1), 'unknown parameter '//trim(word), remedy)
-  end subroutine find_parameter
+    i = likely_name(word, parameter_entry%name)
+    remedy = 'epcont --cards PARAM lists the parameters'
+    if (i > 0) remedy = 'did you mean '//trim(parameter_entry(i)%name)//'?'
+    call faults%add_error(card%place(1), 'unknown parameter '//trim(word), remedy)
+  end subroutine choose_parameter
 
-  !> Read one field that is not blank into the last row of the table.
-  subroutine read_field(lines, card, slot, entry, column, table, faults)
-    type(source), intent(in) :: lines
+  !> Read one card into the last row of its table.
+  subroutine read_card(card, table, faults)
     type(card_fields), intent(in) :: card
-    integer, intent(in) :: slot
-    type(field_entry), intent(in) :: entry
-    integer, intent(in) :: column
     type(card_table), intent(inout) :: table
     type(diagnostics), intent(inout) :: faults
-    real(wp) :: value
-    character(len=8) :: word
-    integer :: outcome
+    integer :: slot, column
+    logical :: blank
 
-    call read_value(lines%text(card%first(slot):card%last(slot)), entry, value, word, outcome)
-    if (outcome == scan_no_point) then
-      if (entry%point_optional .and. card%is_large(lines, slot)) outcome = scan_sound
-    end if
-    if (outcome == scan_sound) then
-      table%value(column, table%count) = value
-      if (entry%kind == kind_word) table%word(column, table%count) = word
-      table%given(column, table%count) = .true.
-    else
-      call add_value_fault(lines, card, slot, entry, outcome, faults)
-    end if
-    if (entry%used) return
-    table%noted(column) = table%noted(column) + 1
-    if (table%noted(column) == 1) table%noted_card(column) = table%count
+    do slot = 1, min(max(card%count, size(table%entry%column_at)), table%entry%list_slot - 1)
+      column = 0
+      if (slot <= size(table%entry%column_at)) column = table%entry%column_at(slot)
+      blank = slot > card%count
+      if (.not. blank) blank = card%last(slot) < card%first(slot)
+      if (blank .and. column > 0) then
+        call take_blank(card, table, column, faults)
+      else if (column > 0) then
+        call read_field(card, table, column, faults)
+      else if (.not. blank) then
+        call add_surplus(card, table, slot, faults)
+      end if
+    end do
+    if (table%entry%has_list()) call read_list(card, table, faults)
+  end subroutine read_card
+
+  !> Read one field that is not blank.
+  subroutine read_field(card, table, column, faults)
+    type(card_fields), intent(in) :: card
+    type(card_table), intent(inout) :: table
+    integer, intent(in) :: column
+    type(diagnostics), intent(inout) :: faults
+    type(field_value) :: value
+
+    associate (field => table%entry%field(column), i => table%count)
+      call read_slot(card, table, field%slot, field, value, faults)
+      if (value%sound) then
+        table%value(column, i) = value%number
+        if (field%kind == kind_word) table%word(column, i) = value%word
+        table%given(column, i) = .true.
+      end if
+      if (field%used) return
+      table%noted(column) = table%noted(column) + 1
+      if (table%noted(column) == 1) table%noted_card(column) = i
+    end associate
   end subroutine read_field
 
-  !> A blank field: it may have the value of another, and there are some that may not be blank.
-  subroutine take_blank(lines, card, entry, column, table, faults)
-    type(source), intent(in) :: lines
+  !> A blank field has its default, or the value of another; some may not be blank.
+  subroutine take_blank(card, table, column, faults)
     type(card_fields), intent(in) :: card
-    type(field_entry), intent(in) :: entry
-    integer, intent(in) :: column
     type(card_table), intent(inout) :: table
+    integer, intent(in) :: column
     type(diagnostics), intent(inout) :: faults
     logical :: needed
 
-    if (table%same_as(column) > 0) table%value(column, table%count) = table%value(table%same_as(column), table%count)
-    needed = entry%required
-    if (.not. needed .and. entry%with > 0) needed = card%filled(slot_of(entry%with))
-    if (needed) call add_fault(lines, card, entry, 'is blank', entry%allowed(), faults)
+    associate (field => table%entry%field(column), row => table%value(:, table%count))
+      row(column) = field%default
+      if (field%same_as > 0) row(column) = row(table%entry%column_of(field%same_as))
+      needed = field%required
+      if (field%with > 0) needed = needed .or. card%filled(field%with)
+      if (needed) call add_fault(card, table, field%slot, 'is blank', field%allowed(), faults)
+    end associate
   end subroutine take_blank
 
   !> A field that the catalogue does not know must be blank.
-  subroutine add_surplus(lines, card, slot, entry, faults)
-    type(source), intent(in) :: lines
+  subroutine add_surplus(card, table, slot, faults)
     type(card_fields), intent(in) :: card
+    type(card_table), intent(in) :: table
     integer, intent(in) :: slot
-    type(card_entry), intent(in) :: entry
     type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: remedy
 
-    call faults%add_error(card%place(lines, slot), &
-                          identity(lines, card)//': '//field_text(number_of(slot), '')//' must be blank', &
-                          'blank; '//trim(entry%name)//' ends with field '//text_of(entry%last_number()))
+    remedy = 'blank'
+    if (.not. table%entry%has_list()) &
+      remedy = remedy//'; '//trim(table%entry%name)//' ends with field '//text_of(number_of(size(table%entry%column_at)))
+    call add_fault(card, table, slot, 'must be blank', remedy, faults)
   end subroutine add_surplus
 
   !> List once each field that was filled and has no effect.
-  subroutine add_notes(lines, entry, table, faults)
+  subroutine add_notes(lines, table, faults)
     type(source), intent(in) :: lines
-    type(card_entry), intent(in) :: entry
     type(card_table), intent(in) :: table
     type(diagnostics), intent(inout) :: faults
     type(card_fields) :: card
     type(diagnostics) :: unheard
-    integer :: column
+    integer :: column, slot
 
     do column = 1, size(table%noted)
       if (table%noted(column) == 0) cycle
       call gather(lines, table%line(table%noted_card(column)), card, unheard)
-      call faults%add_note(card%place(lines, slot_of(entry%field(column)%number)), trim(entry%name)//': '// &
-                           field_text(entry%field(column)%number, trim(entry%field(column)%name))// &
+      slot = table%entry%field(column)%slot
+      call faults%add_note(card%place(slot), trim(table%entry%name)//': '//table%entry%field_text(slot)// &
                            ' has no effect (cards with it: '//text_of(table%noted(column))//')')
     end do
   end subroutine add_notes

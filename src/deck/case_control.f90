@@ -64,10 +64,10 @@ contains
 
     bulk = 1
     do line = 1, lines%count
-      if (lines%last(line) < lines%first(line) + 9) cycle
-      if (scan(lines%text(lines%first(line):lines%first(line)), 'Bb ') == 0) cycle
-      text = upper(adjustl(lines%text(lines%first(line):lines%last(line))))
-      if (text(:6) /= 'BEGIN ') cycle
+      if (lines%blank(line)) cycle
+      if (scan(lines%text(lines%line(line)%first:lines%line(line)%first), 'Bb ') == 0) cycle
+      text = upper(adjustl(lines%text_of_line(line)))
+      if (index(text, 'BEGIN ') /= 1) cycle
       if (adjustl(text(6:)) == 'BULK') then
         bulk = line + 1
         return
@@ -83,7 +83,7 @@ contains
     integer :: first, last, at
 
     parts%line = line
-    parts%text = lines%text(lines%first(line):lines%last(line))
+    parts%text = lines%text_of_line(line)
     first = verify(parts%text, ' ')
     last = first + scan(parts%text(first:)//' ', ' =(') - 2
     parts%word = upper(parts%text(first:last))

@@ -2,14 +2,11 @@
 module epcont_deck_deck
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
   use epcont_deck_bulk, only: read_bulk
   use epcont_deck_card, only: card_fields, gather
-  use epcont_deck_card_kinds, only: card_kinds, card_param
+  use epcont_deck_card_kinds, only: card_param
   use epcont_deck_case_control, only: case_control, read_case_control
-  use epcont_deck_catalogue, only: catalogue
   use epcont_deck_diagnostic, only: diagnostics, place_type
-  use epcont_deck_entry, only: card_entry, slot_of
   use epcont_deck_source, only: read_source, source
   use epcont_deck_table, only: card_table
   implicit none
@@ -19,8 +16,7 @@ module epcont_deck_deck
   !> All that a deck says: titles, sets chosen and output wanted, as case control has it, and the cards.
   type, extends(case_control) :: deck_type
     type(source) :: source                         !! its text
-    type(card_table), allocatable :: card(:)       !! its cards [card_kinds]
-    type(card_entry), allocatable :: entry(:)      !! what the catalogue says of each [card_kinds]
+    type(card_table), allocatable :: card(:)       !! its cards, and what the catalogue says of them [card_kinds]
   contains
     procedure :: place
     procedure :: list_place
@@ -41,7 +37,6 @@ contains
     type(error_type), allocatable, intent(out) :: error
     integer :: bulk
 
-    deck%entry = catalogue()
     call read_source(path, deck%source, faults, error)
     if (allocated(error)) return
     call read_case_control(deck%source, deck%case_control, bulk, faults)
@@ -61,45 +56,29 @@ contains
   end subroutine forget_text
 
   !> Where a field of a card stands; the card is cut into fields once more to find out.
-  function place(self, card, i, field)
+  type(place_type) function place(self, card, i, field)
     class(deck_type), intent(in) :: self
     integer, intent(in) :: card   !! which table: card_grid, ...
     integer, intent(in) :: i      !! which card of it
     integer, intent(in) :: field  !! column in the table; 0: the name of the card
-    type(place_type) :: place
+    type(card_fields) :: fields
+    type(diagnostics) :: unheard
+    integer :: slot
 
-    if (field == 0) then
-      place = slot_place(self, self%card(card)%line(i), 0)
-    else
-      place = slot_place(self, self%card(card)%line(i), slot_of(self%entry(card)%field(field)%number))
-    end if
+    call gather(self%source, self%card(card)%line(i), fields, unheard)
+    slot = 0
+    if (field > 0) slot = self%card(card)%entry%field(field)%slot
+    place = fields%place(slot)
   end function place
 
   !> Where an item of the open list of a card stands. A card may have ten thousands of them: their places are kept.
-  pure function list_place(self, card, k) result(place)
+  pure type(place_type) function list_place(self, card, k)
     class(deck_type), intent(in) :: self
     integer, intent(in) :: card  !! which table
     integer, intent(in) :: k     !! which item of its lists
-    type(place_type) :: place
 
-    place = self%card(card)%list_place(k)
+    list_place = self%card(card)%list(k)%place
   end function list_place
-
-  !> Where a slot of the card that begins at `line` stands; slot 0 is the name.
-  function slot_place(self, line, slot) result(place)
-    class(deck_type), intent(in) :: self
-    integer, intent(in) :: line, slot
-    type(place_type) :: place
-    type(card_fields) :: card
-    type(diagnostics) :: unheard
-
-    call gather(self%source, line, card, unheard)
-    if (slot == 0) then
-      place = card%name_place(self%source)
-    else
-      place = card%place(self%source, slot)
-    end if
-  end function slot_place
 
   !> The card as messages name it: `GRID 17`, `PARAM PLANE`.
   pure function identity(self, card, i) result(text)
@@ -107,13 +86,7 @@ contains
     integer, intent(in) :: card, i  !! which table, which card of it
     character(len=:), allocatable :: text
 
-    text = trim(self%entry(card)%name)
-    if (.not. self%card(card)%given(1, i)) return
-    if (card == card_param) then
-      text = text//' '//trim(self%card(card)%word(1, i))
-    else
-      text = text//' '//text_of(nint(self%card(card)%value(1, i)))
-    end if
+    text = self%card(card)%identity(i)
   end function identity
 
   !> The first PARAM card of a name; 0 where there is none.
@@ -127,31 +100,36 @@ contains
     row = 0
   end function parameter_row
 
+  !> The same; 0 also where it does not say anything that can be taken.
+  pure integer function stated_row(self, name) result(row)
+    class(deck_type), intent(in) :: self
+    character(len=*), intent(in) :: name
+
+    row = self%parameter_row(name)
+    if (row > 0) row = merge(row, 0, self%card(card_param)%given(2, row))
+  end function stated_row
+
   !> The word that a PARAM says; `default` where there is no such card.
   pure function parameter_word(self, name, default) result(word)
     class(deck_type), intent(in) :: self
-    character(len=*), intent(in) :: name
-    character(len=*), intent(in) :: default
+    character(len=*), intent(in) :: name, default   !! of the parameter
     character(len=8) :: word
     integer :: row
 
     word = default
-    row = self%parameter_row(name)
-    if (row == 0) return
-    if (self%card(card_param)%given(2, row)) word = self%card(card_param)%word(2, row)
+    row = stated_row(self, name)
+    if (row > 0) word = self%card(card_param)%word(2, row)
   end function parameter_word
 
   !> The number that a PARAM says; `default` where there is no such card.
-  pure function parameter_value(self, name, default) result(value)
+  pure real(wp) function parameter_value(self, name, default) result(value)
     class(deck_type), intent(in) :: self
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !! of the parameter
     real(wp), intent(in) :: default
-    real(wp) :: value
     integer :: row
 
     value = default
-    row = self%parameter_row(name)
-    if (row == 0) return
-    if (self%card(card_param)%given(2, row)) value = self%card(card_param)%value(2, row)
+    row = stated_row(self, name)
+    if (row > 0) value = self%card(card_param)%value(2, row)
   end function parameter_value
 end module epcont_deck_deck

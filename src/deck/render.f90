@@ -128,7 +128,7 @@ contains
 
     text = ''
     if (place%line == 0) return
-    text = text_of(lines%number(place%line))//':'//text_of(place%first)
+    text = text_of(lines%line(place%line)%number)//':'//text_of(place%first)
     if (place%last > place%first) text = text//'-'//text_of(place%last)
     text = text//': '
   end function columns
@@ -141,7 +141,7 @@ contains
 
     text = ''
     if (fault%place%line == 0) return
-    if (lines%file(fault%place%line) == 1) return
+    if (lines%line(fault%place%line)%file == 1) return
     text = lines%file_name(fault%place%line)//':'
     if (index(text, deck_directory(lines)) == 1) text = text(len(deck_directory(lines)) + 1:)
     text = shown(text)

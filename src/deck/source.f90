@@ -26,20 +26,25 @@ module epcont_deck_source
     integer :: last = 0                    !! its last
   end type source_file
 
-  !> The lines of a deck. The line `i` is `text(first(i):last(i))`, without comment and trailing blanks;
-  !> a line that INCLUDE or ENDDATA has used up is blank.
+  !> One line, without comment and trailing blanks; one that INCLUDE or ENDDATA has used up is blank.
+  type :: source_line
+    integer :: first = 1, last = 0   !! its characters in the buffer
+    integer :: special = 1           !! first comma or character that is not printable; > last: none
+    integer :: number = 0            !! line number in its file
+    integer :: file = 0              !! its file
+  end type source_line
+
+  !> The lines of a deck.
   type :: source
     character(len=:), allocatable :: text        !! all files
     integer :: used = 0                          !! characters of `text` in use
     integer :: count = 0                         !! number of lines
-    integer, allocatable :: first(:), last(:)    !! [count or more]
-    integer, allocatable :: special(:)           !! first comma or character that is not printable; > last: none
-    integer, allocatable :: number(:)            !! line number in its file [count or more]
-    integer, allocatable :: file(:)              !! its file [count or more]
+    type(source_line), allocatable :: line(:)    !! [count or more]
     type(source_file), allocatable :: files(:)   !! [files]
   contains
     procedure :: deck_name
     procedure :: file_name
+    procedure :: text_of_line
     procedure :: whole_line
     procedure :: blank
     procedure :: columns
@@ -57,9 +62,8 @@ contains
     character(len=:), allocatable :: trouble
     logical :: ended
 
-    allocate (lines%first(1024), lines%last(1024), lines%special(1024), lines%number(1024), lines%file(1024))
-    allocate (lines%files(0))
-    allocate (character(len=0) :: lines%text)
+    allocate (lines%line(1024), lines%files(0))
+    lines%text = ''
     call load(lines, path, 0, trouble)
     if (allocated(trouble)) then
       call raise(error, status_usage, path//': '//trouble)
@@ -156,16 +160,14 @@ contains
     do while (at <= self%files(file)%last .and. .not. ended)
       number = number + 1
       call find_end(self%text, at, last, special, next)
-      call add_line(self, file, number, at, last, special)
+      if (self%count == size(self%line)) self%line = [self%line, self%line]
+      self%count = self%count + 1
       line = self%count
+      self%line(line) = source_line(at, last, special, number, file)
       word = statement(self%text(at:last))
-      if (word == 'ENDDATA') then
-        self%last(line) = at - 1
-        ended = .true.
-      else if (word == 'INCLUDE') then
-        call include_file(self, line, faults)
-        self%last(line) = at - 1
-      end if
+      ended = word == 'ENDDATA'
+      if (word == 'INCLUDE') call include_file(self, line, faults)
+      if (word /= '') self%line(line)%last = at - 1
       at = next
     end do
   end subroutine cut
@@ -237,22 +239,26 @@ contains
       call faults%add_error(place, 'INCLUDE needs the name of a file between quotes', 'INCLUDE ''file''')
       return
     end if
-    parent = self%file(line)
+    parent = self%line(line)%file
     path = relative_to(self%files(parent)%name, path)
-    if (includes(self, parent, path)) then
+    select case (files_above(self, parent, path))
+    case (0)
       call faults%add_error(place, 'INCLUDE: '//shown(path)//' includes itself', 'a file that does not lead back here')
-    else if (depth(self, parent) == deepest) then
+    case (deepest + 1:)
       call faults%add_error(place, 'INCLUDE: files are included more than '//text_of(deepest)//' deep', 'fewer levels')
-    else if (size(self%files) > most_files) then
-      call faults%add_error(place, 'INCLUDE: more than '//text_of(most_files)//' files', 'fewer files')
-    else
+    case default
+      if (size(self%files) > most_files) then
+        call faults%add_error(place, 'INCLUDE: more than '//text_of(most_files)//' files', 'fewer files')
+        return
+      end if
       call load(self, path, parent, trouble)
       if (allocated(trouble)) then
-        call faults%add_error(place, 'INCLUDE: '//shown(path)//': '//trouble, 'a name relative to the file of this line')
+        call faults%add_error(place, 'INCLUDE: '//shown(path)//': '//trouble, &
+                              'a name relative to the file of this line')
       else
         call cut(self, size(self%files), faults, ended)
       end if
-    end if
+    end select
   end subroutine include_file
 
   !> The name between the quotes of an INCLUDE line; not allocated where there is none.
@@ -264,7 +270,7 @@ contains
     character(len=:), allocatable :: text
     integer :: from, to
 
-    text = self%text(self%first(line):self%last(line))
+    text = self%text_of_line(line)
     from = verify(text, ' ') + 7
     if (from <= len(text)) then
       if (verify(text(from:), ' ') > 0) from = from + verify(text(from:), ' ') - 1
@@ -286,54 +292,22 @@ contains
     if (path(1:1) /= '/') path = file(:index(file, '/', back=.true.))//path
   end function relative_to
 
-  !> Is `path` the file `file` or one that it is included by?
-  pure recursive logical function includes(self, file, path) result(yes)
+  !> How many files lead down to `file`, the deck and itself included; 0 where `path` is one of them.
+  pure integer function files_above(self, file, path) result(files)
     type(source), intent(in) :: self
     integer, intent(in) :: file
     character(len=*), intent(in) :: path
+    integer :: at
 
-    yes = .false.
-    if (file == 0) return
-    yes = self%files(file)%name == path
-    if (.not. yes) yes = includes(self, self%files(file)%parent, path)
-  end function includes
-
-  !> How deep `file` is included; 0 for the deck itself.
-  pure recursive integer function depth(self, file) result(levels)
-    type(source), intent(in) :: self
-    integer, intent(in) :: file
-
-    levels = 0
-    if (self%files(file)%parent > 0) levels = 1 + depth(self, self%files(file)%parent)
-  end function depth
-
-  subroutine add_line(self, file, number, first, last, special)
-    type(source), intent(inout) :: self
-    integer, intent(in) :: file, number, first, last, special
-
-    if (self%count == size(self%first)) then
-      call double(self%first)
-      call double(self%last)
-      call double(self%special)
-      call double(self%number)
-      call double(self%file)
-    end if
-    self%count = self%count + 1
-    self%first(self%count) = first
-    self%last(self%count) = last
-    self%special(self%count) = special
-    self%number(self%count) = number
-    self%file(self%count) = file
-  end subroutine add_line
-
-  subroutine double(list)
-    integer, allocatable, intent(inout) :: list(:)
-    integer, allocatable :: longer(:)
-
-    allocate (longer(2*size(list)))
-    longer(:size(list)) = list
-    call move_alloc(longer, list)
-  end subroutine double
+    files = 0
+    at = file
+    do while (at > 0)
+      files = files + 1
+      if (self%files(at)%name == path) exit
+      at = self%files(at)%parent
+    end do
+    if (at > 0) files = 0
+  end function files_above
 
   !> The name of the deck as the user gave it.
   pure function deck_name(self) result(name)
@@ -349,24 +323,31 @@ contains
     integer, intent(in) :: line
     character(len=:), allocatable :: name
 
-    name = self%files(self%file(line))%name
+    name = self%files(self%line(line)%file)%name
   end function file_name
+
+  !> A line as it is read, without comment.
+  pure function text_of_line(self, line) result(text)
+    class(source), intent(in) :: self
+    integer, intent(in) :: line   !! in deck order
+    character(len=:), allocatable :: text
+
+    text = self%text(self%line(line)%first:self%line(line)%last)
+  end function text_of_line
 
   !> A line as it stands in the file, comment and all, but no longer than `most` characters from `from` on.
   pure function whole_line(self, line, from, most) result(text)
     class(source), intent(in) :: self
-    integer, intent(in) :: line
-    integer, intent(in) :: from  !! first column wanted
-    integer, intent(in) :: most
+    integer, intent(in) :: line   !! in deck order
+    integer, intent(in) :: from   !! first column wanted
+    integer, intent(in) :: most   !! columns wanted
     character(len=:), allocatable :: text
-    integer :: last, column
+    integer :: first, last
 
-    last = self%first(line) - 1
-    do column = 1, from + most - 1
-      if (self%text(last + 1:last + 1) == newline) exit
-      last = last + 1
-    end do
-    text = self%text(self%first(line) + from - 1:last)
+    first = self%line(line)%first
+    last = min(first + from + most - 2, self%used)
+    last = first - 2 + index(self%text(first:last)//newline, newline)
+    text = self%text(first + from - 1:last)
     if (len(text) == 0) return
     if (text(len(text):) == achar(13)) text = text(:len(text) - 1)
     text = trim(text)
@@ -375,9 +356,9 @@ contains
   !> Is there nothing to read in a line?
   pure logical function blank(self, line)
     class(source), intent(in) :: self
-    integer, intent(in) :: line
+    integer, intent(in) :: line   !! in deck order
 
-    blank = self%last(line) < self%first(line)
+    blank = self%line(line)%last < self%line(line)%first
   end function blank
 
   !> The place of the characters `first` to `last` of the buffer, which are in `line`.
@@ -386,6 +367,6 @@ contains
     integer, intent(in) :: line, first, last
     type(place_type) :: place
 
-    place = place_type(line, first - self%first(line) + 1, last - self%first(line) + 1)
+    place = place_type(line, first - self%line(line)%first + 1, last - self%line(line)%first + 1)
   end function columns
 end module epcont_deck_source

@@ -2,71 +2,104 @@
 module epcont_deck_value
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: short_real
-  use epcont_deck_entry, only: farthest, field_entry, kind_any, kind_components, kind_integer, kind_real, kind_word
+  use epcont_deck_card, only: card_fields
+  use epcont_deck_complaint, only: add_fault
+  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_deck_entry, only: farthest, field_entry, kind_components, kind_integer, kind_real, kind_word
   use epcont_deck_field, only: scan_components, scan_integer, scan_malformed, scan_no_point, scan_real, scan_sound, &
                                scan_too_large, scan_too_long, scan_too_small, scan_word
+  use epcont_deck_table, only: card_table
   implicit none
   private
-  public :: read_value, fault_of, out_of_range
+  public :: field_value, read_slot
 
-  !> A fault that is not one of form, beside the outcomes of a scan.
+  !> Faults that are not of form, beside the outcomes of a scan.
   integer, parameter :: out_of_range = -1, out_of_reach = -2
+  !> What fields hold, by their kinds.
+  character(len=*), parameter :: noun(4) = [character(len=20) :: &
+    'a whole number', 'a real number', 'a list of directions', 'a word']
+
+  !> What a field says. (Not initialised: that would take longer than reading it.)
+  type :: field_value
+    real(wp) :: number
+    character(len=8) :: word   !! in capitals
+    logical :: sound           !! it can be taken
+  end type field_value
 
 contains
 
+  !> Read a field; one that is blank, or cannot be taken, is a fault.
+  subroutine read_slot(card, table, slot, entry, value, faults)
+    type(card_fields), intent(in) :: card
+    type(card_table), intent(in) :: table     !! the card is its last
+    integer, intent(in) :: slot               !! which field
+    type(field_entry), intent(in) :: entry    !! what it may hold
+    type(field_value), intent(out) :: value
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: what, remedy
+    integer :: outcome
+
+    value%sound = .false.
+    if (.not. card%filled(slot)) then
+      call add_fault(card, table, slot, 'is blank', entry%allowed(), faults)
+      return
+    end if
+    call read_value(card%text(card%first(slot):card%last(slot)), entry, value, outcome)
+    if (outcome == scan_no_point .and. entry%point_optional) then
+      if (card%is_large(slot)) outcome = scan_sound
+    end if
+    value%sound = outcome == scan_sound
+    if (value%sound) return
+    call fault_of(card%text(card%first(slot):card%last(slot)), entry, outcome, what, remedy)
+    call add_fault(card, table, slot, what, remedy, faults)
+  end subroutine read_slot
+
   !> The value of a field that is not blank. `outcome` is `scan_sound`, or what `fault_of` puts into words.
-  pure subroutine read_value(text, entry, value, word, outcome)
+  pure subroutine read_value(text, entry, value, outcome)
     character(len=*), intent(in) :: text     !! without blanks around it
     type(field_entry), intent(in) :: entry
-    real(wp), intent(out) :: value           !! of a number
-    character(len=8), intent(out) :: word    !! of a word, in capitals
+    type(field_value), intent(out) :: value
     integer, intent(out) :: outcome
     integer(i8) :: whole
 
-    value = 0.0_wp
-    word = ''
+    outcome = scan_sound
+    value%number = 0.0_wp
+    value%word = ''
     select case (entry%kind)
     case (kind_integer)
       call scan_integer(text, whole, outcome)
-      value = real(whole, wp)
+      value%number = real(whole, wp)
     case (kind_real)
-      call scan_real(text, value, outcome)
+      call scan_real(text, value%number, outcome)
     case (kind_components)
       call scan_components(text, whole, outcome)
-      value = real(whole, wp)
+      value%number = real(whole, wp)
     case (kind_word)
-      call scan_word(text, word, outcome)
-      if (outcome == scan_sound .and. allocated(entry%choices)) then
-        if (index(' '//entry%choices//' ', ' '//trim(word)//' ') == 0) outcome = out_of_range
-      end if
-      return
-    case default
-      outcome = scan_sound
-      return
+      call scan_word(text, value%word, outcome)
     end select
-    if (outcome /= scan_sound) return
-    if (.not. within(value, entry)) then
-      outcome = out_of_range
-    else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
-      if (.not. within_reach(value, entry)) outcome = out_of_reach
-    end if
+    if (outcome == scan_sound) outcome = judged(value, entry)
   end subroutine read_value
 
-  pure logical function within(value, entry)
-    real(wp), intent(in) :: value
+  !> Whether a value of the right form is one that is allowed.
+  pure integer function judged(value, entry) result(outcome)
+    type(field_value), intent(in) :: value
     type(field_entry), intent(in) :: entry
 
-    within = value >= entry%lowest .and. value <= entry%highest
-    if (entry%above_lowest) within = within .and. value > entry%lowest
-    if (entry%below_highest) within = within .and. value < entry%highest
-  end function within
-
-  pure logical function within_reach(value, entry)
-    real(wp), intent(in) :: value
-    type(field_entry), intent(in) :: entry
-
-    within_reach = abs(value) <= farthest .and. (value == 0.0_wp .or. abs(value) >= entry%least)
-  end function within_reach
+    outcome = scan_sound
+    if (entry%kind == kind_word) then
+      if (entry%choices /= '' .and. index(' '//entry%choices//' ', ' '//trim(value%word)//' ') == 0) &
+        outcome = out_of_range
+      return
+    end if
+    associate (number => value%number)
+      if (number < entry%lowest .or. (entry%above_lowest .and. number <= entry%lowest) .or. &
+          number > entry%highest .or. (entry%below_highest .and. number >= entry%highest)) then
+        outcome = out_of_range
+      else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
+        if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) outcome = out_of_reach
+      end if
+    end associate
+  end function judged
 
   !> A fault in words: `what` goes behind `field 4 (X1) `.
   pure subroutine fault_of(text, entry, outcome, what, remedy)
@@ -92,7 +125,7 @@ contains
     case (scan_too_long)
       what = 'has more than 8 characters'
     case (scan_malformed)
-      what = 'is not '//noun(entry%kind)
+      what = 'is not '//trim(noun(entry%kind))
     case default
       call range_fault(text, entry, what, remedy)
     end select
@@ -114,38 +147,19 @@ contains
     type(field_entry), intent(in) :: entry
     character(len=:), allocatable, intent(out) :: what
     character(len=:), allocatable, intent(inout) :: remedy
-    character(len=8) :: word
-    real(wp) :: value
+    type(field_value) :: value
     integer :: outcome
 
+    call read_value(text, entry, value, outcome)
     what = 'is out of range'
     if (entry%kind == kind_word) what = 'is not a word known here'
-    if (allocated(entry%withdrawn)) then
-      call scan_word(text, word, outcome)
-      if (word == entry%withdrawn) what = 'is '//entry%withdrawn//', which is no longer there'
+    if (entry%withdrawn /= '' .and. value%word == entry%withdrawn) &
+      what = 'is '//trim(entry%withdrawn)//', which is no longer there'
+    if (entry%instead /= '' .and. value%number == entry%highest) then
+      what = 'is '//text//', '//trim(entry%reason)
+      remedy = 'less, such as '//trim(entry%instead)
     end if
-    if (.not. allocated(entry%instead)) return
-    call scan_real(text, value, outcome)
-    if (value /= entry%highest) return
-    what = 'is '//text//', '//entry%reason
-    remedy = 'less, such as '//entry%instead
   end subroutine range_fault
-
-  pure function noun(kind)
-    integer, intent(in) :: kind
-    character(len=:), allocatable :: noun
-
-    select case (kind)
-    case (kind_integer)
-      noun = 'a whole number'
-    case (kind_real)
-      noun = 'a real number'
-    case (kind_components)
-      noun = 'a list of directions'
-    case default
-      noun = 'a word'
-    end select
-  end function noun
 
   !> A real written without point, with it: `1E5` becomes `1.E5`.
   pure function with_point(text) result(real_text)
@@ -153,12 +167,11 @@ contains
     character(len=:), allocatable :: real_text
     integer :: last
 
-    last = 1
-    do while (last < len(text))
-      if (scan(text(last + 1:last + 1), '0123456789') == 0) exit
-      last = last + 1
-    end do
-    real_text = text(:last)//'.'//text(last + 1:)
-    if (last == len(text)) real_text = real_text//'0'
+    last = verify(text(2:), '0123456789')
+    if (last == 0) then
+      real_text = text//'.0'
+    else
+      real_text = text(:last)//'.'//text(last + 1:)
+    end if
   end function with_point
 end module epcont_deck_value

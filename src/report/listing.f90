@@ -48,7 +48,7 @@ contains
     call heading(file, 'DECK')
     do k = 1, size(deck%card)
       if (deck%card(k)%count > 0) &
-        call file%line('  '//deck%entry(k)%name//'  '//right(text_of(deck%card(k)%count), 9))
+        call file%line('  '//deck%card(k)%entry%name//'  '//right(text_of(deck%card(k)%count), 9))
     end do
   end subroutine list_deck
 
