@@ -13,11 +13,12 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, new_basis
+  use epcont_contact_problem, only: contact_problem
   use epcont_contact_scaling, only: scale_problem, scaled_problem
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
-  use epcont_plan_numbering, only: numbering_type
-  use epcont_plasticity_iteration, only: plastic_run
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plasticity_linear_scene, only: linear_scene
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line
   implicit none
@@ -58,13 +59,19 @@ module epcont_accuracy_accuracy
   !> A part of the products of elements that may not be trusted to cancel.
   real(wp), parameter :: uncertain = 1.0_wp/3.0_wp
 
+  !> A unit load along a motion, or gaps that shrink.
+  type :: unit_load
+    real(wp), allocatable :: force(:)   !! contact forces under it [pairs]
+    real(wp) :: product(2)              !! of its error and the scene's, of all elements, and of each without its sign
+    real(wp) :: missing                 !! part of its energy
+    logical :: shared                   !! of forces that may go from one pair or body to another: parts cancel that need not
+  end type unit_load
+
 contains
 
-  pure subroutine assess(model, motions, numbering, run, line, answer, accuracy)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
-    type(plastic_run), intent(in) :: run
+  pure subroutine assess(scene, linear, line, answer, accuracy)
+    type(planned_scene), intent(in) :: scene
+    type(linear_scene), intent(in) :: linear   !! of the last solve
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     type(accuracy_type), intent(out) :: accuracy
@@ -78,14 +85,14 @@ contains
     integer, allocatable :: column(:, :)        !! of what bodies bear, of each body [2, bodies]
     integer, allocatable :: moved(:)            !! unit loads that say something
     logical :: carried, pressed
-    logical :: shared   !! what one pair or body bears more another bears less: parts cancel that need not
     integer :: j
 
+    associate (model => scene%model, motions => scene%motions)
     pressed = any(answer%contact%force > 0.0_wp)
     carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
     allocate (moved(0), unit_force(model%pairs, 0))
     if (carried) then
-      problem = scale_problem(run%scene%problem)
+      problem = scale_problem(linear%problem)
       basis = new_basis(problem, answer%contact%force > 0.0_wp)
       call find_shares(model, motions, answer%contact%touching, answer%bodies, share, column)
       share = reshape([spread(1.0_wp, 1, model%pairs), share], [model%pairs, 1 + size(share, 2)])
@@ -95,7 +102,7 @@ contains
                    [.not. answer%contact%motion_free, spread(.true., 1, size(share, 2))])
     end if
     table = new_patch_table(model)
-    call compare_fields(model, numbering, run, table, unit_force(:, moved), field)
+    call compare_fields(scene, linear, answer, table, unit_force(:, moved), field)
     accuracy%element = field%element
     accuracy%energy_norm = sqrt(part(sum(field%element), sum(field%element) + abs(field%energy)))
     allocate (accuracy%worst(0))
@@ -111,19 +118,19 @@ contains
     allocate (accuracy%zone(0))
     if (.not. pressed) return
 
-    call assess_zones(model, table, line, answer, smooth_pressures(model, table, run%materials, field%smooth), &
+    call assess_zones(model, table, line, answer, smooth_pressures(model, table, linear%materials, field%smooth), &
                       accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads(model, motions, table)), &
                                                    sum(accuracy%element)), accuracy)
     if (.not. carried) return
 
-    accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(run), answer%condition)
+    accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, &
+                                            travel(linear%problem, answer%contact%approach), answer%condition)
     ! What the last step of refinement has not changed is right.
     accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
     allocate (off(size(unit_force, 2)), source=0.0_wp)
     do j = 1, size(moved)
-      shared = moved(j) > max(1, motions%count)
-      off(moved(j)) = error_along(model, line, answer, table, unit_force(:, moved(j)), field%along(:, j), field%missing(j), &
-                                  shared, accuracy)
+      off(moved(j)) = error_along(model, line, answer, table, unit_load(unit_force(:, moved(j)), field%along(:, j), &
+                                  field%missing(j), moved(j) > max(1, motions%count)), accuracy)
     end do
     associate (of_motions => matmul(transpose(share), unit_force(:, :motions%count)))
       off(motions%count + 1:) = off(motions%count + 1:) &
@@ -133,7 +140,8 @@ contains
     accuracy%approach_unbounded = [(any(moved == j) .and. is_point_load(model, motions, table, j), j=1, motions%count)]
     call assess_forces(model, line, answer, share, column, off(motions%count + 1:), accuracy)
     call widen_pressures(answer, accuracy)
-    accuracy%weak = find_weak(model, line, answer, run, accuracy)
+    accuracy%weak = find_weak(model, line, answer, linear%problem%flexibility, accuracy)
+    end associate
   end subroutine assess
 
   !> The total contact force, and what of it each body bears: nothing is off where loads alone make it.
@@ -201,13 +209,12 @@ contains
   end function worst_of
 
   !> What the gaps of the pairs are the sum of, added up [length] [pairs].
-  pure function travel(run) result(length)
-    type(plastic_run), intent(in) :: run
+  pure function travel(problem, approach) result(length)
+    type(contact_problem), intent(in) :: problem
+    real(wp), intent(in) :: approach(:)   !! [motions]
     real(wp), allocatable :: length(:)
 
-    associate (problem => run%scene%problem)
-      length = abs(problem%initial_gap) + abs(problem%load_gap) + matmul(abs(problem%motion), abs(run%state%contact%approach))
-    end associate
+    length = abs(problem%initial_gap) + abs(problem%load_gap) + matmul(abs(problem%motion), abs(approach))
   end function travel
 
   !> Largest pressures and half-widths.
@@ -247,15 +254,12 @@ contains
 
   !> Error of an approach, or of the total contact force: the product of the errors of the scene and of its answer to a unit load
   !! along the motion, or to closing gaps, signed, with what contact at nodes alone lets the bodies come too near.
-  pure real(wp) function error_along(model, line, answer, table, unit_force, product, missing, shared, accuracy) result(error)
+  pure real(wp) function error_along(model, line, answer, table, load, accuracy) result(error)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     type(patch_table), intent(in) :: table
-    real(wp), intent(in) :: unit_force(:)   !! contact forces under the unit load [pairs]
-    real(wp), intent(in) :: product(2)      !! of all elements, and of each without its sign
-    real(wp), intent(in) :: missing         !! part of the unit load's energy
-    logical, intent(in) :: shared           !! of forces that may go from one pair or body to another
+    type(unit_load), intent(in) :: load
     type(accuracy_type), intent(in) :: accuracy
     real(wp) :: at_end, between, end_error, near, short, vague
     type(estimate_weights) :: weights
@@ -266,7 +270,7 @@ contains
     vague = 1.0_wp
     weights = weights_of(3, model%has_rings(), any(answer%plastic))   ! without a zone
     do z = 1, size(accuracy%zone)
-      associate (zone => accuracy%zone(z), force => unit_force(answer%zones(z)%pairs))
+      associate (zone => accuracy%zone(z), force => load%force(answer%zones(z)%pairs))
         weights = weights_of(model%kinds(zone%kind)%estimated_as, model%has_rings(), any(answer%plastic))
         at_end = answer%zones(z)%max_pressure*zone%half_length*surface_compliance(model, table, zone%peak)
         between = at_end*zone%resolution**2
@@ -280,10 +284,10 @@ contains
       end associate
     end do
     ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its field is too small.
-    short = max(abs(product(1) - near), uncertain*product(2))
-    if (shared) short = of_shares*(product(2) + abs(near))   ! no part cancels another
+    short = max(abs(load%product(1) - near), uncertain*load%product(2))
+    if (load%shared) short = of_shares*(load%product(2) + abs(near))   ! no part cancels another
     error = weights%product*short &
-            /max(least_energy, 1.0_wp - accuracy%energy_norm**2)/max(least_energy, 1.0_wp - missing) + end_error
+            /max(least_energy, 1.0_wp - accuracy%energy_norm**2)/max(least_energy, 1.0_wp - load%missing) + end_error
     error = vague*error
   end function error_along
 
@@ -337,11 +341,11 @@ contains
   end function beside_point_loads
 
   !> Pairs pressed less than the error of their force, or open less than such a force would close.
-  pure function find_weak(model, line, answer, run, accuracy) result(weak)
+  pure function find_weak(model, line, answer, flexibility, accuracy) result(weak)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
-    type(plastic_run), intent(in) :: run
+    real(wp), intent(in) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
     type(accuracy_type), intent(in) :: accuracy
     logical, allocatable :: weak(:)
     real(wp), allocatable :: off(:)   !! error of the pressure [stress] [pairs]
@@ -367,7 +371,7 @@ contains
       if (answer%contact%touching(k)) then
         weak(k) = answer%contact%force(k) <= force
       else
-        weak(k) = answer%contact%gap(k) <= run%scene%problem%flexibility(k, k)*force
+        weak(k) = answer%contact%gap(k) <= flexibility(k, k)*force
       end if
     end do
   end function find_weak

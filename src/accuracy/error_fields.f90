@@ -5,10 +5,10 @@ module epcont_accuracy_error_fields
   use epcont_accuracy_recovery, only: recover_strains
   use epcont_accuracy_unit_motion, only: unit_strains
   use epcont_base_kinds, only: wp
-  use epcont_model_model, only: model_type
   use epcont_plan_forecast, only: loads_at_once
-  use epcont_plan_numbering, only: numbering_type
-  use epcont_plasticity_iteration, only: plastic_run
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plasticity_linear_scene, only: linear_scene
+  use epcont_plasticity_scene_state, only: scene_state
   implicit none
   private
   public :: compare_fields, error_fields
@@ -25,10 +25,10 @@ module epcont_accuracy_error_fields
 contains
 
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
-  pure subroutine compare_fields(model, numbering, run, table, unit_force, field)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(plastic_run), intent(in) :: run
+  pure subroutine compare_fields(scene, linear, answer, table, unit_force, field)
+    type(planned_scene), intent(in) :: scene
+    type(linear_scene), intent(in) :: linear   !! of the last solve
+    class(scene_state), intent(in) :: answer
     type(patch_table), intent(in) :: table
     real(wp), intent(in) :: unit_force(:, :)   !! contact forces under each unit load [pairs, loads]
     type(error_fields), intent(out) :: field
@@ -37,23 +37,23 @@ contains
     integer :: first, j, loads
 
     allocate (field%along(2, size(unit_force, 2)), field%missing(size(unit_force, 2)))
-    associate (volume => run%scene%operator%volume)
+    associate (model => scene%model, volume => linear%operator%volume)
       do first = 1, max(1, size(unit_force, 2)), loads_at_once
         loads = min(loads_at_once, size(unit_force, 2) - first + 1)
         allocate (strain(4, model%points, 1 + loads))
-        strain(:, :, 1) = run%state%strain
+        strain(:, :, 1) = answer%strain
         do j = 1, loads
-          strain(:, :, 1 + j) = unit_strains(model, numbering, run%scene, unit_force(:, first - 1 + j))
+          strain(:, :, 1 + j) = unit_strains(scene, linear, unit_force(:, first - 1 + j))
         end do
         smooth = recover_strains(model, table, volume, strain)
-        product = error_products(model, table, run%materials, volume, strain, smooth, run%state%point)
+        product = error_products(model, table, linear%materials, volume, strain, smooth, answer%point)
         do j = 1, loads
           field%along(:, first - 1 + j) = [sum(product%element(:, 1 + j)), sum(abs(product%element(:, 1 + j)))]
         end do
         field%missing(first:first + loads - 1) = product%missing(2:)
         deallocate (strain)
       end do
-      field%energy = stored_energy(volume, run%state%strain, run%state%stress)
+      field%energy = stored_energy(volume, answer%strain, answer%point_stress)
     end associate
     field%element = product%element(:, 1)
     field%smooth = smooth(:, :, 1)

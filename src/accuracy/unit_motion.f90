@@ -5,8 +5,7 @@ module epcont_accuracy_unit_motion
   use epcont_contact_basis, only: contact_basis, respond
   use epcont_contact_scaling, only: scaled_problem
   use epcont_flexibility_flexibility, only: pair_forces
-  use epcont_model_model, only: model_type
-  use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_linear_scene, only: linear_scene
   implicit none
   private
@@ -58,13 +57,15 @@ contains
   end function closing_forces
 
   !> Strains of such forces [4, points].
-  pure function unit_strains(model, numbering, scene, force) result(strain)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(linear_scene), intent(in) :: scene
+  pure function unit_strains(scene, linear, force) result(strain)
+    type(planned_scene), intent(in) :: scene
+    type(linear_scene), intent(in) :: linear
     real(wp), intent(in) :: force(:)   !! [pairs]
     real(wp), allocatable :: strain(:, :)
 
-    strain = scene%operator%strains(model, scene%bodies%displacements(model, numbering, pair_forces(model, force), 0.0_wp))
+    associate (model => scene%model)
+      strain = linear%operator%strains(model, linear%bodies%displacements(model, scene%numbering, &
+                                                                          pair_forces(model, force), 0.0_wp))
+    end associate
   end function unit_strains
 end module epcont_accuracy_unit_motion

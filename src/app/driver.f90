@@ -15,7 +15,7 @@ module epcont_app_driver
   use epcont_plan_forecast, only: check_memory, forecast, forecast_type
   use epcont_plan_free_motion, only: find_free_motions, motion_fault
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
-  use epcont_plan_numbering, only: number_equations, numbering_type
+  use epcont_plan_numbering, only: number_equations
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_limit, only: limit_of_largest, reason_of
@@ -39,7 +39,6 @@ module epcont_app_driver
 
   !> What will be solved, and how.
   type :: scene_plan
-    type(numbering_type) :: numbering
     type(iteration_plan) :: iteration
     type(forecast_type) :: expected
   end type scene_plan
@@ -100,16 +99,19 @@ contains
     call prepare(path, run, watch, error)
     if (.not. allocated(error)) then
       if (run%faults%error_count() > 0) then
+        call print_error(render(run%faults, run%deck%source))
         status = status_deck
         call say(arguments, name//'  rejected', status)
-      else if (arguments%check) then
+        return
+      end if
+      if (arguments%check) then
         call say(arguments, name//'  checked', status)
       else
         call make_plan(run, plan, watch)
         if (arguments%plan) call print_text(name//run%plan, status)
       end if
       call print_error(render(run%faults, run%deck%source))
-      if (run%faults%error_count() > 0 .or. arguments%check .or. arguments%plan) return
+      if (arguments%check .or. arguments%plan) return
       call solve(run, plan, arguments%memory, watch, error)
       if (allocated(error)) error%message = path//': '//error%message
     end if
@@ -137,7 +139,7 @@ contains
     type(progress_type), intent(inout) :: watch
     type(error_type), allocatable, intent(out) :: error
     type(error_type), allocatable :: in_double
-    integer :: singular, count
+    integer :: count
     logical :: entered
 
     run%remarks = remarks_of_deck(run%faults, run%deck%source)
@@ -147,16 +149,15 @@ contains
       if (allocated(error)) return
       call check_memory(plan%expected%double_bytes, limit, in_double)
       if (allocated(in_double)) plan%iteration%against_double = in_double%message
-      plan%iteration%threads = plan_threads(plan%numbering, plan%expected%bytes, granted_threads())
+      plan%iteration%threads = plan_threads(run%numbering, plan%expected%bytes, granted_threads())
       call watch%expect(plan%iteration, run%model%controls%most_iterations, plan%expected%operations)
-      call analyse(run%model, run%motions, plan%numbering, plan%iteration, run%answer, run%certificate, run%accuracy, &
-                   singular, watch)
-      if (singular > 0 .or. count == most_solves) exit
+      call analyse(run%planned_scene, plan%iteration, run%answer, run%certificate, run%accuracy, watch)
+      if (run%answer%singular > 0 .or. count == most_solves) exit
       call enter_nodes_that_came_near(run%model, run%answer%displacement, run%answer%contact%touching, entered)
       if (.not. entered) exit
       call make_plan(run, plan, watch)
     end do
-    run%outcome = judge(run%model, run%motions, run%answer, run%certificate, singular)
+    run%outcome = judge(run%model, run%motions, run%answer, run%certificate, run%answer%singular)
     if (run%outcome%has_answer) &
       call remark_answer(run%model, run%motions, run%answer, run%certificate%scene, run%remarks)
   end subroutine solve
@@ -218,11 +219,11 @@ contains
     type(scene_plan), intent(out) :: plan
     class(stopwatch), intent(inout) :: watch
 
-    plan%numbering = number_equations(run%model)
+    run%numbering = number_equations(run%model)
     call watch%lap(stage_numbering)
     plan%iteration = plan_iteration(run%model)
-    plan%expected = forecast(run%model, run%motions, plan%numbering, plan%iteration)
-    run%plan = plan_text(run%model, run%motions, plan%iteration, plan%numbering, plan%expected)
+    plan%expected = forecast(run%model, run%motions, run%numbering, plan%iteration)
+    run%plan = plan_text(run%model, run%motions, plan%iteration, run%numbering, plan%expected)
     call watch%lap(stage_plan)
   end subroutine make_plan
 

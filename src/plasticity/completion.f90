@@ -6,6 +6,7 @@ module epcont_plasticity_completion
   use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
+  use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_scene_state, only: scene_state
   implicit none
   private
@@ -17,18 +18,17 @@ module epcont_plasticity_completion
 contains
 
   !> Stresses, displacements and gaps of a state.
-  pure subroutine complete_state(model, motions, law, problem, part, state)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
+  pure subroutine complete_state(scene, law, problem, part, state)
+    type(planned_scene), intent(in) :: scene
     type(linear_law), intent(in) :: law
     type(contact_problem), intent(in) :: problem
     real(wp), intent(in) :: part   !! of what supports prescribe
     type(scene_state), intent(inout) :: state
 
-    state%stress = law%stress(state%strain)
-    state%displacement = state%deformation + part*model%travel
-    call add_motions(model, motions, state)
-    call measure_gaps(model, problem, part, state)
+    state%point_stress = law%stress(state%strain)
+    state%displacement = state%deformation + part*scene%model%travel
+    call add_motions(scene%model, scene%motions, state)
+    call measure_gaps(scene%model, problem, part, state)
   end subroutine complete_state
 
   !> Gaps of the pairs without force as the displacements have them. Where a rigid stop takes the load, what the flexibility says

@@ -3,23 +3,22 @@ module epcont_plasticity_iteration
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solved, contact_stalled
-  use epcont_material_linear_law, only: elastic_law, linear_law
-  use epcont_material_scene_materials, only: find_materials, scene_materials
+  use epcont_material_linear_law, only: elastic_law
   use epcont_model_controls, only: method_newton, method_secant, precision_single
   use epcont_model_model, only: model_type
-  use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_iteration_error, only: error_estimator, ratio
   use epcont_plasticity_linear_scene, only: linear_scene, new_linear_scene
   use epcont_plasticity_method, only: plastic_method
+  use epcont_plasticity_methods, only: choose_method
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_onlooker, only: iteration_record, onlooker
   use epcont_plasticity_scene_state, only: scene_state
   use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
   implicit none
   private
-  public :: plastic_run, follow_loads
+  public :: followed_loads, follow_loads
 
   !> Displacements so many times those of the first solve, with a flat curve: nothing carries the load.
   real(wp), parameter :: far_away = 1.0e4_wp
@@ -39,32 +38,28 @@ module epcont_plasticity_iteration
   !> A strain that falls by less than this part of it stays.
   real(wp), parameter :: least_fall = 1.0e-6_wp
 
-  !> What came of the loads, and how.
-  type :: plastic_run
-    type(scene_materials) :: materials
-    type(scene_state), allocatable :: state    !! the answer, or what came nearest to one
-    type(linear_scene), allocatable :: scene   !! as the last solve left it, if there is an answer
-    type(linear_law), allocatable :: law       !! of that solve
-    real(wp) :: load_factor = 0.0_wp       !! part of the loads that `state` carries
-    logical :: converged = .false.         !! all loads, to the tolerance
+  !> What came of the loads, and how: a state, the answer or what came nearest to one.
+  type, extends(scene_state) :: followed_loads
+    real(wp) :: load_factor = 0.0_wp       !! part of the loads for which the state is
+    logical :: converged = .false.         !! all loads, to the tolerance of the iteration
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
     integer :: singular = 0                !! body that could not be factored
     logical :: lacks_memory = .false.      !! that was for want of memory
     integer :: factorizations = 0          !! of bodies
-    real(wp) :: condition = 1.0_wp         !! of its stiffness, estimated in the 1-norm
-    type(weak_pivot) :: weakest            !! of its stiffness
+    real(wp) :: condition = 1.0_wp         !! of the stiffness, estimated in the 1-norm
+    type(weak_pivot) :: weakest            !! of the stiffness
     real(wp) :: rounding_error = 0.0_wp    !! of displacements, strains and forces, relative: what single precision left
-    type(iteration_record), allocatable :: history(:)
-    integer :: unloaded = 0                !! elements whose strain fell from one load step to the next, after yielding
+    type(iteration_record), allocatable :: history(:)   !! every solve
+    integer :: unloaded = 0                !! elements whose strain fell, after yielding, as the load grew
     integer :: first_unloaded = 0          !! one of them
-  end type plastic_run
+  end type followed_loads
 
   !> What the loop works on.
   type :: loop_type
     type(iteration_plan) :: plan
-    type(scene_materials) :: materials
-    type(linear_scene), allocatable :: scene
-    type(linear_law), allocatable :: law
+    class(plastic_method), allocatable :: method
+    type(linear_scene), allocatable :: linear
+    real(wp) :: part = 0.0_wp                         !! of the loads
     type(scene_state) :: about                        !! the state that the law is about
     integer :: yielded = 0                            !! elements that yield there
     logical, allocatable :: touching(:)               !! the last contact set: the next simplex starts from it [pairs]
@@ -78,76 +73,67 @@ module epcont_plasticity_iteration
 contains
 
   !> Load by load to the answer.
-  subroutine follow_loads(model, motions, numbering, plan, method, run, watch)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
+  subroutine follow_loads(scene, plan, linear, answer, watch)
+    type(planned_scene), intent(in) :: scene
     type(iteration_plan), intent(in) :: plan
-    class(plastic_method), intent(inout) :: method
-    type(plastic_run), intent(out) :: run
+    type(linear_scene), allocatable, intent(out) :: linear   !! as the last solve left it, if there is an answer
+    type(followed_loads), intent(out) :: answer
     class(onlooker), intent(inout) :: watch
     type(loop_type) :: loop
     type(scene_state), allocatable :: state
     real(wp), allocatable :: strained(:)
-    real(wp) :: part
     logical :: converged
     integer :: step
 
-    call begin(model, motions, plan, loop)
-    method%volume = loop%scene%operator%volume
-    allocate (run%history(0), strained(model%points))
+    call begin(scene, plan, loop)
+    allocate (answer%history(0), strained(scene%model%points))
     strained = 0.0_wp
     call watch%lap(stage_stiffness)
     do step = 1, plan%load_steps
-      part = real(step, wp)/plan%load_steps
-      call iterate(model, motions, numbering, method, part, loop, run, state, converged, watch)
-      run%factorizations = loop%scene%bodies%factorizations
-      run%lacks_memory = loop%scene%bodies%lacks_memory()
-      if (run%singular > 0) return
+      loop%part = real(step, wp)/plan%load_steps
+      call iterate(scene, loop, answer, state, converged, watch)
+      answer%factorizations = loop%linear%bodies%factorizations
+      answer%lacks_memory = loop%linear%bodies%lacks_memory()
+      if (answer%singular > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
-      if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call move_alloc(state, run%state)
-      if (run%state%contact%state /= contact_solved) return
+      if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call answer%take(state)
+      if (answer%contact%state /= contact_solved) return
       if (converged .or. step == 1) then
-        run%load_factor = part
-        call loop%scene%estimate_condition(model, numbering, loop%law, run%condition)
-        run%weakest = loop%scene%bodies%weakest()
+        answer%load_factor = loop%part
+        call loop%linear%estimate_condition(scene, answer%condition)
+        answer%weakest = loop%linear%bodies%weakest()
         if (plan%precision == precision_single) &
-          call loop%scene%rounding_error(model, numbering, loop%law, part, run%state, run%rounding_error)
+          call loop%linear%rounding_error(scene, loop%part, answer%scene_state, answer%rounding_error)
         call watch%lap(stage_accuracy)
       end if
       if (.not. converged) exit
-      if (plan%load_steps > 1) call find_unloaded(model, loop, strained, run)
+      if (plan%load_steps > 1) call find_unloaded(scene%model, loop, strained, answer)
       call watch%lap(stage_yielding)
     end do
-    run%converged = converged
-    call move_alloc(loop%scene, run%scene)
-    call move_alloc(loop%law, run%law)
-    run%materials = loop%materials
+    answer%converged = converged
+    call move_alloc(loop%linear, linear)
   end subroutine follow_loads
 
-  subroutine begin(model, motions, plan, loop)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
+  subroutine begin(scene, plan, loop)
+    type(planned_scene), intent(in) :: scene
     type(iteration_plan), intent(in) :: plan
     type(loop_type), intent(out) :: loop
 
     loop%plan = plan
-    loop%scene = new_linear_scene(model, motions, plan%body, plan%contact%by_blocks, plan%precision, plan%threads)
-    call find_materials(model, loop%materials)
-    allocate (loop%about%displacement(2, model%nodes), loop%about%strain(4, model%points), source=0.0_wp)
-    if (loop%materials%yields) loop%about%point = loop%materials%states(loop%about%strain)
-    allocate (loop%force(model%pairs), source=0.0_wp)
+    allocate (loop%linear)
+    call new_linear_scene(scene, plan, loop%linear)
+    call choose_method(plan%method, loop%method)
+    loop%method%volume = loop%linear%operator%volume
+    allocate (loop%about%displacement(2, scene%model%nodes), loop%about%strain(4, scene%model%points), source=0.0_wp)
+    if (loop%linear%materials%yields) loop%about%point = loop%linear%materials%states(loop%about%strain)
+    allocate (loop%force(scene%model%pairs), source=0.0_wp)
   end subroutine begin
 
   !> Iterate at one load. `state` is the last, or if that is not converged the one nearest to equilibrium.
-  subroutine iterate(model, motions, numbering, method, part, loop, run, state, converged, watch)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
-    class(plastic_method), intent(inout) :: method
-    real(wp), intent(in) :: part
+  subroutine iterate(scene, loop, answer, state, converged, watch)
+    type(planned_scene), intent(in) :: scene
     type(loop_type), intent(inout) :: loop
-    type(plastic_run), intent(inout) :: run
+    type(followed_loads), intent(inout) :: answer
     type(scene_state), allocatable, intent(out) :: state
     logical, intent(out) :: converged
     class(onlooker), intent(inout) :: watch
@@ -159,45 +145,45 @@ contains
     converged = .false.
     least_residual = huge(1.0_wp)
     allocate (state, found)
-    if (.not. loop%stiff) loop%law = elastic_law(loop%materials)   ! it may be a last step's tangent
-    call method%restart()
+    if (.not. loop%stiff) loop%linear%law = elastic_law(loop%linear%materials)   ! it may be a last step's tangent
+    call loop%method%restart()
     call loop%estimator%restart()
     loop%doubt = 1.0_wp
-    do iteration = 1, model%controls%most_iterations
-      call set_law(model, numbering, method, loop, run%singular, watch)
-      if (run%singular > 0) return
-      call loop%scene%solve(model, motions, numbering, loop%law, part, loop%touching, found, watch)
+    do iteration = 1, scene%model%controls%most_iterations
+      call set_law(scene, loop%method, loop, answer%singular, watch)
+      if (answer%singular > 0) return
+      call loop%linear%solve(scene, loop%part, loop%touching, found, watch)
       if (found%contact%state /= contact_solved) then
         ! Not found about a later state, such as one beyond the limit load: what was found before is not converged.
         if (iteration == 1 .or. found%contact%state /= contact_stalled) call move_alloc(found, state)
         return
       end if
-      now%load_factor = part
+      now%load_factor = loop%part
       now%iteration = iteration
-      if (loop%materials%yields) found%point = loop%materials%states(found%strain)
-      call measure(model, loop, found, now)
-      call loop%estimator%estimate(method%telling_steps, loop%about, found, now)
+      if (loop%linear%materials%yields) found%point = loop%linear%materials%states(found%strain)
+      call measure(scene%model, loop, found, now)
+      call loop%estimator%estimate(loop%method%telling_steps, loop%about, found, now)
       if (now%yielded + loop%yielded == 0 .or. now%residual <= rounding .and. now%error < 0.0_wp) then
         ! What changes is rounding, if anything.
         now%error = merge(now%change, 0.0_wp, iteration > 1)
         now%force_error = merge(now%force_change, 0.0_wp, iteration > 1)
       end if
-      run%history = [run%history, now]
-      converged = is_over(loop, run%history)
-      if (converged .and. wants_test(model, loop, now)) &
-        call step_by_tangent(model, motions, numbering, part, loop, run%history, found, converged, watch)
-      now = run%history(size(run%history))
+      answer%history = [answer%history, now]
+      converged = is_over(loop, answer%history)
+      if (converged .and. wants_test(scene%model, loop, now)) &
+        call step_by_tangent(scene, loop, answer%history, found, converged, watch)
+      now = answer%history(size(answer%history))
       travel = maxval(abs(found%displacement))
       if (iteration == 1) farthest = far_away*travel
       ! A state far away is none to show: its numbers may be at the end of their range.
-      run%runs_away = .not. converged .and. model%has_flat_curve() .and. travel > farthest
-      if (run%runs_away) return
+      answer%runs_away = .not. converged .and. scene%model%has_flat_curve() .and. travel > farthest
+      if (answer%runs_away) return
       loop%touching = found%contact%touching
       loop%force = found%contact%force
       loop%yielded = now%yielded
       ! Behind the last load step nothing is linearised any more.
-      if (loop%materials%yields .and. .not. (converged .and. part >= 1.0_wp)) &
-        call method%advance(model, loop%materials, part, found, loop%about)
+      if (loop%linear%materials%yields .and. .not. (converged .and. loop%part >= 1.0_wp)) &
+        call loop%method%advance(scene%model, loop%linear%materials, loop%part, found, loop%about)
       call watch%lap(stage_yielding)
       call watch%solved(now, converged)
       if (converged .or. now%residual <= least_residual) then
@@ -211,9 +197,8 @@ contains
   end subroutine iterate
 
   !> The law about the last state, and the stiffness for it. `singular` is a body without any that can be factored.
-  subroutine set_law(model, numbering, method, loop, singular, watch)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
+  subroutine set_law(scene, method, loop, singular, watch)
+    type(planned_scene), intent(in) :: scene
     class(plastic_method), intent(inout) :: method
     type(loop_type), intent(inout) :: loop
     integer, intent(out) :: singular
@@ -221,15 +206,15 @@ contains
     logical :: possible
 
     singular = 0
-    if (loop%materials%yields) call method%linearise(loop%materials, loop%about, loop%law)
+    if (loop%linear%materials%yields) call method%linearise(loop%linear%materials, loop%about, loop%linear%law)
     call watch%lap(stage_yielding)
     if (loop%stiff .and. (method%keeps_stiffness .or. loop%elastic .and. loop%yielded == 0)) return
     loop%elastic = loop%yielded == 0
     do
-      call loop%scene%set_stiffness(model, numbering, loop%law, singular, watch)
+      call loop%linear%set_stiffness(scene, singular, watch)
       loop%stiff = .true.
-      if (singular == 0 .or. loop%scene%bodies%lacks_memory() .or. .not. loop%materials%yields) return
-      call method%stiffen(loop%materials, loop%about, loop%law, possible)
+      if (singular == 0 .or. loop%linear%bodies%lacks_memory() .or. .not. loop%linear%materials%yields) return
+      call method%stiffen(loop%linear%materials, loop%about, loop%linear%law, possible)
       if (.not. possible) return
     end do
   end subroutine set_law
@@ -251,13 +236,14 @@ contains
     now%pivots = found%contact%pivots
     now%yielded = 0
     now%residual = 0.0_wp
-    if (.not. loop%materials%yields) return
+    if (.not. loop%linear%materials%yields) return
     allocate (yielded(model%elements), source=.false.)
     do p = 1, model%points
-      associate (e => model%point_element(p), law => loop%materials%section(loop%materials%of_point(p))%law)
-        if (.not. law%yields) cycle
+      associate (e => model%point_element(p), m => loop%linear%materials)
+        if (.not. m%section(m%of_point(p))%law%yields) cycle
         yielded(e) = yielded(e) .or. found%point(p)%yielded
-        now%residual = max(now%residual, law%distance(found%point(p), found%stress(:, p)))
+        now%residual = max(now%residual, &
+                           m%section(m%of_point(p))%law%distance(found%point(p), found%point_stress(:, p)))
       end associate
     end do
     now%yielded = count(yielded)
@@ -295,11 +281,8 @@ contains
 
   !> The last step is one by the tangent, whose change is what was left. If that is more than the tolerance,
   !! all is as it was before, but for the doubt in estimates.
-  subroutine step_by_tangent(model, motions, numbering, part, loop, history, found, holds, watch)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
-    real(wp), intent(in) :: part
+  subroutine step_by_tangent(scene, loop, history, found, holds, watch)
+    type(planned_scene), intent(in) :: scene
     type(loop_type), intent(inout) :: loop
     type(iteration_record), allocatable, intent(inout) :: history(:)
     type(scene_state), allocatable, intent(inout) :: found
@@ -312,7 +295,7 @@ contains
     integer :: singular
 
     holds = .false.
-    if (history(size(history))%iteration == model%controls%most_iterations) return
+    if (history(size(history))%iteration == scene%model%controls%most_iterations) return
     about = loop%about
     now = history(size(history))
     now%iteration = now%iteration + 1
@@ -321,12 +304,12 @@ contains
     loop%force = found%contact%force
     loop%yielded = now%yielded
     allocate (next)
-    call set_law(model, numbering, tangent, loop, singular, watch)
+    call set_law(scene, tangent, loop, singular, watch)
     if (singular == 0 .and. tangent%blended() < too_stiff) then
-      call loop%scene%solve(model, motions, numbering, loop%law, part, found%contact%touching, next, watch)
+      call loop%linear%solve(scene, loop%part, found%contact%touching, next, watch)
       if (next%contact%state == contact_solved) then
-        next%point = loop%materials%states(next%strain)
-        call measure(model, loop, next, now)
+        next%point = loop%linear%materials%states(next%strain)
+        call measure(scene%model, loop, next, now)
       end if
     end if
     holds = now%change <= loop%plan%tolerance .and. now%residual <= loop%plan%off_curve
@@ -339,28 +322,28 @@ contains
     else
       loop%doubt = max(2.0_wp*loop%doubt, min(now%change/history(size(history))%error, most_doubt))
       loop%about = about
-      loop%law = elastic_law(loop%materials)
+      loop%linear%law = elastic_law(loop%linear%materials)
     end if
     loop%stiff = .false.
   end subroutine step_by_tangent
 
   !> Elements beyond yield whose strain falls as the load grows: total theory takes them back along the curve.
-  pure subroutine find_unloaded(model, loop, strained, run)
+  pure subroutine find_unloaded(model, loop, strained, answer)
     type(model_type), intent(in) :: model
     type(loop_type), intent(in) :: loop
     real(wp), intent(inout) :: strained(:)    !! e of the points that yielded in the last load step, else 0 [points]
-    type(plastic_run), intent(inout) :: run
+    type(followed_loads), intent(inout) :: answer
     logical, allocatable :: fell(:)
     integer :: p
 
     allocate (fell(model%elements), source=.false.)
     do p = 1, model%points
-      associate (e => model%point_element(p), now => run%state%point(p))
+      associate (e => model%point_element(p), now => answer%point(p))
         fell(e) = fell(e) .or. now%deviatoric < (1.0_wp - max(loop%plan%tolerance, least_fall))*strained(p)
         strained(p) = merge(now%deviatoric, 0.0_wp, now%yielded)
       end associate
     end do
-    run%unloaded = run%unloaded + count(fell)
-    if (run%first_unloaded == 0) run%first_unloaded = findloc(fell, .true., dim=1)
+    answer%unloaded = answer%unloaded + count(fell)
+    if (answer%first_unloaded == 0) answer%first_unloaded = findloc(fell, .true., dim=1)
   end subroutine find_unloaded
 end module epcont_plasticity_iteration

@@ -8,11 +8,12 @@ module epcont_plasticity_linear_scene
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
                                             motion_resultants, pair_forces
-  use epcont_material_linear_law, only: linear_law
+  use epcont_material_linear_law, only: elastic_law, linear_law
+  use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed
   use epcont_model_model, only: model_type
-  use epcont_plan_free_motion, only: free_motions
-  use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
   use epcont_plasticity_completion, only: complete_state
   use epcont_plasticity_scene_state, only: scene_state
@@ -27,7 +28,9 @@ module epcont_plasticity_linear_scene
   real(wp), parameter :: small_step = 1.0e-11_wp, rounding_step = 1.0e-10_wp, slowest_rate = 0.5_wp
 
   type :: linear_scene
-    type(strain_operator), allocatable :: operator
+    type(strain_operator) :: operator
+    type(scene_materials) :: materials
+    type(linear_law) :: law                          !! of the next solve, or the last
     type(factored_bodies) :: bodies
     type(contact_problem) :: problem
     logical, allocatable :: yields(:)                !! the body has elements that can yield [bodies]
@@ -51,64 +54,58 @@ module epcont_plasticity_linear_scene
 contains
 
   !> What does not change with the law.
-  pure function new_linear_scene(model, motions, yields, by_blocks, precision, threads) result(scene)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    logical, intent(in) :: yields(:)   !! the body has elements that can yield [bodies]
-    logical, intent(in) :: by_blocks   !! contact by RULE BLOCK, else CONRY
-    integer, intent(in) :: precision   !! of the factors
-    integer, intent(in) :: threads     !! that bodies may be worked on by
-    type(linear_scene) :: scene
+  pure subroutine new_linear_scene(scene, plan, linear)
+    type(planned_scene), intent(in) :: scene
+    type(iteration_plan), intent(in) :: plan
+    type(linear_scene), intent(out) :: linear
 
-    scene%operator = new_strain_operator(model)
-    scene%bodies = new_bodies(model, precision /= precision_double)
-    scene%precision = precision
-    scene%threads = threads
-    scene%yields = yields
-    scene%by_blocks = by_blocks
-    scene%problem%initial_gap = model%initial_gap
-    scene%travel_gap = gap_opening(model, model%travel)
-    scene%problem%motion = motion_columns(model, motions)
-    scene%resultant = motion_resultants(model, motions)
-  end function new_linear_scene
+    linear%operator = new_strain_operator(scene%model)
+    call find_materials(scene%model, linear%materials)
+    linear%law = elastic_law(linear%materials)
+    linear%bodies = new_bodies(scene%model, plan%precision /= precision_double)
+    linear%precision = plan%precision
+    linear%threads = plan%threads
+    linear%yields = plan%body
+    linear%by_blocks = plan%contact%by_blocks
+    linear%problem%initial_gap = scene%model%initial_gap
+    linear%travel_gap = gap_opening(scene%model, scene%model%travel)
+    linear%problem%motion = motion_columns(scene%model, scene%motions)
+    linear%resultant = motion_resultants(scene%model, scene%motions)
+  end subroutine new_linear_scene
 
   !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far as the
   !! law of their elements has changed. `singular` is a body whose stiffness could not be factored, 0 where all could.
-  subroutine set_stiffness(self, model, numbering, law, singular, watch)
+  subroutine set_stiffness(self, scene, singular, watch)
     class(linear_scene), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(inout) :: law   !! from here on it counts as unchanged
+    type(planned_scene), intent(in) :: scene
     integer, intent(out) :: singular
     class(stopwatch), intent(inout) :: watch
     logical, allocatable :: changed(:), chosen(:)
     logical :: first
 
     first = .not. allocated(self%lasting_flexibility)
-    changed = changed_elements(model, law)
-    law%changed = .false.
+    changed = changed_elements(scene%model, self%law)
+    self%law%changed = .false.
     chosen = self%yields .or. first
     call watch%lap(stage_stiffness)
-    call self%factor_bodies(model, numbering, law, changed, chosen, singular)
+    call self%factor_bodies(scene, changed, chosen, singular)
     call watch%lap(stage_factor)
     if (singular > 0) return
-    call self%bodies%settle(model, self%operator, law)
+    call self%bodies%settle(scene%model, self%operator, self%law)
     call watch%lap(stage_displacements)
     if (first) then
-      allocate (self%lasting_flexibility(model%pairs, model%pairs), source=0.0_wp)
-      call self%add_flexibilities(model, numbering, .not. self%yields, self%lasting_flexibility)
+      allocate (self%lasting_flexibility(scene%model%pairs, scene%model%pairs), source=0.0_wp)
+      call self%add_flexibilities(scene, .not. self%yields, self%lasting_flexibility)
     end if
     self%problem%flexibility = self%lasting_flexibility
-    call self%add_flexibilities(model, numbering, self%yields, self%problem%flexibility)
+    call self%add_flexibilities(scene, self%yields, self%problem%flexibility)
     call watch%lap(stage_flexibility)
   end subroutine set_stiffness
 
   !> Assemble and factor some bodies, side by side where that pays. `singular` is the first that could not be factored, or 0.
-  subroutine factor_bodies(self, model, numbering, law, changed, chosen, singular)
+  subroutine factor_bodies(self, scene, changed, chosen, singular)
     class(linear_scene), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(in) :: law
+    type(planned_scene), intent(in) :: scene
     logical, intent(in) :: changed(:)    !! [elements]
     logical, intent(in) :: chosen(:)     !! [bodies]
     integer, intent(out) :: singular
@@ -117,35 +114,34 @@ contains
     integer :: i, threads
 
     body = pack([(i, i=1, size(chosen))], chosen)
-    operations = numbering%body(body)%operations
+    operations = scene%numbering%body(body)%operations
     body = body(heaviest_first(operations))
     threads = threads_for(operations, self%threads)
     !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
     do i = 1, size(body)
-      call self%bodies%factor_body(model, self%operator, law, changed, numbering, body(i))
+      call self%bodies%factor_body(scene%model, self%operator, self%law, changed, scene%numbering, body(i))
     end do
     !$omp end parallel do
-    self%bodies%factorizations = self%bodies%factorizations + count(chosen .and. numbering%body%equations > 0)
+    self%bodies%factorizations = self%bodies%factorizations + count(chosen .and. scene%numbering%body%equations > 0)
     singular = findloc([(chosen(i) .and. .not. self%bodies%body(i)%is_sound(), i=1, size(chosen))], .true., dim=1)
   end subroutine factor_bodies
 
   !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are the same on any
   !! number of threads.
-  subroutine add_flexibilities(self, model, numbering, chosen, flexibility)
+  subroutine add_flexibilities(self, scene, chosen, flexibility)
     class(linear_scene), intent(in) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
+    type(planned_scene), intent(in) :: scene
     logical, intent(in) :: chosen(:)     !! [bodies]
     real(wp), intent(inout) :: flexibility(:, :)
     type(body_flexibility) :: part
     real(wp), allocatable :: operations(:)
     integer :: b, threads
 
-    operations = merge(numbering%body%operations, 0.0_wp, chosen)
+    operations = merge(scene%numbering%body%operations, 0.0_wp, chosen)
     threads = threads_for(operations, self%threads)
     !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic) ordered private(part)
-    do b = 1, model%bodies
-      if (chosen(b)) call find_flexibility(model, numbering, b, self%bodies%body(b), part)
+    do b = 1, scene%model%bodies
+      if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, self%bodies%body(b), part)
       !$omp ordered
       if (chosen(b)) call add_flexibility(part, flexibility)
       !$omp end ordered
@@ -168,35 +164,29 @@ contains
 
   !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without contact
   !! equilibrium (`state%contact%state`) there are no displacements.
-  subroutine solve(self, model, motions, numbering, law, part, start, state, watch)
+  subroutine solve(self, scene, part, start, state, watch)
     class(linear_scene), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(in) :: law
+    type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
     type(scene_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
 
     if (self%precision == precision_mixed) then
-      call refine(self, model, numbering, law, part, start, state, watch)
+      call refine(self, scene, part, start, state, watch)
     else
-      call solve_once(self, model, numbering, law, part, start, state, watch)
+      call solve_once(self, scene, part, start, state, watch)
     end if
     if (state%contact%state /= contact_solved) return
-    call complete_state(model, motions, law, self%problem, part, state)
+    call complete_state(scene, self%law, self%problem, part, state)
     call watch%lap(stage_displacements)
   end subroutine solve
 
   !> One step of refinement of what `solve` has found: where a body is long and its elements fine, rounding leaves forces out of
   !! balance though the factors are in double. The contact follows the deformation, and that the contact.
-  subroutine sharpen(self, model, motions, numbering, law, part, state, change, watch)
+  subroutine sharpen(self, scene, part, state, change, watch)
     class(linear_scene), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(in) :: law
+    type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     type(scene_state), intent(inout) :: state   !! as it was where the contact is not found again
     real(wp), intent(out) :: change             !! of displacements and contact forces, of the largest of each
@@ -208,13 +198,13 @@ contains
     change = huge(1.0_wp)
     refined = state
     touching = state%contact%touching
-    call correct(self, model, numbering, law, part, refined, strained)
+    call correct(self, scene, part, refined, strained)
     call watch%lap(stage_displacements)
-    call solve_contact_about(self, model, part, touching, refined)
+    call solve_contact_about(self, scene%model, part, touching, refined)
     call watch%lap(stage_contact)
     if (refined%contact%state /= contact_solved) return
-    call correct(self, model, numbering, law, part, refined, strained)
-    call complete_state(model, motions, law, self%problem, part, refined)
+    call correct(self, scene, part, refined, strained)
+    call complete_state(scene, self%law, self%problem, part, refined)
     change = change_of(state, refined)
     if (allocated(refined%point)) deallocate (refined%point)   ! those of the strain before
     state = refined
@@ -231,11 +221,9 @@ contains
   end function change_of
 
   !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
-  subroutine solve_once(self, model, numbering, law, part, start, state, watch)
+  subroutine solve_once(self, scene, part, start, state, watch)
     type(linear_scene), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(in) :: law
+    type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)
     type(scene_state), intent(inout) :: state
@@ -243,29 +231,27 @@ contains
     real(wp), allocatable :: force(:, :)
     type(half_solution) :: half
 
-    force = part*model%load
-    if (any(law%initial_stress /= 0.0_wp)) force = force - self%operator%nodal_forces(model, law%initial_stress)
-    call self%bodies%add_forces(numbering, force, part, half)
-    self%problem%load_gap = gap_opening(model, self%bodies%finish(model, numbering, half, part, .true.)) + &
+    force = part*scene%model%load
+    if (any(self%law%initial_stress /= 0.0_wp)) force = force - self%operator%nodal_forces(scene%model, self%law%initial_stress)
+    call self%bodies%add_forces(scene%numbering, force, part, half)
+    self%problem%load_gap = gap_opening(scene%model, self%bodies%finish(scene%model, scene%numbering, half, part, .true.)) + &
                             part*self%travel_gap
     self%problem%resultant = part*self%resultant
     call watch%lap(stage_displacements)
     call solve_contact(self%problem, state%contact, start, self%by_blocks)   ! without a guess `start` is not there
     call watch%lap(stage_contact)
     if (state%contact%state /= contact_solved) return
-    call self%bodies%add_forces(numbering, pair_forces(model, state%contact%force), 0.0_wp, half)
+    call self%bodies%add_forces(scene%numbering, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
     ! Strains are of the deformation: added to a long travel it would lose their digits.
-    state%deformation = self%bodies%finish(model, numbering, half, part, .false.)
-    state%strain = self%operator%strains(model, state%deformation)
+    state%deformation = self%bodies%finish(scene%model, scene%numbering, half, part, .false.)
+    state%strain = self%operator%strains(scene%model, state%deformation)
   end subroutine solve_once
 
   !> The same to double precision with factors in single: step by step the forces out of balance, in double, are solved for,
   !! and the contact with them. `contact_stalled` where that does not converge.
-  subroutine refine(self, model, numbering, law, part, start, state, watch)
+  subroutine refine(self, scene, part, start, state, watch)
     type(linear_scene), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(in) :: law
+    type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)
     type(scene_state), intent(inout) :: state
@@ -277,16 +263,16 @@ contains
     if (allocated(self%last)) then
       state = self%last
     else
-      allocate (state%deformation(2, model%nodes), state%contact%force(model%pairs), source=0.0_wp)
+      allocate (state%deformation(2, scene%model%nodes), state%contact%force(scene%model%pairs), source=0.0_wp)
     end if
-    call self%bodies%prescribe(model, part, state%deformation)
-    state%strain = self%operator%strains(model, state%deformation)
+    call self%bodies%prescribe(scene%model, part, state%deformation)
+    state%strain = self%operator%strains(scene%model, state%deformation)
     if (allocated(start)) touching = start
     before = 0.0_wp
     step = 0
     do
       step = step + 1
-      call correct(self, model, numbering, law, part, state, change)
+      call correct(self, scene, part, state, change)
       call watch%lap(stage_displacements)
       if (step > 1 .and. change <= small_step) exit
       ! Steps come in pairs: what one has refined moves the contact forces, and those the next; the first brings them in.
@@ -296,7 +282,7 @@ contains
         return
       end if
       before = [before(2), change]
-      call solve_contact_about(self, model, part, touching, state)
+      call solve_contact_about(self, scene%model, part, touching, state)
       call watch%lap(stage_contact)
       if (state%contact%state /= contact_solved) return
       touching = state%contact%touching
@@ -305,20 +291,18 @@ contains
   end subroutine refine
 
   !> One step of refinement: the deformation under the forces that are out of balance is added.
-  pure subroutine correct(self, model, numbering, law, part, state, change)
+  pure subroutine correct(self, scene, part, state, change)
     type(linear_scene), intent(in) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(in) :: law
+    type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     type(scene_state), intent(inout) :: state   !! deformation, strain, contact forces
     real(wp), intent(out) :: change             !! largest of a strain / largest strain
     real(wp), allocatable :: force(:, :), step(:, :), strain(:, :)
 
-    force = part*model%load + pair_forces(model, state%contact%force) &
-            - self%operator%nodal_forces(model, law%stress(state%strain))
-    step = self%bodies%displacements(model, numbering, force, 0.0_wp)
-    strain = self%operator%strains(model, step)
+    force = part*scene%model%load + pair_forces(scene%model, state%contact%force) &
+            - self%operator%nodal_forces(scene%model, self%law%stress(state%strain))
+    step = self%bodies%displacements(scene%model, scene%numbering, force, 0.0_wp)
+    strain = self%operator%strains(scene%model, step)
     state%deformation = state%deformation + step
     state%strain = state%strain + strain
     change = maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp))
@@ -340,11 +324,9 @@ contains
 
   !> What single precision has left: the change of displacements, strains and contact forces, of the largest of each, by
   !! two steps of refinement, of which the second must change less: else the factors do not tell the error either, and it is 1.
-  pure subroutine rounding_error(self, model, numbering, law, part, state, error)
+  pure subroutine rounding_error(self, scene, part, state, error)
     class(linear_scene), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(in) :: law
+    type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     type(scene_state), intent(in) :: state
     real(wp), intent(out) :: error
@@ -353,27 +335,25 @@ contains
     real(wp) :: second
 
     refined = state
-    call correct(self, model, numbering, law, part, refined, error)
-    call correct(self, model, numbering, law, part, refined, second)
+    call correct(self, scene, part, refined, error)
+    call correct(self, scene, part, refined, second)
     if (second > max(slowest_rate*error, rounding_step)) error = 1.0_wp
     error = max(error, maxval(abs(refined%deformation - state%deformation)) &
                 /max(maxval(abs(state%deformation)), tiny(1.0_wp)))
-    if (model%pairs == 0) return
+    if (scene%model%pairs == 0) return
     touching = state%contact%touching
-    call solve_contact_about(self, model, part, touching, refined)
+    call solve_contact_about(self, scene%model, part, touching, refined)
     if (refined%contact%state /= contact_solved) error = 1.0_wp
     if (maxval(state%contact%force) > 0.0_wp) &
       error = max(error, maxval(abs(refined%contact%force - state%contact%force))/maxval(state%contact%force))
   end subroutine rounding_error
 
   !> Estimate of the condition of the stiffness in the 1-norm.
-  pure subroutine estimate_condition(self, model, numbering, law, condition)
+  pure subroutine estimate_condition(self, scene, condition)
     class(linear_scene), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(linear_law), intent(in) :: law   !! of the last solve
+    type(planned_scene), intent(in) :: scene
     real(wp), intent(out) :: condition
 
-    call self%bodies%estimate_condition(model, self%operator, law, numbering, condition)
+    call self%bodies%estimate_condition(scene%model, self%operator, self%law, scene%numbering, condition)
   end subroutine estimate_condition
 end module epcont_plasticity_linear_scene

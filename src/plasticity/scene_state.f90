@@ -11,9 +11,26 @@ module epcont_plasticity_scene_state
     real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
     real(wp), allocatable :: deformation(:, :)    !! displacements before the rigid motions are added [length] [2, nodes]
     real(wp), allocatable :: strain(:, :)         !! xx, yy, zz, xy (engineering) [4, points]
-    real(wp), allocatable :: stress(:, :)         !! xx, yy, zz, xy, in equilibrium [stress] [4, points]
+    real(wp), allocatable :: point_stress(:, :)   !! xx, yy, zz, xy, in equilibrium [stress] [4, points]
     !> Of the materials at that strain, where any yields [points]; not allocated: not found yet.
     type(point_state), allocatable :: point(:)
     type(contact_solution) :: contact
+  contains
+    procedure :: take
   end type scene_state
+
+contains
+
+  !> Take another state's place; that is empty then.
+  pure subroutine take(self, from)
+    class(scene_state), intent(inout) :: self
+    type(scene_state), intent(inout) :: from
+
+    call move_alloc(from%displacement, self%displacement)
+    call move_alloc(from%deformation, self%deformation)
+    call move_alloc(from%strain, self%strain)
+    call move_alloc(from%point_stress, self%point_stress)
+    call move_alloc(from%point, self%point)
+    self%contact = from%contact
+  end subroutine take
 end module epcont_plasticity_scene_state

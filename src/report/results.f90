@@ -5,8 +5,7 @@ module epcont_report_results
   use epcont_certificate_certificate, only: certificate_type
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_model_model, only: model_type
-  use epcont_plan_free_motion, only: free_motions
+  use epcont_plan_planned_scene, only: planned_scene
   use epcont_report_accuracy_text, only: list_accuracy
   use epcont_report_file, only: new_text_file, remove_file, text_file
   use epcont_report_iterations, only: list_iterations
@@ -42,12 +41,10 @@ module epcont_report_results
     result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps')]
 
   !> One deck's way, from its cards to its answer.
-  type :: run_results
+  type, extends(planned_scene) :: run_results
     type(deck_type) :: deck
     type(diagnostics) :: faults
     type(remarks_type) :: remarks
-    type(model_type) :: model
-    type(free_motions) :: motions
     character(len=:), allocatable :: plan   !! in words
     type(answer_type) :: answer
     type(certificate_type) :: certificate

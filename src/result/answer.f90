@@ -1,10 +1,8 @@
 !> The answer to a scene: displacements, contact and stresses, and how they were found.
 module epcont_result_answer
-  use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
-  use epcont_contact_problem, only: contact_solution
   use epcont_model_controls, only: precision_double
-  use epcont_plasticity_onlooker, only: iteration_record
+  use epcont_plasticity_iteration, only: followed_loads
   use epcont_result_body_force, only: body_force
   use epcont_result_displacement_gradient, only: gradient_type
   use epcont_result_line_pressure, only: line_pressure
@@ -20,11 +18,8 @@ module epcont_result_answer
   !> Where more of a pivot is lost, the factors may be too stiff to tell what is wrong.
   real(wp), parameter :: largest_mended = 1.0e-4_wp
 
-  type :: answer_type
-    real(wp), allocatable :: displacement(:, :)      !! [length] [2, nodes]
-    real(wp), allocatable :: deformation(:, :)       !! displacements before the rigid motions are added [length] [2, nodes]
+  type, extends(followed_loads) :: answer_type
     real(wp), allocatable :: reaction(:, :)          !! of the supports [force] [2, nodes]
-    real(wp), allocatable :: point_stress(:, :)      !! xx, yy, zz, xy [stress] [4, points]
     ! Of the elements: means over their points, by volume.
     real(wp), allocatable :: stress(:, :)            !! xx, yy, zz, xy [stress] [4, elements]
     real(wp), allocatable :: equivalent_stress(:)    !! von Mises [stress] [elements]
@@ -35,7 +30,6 @@ module epcont_result_answer
     integer, allocatable :: largest_at(:)            !! that point [elements]
     logical, allocatable :: plastic(:)               !! beyond the yield point, at any of its points [elements]
     logical, allocatable :: beyond(:)                !! beyond the end of the material's table [elements]
-    type(contact_solution) :: contact
     real(wp), allocatable :: pressure(:)             !! at the pairs; negative: no boundary there [stress] [pairs]
     type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
@@ -44,22 +38,11 @@ module epcont_result_answer
     type(gradient_type) :: gradient                  !! of displacements that are not small
     integer :: precision = precision_double          !! of the factors
     integer :: asked_precision = precision_double    !! that did not do, where it is another one
-    real(wp) :: rounding_error = 0.0_wp              !! of displacements, strains and forces, relative: what single precision left
-    real(wp) :: largest_rounding_error = 0.0_wp      !! that it may leave
-    real(wp) :: condition = 1.0_wp                   !! of the stiffness, estimated in the 1-norm
-    type(weak_pivot) :: weakest                      !! of the stiffness
+    real(wp) :: largest_rounding_error = 0.0_wp      !! that single precision may leave
     real(wp) :: last_correction = huge(1.0_wp)       !! of displacements and forces by refinement's last step, relative
-    type(iteration_record), allocatable :: history(:)  !! every solve
-    integer :: factorizations = 0                    !! of bodies
     character(len=:), allocatable :: against_double  !! single precision has failed, and this stands against double
-    logical :: lacks_memory = .false.                !! a body could not be factored for want of memory
     integer :: load_steps = 1                        !! taken
     integer :: asked_load_steps = 1                  !! that did not lead to an answer, where they are fewer
-    logical :: converged = .false.                   !! all of the load, to the tolerance of the iteration
-    logical :: runs_away = .false.                   !! no equilibrium: the displacements grow without end
-    real(wp) :: load_factor = 1.0_wp                 !! part of the loads for which this is
-    integer :: unloaded = 0                          !! elements whose strain fell, after yielding, as the load grew
-    integer :: first_unloaded = 0                    !! one of them
   contains
     procedure :: largest_pressure
     procedure :: lost

@@ -1,12 +1,10 @@
 !> Stresses of the elements and reactions of the supports.
 module epcont_result_stresses
-  use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_material_material_law, only: point_state
-  use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_plasticity_linear_scene, only: linear_scene
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -18,11 +16,9 @@ module epcont_result_stresses
 contains
 
   !> Fill in stresses, strains, moduli and reactions. `applied` are the nodal forces of loads and pairs [2, nodes].
-  pure subroutine recover_stresses(model, operator, materials, state, applied, answer)
+  pure subroutine recover_stresses(model, linear, applied, answer)
     type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
-    type(scene_materials), intent(in) :: materials
-    type(scene_state), intent(in) :: state
+    type(linear_scene), intent(in) :: linear
     real(wp), intent(in) :: applied(:, :)
     type(answer_type), intent(inout) :: answer
     type(point_state) :: point
@@ -30,28 +26,24 @@ contains
     real(wp) :: modulus, share, whole
     integer :: e, p
 
-    allocate (answer%point_stress, source=state%stress)
-    allocate (answer%stress(4, model%elements), answer%equivalent_stress(model%elements), source=0.0_wp)
-    allocate (answer%equivalent_strain(model%elements), answer%secant_modulus(model%elements), source=0.0_wp)
-    allocate (answer%plastic(model%elements), answer%beyond(model%elements), source=.false.)
-    allocate (answer%largest_stress(model%elements), answer%largest_at(model%elements))
-    mises = [(equivalent_stress(state%stress(:, p)), p=1, model%points)]
+    call clear_elements(model%elements, answer)
+    mises = [(equivalent_stress(answer%point_stress(:, p)), p=1, model%points)]
     do e = 1, model%elements
-      associate (law => materials%section(model%section(e))%law, first => model%first_point(e), &
+      associate (law => linear%materials%section(model%section(e))%law, first => model%first_point(e), &
                  last => model%first_point(e + 1) - 1)
-        whole = sum(operator%volume(first:last))
+        whole = sum(linear%operator%volume(first:last))
         answer%largest_stress(e) = maxval(mises(first:last))
         answer%largest_at(e) = first - 1 + first_largest(mises(first:last))
         do p = first, last
-          if (allocated(state%point)) then
-            point = state%point(p)
+          if (allocated(answer%point)) then
+            point = answer%point(p)
           else
-            call law%update(state%strain(:, p), point_state(), point)
+            call law%update(answer%strain(:, p), point_state(), point)
           end if
           modulus = law%young
           if (point%yielded) modulus = 1.0_wp/(1.0_wp/point%modulus + law%shift)
-          share = operator%volume(p)/whole
-          answer%stress(:, e) = answer%stress(:, e) + share*state%stress(:, p)
+          share = linear%operator%volume(p)/whole
+          answer%stress(:, e) = answer%stress(:, e) + share*answer%point_stress(:, p)
           answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*mises(p)
           answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*point%total
           answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
@@ -60,8 +52,26 @@ contains
         end do
       end associate
     end do
-    answer%reaction = reactions(model, operator%nodal_forces(model, state%stress), applied)
+    answer%reaction = reactions(model, linear%operator%nodal_forces(model, answer%point_stress), applied)
   end subroutine recover_stresses
+
+  !> Nothing yet of any element.
+  pure subroutine clear_elements(elements, answer)
+    integer, intent(in) :: elements
+    type(answer_type), intent(inout) :: answer
+
+    if (.not. allocated(answer%stress)) then
+      allocate (answer%stress(4, elements), answer%equivalent_stress(elements), answer%equivalent_strain(elements))
+      allocate (answer%secant_modulus(elements), answer%plastic(elements), answer%beyond(elements))
+      allocate (answer%largest_stress(elements), answer%largest_at(elements))
+    end if
+    answer%stress = 0.0_wp
+    answer%equivalent_stress = 0.0_wp
+    answer%equivalent_strain = 0.0_wp
+    answer%secant_modulus = 0.0_wp
+    answer%plastic = .false.
+    answer%beyond = .false.
+  end subroutine clear_elements
 
   !> Where the largest of some stresses is; of equal ones, but for rounding, the first.
   pure integer function first_largest(stress) result(k)

@@ -8,9 +8,10 @@ module solved_scene
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_build_build, only: build_model
   use epcont_model_model, only: model_type
-  use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_plan_free_motion, only: find_free_motions, motion_fault
   use epcont_plan_iteration_plan, only: plan_iteration
   use epcont_plan_numbering, only: number_equations
+  use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_onlooker, only: onlooker
   use epcont_result_answer, only: answer_type
   implicit none
@@ -53,16 +54,18 @@ contains
     type(deck_type) :: deck
     type(diagnostics) :: faults
     type(error_type), allocatable :: error
-    type(free_motions) :: motions
+    type(planned_scene) :: planned
     type(motion_fault), allocatable :: loose(:)
     type(onlooker) :: watch
 
     call read_deck(path, deck, faults, error)
     call build_model(deck, solved%model, faults)
     if (faults%error_count() > 0) error stop 'solved_scene: the deck is not sound'
-    call find_free_motions(solved%model, motions, loose)
+    planned%model = solved%model
+    call find_free_motions(planned%model, planned%motions, loose)
+    planned%numbering = number_equations(planned%model)
     if (size(loose) > 0) error stop 'solved_scene: a body is loose'
-    call analyse(solved%model, motions, number_equations(solved%model), plan_iteration(solved%model), &
-                 solved%answer, solved%certificate, solved%accuracy, solved%singular, watch)
+    call analyse(planned, plan_iteration(planned%model), solved%answer, solved%certificate, solved%accuracy, watch)
+    solved%singular = solved%answer%singular
   end subroutine solve_file
 end module solved_scene
