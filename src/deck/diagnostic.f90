@@ -75,17 +75,11 @@ contains
     type(diagnostics), intent(inout) :: self
     type(diagnostic), intent(in) :: fault
     type(diagnostic), allocatable :: longer(:)
-    integer :: i
 
     if (.not. allocated(self%list)) allocate (self%list(16))
     if (self%count == size(self%list)) then
       allocate (longer(2*self%count))
-      do i = 1, self%count
-        longer(i)%severity = self%list(i)%severity
-        longer(i)%place = self%list(i)%place
-        call move_alloc(self%list(i)%what, longer(i)%what)
-        call move_alloc(self%list(i)%remedy, longer(i)%remedy)
-      end do
+      longer(:self%count) = self%list
       call move_alloc(longer, self%list)
     end if
     self%count = self%count + 1
@@ -115,16 +109,13 @@ contains
   pure function in_deck_order(self) result(order)
     class(diagnostics), intent(in) :: self
     integer, allocatable :: order(:)
-    integer, allocatable :: line(:), column(:)
-    integer :: i
+    integer, allocatable :: line(:)
 
-    allocate (line(self%count), column(self%count))
-    do i = 1, self%count
-      line(i) = self%list(i)%place%line
-      if (line(i) == 0) line(i) = huge(1)
-      column(i) = self%list(i)%place%first
-    end do
-    order = sorted_order(column)
+    order = [integer ::]
+    if (self%count == 0) return
+    line = self%list(:self%count)%place%line
+    where (line == 0) line = huge(1)
+    order = sorted_order(self%list(:self%count)%place%first)
     order = order(sorted_order(line(order)))
   end function in_deck_order
 

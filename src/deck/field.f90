@@ -30,7 +30,7 @@ module epcont_deck_field
   integer, parameter :: largest_exponent = 308
   integer(i8), parameter :: largest_digits = 17976931348623157_i8
   !> No exponent written in a field is followed further than this.
-  integer, parameter :: endless_exponent = 100000
+  integer(i8), parameter :: endless_exponent = 100000
 
   !> The parts of a real as it is written: digits x 10**exponent.
   type :: decimal
@@ -137,23 +137,15 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(out) :: exponent
     integer, intent(out) :: outcome
-    integer :: at, first, digit
+    integer(i8) :: number
+    integer :: first
 
-    exponent = 0
+    number = 0
     outcome = scan_malformed
-    first = 1
-    if (scan(text(1:1), 'EeDd') == 1) first = 2
-    if (first <= len(text)) then
-      if (is_sign(text(first:first))) first = first + 1
-    end if
-    if (first == 1 .or. first > len(text)) return
-    do at = first, len(text)
-      digit = iachar(text(at:at)) - iachar('0')
-      if (digit < 0 .or. digit > 9) return
-      exponent = min(10*exponent + digit, endless_exponent)
-    end do
-    if (text(first - 1:first - 1) == '-') exponent = -exponent
-    outcome = scan_sound
+    first = merge(2, 1, scan(text(1:1), 'EeDd') == 1)
+    if (first == 2 .or. is_sign(text(1:1))) call scan_integer(text(first:), number, outcome)
+    if (outcome == scan_too_large) outcome = scan_sound
+    exponent = int(max(-endless_exponent, min(number, endless_exponent)))
   end subroutine take_exponent
 
   !> The real of a mantissa with many digits or a large exponent, by way of READ. What would overflow is
