@@ -83,9 +83,13 @@ contains
         end if
         begun = .true.
         text = lines%text(line%first:min(line%last, line%first + 7))
-        if (line%special <= line%last) text = ''   ! with a comma the name may be longer
-        if (text /= before .or. text == '') found = kind_of(lines%text(line%first:line%last), names)
-        before = text
+        if (line%special <= line%last) then   ! with a comma the name may be longer
+          found = kind_of(lines%text(line%first:line%last), names)
+          before = ''
+        else if (text /= before) then
+          found = kind_of(text, names)
+          before = text
+        end if
         kind(i) = found
       end associate
     end do

@@ -117,7 +117,9 @@ contains
     type(diagnostics), intent(inout) :: faults
     integer :: k, unused
 
-    k = findloc(keyword, parts%word, dim=1)
+    do k = size(keyword), 1, -1
+      if (keyword(k) == parts%word) exit
+    end do
     if (k == 0) then
       call add_unknown(parts, faults)
       return

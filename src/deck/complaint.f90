@@ -25,7 +25,7 @@ contains
     integer :: k
 
     place = card%place(0)
-    name = upper(card%name())
+    name = upper(card%text(card%name_first:card%name_last))
     if (scan(card%text(1:1), '+*') > 0 .or. name == '') then
       call faults%add_error(place, 'a continuation line without a card before it', 'the name of a card')
       return

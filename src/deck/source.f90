@@ -47,7 +47,6 @@ module epcont_deck_source
     procedure :: text_of_line
     procedure :: whole_line
     procedure :: blank
-    procedure :: columns
   end type source
 
 contains
@@ -167,7 +166,7 @@ contains
       word = statement(self%text(at:last))
       ended = word == 'ENDDATA'
       if (word == 'INCLUDE') call include_file(self, line, faults)
-      if (word /= '') self%line(line)%last = at - 1
+      if (ended .or. word == 'INCLUDE') self%line(line)%last = at - 1
       at = next
     end do
   end subroutine cut
@@ -361,12 +360,4 @@ contains
     blank = self%line(line)%last < self%line(line)%first
   end function blank
 
-  !> The place of the characters `first` to `last` of the buffer, which are in `line`.
-  pure function columns(self, line, first, last) result(place)
-    class(source), intent(in) :: self
-    integer, intent(in) :: line, first, last
-    type(place_type) :: place
-
-    place = place_type(line, first - self%line(line)%first + 1, last - self%line(line)%first + 1)
-  end function columns
 end module epcont_deck_source
