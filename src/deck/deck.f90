@@ -63,12 +63,9 @@ contains
     integer, intent(in) :: field  !! column in the table; 0: the name of the card
     type(card_fields) :: fields
     type(diagnostics) :: unheard
-    integer :: slot
 
     call gather(self%source, self%card(card)%line(i), fields, unheard)
-    slot = 0
-    if (field > 0) slot = self%card(card)%entry%field(field)%slot
-    place = fields%place(slot)
+    place = fields%place(field)
   end function place
 
   !> Where an item of the open list of a card stands. A card may have ten thousands of them: their places are kept.
