@@ -85,13 +85,9 @@ contains
     character(len=*), intent(in) :: text   !! the line, which is not blank
     integer :: at
 
-    continues = text(1:1) == '+' .or. text(1:1) == '*'
-    if (continues) return
-    do at = 1, min(width, len(text))
-      if (iachar(text(at:at)) /= iachar(' ')) exit
-    end do
-    continues = at > width
-    if (.not. continues) continues = text(at:at) == ','
+    at = verify(text(:min(width, len(text))), ' ')
+    continues = at == 0 .or. text(1:1) == '+' .or. text(1:1) == '*'
+    if (at > 0) continues = continues .or. text(at:at) == ','
   end function continues
 
   !> Add the fields of one line.

@@ -6,9 +6,10 @@ module epcont_deck_diagnostic
   private
   public :: place_type, diagnostic, diagnostics
 
-  integer, parameter, public :: severity_error = 1    !! the deck is rejected
-  integer, parameter, public :: severity_warning = 2  !! the deck is read, but look here
-  integer, parameter, public :: severity_note = 3     !! for the listing only
+  integer, parameter, public :: &
+    severity_error = 1, &    !! the deck is rejected
+    severity_warning = 2, &  !! the deck is read, but look here
+    severity_note = 3        !! for the listing only
 
   !> A stretch of columns of one line of the deck.
   type :: place_type

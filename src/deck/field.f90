@@ -9,12 +9,13 @@ module epcont_deck_field
   public :: scan_integer, scan_real, scan_components, scan_word
 
   !> What became of a scan.
-  integer, parameter, public :: scan_sound = 0      !! a value
-  integer, parameter, public :: scan_malformed = 1  !! not of the kind asked for
-  integer, parameter, public :: scan_no_point = 2   !! would be a real, but for the decimal point
-  integer, parameter, public :: scan_too_large = 3  !! beyond the largest number
-  integer, parameter, public :: scan_too_small = 4  !! a real that is not zero, but nearer to it than the least normal one
-  integer, parameter, public :: scan_too_long = 5   !! a word of more than eight characters
+  integer, parameter, public :: &
+    scan_sound = 0, &      !! a value
+    scan_malformed = 1, &  !! not of the kind asked for
+    scan_no_point = 2, &   !! would be a real, but for the decimal point
+    scan_too_large = 3, &  !! beyond the largest number
+    scan_too_small = 4, &  !! a real that is not zero, but nearer to it than the least normal one
+    scan_too_long = 5      !! a word of more than eight characters
 
   !> From here on one more decimal digit would not certainly fit an integer of eight bytes: 18 digits do.
   integer(i8), parameter :: full = 10_i8**17
@@ -188,21 +189,15 @@ contains
     character(len=*), intent(in) :: text  !! without blanks around it
     integer(i8), intent(out) :: number
     integer, intent(out) :: outcome
-    logical :: seen(6)
-    integer :: at, digit
+    integer :: at
 
     number = 0
     outcome = scan_malformed
-    seen = .false.
-    if (len(text) == 0) return
-    do at = 1, len(text)
-      digit = iachar(text(at:at)) - iachar('0')
-      if (digit < 1 .or. digit > 6) return
-      if (seen(digit)) return
-      seen(digit) = .true.
-      number = 10*number + digit
+    if (verify(text, '123456') > 0) return
+    do at = 2, len(text)
+      if (index(text(:at - 1), text(at:at)) > 0) return
     end do
-    outcome = scan_sound
+    call scan_integer(text, number, outcome)
   end subroutine scan_components
 
   !> A word: a letter, then other characters but blanks, eight in all.

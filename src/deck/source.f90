@@ -79,6 +79,7 @@ contains
     character(len=*), intent(in) :: path
     integer, intent(in) :: parent
     character(len=:), allocatable, intent(out) :: trouble
+    type(source_file), allocatable :: longer(:)
     integer(i8) :: bytes
     integer :: unit, status
     logical :: exists
@@ -111,23 +112,13 @@ contains
     end if
     close (unit, iostat=status)
     if (allocated(trouble)) return
-    call add_file(self, path, parent, self%used + int(bytes))
-  end subroutine load
-
-  !> Enter the file that has just been read, up to the character `last`; there is room for a newline behind.
-  subroutine add_file(self, path, parent, last)
-    type(source), intent(inout) :: self
-    character(len=*), intent(in) :: path
-    integer, intent(in) :: parent, last
-    type(source_file), allocatable :: longer(:)
-
     allocate (longer(size(self%files) + 1))
     longer(:size(self%files)) = self%files
-    longer(size(longer)) = source_file(path, parent, self%used + 1, last)
+    longer(size(longer)) = source_file(path, parent, self%used + 1, self%used + int(bytes))
     call move_alloc(longer, self%files)
-    self%used = last + 1
-    self%text(last + 1:last + 1) = newline
-  end subroutine add_file
+    self%used = self%used + int(bytes) + 1
+    self%text(self%used:self%used) = newline
+  end subroutine load
 
   !> Room for `length` characters. The first file gets just its size; included ones make the buffer double.
   subroutine grow_text(self, length)

@@ -49,18 +49,10 @@ contains
       do i = 1, len(a)
         slips(i, j) = min(slips(i - 1, j) + 1, slips(i, j - 1) + 1, &
                           slips(i - 1, j - 1) + merge(0, 1, a(i:i) == b(j:j)))
-        if (exchanged(a(:i), b(:j))) slips(i, j) = min(slips(i, j), slips(max(i - 2, 0), max(j - 2, 0)) + 1)
+        if (i < 2 .or. j < 2) cycle
+        if (a(i - 1:i) == b(j:j)//b(j - 1:j - 1)) slips(i, j) = min(slips(i, j), slips(i - 2, j - 2) + 1)
       end do
     end do
     distance = slips(len(a), len(b))
   end function distance
-
-  !> Are the last two letters of `a` those of `b` in the other order?
-  pure logical function exchanged(a, b)
-    character(len=*), intent(in) :: a, b
-
-    exchanged = .false.
-    if (min(len(a), len(b)) < 2) return
-    exchanged = a(len(a):)//a(len(a) - 1:len(a) - 1) == b(len(b) - 1:)
-  end function exchanged
 end module epcont_deck_spelling
