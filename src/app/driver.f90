@@ -48,8 +48,8 @@ contains
 
   !> From file to results, alone at work on them; what is there afterwards is of this run.
   subroutine run_deck(path, arguments, status)
-    character(len=*), intent(in) :: path
-    type(arguments_type), intent(in) :: arguments
+    character(len=*), intent(in) :: path   !! of the deck
+    type(arguments_type), intent(in) :: arguments   !! of the command line
     integer, intent(out) :: status   !! its exit status
     type(progress_type) :: watch
     type(error_type), allocatable :: error

@@ -19,7 +19,7 @@ contains
 
   !> The permutation that puts `key` in ascending order; equal keys keep their order (merge sort).
   pure function sorted_order(key) result(order)
-    integer, intent(in) :: key(:)
+    integer, intent(in) :: key(:)   !! in any order
     integer, allocatable :: order(:)
     integer, allocatable :: merged(:)
     integer, parameter :: run = 8   ! so many are put in order by insertion
@@ -115,7 +115,7 @@ contains
 
   !> Index of a list of ids; of equal ids the first is the one found.
   pure function new_id_index(ids) result(index)
-    integer, intent(in) :: ids(:)
+    integer, intent(in) :: ids(:)   !! in any order
     type(id_index) :: index
     integer :: n
 
@@ -130,7 +130,7 @@ contains
   !> Position of `id` in the original list; 0 where it is absent.
   elemental integer function find(self, id) result(position)
     class(id_index), intent(in) :: self
-    integer, intent(in) :: id
+    integer, intent(in) :: id   !! to look for
     integer :: at, n
 
     position = 0
@@ -145,7 +145,7 @@ contains
   !> Positions of all ids from `first` to `last`, in ascending order of id.
   pure function within(self, first, last) result(positions)
     class(id_index), intent(in) :: self
-    integer, intent(in) :: first, last
+    integer, intent(in) :: first, last   !! ids, which need not be in the list
     integer, allocatable :: positions(:)
 
     positions = self%position(first_not_below(self%key, first):first_not_below(self%key, last + 1) - 1)

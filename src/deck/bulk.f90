@@ -24,10 +24,10 @@ contains
 
   !> Read the cards from line `first` on.
   subroutine read_bulk(lines, first, table, faults)
-    type(source), intent(in) :: lines
+    type(source), intent(in) :: lines   !! of the deck
     integer, intent(in) :: first                              !! the first line that is not of case control
     type(card_table), allocatable, intent(out) :: table(:)    !! the cards of each kind [card_kinds]
-    type(diagnostics), intent(inout) :: faults
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     type(card_entry) :: entry(card_kinds)
     type(field_entry), allocatable :: parameter_entry(:)
     type(card_fields) :: card

@@ -54,10 +54,10 @@ contains
 
   !> Collect the card that begins at `line`, which is not blank, with its continuations.
   subroutine gather(lines, line, card, faults)
-    type(source), intent(in) :: lines
-    integer, intent(in) :: line
+    type(source), intent(in) :: lines   !! of the deck
+    integer, intent(in) :: line   !! where it begins
     type(card_fields), intent(inout) :: card   !! its arrays are used again
-    type(diagnostics), intent(inout) :: faults
+    type(diagnostics), intent(inout) :: faults   !! of form; they are added
 
     if (.not. allocated(card%at)) then
       allocate (card%at(64))
@@ -168,7 +168,7 @@ contains
     character(len=*), intent(in) :: text     !! the line
     integer, intent(in) :: comma             !! the first; 0: none
     integer, intent(out) :: first, last      !! the name, without `*`
-    logical, intent(out) :: large
+    logical, intent(out) :: large   !! there is a `*` behind it
 
     first = 1
     last = min(width, len(text))

@@ -37,10 +37,10 @@ contains
   !> Read the statements up to BEGIN BULK. `bulk` is the first line behind it; without it, the whole file is
   !! bulk data, and `bulk` is 1.
   subroutine read_case_control(lines, control, bulk, faults)
-    type(source), intent(in) :: lines
-    type(case_control), intent(out) :: control
-    integer, intent(out) :: bulk
-    type(diagnostics), intent(inout) :: faults
+    type(source), intent(in) :: lines   !! of the deck
+    type(case_control), intent(out) :: control   !! what they say
+    integer, intent(out) :: bulk   !! the first line of bulk data
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     logical :: stated(size(keyword))
     integer :: line
 

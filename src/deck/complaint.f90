@@ -17,9 +17,9 @@ contains
 
   !> A name that is not in the catalogue.
   subroutine add_unknown(card, names, faults)
-    type(card_fields), intent(in) :: card
+    type(card_fields), intent(in) :: card   !! whose name is not known
     character(len=*), intent(in) :: names(:)   !! those that are
-    type(diagnostics), intent(inout) :: faults
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     character(len=:), allocatable :: name, remedy, word
     type(place_type) :: place
     integer :: k
@@ -41,12 +41,12 @@ contains
 
   !> A fault of one field of the last card of a table: `GRID 17: field 4 (X1) is ...`.
   subroutine add_fault(card, table, slot, what, remedy, faults)
-    type(card_fields), intent(in) :: card
-    type(card_table), intent(in) :: table
+    type(card_fields), intent(in) :: card   !! the fields of the card
+    type(card_table), intent(in) :: table   !! the card is its last
     integer, intent(in) :: slot                  !! which field
     character(len=*), intent(in) :: what         !! is wrong with it
     character(len=*), intent(in) :: remedy       !! what would be right
-    type(diagnostics), intent(inout) :: faults
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
 
     call faults%add_error(card%place(slot), &
                           table%identity(table%count)//': '//table%entry%field_text(slot)//' '//what, remedy)

@@ -31,10 +31,10 @@ contains
 
   !> Read a deck. Faults in it are collected in `faults`; `error` is set where the file itself cannot be read.
   subroutine read_deck(path, deck, faults, error)
-    character(len=*), intent(in) :: path
-    type(deck_type), intent(out) :: deck
-    type(diagnostics), intent(inout) :: faults
-    type(error_type), allocatable, intent(out) :: error
+    character(len=*), intent(in) :: path   !! of the file
+    type(deck_type), intent(out) :: deck   !! what it says
+    type(diagnostics), intent(inout) :: faults   !! of the deck; they are added
+    type(error_type), allocatable, intent(out) :: error   !! where the file cannot be read
     integer :: bulk
 
     call read_source(path, deck%source, faults, error)
@@ -89,7 +89,7 @@ contains
   !> The first PARAM card of a name; 0 where there is none.
   pure integer function parameter_row(self, name) result(row)
     class(deck_type), intent(in) :: self
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !! of the parameter
 
     do row = 1, self%card(card_param)%count
       if (self%card(card_param)%word(1, row) == name) return
@@ -122,7 +122,7 @@ contains
   pure real(wp) function parameter_value(self, name, default) result(value)
     class(deck_type), intent(in) :: self
     character(len=*), intent(in) :: name   !! of the parameter
-    real(wp), intent(in) :: default
+    real(wp), intent(in) :: default   !! the value without such a card
     integer :: row
 
     value = default

@@ -48,8 +48,8 @@ contains
   !> An error: the deck is rejected.
   subroutine add_error(self, place, what, remedy)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place
-    character(len=*), intent(in) :: what, remedy
+    type(place_type), intent(in) :: place   !! where
+    character(len=*), intent(in) :: what, remedy   !! is wrong, and what would be right (may be empty)
 
     call add(self, diagnostic(severity_error, place, what, remedy))
   end subroutine add_error
@@ -57,8 +57,8 @@ contains
   !> A warning: the deck is read all the same.
   subroutine add_warning(self, place, what, remedy)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place
-    character(len=*), intent(in) :: what, remedy
+    type(place_type), intent(in) :: place   !! where
+    character(len=*), intent(in) :: what, remedy   !! is to be looked at, and what would be right (may be empty)
 
     call add(self, diagnostic(severity_warning, place, what, remedy))
   end subroutine add_warning
@@ -66,8 +66,8 @@ contains
   !> A note: something accepted without effect, or else worth a line in the listing.
   subroutine add_note(self, place, what)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place
-    character(len=*), intent(in) :: what
+    type(place_type), intent(in) :: place   !! where
+    character(len=*), intent(in) :: what   !! is worth a line
 
     call add(self, diagnostic(severity_note, place, what, ''))
   end subroutine add_note
@@ -88,18 +88,21 @@ contains
     self%counts(fault%severity) = self%counts(fault%severity) + 1
   end subroutine add
 
+  !> How many errors there are.
   pure integer function error_count(self)
     class(diagnostics), intent(in) :: self
 
     error_count = self%counts(severity_error)
   end function error_count
 
+  !> How many warnings.
   pure integer function warning_count(self)
     class(diagnostics), intent(in) :: self
 
     warning_count = self%counts(severity_warning)
   end function warning_count
 
+  !> How many notes.
   pure integer function note_count(self)
     class(diagnostics), intent(in) :: self
 
@@ -123,7 +126,7 @@ contains
   !> The fault that arrived as number `i`.
   pure function item(self, i) result(fault)
     class(diagnostics), intent(in) :: self
-    integer, intent(in) :: i
+    integer, intent(in) :: i   !! in the order of arrival
     type(diagnostic) :: fault
 
     fault = self%list(i)

@@ -91,7 +91,7 @@ contains
   pure subroutine add_list(self, name, meaning)
     class(card_entry), intent(inout) :: self
     character(len=*), intent(in) :: name      !! of its fields, before their numbers
-    character(len=*), intent(in) :: meaning
+    character(len=*), intent(in) :: meaning   !! of them all
 
     self%list_slot = size(self%field) + 1
     self%list_name = name
@@ -144,7 +144,7 @@ contains
 
   !> An id: from 1 to 99999999.
   pure function id_field(name, meaning, required, with) result(field)
-    character(len=*), intent(in) :: name, meaning
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     logical, intent(in), optional :: required     !! default: true, unless it goes with another
     integer, intent(in), optional :: with         !! the neighbour with which it must be filled
     type(field_entry) :: field
@@ -157,7 +157,7 @@ contains
 
   !> A whole number. Without default a blank has a meaning of its own.
   pure function integer_field(name, meaning, lowest, highest, default) result(field)
-    character(len=*), intent(in) :: name, meaning
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     integer, intent(in) :: lowest, highest        !! the range
     integer, intent(in), optional :: default      !! what a blank means
     type(field_entry) :: field
@@ -169,7 +169,7 @@ contains
 
   !> A real; where it is not required, a blank has a meaning of its own.
   pure function real_field(name, meaning, unit, required) result(field)
-    character(len=*), intent(in) :: name, meaning, unit
+    character(len=*), intent(in) :: name, meaning, unit   !! as the manual of cards prints them; blank: it has no unit
     logical, intent(in), optional :: required           !! may not be blank; default: it may
     type(field_entry) :: field
 
@@ -179,7 +179,7 @@ contains
 
   !> A real; a blank means 0.0.
   pure function zero_field(name, meaning, unit) result(field)
-    character(len=*), intent(in) :: name, meaning, unit
+    character(len=*), intent(in) :: name, meaning, unit   !! as the manual of cards prints them; blank: it has no unit
     type(field_entry) :: field
 
     field = field_entry(name, kind_real, meaning, unit, has_default=.true.)
@@ -187,7 +187,7 @@ contains
 
   !> Directions, digits from 1 to 6.
   pure function components_field(name, meaning, required, with) result(field)
-    character(len=*), intent(in) :: name, meaning
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     logical, intent(in) :: required               !! may not be blank
     integer, intent(in), optional :: with         !! the neighbour with which it must be filled
     type(field_entry) :: field
@@ -198,7 +198,7 @@ contains
 
   !> A word, one of `choices` unless these are blank.
   pure function word_field(name, meaning, choices) result(field)
-    character(len=*), intent(in) :: name, meaning
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     character(len=*), intent(in) :: choices            !! with blanks between
     type(field_entry) :: field
 
@@ -207,7 +207,7 @@ contains
 
   !> A field that may hold anything and has no effect.
   pure function any_field(name, meaning) result(field)
-    character(len=*), intent(in) :: name, meaning
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     type(field_entry) :: field
 
     field = field_entry(name, kind_any, meaning, used=.false.)
@@ -225,7 +225,7 @@ contains
 
   !> The field, but below a limit.
   pure type(field_entry) function below(limit, plain) result(field)
-    real(wp), intent(in) :: limit
+    real(wp), intent(in) :: limit   !! out of range itself
     type(field_entry), intent(in) :: plain   !! the field
 
     field = plain

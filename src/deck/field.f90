@@ -48,7 +48,7 @@ contains
   !> A whole number: a sign, then digits, nothing else.
   pure subroutine scan_integer(text, number, outcome)
     character(len=*), intent(in) :: text  !! without blanks around it
-    integer(i8), intent(out) :: number
+    integer(i8), intent(out) :: number   !! of too many digits, the first of them
     integer, intent(out) :: outcome       !! one of the outcomes above
     integer :: at, first, digit
     logical :: too_large
@@ -187,8 +187,8 @@ contains
   !> Directions: digits from 1 to 6, each at most once, such as `12`.
   pure subroutine scan_components(text, number, outcome)
     character(len=*), intent(in) :: text  !! without blanks around it
-    integer(i8), intent(out) :: number
-    integer, intent(out) :: outcome
+    integer(i8), intent(out) :: number   !! the same digits
+    integer, intent(out) :: outcome   !! one of the outcomes above
     integer :: at
 
     number = 0
@@ -203,8 +203,8 @@ contains
   !> A word: a letter, then other characters but blanks, eight in all.
   pure subroutine scan_word(text, word, outcome)
     character(len=*), intent(in) :: text  !! without blanks around it
-    character(len=8), intent(out) :: word
-    integer, intent(out) :: outcome
+    character(len=8), intent(out) :: word   !! in capitals, cut at eight characters
+    integer, intent(out) :: outcome   !! one of the outcomes above
 
     word = ''
     outcome = scan_malformed

@@ -17,9 +17,9 @@ contains
 
   !> Read the list of a card into its table.
   subroutine read_list(card, table, faults)
-    type(card_fields), intent(in) :: card
+    type(card_fields), intent(in) :: card   !! its fields
     type(card_table), intent(inout) :: table     !! the card is its last
-    type(diagnostics), intent(inout) :: faults
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
 
     if (table%entry%has_points) then
       call read_points(card, table, faults)

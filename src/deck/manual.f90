@@ -18,7 +18,7 @@ contains
   !! Each line is ended by a newline.
   function manual(name, found) result(text)
     character(len=*), intent(in) :: name  !! blank: all cards
-    logical, intent(out) :: found
+    logical, intent(out) :: found   !! there is such a card
     character(len=:), allocatable :: text
     type(card_entry) :: entry(card_kinds)
     integer :: k

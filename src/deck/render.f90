@@ -18,8 +18,8 @@ contains
   !> The errors and warnings in deck order, each line of text ended by a newline; the last line counts them.
   !! Empty where there are none.
   pure function render(faults, lines) result(text)
-    type(diagnostics), intent(in) :: faults
-    type(source), intent(in) :: lines
+    type(diagnostics), intent(in) :: faults   !! of the deck
+    type(source), intent(in) :: lines   !! its lines
     character(len=:), allocatable :: text
     integer, allocatable :: order(:)
     integer :: found(2)   !! errors, warnings
@@ -41,8 +41,8 @@ contains
   !> Warnings and notes in deck order, one line each, for the listing: without the name of the deck, and of included files
   !! the name as seen from it, so that it does not matter from where the deck was read.
   pure function render_notes(faults, lines) result(text)
-    type(diagnostics), intent(in) :: faults
-    type(source), intent(in) :: lines
+    type(diagnostics), intent(in) :: faults   !! of the deck
+    type(source), intent(in) :: lines   !! its lines
     character(len=:), allocatable :: text
     integer, allocatable :: order(:)
     integer :: i
@@ -61,7 +61,7 @@ contains
 
   !> `text` with every byte that is no printable ASCII character replaced by a question mark.
   pure function printable(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !! any bytes
     character(len=len(text)) :: printable
     integer :: i
 

@@ -54,10 +54,10 @@ contains
   !> Read the deck at `path` with all that it includes.
   !! Faults inside go to `faults`; `error` only where the deck itself cannot be read.
   subroutine read_source(path, lines, faults, error)
-    character(len=*), intent(in) :: path
-    type(source), intent(out) :: lines
-    type(diagnostics), intent(inout) :: faults
-    type(error_type), allocatable, intent(out) :: error
+    character(len=*), intent(in) :: path   !! of the deck
+    type(source), intent(out) :: lines   !! of all its files
+    type(diagnostics), intent(inout) :: faults   !! inside, which are added
+    type(error_type), allocatable, intent(out) :: error   !! where the deck itself cannot be read
     character(len=:), allocatable :: trouble
     logical :: ended
 
@@ -310,7 +310,7 @@ contains
   !> The name of the file of a line.
   pure function file_name(self, line) result(name)
     class(source), intent(in) :: self
-    integer, intent(in) :: line
+    integer, intent(in) :: line   !! in deck order
     character(len=:), allocatable :: name
 
     name = self%files(self%line(line)%file)%name

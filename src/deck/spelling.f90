@@ -10,7 +10,7 @@ contains
   !! 0 where none is. Digits are no slips: CTRIA6 is not a misspelt CTRIA3.
   pure integer function likely_name(word, names)
     character(len=*), intent(in) :: word      !! in capitals
-    character(len=*), intent(in) :: names(:)
+    character(len=*), intent(in) :: names(:)   !! those that are known
     integer :: slips, least, i
 
     likely_name = 0

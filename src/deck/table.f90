@@ -97,7 +97,7 @@ contains
   !> Add an item to the list of the last card.
   pure subroutine add_item(self, item)
     class(card_table), intent(inout) :: self
-    type(list_item), intent(in) :: item
+    type(list_item), intent(in) :: item   !! ids or a point
 
     if (self%items == size(self%list)) self%list = [self%list, self%list]
     self%items = self%items + 1

@@ -30,12 +30,12 @@ contains
 
   !> Read a field; one that is blank, or cannot be taken, is a fault.
   subroutine read_slot(card, table, slot, entry, value, faults)
-    type(card_fields), intent(in) :: card
+    type(card_fields), intent(in) :: card   !! its fields
     type(card_table), intent(in) :: table     !! the card is its last
     integer, intent(in) :: slot               !! which field
     type(field_entry), intent(in) :: entry    !! what it may hold
-    type(field_value), intent(out) :: value
-    type(diagnostics), intent(inout) :: faults
+    type(field_value), intent(out) :: value   !! what the field says
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     character(len=:), allocatable :: what, remedy
     integer :: outcome
 

@@ -51,7 +51,7 @@ contains
   !> The time since the last lap was that of `stage`.
   subroutine lap(self, stage)
     class(stopwatch), intent(inout) :: self
-    integer, intent(in) :: stage
+    integer, intent(in) :: stage   !! one of those above
     real(wp) :: ended(2)
 
     ended = now()
