@@ -10,7 +10,7 @@ module epcont_deck_bulk
   use epcont_deck_field, only: scan_sound, scan_word
   use epcont_deck_list, only: read_list
   use epcont_deck_source, only: source
-  use epcont_deck_spelling, only: likely_name
+  use epcont_deck_spelling, only: suggestion
   use epcont_deck_table, only: card_table
   use epcont_deck_value, only: field_value, read_slot
   implicit none
@@ -57,7 +57,6 @@ contains
       table(k)%sound(table(k)%count) = faults%error_count() == errors
     end do
     do k = 1, card_kinds
-      call table(k)%finish()
       call add_notes(lines, table(k), faults)
     end do
   end subroutine read_bulk
@@ -118,7 +117,6 @@ contains
     type(field_entry), intent(out) :: value_entry
     type(diagnostics), intent(inout) :: faults
     character(len=8) :: word
-    character(len=:), allocatable :: remedy
     integer :: outcome, i
 
     value_entry = field_entry('VALUE', kind_word, required=.true.)
@@ -132,10 +130,8 @@ contains
         return
       end if
     end do
-    i = likely_name(word, parameter_entry%name)
-    remedy = 'epcont --cards PARAM lists the parameters'
-    if (i > 0) remedy = 'did you mean '//trim(parameter_entry(i)%name)//'?'
-    call faults%add_error(card%place(1), 'unknown parameter '//trim(word), remedy)
+    call faults%add_error(card%place(1), 'unknown parameter '//trim(word), &
+                          suggestion(word, parameter_entry%name, 'epcont --cards PARAM lists the parameters'))
   end subroutine choose_parameter
 
   !> Read one card into the last row of its table.

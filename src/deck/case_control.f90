@@ -6,7 +6,7 @@ module epcont_deck_case_control
   use epcont_deck_entry, only: largest_id
   use epcont_deck_field, only: scan_integer, scan_sound
   use epcont_deck_source, only: source
-  use epcont_deck_spelling, only: likely_name
+  use epcont_deck_spelling, only: suggestion
   implicit none
   private
   public :: case_control, read_case_control
@@ -121,7 +121,8 @@ contains
       if (keyword(k) == parts%word) exit
     end do
     if (k == 0) then
-      call add_unknown(parts, faults)
+      call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, suggestion(parts%word, &
+        keyword, 'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'))
       return
     end if
     if (stated(k)) call faults%add_error(parts%word_place, parts%word//' is stated twice', &
@@ -158,19 +159,6 @@ contains
       if (parts%word == 'NLPARM') call faults%add_note(parts%word_place, 'NLPARM has no effect')
     end select
   end subroutine read_statement
-
-  subroutine add_unknown(parts, faults)
-    type(statement), intent(in) :: parts
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: remedy
-    integer :: k
-
-    remedy = 'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'
-    k = 0
-    if (len(parts%word) > 0) k = likely_name(parts%word, keyword)
-    if (k > 0) remedy = 'did you mean '//trim(keyword(k))//'?'
-    call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, remedy)
-  end subroutine add_unknown
 
   !> The number of a statement such as `SPC = 1`.
   subroutine take_number(parts, number, faults)

@@ -3,7 +3,7 @@ module epcont_deck_complaint
   use epcont_base_text, only: upper
   use epcont_deck_card, only: card_fields
   use epcont_deck_diagnostic, only: diagnostics, place_type
-  use epcont_deck_spelling, only: likely_name
+  use epcont_deck_spelling, only: suggestion
   use epcont_deck_table, only: card_table
   implicit none
   private
@@ -22,7 +22,6 @@ contains
     type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     character(len=:), allocatable :: name, remedy, word
     type(place_type) :: place
-    integer :: k
 
     place = card%place(0)
     name = upper(card%text(card%name_first:card%name_last))
@@ -30,10 +29,8 @@ contains
       call faults%add_error(place, 'a continuation line without a card before it', 'the name of a card')
       return
     end if
-    k = likely_name(name, names)
     word = name(:scan(name//' ', ' =(') - 1)
-    remedy = 'epcont --cards lists the cards that are read'
-    if (k > 0) remedy = 'did you mean '//trim(names(k))//'?'
+    remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
     if (name == 'CQUAD8' .or. name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6 or CQUAD4'
     if (index(control_words, ' '//word//' ') > 0 .and. len(word) > 0) remedy = 'one line BEGIN BULK behind case control'
     call faults%add_error(place, 'unknown card '//name, remedy)
