@@ -39,9 +39,9 @@ contains
 
   !> Read the words of a command line: options by their table, and decks.
   subroutine read_arguments(words, arguments, error)
-    type(word_type), intent(in) :: words(:)
-    type(arguments_type), intent(out) :: arguments
-    type(error_type), allocatable, intent(out) :: error
+    type(word_type), intent(in) :: words(:)   !! without the name of the program
+    type(arguments_type), intent(out) :: arguments   !! what they ask for
+    type(error_type), allocatable, intent(out) :: error   !! of usage
     type(option_type) :: option
     logical :: is_deck(size(words))
     integer :: i
@@ -168,7 +168,7 @@ contains
 
   !> Name of a file without folder and without what follows its last point.
   pure function stem_of(path) result(stem)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !! of a deck
     character(len=:), allocatable :: stem
     integer :: point
 

@@ -38,7 +38,7 @@ contains
 
   !> Print text on standard output, at once, and a newline where it does not end with one.
   subroutine print_text(text, status)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !! one line or many
     integer, intent(inout) :: status   !! where that cannot be done, at least that of files afterwards
     integer :: last
 
@@ -51,7 +51,7 @@ contains
 
   !> Print on standard error, at once and as it is. Nothing comes of it where that cannot be written.
   subroutine print_error(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !! with its newlines
     logical :: ignored
 
     ignored = is_written(standard_error, text)

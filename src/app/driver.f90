@@ -45,41 +45,28 @@ module epcont_app_driver
 
 contains
 
-  !> Run one deck.
+  !> From file to results, alone at work on them; what is there afterwards is of this run.
   subroutine run_deck(path, arguments, status)
-    character(len=*), intent(in) :: path
-    type(arguments_type), intent(in) :: arguments
+    character(len=*), intent(in) :: path   !! of the deck
+    type(arguments_type), intent(in) :: arguments   !! of the command line
     integer, intent(out) :: status   !! its exit status
     type(progress_type) :: watch
-
-    call watch%begin(shown(stem_of(path)), arguments%progress, arguments%quiet)
-    call follow_deck(path, arguments, watch, status)
-    if (arguments%timing) call print_error(timing_text(shown(stem_of(path)), watch, peak_memory()))
-  end subroutine run_deck
-
-  !> From file to results, alone at work on them; what is there afterwards is of this run.
-  subroutine follow_deck(path, arguments, watch, status)
-    character(len=*), intent(in) :: path
-    type(arguments_type), intent(in) :: arguments
-    type(progress_type), intent(inout) :: watch
-    integer, intent(out) :: status
     type(error_type), allocatable :: error
     type(file_lock) :: lock
-    logical :: written
+    logical :: writes, written
 
-    if (arguments%check .or. arguments%plan) then
-      call solve_deck(path, arguments, watch, status, written)
-      return
-    end if
-    call lock_files(output_stem(path, arguments), lock, error)
+    call watch%begin(shown(stem_of(path)), arguments%progress, arguments%quiet)
+    writes = .not. (arguments%check .or. arguments%plan)
+    if (writes) call lock_files(output_stem(path, arguments), lock, error)
     if (allocated(error)) then
       call refuse(error, status)
-      return
+    else
+      call solve_deck(path, arguments, watch, status, written)
+      if (writes .and. .not. written) call remove_results(output_stem(path, arguments))
+      if (writes) call unlock_files(lock)
     end if
-    call solve_deck(path, arguments, watch, status, written)
-    if (.not. written) call remove_results(output_stem(path, arguments))
-    call unlock_files(lock)
-  end subroutine follow_deck
+    if (arguments%timing) call print_error(timing_text(shown(stem_of(path)), watch, peak_memory()))
+  end subroutine run_deck
 
   !> From file to results, and what there is to say of it.
   subroutine solve_deck(path, arguments, watch, status, written)

@@ -65,7 +65,7 @@ contains
   !> End at once, and say why.
   subroutine stop_now(status, message)
     integer, intent(in) :: status            !! of the program
-    character(len=*), intent(in) :: message
+    character(len=*), intent(in) :: message   !! one line
 
     call print_error(program_name//': '//message//newline)
     call c_exit_now(int(status, c_int))

@@ -12,6 +12,7 @@ module epcont_app_help
 
 contains
 
+  !> The text of --help.
   pure function help_text() result(text)
     character(len=:), allocatable :: text
     type(option_type) :: option

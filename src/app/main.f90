@@ -14,7 +14,7 @@ program epcont
   use epcont_report_file, only: make_directory
   use epcont_system_large_pages, only: prepare_heap
   use epcont_system_memory, only: has_memory, memory_of_libraries
-  use epcont_system_one_thread, only: use_one_thread
+  use epcont_system_threads, only: use_one_thread
   implicit none
   logical(c_bool), target :: ended = .false.
   integer :: status

@@ -41,7 +41,7 @@ contains
 
   !> The option of this name, to the letter; a blank name where there is none.
   pure type(option_type) function find_option(word) result(option)
-    character(len=*), intent(in) :: word
+    character(len=*), intent(in) :: word   !! of the command line
     integer :: k
 
     if (len_trim(word) < len(word)) return   ! to Fortran, blanks at the end make no difference
@@ -50,12 +50,14 @@ contains
     end do
   end function find_option
 
+  !> May something follow it?
   pure logical function takes_value(self)
     class(option_type), intent(in) :: self
 
     takes_value = self%value /= ''
   end function takes_value
 
+  !> Must something follow it?
   pure logical function needs_value(self)
     class(option_type), intent(in) :: self
 

@@ -34,7 +34,7 @@ contains
   !> A deck begins.
   subroutine begin(self, stem, asked, quiet)
     class(progress_type), intent(out) :: self
-    character(len=*), intent(in) :: stem
+    character(len=*), intent(in) :: stem   !! of the deck
     logical, intent(in) :: asked   !! for every solve of every run, wherever standard error goes
     logical, intent(in) :: quiet   !! nothing but what is asked for
 
@@ -48,7 +48,7 @@ contains
   !> The plan is made; solves begin.
   subroutine expect(self, plan, most_iterations, operations)
     class(progress_type), intent(inout) :: self
-    type(iteration_plan), intent(in) :: plan
+    type(iteration_plan), intent(in) :: plan   !! how yielding is iterated
     integer, intent(in) :: most_iterations   !! at a load
     real(wp), intent(in) :: operations       !! of a solve
 
@@ -60,8 +60,8 @@ contains
   !> A solve has been done; `over` if it was the last at its load.
   subroutine solved(self, now, over)
     class(progress_type), intent(inout) :: self
-    type(iteration_record), intent(in) :: now
-    logical, intent(in) :: over
+    type(iteration_record), intent(in) :: now   !! what it is like
+    logical, intent(in) :: over   !! it was the last at its load
 
     if (.not. self%shown) return
     call self%expected%learn(now, over, self%elapsed())

@@ -11,7 +11,7 @@ contains
 
   !> Four characters for every three bytes; `=` where the last group lacks one.
   pure function base64(bytes) result(text)
-    integer(int8), intent(in) :: bytes(:)
+    integer(int8), intent(in) :: bytes(:)   !! any number of them
     character(len=:), allocatable :: text
     integer(int8) :: last(3)
     integer :: group, whole, left

@@ -9,12 +9,13 @@ module epcont_base_error
   public :: error_type, raise
 
   !> Exit statuses of the program.
-  integer, parameter, public :: status_valid = 0        !! the answer is valid
-  integer, parameter, public :: status_no_answer = 1    !! not converged, or no equilibrium
-  integer, parameter, public :: status_deck = 2         !! deck rejected
-  integer, parameter, public :: status_usage = 3        !! usage, files, or memory refused
-  integer, parameter, public :: status_numerical = 4    !! breakdown, or certificate beyond tolerance
-  integer, parameter, public :: status_internal = 5     !! a fault of the program
+  integer, parameter, public :: &
+    status_valid = 0, &      !! the answer is valid
+    status_no_answer = 1, &  !! not converged, or no equilibrium
+    status_deck = 2, &       !! deck rejected
+    status_usage = 3, &      !! usage, files, or memory refused
+    status_numerical = 4, &  !! breakdown, or certificate beyond tolerance
+    status_internal = 5      !! a fault of the program
 
   !> What they mean, for whoever runs the program.
   character(len=*), parameter, public :: status_meaning(0:5) = [ &
@@ -35,7 +36,7 @@ contains
 
   !> Set `error`.
   subroutine raise(error, status, message)
-    type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable, intent(out) :: error   !! allocated afterwards
     integer, intent(in) :: status            !! one of the exit statuses above
     character(len=*), intent(in) :: message  !! what is wrong, where, and what would be right
 

@@ -13,7 +13,7 @@ contains
 
   !> From the members of each group [any, groups]; 0 is no member.
   pure function new_incidence(member, members) result(table)
-    integer, intent(in) :: member(:, :)
+    integer, intent(in) :: member(:, :)   !! of each group; 0 ends them [any, groups]
     integer, intent(in) :: members   !! how many there are in all
     type(incidence) :: table
     integer :: g, k

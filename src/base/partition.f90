@@ -17,7 +17,7 @@ contains
 
   !> `count` sets of one member each.
   pure function new_partition(count) result(sets)
-    integer, intent(in) :: count
+    integer, intent(in) :: count   !! of members
     type(partition) :: sets
     integer :: i
 
@@ -27,7 +27,7 @@ contains
   !> Join the sets of a and b; the smaller root remains.
   pure subroutine join(self, a, b)
     class(partition), intent(inout) :: self
-    integer, intent(in) :: a, b
+    integer, intent(in) :: a, b   !! members of the two sets
     integer :: low, high
 
     call self%root(a, low)
@@ -38,8 +38,8 @@ contains
   !> The smallest member of the set of a.
   pure subroutine root(self, a, top)
     class(partition), intent(inout) :: self
-    integer, intent(in) :: a
-    integer, intent(out) :: top
+    integer, intent(in) :: a   !! a member
+    integer, intent(out) :: top   !! the smallest of its set
     integer :: next, at
 
     top = a
@@ -57,8 +57,8 @@ contains
   !> The sets numbered from 1 in order of their smallest members: the number of each member's set.
   pure subroutine numbers(self, number, count)
     class(partition), intent(inout) :: self
-    integer, allocatable, intent(out) :: number(:)
-    integer, intent(out) :: count
+    integer, allocatable, intent(out) :: number(:)   !! of each member's set
+    integer, intent(out) :: count   !! of sets
     integer :: i, top
 
     allocate (number(size(self%parent)))

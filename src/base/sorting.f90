@@ -19,15 +19,14 @@ contains
 
   !> The permutation that puts `key` in ascending order; equal keys keep their order (merge sort).
   pure function sorted_order(key) result(order)
-    integer, intent(in) :: key(:)
+    integer, intent(in) :: key(:)   !! in any order
     integer, allocatable :: order(:)
     integer, allocatable :: merged(:)
     integer, parameter :: run = 8   ! so many are put in order by insertion
-    integer :: n, width, left, middle, right, i, j, k
+    integer :: n, width, left, i, j, k
 
     n = size(key)
     order = [(i, i=1, n)]
-    if (n < 2) return
     if (all(key(2:) >= key(:n - 1))) return
     do left = 1, n, run
       do k = left + 1, min(left + run - 1, n)
@@ -43,30 +42,35 @@ contains
     width = run
     do while (width < n)
       do left = 1, n, 2*width
-        middle = min(left + width, n + 1)
-        right = min(left + 2*width, n + 1)
-        i = left
-        j = middle
-        do k = left, right - 1
-          if (i >= middle) then
-            merged(k) = order(j)
-            j = j + 1
-          else if (j >= right) then
-            merged(k) = order(i)
-            i = i + 1
-          else if (key(order(j)) < key(order(i))) then
-            merged(k) = order(j)
-            j = j + 1
-          else
-            merged(k) = order(i)
-            i = i + 1
-          end if
-        end do
+        call merge_runs(key, order, left, min(left + width, n + 1), min(left + 2*width, n + 1), merged)
       end do
       order = merged
       width = 2*width
     end do
   end function sorted_order
+
+  !> Merge two runs that are in order, from `left` and from `middle` on; what follows begins at `right`.
+  pure subroutine merge_runs(key, order, left, middle, right, merged)
+    integer, intent(in) :: key(:), order(:)
+    integer, intent(in) :: left, middle, right
+    integer, intent(inout) :: merged(:)
+    integer :: i, j, k
+    logical :: is_second
+
+    i = left
+    j = middle
+    do k = left, right - 1
+      is_second = i >= middle
+      if (.not. is_second .and. j < right) is_second = key(order(j)) < key(order(i))
+      if (is_second) then
+        merged(k) = order(j)
+        j = j + 1
+      else
+        merged(k) = order(i)
+        i = i + 1
+      end if
+    end do
+  end subroutine merge_runs
 
   !> Rearrange items so that no key of the first half is above any of the second; the first half has n/2, rounded down
   !! (Hoare's selection).
@@ -111,7 +115,7 @@ contains
 
   !> Index of a list of ids; of equal ids the first is the one found.
   pure function new_id_index(ids) result(index)
-    integer, intent(in) :: ids(:)
+    integer, intent(in) :: ids(:)   !! in any order
     type(id_index) :: index
     integer :: n
 
@@ -124,55 +128,44 @@ contains
   end function new_id_index
 
   !> Position of `id` in the original list; 0 where it is absent.
-  elemental function find(self, id) result(position)
+  elemental integer function find(self, id) result(position)
     class(id_index), intent(in) :: self
-    integer, intent(in) :: id
-    integer :: position
-    integer :: at
+    integer, intent(in) :: id   !! to look for
+    integer :: at, n
 
     position = 0
-    associate (n => size(self%key))
-      if (n == 0) return
-      if (id < self%key(1) .or. id > self%key(n)) return
-      at = min(id - self%key(1) + 1, n)   ! its place if no id before it is left out, as is mostly so
-      if (self%key(at) /= id) at = first_not_below(self%key, id)
-      if (self%key(at) == id) position = self%position(at)
-    end associate
+    n = size(self%key)
+    if (n == 0) return
+    if (id < self%key(1) .or. id > self%key(n)) return
+    at = min(id - self%key(1) + 1, n)   ! its place if no id before it is left out, as is mostly so
+    if (self%key(at) /= id) at = first_not_below(self%key, id)
+    if (self%key(at) == id) position = self%position(at)
   end function find
 
   !> Positions of all ids from `first` to `last`, in ascending order of id.
   pure function within(self, first, last) result(positions)
     class(id_index), intent(in) :: self
-    integer, intent(in) :: first, last
+    integer, intent(in) :: first, last   !! ids, which need not be in the list
     integer, allocatable :: positions(:)
-    integer :: from, to
 
-    from = first_not_below(self%key, first)
-    to = from
-    do while (to <= size(self%key))
-      if (self%key(to) > last) exit
-      to = to + 1
-    end do
-    positions = self%position(from:to - 1)
+    positions = self%position(first_not_below(self%key, first):first_not_below(self%key, last + 1) - 1)
   end function within
 
   !> The first place in the ascending list `key` that is not below `id` (size + 1: none).
-  pure function first_not_below(key, id) result(at)
+  pure integer function first_not_below(key, id) result(low)
     integer, intent(in) :: key(:)
     integer, intent(in) :: id
-    integer :: at
-    integer :: low, high
+    integer :: middle, high
 
     low = 1
     high = size(key) + 1
     do while (low < high)
-      at = low + (high - low)/2
-      if (key(at) < id) then
-        low = at + 1
+      middle = low + (high - low)/2
+      if (key(middle) < id) then
+        low = middle + 1
       else
-        high = at
+        high = middle
       end if
     end do
-    at = low
   end function first_not_below
 end module epcont_base_sorting

@@ -14,7 +14,7 @@ contains
 
   !> `string` with the letters a-z made capital.
   pure function upper(string) result(capital)
-    character(len=*), intent(in) :: string
+    character(len=*), intent(in) :: string   !! any
     character(len=len(string)) :: capital
     integer, parameter :: shift = iachar('a') - iachar('A')
     integer :: i
@@ -43,7 +43,7 @@ contains
 
   !> A real with four significant digits, for messages: `0.01250`, `210.0`, `1.250E-07`.
   pure function short_real(number) result(text)
-    real(wp), intent(in) :: number
+    real(wp), intent(in) :: number   !! any size
     character(len=:), allocatable :: text
     character(len=24) :: buffer, shape
     integer :: decimals
@@ -64,7 +64,7 @@ contains
 
   !> A name as it may be printed: control characters, which would move the cursor, colour the screen or feign a line, as \x1B.
   pure function shown(name) result(text)
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !! any bytes
     character(len=:), allocatable :: text
     integer, parameter :: delete = 127, first_of_c1 = 194   !! in UTF-8 the controls from 128 to 159 begin with a byte of 194
     character(len=2) :: code
@@ -87,8 +87,8 @@ contains
 
   !> `1 pair`, `2 pairs`.
   pure function plural(count, noun) result(text)
-    integer, intent(in) :: count
-    character(len=*), intent(in) :: noun
+    integer, intent(in) :: count   !! how many
+    character(len=*), intent(in) :: noun   !! in the singular
     character(len=:), allocatable :: text
 
     text = text_of(count)//' '//noun

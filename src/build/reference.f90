@@ -67,7 +67,7 @@ contains
     article = 'the id of a '
     if (wanted == 'element') article = 'the id of an '
     call faults%add_error(deck%place(card, i, column), deck%identity(card, i)//': '// &
-                          deck%card(card)%entry%field_text(deck%card(card)%entry%field(column)%slot)// &
+                          deck%card(card)%entry%field_text(column)// &
                           ': there is no '//wanted//' '// &
                           text_of(nint(deck%card(card)%value(column, i))), article//wanted)
   end subroutine resolve

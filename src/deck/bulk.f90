@@ -10,7 +10,7 @@ module epcont_deck_bulk
   use epcont_deck_field, only: scan_sound, scan_word
   use epcont_deck_list, only: read_list
   use epcont_deck_source, only: source
-  use epcont_deck_spelling, only: likely_name
+  use epcont_deck_spelling, only: suggestion
   use epcont_deck_table, only: card_table
   use epcont_deck_value, only: field_value, read_slot
   implicit none
@@ -24,10 +24,10 @@ contains
 
   !> Read the cards from line `first` on.
   subroutine read_bulk(lines, first, table, faults)
-    type(source), intent(in) :: lines
+    type(source), intent(in) :: lines   !! of the deck
     integer, intent(in) :: first                              !! the first line that is not of case control
     type(card_table), allocatable, intent(out) :: table(:)    !! the cards of each kind [card_kinds]
-    type(diagnostics), intent(inout) :: faults
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     type(card_entry) :: entry(card_kinds)
     type(field_entry), allocatable :: parameter_entry(:)
     type(card_fields) :: card
@@ -57,7 +57,6 @@ contains
       table(k)%sound(table(k)%count) = faults%error_count() == errors
     end do
     do k = 1, card_kinds
-      call table(k)%finish()
       call add_notes(lines, table(k), faults)
     end do
   end subroutine read_bulk
@@ -83,9 +82,13 @@ contains
         end if
         begun = .true.
         text = lines%text(line%first:min(line%last, line%first + 7))
-        if (line%special <= line%last) text = ''   ! with a comma the name may be longer
-        if (text /= before .or. text == '') found = kind_of(lines%text(line%first:line%last), names)
-        before = text
+        if (line%special <= line%last) then   ! with a comma the name may be longer
+          found = kind_of(lines%text(line%first:line%last), names)
+          before = ''
+        else if (text /= before) then
+          found = kind_of(text, names)
+          before = text
+        end if
         kind(i) = found
       end associate
     end do
@@ -114,10 +117,9 @@ contains
     type(field_entry), intent(out) :: value_entry
     type(diagnostics), intent(inout) :: faults
     character(len=8) :: word
-    character(len=:), allocatable :: remedy
     integer :: outcome, i
 
-    value_entry = field_entry(2, 'VALUE', kind_word, required=.true.)
+    value_entry = field_entry('VALUE', kind_word, required=.true.)
     outcome = -1
     if (card%filled(1)) call scan_word(card%text(card%first(1):card%last(1)), word, outcome)
     if (outcome /= scan_sound) return
@@ -128,10 +130,8 @@ contains
         return
       end if
     end do
-    i = likely_name(word, parameter_entry%name)
-    remedy = 'epcont --cards PARAM lists the parameters'
-    if (i > 0) remedy = 'did you mean '//trim(parameter_entry(i)%name)//'?'
-    call faults%add_error(card%place(1), 'unknown parameter '//trim(word), remedy)
+    call faults%add_error(card%place(1), 'unknown parameter '//trim(word), &
+                          suggestion(word, parameter_entry%name, 'epcont --cards PARAM lists the parameters'))
   end subroutine choose_parameter
 
   !> Read one card into the last row of its table.
@@ -139,60 +139,58 @@ contains
     type(card_fields), intent(in) :: card
     type(card_table), intent(inout) :: table
     type(diagnostics), intent(inout) :: faults
-    integer :: slot, column
+    integer :: slot
     logical :: blank
 
-    do slot = 1, min(max(card%count, size(table%entry%column_at)), table%entry%list_slot - 1)
-      column = 0
-      if (slot <= size(table%entry%column_at)) column = table%entry%column_at(slot)
+    do slot = 1, min(max(card%count, size(table%entry%field)), table%entry%list_slot - 1)
       blank = slot > card%count
       if (.not. blank) blank = card%last(slot) < card%first(slot)
-      if (blank .and. column > 0) then
-        call take_blank(card, table, column, faults)
-      else if (column > 0) then
-        call read_field(card, table, column, faults)
-      else if (.not. blank) then
-        call add_surplus(card, table, slot, faults)
+      if (table%entry%must_be_blank(slot)) then
+        if (.not. blank) call add_surplus(card, table, slot, faults)
+      else if (blank) then
+        call take_blank(card, table, slot, faults)
+      else
+        call read_field(card, table, slot, faults)
       end if
     end do
     if (table%entry%has_list()) call read_list(card, table, faults)
   end subroutine read_card
 
   !> Read one field that is not blank.
-  subroutine read_field(card, table, column, faults)
+  subroutine read_field(card, table, slot, faults)
     type(card_fields), intent(in) :: card
     type(card_table), intent(inout) :: table
-    integer, intent(in) :: column
+    integer, intent(in) :: slot
     type(diagnostics), intent(inout) :: faults
     type(field_value) :: value
 
-    associate (field => table%entry%field(column), i => table%count)
-      call read_slot(card, table, field%slot, field, value, faults)
+    associate (field => table%entry%field(slot), i => table%count)
+      call read_slot(card, table, slot, field, value, faults)
       if (value%sound) then
-        table%value(column, i) = value%number
-        if (field%kind == kind_word) table%word(column, i) = value%word
-        table%given(column, i) = .true.
+        table%value(slot, i) = value%number
+        if (field%kind == kind_word) table%word(slot, i) = value%word
+        table%given(slot, i) = .true.
       end if
       if (field%used) return
-      table%noted(column) = table%noted(column) + 1
-      if (table%noted(column) == 1) table%noted_card(column) = i
+      table%noted(slot) = table%noted(slot) + 1
+      if (table%noted(slot) == 1) table%noted_card(slot) = i
     end associate
   end subroutine read_field
 
   !> A blank field has its default, or the value of another; some may not be blank.
-  subroutine take_blank(card, table, column, faults)
+  subroutine take_blank(card, table, slot, faults)
     type(card_fields), intent(in) :: card
     type(card_table), intent(inout) :: table
-    integer, intent(in) :: column
+    integer, intent(in) :: slot
     type(diagnostics), intent(inout) :: faults
     logical :: needed
 
-    associate (field => table%entry%field(column), row => table%value(:, table%count))
-      row(column) = field%default
-      if (field%same_as > 0) row(column) = row(table%entry%column_of(field%same_as))
+    associate (field => table%entry%field(slot), row => table%value(:, table%count))
+      row(slot) = field%default
+      if (field%same_as /= 0) row(slot) = row(slot + field%same_as)
       needed = field%required
-      if (field%with > 0) needed = needed .or. card%filled(field%with)
-      if (needed) call add_fault(card, table, field%slot, 'is blank', field%allowed(), faults)
+      if (field%with /= 0) needed = needed .or. card%filled(slot + field%with)
+      if (needed) call add_fault(card, table, slot, 'is blank', field%allowed(), faults)
     end associate
   end subroutine take_blank
 
@@ -206,7 +204,7 @@ contains
 
     remedy = 'blank'
     if (.not. table%entry%has_list()) &
-      remedy = remedy//'; '//trim(table%entry%name)//' ends with field '//text_of(number_of(size(table%entry%column_at)))
+      remedy = remedy//'; '//trim(table%entry%name)//' ends with field '//text_of(number_of(size(table%entry%field)))
     call add_fault(card, table, slot, 'must be blank', remedy, faults)
   end subroutine add_surplus
 
@@ -217,14 +215,13 @@ contains
     type(diagnostics), intent(inout) :: faults
     type(card_fields) :: card
     type(diagnostics) :: unheard
-    integer :: column, slot
+    integer :: slot
 
-    do column = 1, size(table%noted)
-      if (table%noted(column) == 0) cycle
-      call gather(lines, table%line(table%noted_card(column)), card, unheard)
-      slot = table%entry%field(column)%slot
+    do slot = 1, size(table%noted)
+      if (table%noted(slot) == 0) cycle
+      call gather(lines, table%line(table%noted_card(slot)), card, unheard)
       call faults%add_note(card%place(slot), trim(table%entry%name)//': '//table%entry%field_text(slot)// &
-                           ' has no effect (cards with it: '//text_of(table%noted(column))//')')
+                           ' has no effect (cards with it: '//text_of(table%noted(slot))//')')
     end do
   end subroutine add_notes
 end module epcont_deck_bulk

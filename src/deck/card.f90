@@ -20,32 +20,33 @@ module epcont_deck_card
   integer, parameter :: longest_fixed = 80   !! columns of a fixed line
   integer, parameter :: longest_free = 256   !! columns of a free line
 
-  !> One line of a card. From it the columns of its slots follow, for which only faults ask.
+  !> One line of a card.
   type :: card_line
-    integer :: line = 0               !! which it is in the deck
-    integer :: first = 1, last = 0    !! where it stands in the text of the card
-    integer :: comma = 0              !! its first comma there; 0: a line of fields of fixed width
-    integer :: slot = 1               !! the first of its slots
-    integer :: fields = 0             !! slots on it, 8 or 4
+    integer :: line       !! which it is in the deck
+    integer :: before     !! characters of the card's text before it
+    integer :: length     !! of it
+    integer :: comma = 0  !! column of its first comma; 0: fields of fixed width
+    integer :: slot = 1   !! the first of its slots
+    integer :: fields = 0 !! slots on it, 8 or 4
   end type card_line
 
   !> The fields of one card. A slot is a data field: slots 1 to 8 are the fields 2 to 9, slots 9 to 16 the
   !> fields 12 to 19, and so on.
   type :: card_fields
-    integer :: next = 0                        !! first line behind the card
-    character(len=:), allocatable :: text      !! its lines, one behind the other
-    integer :: count = 0                       !! slots: eight for each row
-    integer, allocatable :: first(:), last(:)  !! [slots or more] the value in the text; last < first: blank
-    logical :: sound = .true.                  !! the lines can be cut into fields
-    logical, private :: half_open = .false.    !! the last line was the first half of a large-field row
-    integer, private :: used = 0               !! characters of its text
-    integer, private :: lines = 0
-    type(card_line), allocatable, private :: at(:)  !! [lines or more]
+    integer :: next = 0                         !! first line behind the card
+    character(len=:), allocatable :: text       !! its lines, one behind the other
+    integer :: name_first = 1, name_last = 0    !! the name in the text, without `*`
+    integer :: count = 0                        !! slots: eight for each row
+    integer, allocatable :: first(:), last(:)   !! [slots or more] the value in the text; last < first: blank
+    logical :: sound = .true.                   !! the lines can be cut into fields
+    type(place_type), private :: name_place
+    type(place_type), allocatable, private :: at(:)   !! the whole field of each slot [slots or more]
+    logical, private :: half_open = .false.     !! the last line was the first half of a large-field row
+    integer, private :: used = 0                !! characters of its text
   contains
     procedure :: filled
     procedure :: is_large
     procedure :: is_word
-    procedure :: name
     procedure :: place
   end type card_fields
 
@@ -53,17 +54,16 @@ contains
 
   !> Collect the card that begins at `line`, which is not blank, with its continuations.
   subroutine gather(lines, line, card, faults)
-    type(source), intent(in) :: lines
-    integer, intent(in) :: line
+    type(source), intent(in) :: lines   !! of the deck
+    integer, intent(in) :: line   !! where it begins
     type(card_fields), intent(inout) :: card   !! its arrays are used again
-    type(diagnostics), intent(inout) :: faults
+    type(diagnostics), intent(inout) :: faults   !! of form; they are added
 
     if (.not. allocated(card%at)) then
-      allocate (card%at(16))
+      allocate (card%at(64))
       allocate (card%first(64), card%last(64), source=1)
       card%text = repeat(' ', longest_free)
     end if
-    card%lines = 0
     card%used = 0
     card%count = 0
     card%sound = .true.
@@ -85,13 +85,9 @@ contains
     character(len=*), intent(in) :: text   !! the line, which is not blank
     integer :: at
 
-    continues = text(1:1) == '+' .or. text(1:1) == '*'
-    if (continues) return
-    do at = 1, min(width, len(text))
-      if (iachar(text(at:at)) /= iachar(' ')) exit
-    end do
-    continues = at > width
-    if (.not. continues) continues = text(at:at) == ','
+    at = verify(text(:min(width, len(text))), ' ')
+    continues = at == 0 .or. text(1:1) == '+' .or. text(1:1) == '*'
+    if (at > 0) continues = continues .or. text(at:at) == ','
   end function continues
 
   !> Add the fields of one line.
@@ -100,29 +96,31 @@ contains
     integer, intent(in) :: line
     type(card_fields), intent(inout) :: card
     type(diagnostics), intent(inout) :: faults
+    type(card_line) :: at
     logical :: large
-    integer :: length, first, last
 
-    length = lines%line(line)%last - lines%line(line)%first + 1
-    do while (len(card%text) < card%used + length)
-      card%text = card%text//card%text
-    end do
-    if (card%lines == size(card%at)) card%at = [card%at, card%at]
-    card%lines = card%lines + 1
-    associate (at => card%at(card%lines))
-      at = card_line(line, card%used + 1, card%used + length, slot=card%count + 1)
-      card%used = at%last
-      card%text(at%first:at%last) = lines%text(lines%line(line)%first:lines%line(line)%last)
-      call inspect(lines, at, card%sound, faults)
-      if (card%lines == 1) then
-        call find_name(card%text(:at%last), at%comma, first, last, large)
-      else
-        large = card%text(at%first:at%first) == '*'
-      end if
-      if (.not. card%sound) return
-      call open_slots(card, at, large)
-      call cut(card, at, faults)
+    associate (text => lines%line(line))
+      at = card_line(line, card%used, text%last - text%first + 1)
+      card%used = card%used + at%length
+      do while (len(card%text) < card%used)
+        card%text = card%text//card%text
+      end do
+      card%text(at%before + 1:card%used) = lines%text(text%first:text%last)
     end associate
+    call inspect(lines, at, card%sound, faults)
+    if (at%before == 0) then
+      call find_name(card%text(:at%length), at%comma, card%name_first, card%name_last, large)
+      card%name_place = place_type(line, card%name_first, max(card%name_first, card%name_last))
+    else
+      large = card%text(at%before + 1:at%before + 1) == '*'
+    end if
+    if (.not. card%sound) return
+    call open_slots(card, at, large)
+    if (at%comma > 0) then
+      call cut_free(card, at, faults)
+    else
+      call cut_fixed(card, at)
+    end if
   end subroutine add_line
 
   !> Look through a line: its first comma, and what may not be there.
@@ -131,23 +129,24 @@ contains
     type(card_line), intent(inout) :: at
     logical, intent(inout) :: sound  !! becomes false where there is a fault
     type(diagnostics), intent(inout) :: faults
-    integer :: k, code, longest
+    integer :: k, code, column, longest
 
     associate (line => lines%line(at%line))
       do k = line%special, line%last
         code = iachar(lines%text(k:k))
+        column = k - line%first + 1
         if (code < 32 .or. code > 126) then
           sound = .false.
-          call add_character_fault(lines%columns(at%line, k, k), code, faults)
+          call add_character_fault(place_type(at%line, column, column), code, faults)
           return
         end if
-        if (at%comma == 0 .and. lines%text(k:k) == ',') at%comma = at%first + k - line%first
+        if (at%comma == 0 .and. lines%text(k:k) == ',') at%comma = column
       end do
     end associate
     longest = merge(longest_free, longest_fixed, at%comma > 0)
-    if (at%last - at%first < longest) return
+    if (at%length <= longest) return
     sound = .false.
-    call faults%add_error(place_type(at%line, longest + 1, at%last - at%first + 1), &
+    call faults%add_error(place_type(at%line, longest + 1, at%length), &
                           'the line goes on beyond column '//text_of(longest), 'nothing here')
   end subroutine inspect
 
@@ -169,7 +168,7 @@ contains
     character(len=*), intent(in) :: text     !! the line
     integer, intent(in) :: comma             !! the first; 0: none
     integer, intent(out) :: first, last      !! the name, without `*`
-    logical, intent(out) :: large
+    logical, intent(out) :: large   !! there is a `*` behind it
 
     first = 1
     last = min(width, len(text))
@@ -182,84 +181,81 @@ contains
     call trim_blanks(text, first, last)
   end subroutine find_name
 
-  !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are blank.
+  !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are blank, and
+  !! stand behind the line's end.
   pure subroutine open_slots(card, at, large)
     type(card_fields), intent(inout) :: card
     type(card_line), intent(inout) :: at
     logical, intent(in) :: large
 
     at%fields = merge(fields_a_line/2, fields_a_line, large)
-    if (large .and. card%half_open) then
+    at%slot = card%count + 1
+    card%half_open = large .and. .not. card%half_open
+    if (large .and. .not. card%half_open) then
       at%slot = at%slot - at%fields
     else
       card%count = card%count + fields_a_line
-      if (card%count > size(card%first)) then
-        card%first = [card%first, card%first]
-        card%last = [card%last, card%last]
-      end if
-      card%last(at%slot:card%count) = 0
     end if
-    card%half_open = large .and. .not. card%half_open
+    if (card%count > size(card%first)) then
+      card%first = [card%first, card%first]
+      card%last = [card%last, card%last]
+      card%at = [card%at, card%at]
+    end if
+    card%last(at%slot:card%count) = 0
+    card%at(at%slot:card%count) = place_type(at%line, at%length + 1, at%length + 1)
   end subroutine open_slots
 
-  !> Cut a line into its fields. Behind those of a free line only a continuation mark may stand.
-  subroutine cut(card, at, faults)
+  !> Cut a line of fields of fixed width.
+  pure subroutine cut_fixed(card, at)
+    type(card_fields), intent(inout) :: card
+    type(card_line), intent(in) :: at
+    integer :: slot, step, left, from, to
+
+    step = merge(width, 2*width, at%fields == fields_a_line)
+    left = width
+    do slot = at%slot, at%slot + at%fields - 1
+      card%at(slot) = place_type(at%line, left + 1, left + step)
+      if (left < at%length) then
+        from = at%before + left + 1
+        to = at%before + min(left + step, at%length)
+        call trim_blanks(card%text, from, to)
+        card%first(slot) = from
+        card%last(slot) = to
+      end if
+      left = left + step
+    end do
+  end subroutine cut_fixed
+
+  !> Cut a line at its commas. Behind the data fields only a continuation mark may stand.
+  subroutine cut_free(card, at, faults)
     type(card_fields), intent(inout) :: card
     type(card_line), intent(in) :: at
     type(diagnostics), intent(inout) :: faults
     integer :: slot, from, to, left, right
 
-    left = first_column(at)
     slot = at%slot
-    do while (left <= at%last)
-      right = field_end(card, at, left)
-      from = left
-      to = right
+    left = at%comma + 1
+    do while (left <= at%length)
+      right = left - 2 + index(card%text(at%before + left:card%used), ',')
+      if (right < left - 1) right = at%length
+      from = at%before + left
+      to = at%before + right
       call trim_blanks(card%text, from, to)
       if (slot < at%slot + at%fields) then
+        card%at(slot) = place_type(at%line, left, max(left, right))
         card%first(slot) = from
         card%last(slot) = to
-      else if (at%comma == 0) then
-        return   ! columns behind the fields are never data
       else if (from <= to .and. (slot > at%slot + at%fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
         card%sound = .false.
-        call faults%add_error(columns(at, from, at%last), 'more than '//text_of(at%fields)//' data fields on a line', &
+        call faults%add_error(place_type(at%line, from - at%before, at%length), &
+                              'more than '//text_of(at%fields)//' data fields on a line', &
                               'a continuation line for the rest')
         return
       end if
       slot = slot + 1
-      left = right + merge(2, 1, at%comma > 0)
+      left = right + 2
     end do
-  end subroutine cut
-
-  !> Where the first data field of a line begins.
-  pure integer function first_column(at)
-    type(card_line), intent(in) :: at
-
-    first_column = at%first + width
-    if (at%comma > 0) first_column = at%comma + 1
-  end function first_column
-
-  !> The last character of the field that begins at `left`.
-  pure integer function field_end(card, at, left)
-    type(card_fields), intent(in) :: card
-    type(card_line), intent(in) :: at
-    integer, intent(in) :: left
-
-    if (at%comma == 0) then
-      field_end = min(left + field_width(at) - 1, at%last)
-    else
-      field_end = left + index(card%text(left:at%last), ',') - 2
-      if (field_end < left - 1) field_end = at%last
-    end if
-  end function field_end
-
-  !> Columns of each field on a line without commas.
-  pure integer function field_width(at)
-    type(card_line), intent(in) :: at
-
-    field_width = merge(width, 2*width, at%fields == fields_a_line)
-  end function field_width
+  end subroutine cut_free
 
   !> Move `from` and `to` inwards over blanks. These are compared by their codes: a character compared with a blank
   !! becomes a call of len_trim, which for so few characters costs more than the loop; so does an unrolled loop.
@@ -299,79 +295,21 @@ contains
     is_word = upper(self%text(self%first(slot):self%last(slot))) == word
   end function is_word
 
-  !> The name as it is written, without `*`.
-  pure function name(self)
-    class(card_fields), intent(in) :: self
-    character(len=:), allocatable :: name
-    integer :: first, last
-    logical :: large
-
-    call find_name(self%text(:self%at(1)%last), self%at(1)%comma, first, last, large)
-    name = self%text(first:last)
-  end function name
-
   !> Whether a slot is a large field of a fixed line: sixteen columns.
   pure logical function is_large(self, slot)
     class(card_fields), intent(in) :: self
     integer, intent(in) :: slot   !! which field
-    type(place_type) :: place
 
-    place = self%place(slot)
-    is_large = place%last - place%first == 15
+    is_large = self%at(slot)%last - self%at(slot)%first == 2*width - 1
   end function is_large
 
-  !> The columns of a slot: those of the whole field, of the name for slot 0 and where the card has no such line, and
-  !! behind the line's end where it does not say anything of the slot.
+  !> The columns of a slot: those of the whole field; of the name for slot 0 and where the card has no such line; behind
+  !! the line's end where it does not say anything of the slot.
   pure type(place_type) function place(self, slot)
     class(card_fields), intent(in) :: self
     integer, intent(in) :: slot   !! which field; 0: the name
-    integer :: k, left, first, last
-    logical :: large
 
-    if (slot < 1 .or. slot > self%count) then
-      call find_name(self%text(:self%at(1)%last), self%at(1)%comma, first, last, large)
-      place = columns(self%at(1), first, last)
-      return
-    end if
-    associate (at => self%at(line_of(self, slot)))
-      left = first_column(at)
-      if (slot >= at%slot + at%fields) left = at%last + 1
-      if (at%comma == 0 .and. slot < at%slot + at%fields) then
-        left = left + (slot - at%slot)*field_width(at)
-        place = columns(at, left, left + field_width(at) - 1)
-        return
-      end if
-      do k = at%slot + 1, slot
-        if (left <= at%last) left = field_end(self, at, left) + 2
-      end do
-      left = min(left, at%last + 1)
-      place = columns(at, left, field_end(self, at, left))
-    end associate
+    place = self%name_place
+    if (slot > 0 .and. slot <= self%count) place = self%at(slot)
   end function place
-
-  !> Characters of a line, at least the first of them, as columns.
-  pure type(place_type) function columns(at, first, last)
-    type(card_line), intent(in) :: at
-    integer, intent(in) :: first, last   !! in the text of the card
-
-    columns = place_type(at%line, first - at%first + 1, max(first, last) - at%first + 1)
-  end function columns
-
-  !> The last line of the card that begins with this slot or one before it.
-  pure integer function line_of(self, slot) result(low)
-    type(card_fields), intent(in) :: self
-    integer, intent(in) :: slot
-    integer :: high, middle
-
-    low = 1
-    high = self%lines
-    do while (low < high)
-      middle = high - (high - low)/2
-      if (self%at(middle)%slot <= slot) then
-        low = middle
-      else
-        high = middle - 1
-      end if
-    end do
-  end function line_of
 end module epcont_deck_card

@@ -6,7 +6,7 @@ module epcont_deck_case_control
   use epcont_deck_entry, only: largest_id
   use epcont_deck_field, only: scan_integer, scan_sound
   use epcont_deck_source, only: source
-  use epcont_deck_spelling, only: likely_name
+  use epcont_deck_spelling, only: suggestion
   implicit none
   private
   public :: case_control, read_case_control
@@ -26,12 +26,10 @@ module epcont_deck_case_control
 
   !> One statement, cut into its parts. Columns count from the first of the line.
   type :: statement
-    integer :: line = 0
-    character(len=:), allocatable :: text      !! the line
     character(len=:), allocatable :: word      !! in capitals
-    type(place_type) :: word_place, option_place, value_place
     character(len=:), allocatable :: value     !! behind `=`, or behind the word
-    logical :: has_option = .false., has_equals = .false.
+    type(place_type) :: word_place, option_place, value_place
+    logical :: has_option = .false.
   end type statement
 
 contains
@@ -39,10 +37,10 @@ contains
   !> Read the statements up to BEGIN BULK. `bulk` is the first line behind it; without it, the whole file is
   !! bulk data, and `bulk` is 1.
   subroutine read_case_control(lines, control, bulk, faults)
-    type(source), intent(in) :: lines
-    type(case_control), intent(out) :: control
-    integer, intent(out) :: bulk
-    type(diagnostics), intent(inout) :: faults
+    type(source), intent(in) :: lines   !! of the deck
+    type(case_control), intent(out) :: control   !! what they say
+    integer, intent(out) :: bulk   !! the first line of bulk data
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     logical :: stated(size(keyword))
     integer :: line
 
@@ -80,26 +78,24 @@ contains
     type(source), intent(in) :: lines
     integer, intent(in) :: line
     type(statement) :: parts
+    character(len=:), allocatable :: text
     integer :: first, last, at
 
-    parts%line = line
-    parts%text = lines%text_of_line(line)
-    first = verify(parts%text, ' ')
-    last = first + scan(parts%text(first:)//' ', ' =(') - 2
-    parts%word = upper(parts%text(first:last))
+    text = lines%text_of_line(line)
+    first = verify(text, ' ')
+    last = first + scan(text(first:)//' ', ' =(') - 2
+    parts%word = upper(text(first:last))
     parts%word_place = place_type(line, first, max(first, last))
-    at = behind_blanks(parts%text, last + 1)
-    if (at <= len(parts%text)) parts%has_option = parts%text(at:at) == '('
+    at = behind_blanks(text, last + 1)
+    parts%has_option = text(at:min(at, len(text))) == '('
     if (parts%has_option) then
-      last = at + index(parts%text(at:), ')') - 1
-      if (last < at) last = len(parts%text)
-      parts%option_place = place_type(line, at, last)
-      at = behind_blanks(parts%text, last + 1)
+      last = at + index(text(at:)//')', ')') - 1
+      parts%option_place = place_type(line, at, min(last, len(text)))
+      at = behind_blanks(text, last + 1)
     end if
-    if (at <= len(parts%text)) parts%has_equals = parts%text(at:at) == '='
-    if (parts%has_equals) at = behind_blanks(parts%text, at + 1)
-    parts%value = parts%text(at:)
-    parts%value_place = place_type(line, at, max(at, len(parts%text)))
+    if (text(at:min(at, len(text))) == '=') at = behind_blanks(text, at + 1)
+    parts%value = text(at:)
+    parts%value_place = place_type(line, at, max(at, len(text)))
   end function cut
 
   !> The first column from `from` on that is not blank.
@@ -121,12 +117,16 @@ contains
     type(diagnostics), intent(inout) :: faults
     integer :: k, unused
 
-    k = find(parts%word)
+    do k = size(keyword), 1, -1
+      if (keyword(k) == parts%word) exit
+    end do
     if (k == 0) then
-      call add_unknown(parts, faults)
+      call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, suggestion(parts%word, &
+        keyword, 'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'))
       return
     end if
-    if (stated(k)) call faults%add_error(parts%word_place, parts%word//' is stated twice', once(parts%word))
+    if (stated(k)) call faults%add_error(parts%word_place, parts%word//' is stated twice', &
+                                         'one '//parts%word//trim(merge(' a deck', '       ', parts%word == 'SUBCASE')))
     stated(k) = .true.
     if (parts%has_option) call faults%add_note(parts%option_place, parts%word//': options have no effect')
     select case (parts%word)
@@ -154,43 +154,11 @@ contains
       call take_choice(parts, 'ALL', control%stress, faults)
     case ('SPCFORCES')
       call take_choice(parts, 'ALL', control%spcforces, faults)
-    case ('SUBCASE')
+    case ('SUBCASE', 'NLPARM')
       call take_number(parts, unused, faults)
-    case ('NLPARM')
-      call take_number(parts, unused, faults)
-      call faults%add_note(parts%word_place, 'NLPARM has no effect')
+      if (parts%word == 'NLPARM') call faults%add_note(parts%word_place, 'NLPARM has no effect')
     end select
   end subroutine read_statement
-
-  pure integer function find(word) result(k)
-    character(len=*), intent(in) :: word
-
-    do k = size(keyword), 1, -1
-      if (keyword(k) == word) return
-    end do
-  end function find
-
-  pure function once(word) result(remedy)
-    character(len=*), intent(in) :: word
-    character(len=:), allocatable :: remedy
-
-    remedy = 'one '//word
-    if (word == 'SUBCASE') remedy = 'one SUBCASE a deck'
-  end function once
-
-  subroutine add_unknown(parts, faults)
-    type(statement), intent(in) :: parts
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: remedy
-    integer :: k
-
-    remedy = 'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'
-    if (len(parts%word) > 0) then
-      k = likely_name(parts%word, keyword)
-      if (k > 0) remedy = 'did you mean '//trim(keyword(k))//'?'
-    end if
-    call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, remedy)
-  end subroutine add_unknown
 
   !> The number of a statement such as `SPC = 1`.
   subroutine take_number(parts, number, faults)
@@ -203,18 +171,10 @@ contains
     call scan_integer(parts%value, value, outcome)
     if (outcome == scan_sound .and. value > 0 .and. value <= largest_id) then
       number = int(value)
-    else if (len(parts%value) == 0) then
-      call faults%add_error(parts%word_place, parts%word//' needs a number', number_remedy())
     else
-      call faults%add_error(parts%value_place, parts%word//': not a number that can be used', number_remedy())
+      call refuse(parts, 'a number', 'a number that can be used', 'a whole number from 1 to '//text_of(largest_id), faults)
     end if
   end subroutine take_number
-
-  pure function number_remedy() result(remedy)
-    character(len=:), allocatable :: remedy
-
-    remedy = 'a whole number from 1 to '//text_of(largest_id)
-  end function number_remedy
 
   !> A statement that takes NONE or one other word.
   subroutine take_choice(parts, other, chosen, faults)
@@ -225,10 +185,21 @@ contains
 
     if (upper(parts%value) == other .or. upper(parts%value) == 'NONE') then
       chosen = upper(parts%value) == other
-    else if (len(parts%value) == 0) then
-      call faults%add_error(parts%word_place, parts%word//' needs a word', other//' or NONE')
     else
-      call faults%add_error(parts%value_place, parts%word//': not a word known here', other//' or NONE')
+      call refuse(parts, 'a word', 'a word known here', other//' or NONE', faults)
     end if
   end subroutine take_choice
+
+  !> A value that is missing, or cannot be taken.
+  subroutine refuse(parts, needed, expected, remedy, faults)
+    type(statement), intent(in) :: parts
+    character(len=*), intent(in) :: needed, expected, remedy
+    type(diagnostics), intent(inout) :: faults
+
+    if (len(parts%value) == 0) then
+      call faults%add_error(parts%word_place, parts%word//' needs '//needed, remedy)
+    else
+      call faults%add_error(parts%value_place, parts%word//': not '//expected, remedy)
+    end if
+  end subroutine refuse
 end module epcont_deck_case_control

@@ -1,5 +1,6 @@
 !> THE table of cards and fields. The reader checks by it, and `epcont --cards` prints it: there is
-!> no other place that knows a column.
+!> no other place that knows a column. The fields of a card stand in their order: fields 2 to 9, then 12 to 19, and so
+!> on; one that must be blank is `field_entry()`.
 module epcont_deck_catalogue
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -8,8 +9,8 @@ module epcont_deck_catalogue
                                     card_kinds, card_mat1, card_mats1, card_param, card_pgap, card_ploadx1, &
                                     card_pshell, card_psolid, card_rbe2, card_spc, card_spc1, card_suport, card_tables1
   use epcont_deck_entry, only: any_field, below, card_entry, cause, components_field, field_entry, id_field, &
-                               integer_field, largest_id, new_card, noted, number_of, positive, real_field, &
-                               word_field, zero_field
+                               integer_field, largest_id, last_field, new_card, next_field, noted, positive, &
+                               real_field, word_field, zero_field
   implicit none
   private
   public :: catalogue, parameters
@@ -35,7 +36,7 @@ contains
     call add_pairs(card)
     call add_lines(card)
     card(card_param) = new_card('PARAM', 'a choice for the whole deck', [ &
-      word_field(2, 'NAME', 'parameter', ''), &
+      word_field('NAME', 'parameter', ''), &
       choice('VALUE', '', 'its value')])
   end function catalogue
 
@@ -45,13 +46,13 @@ contains
     integer :: slot
 
     card(card_grid) = new_card('GRID', 'node', [ &
-      id_field(2, 'ID', 'node'), &
-      zero(3, 'CP', 'system of X1 to X3: the basic one'), &
-      coordinate(4, 'X1', 'coordinate x'), &
-      coordinate(5, 'X2', 'coordinate y'), &
-      coordinate(6, 'X3', 'coordinate z; 0.0 in plane scenes'), &
-      zero(7, 'CD', 'system of the displacements: the basic one'), &
-      components_field(8, 'PS', 'permanent supports', required=.false.)])
+      id_field('ID', 'node'), &
+      zero('CP', 'system of X1 to X3: the basic one'), &
+      coordinate('X1', 'coordinate x'), &
+      coordinate('X2', 'coordinate y'), &
+      coordinate('X3', 'coordinate z; 0.0 in plane scenes'), &
+      zero('CD', 'system of the displacements: the basic one'), &
+      components_field('PS', 'permanent supports', required=.false.)])
     card(card_ctria3) = element('CTRIA3', 'constant-strain triangle', 'PSHELL', in_turn(:3))
     card(card_ctria6) = element('CTRIA6', 'six-node triangle', 'PSHELL', six)
     card(card_cquad4) = element('CQUAD4', 'four-node quadrilateral, B-bar', 'PSHELL', in_turn)
@@ -60,56 +61,58 @@ contains
     card(card_ctrax6) = &
       element('CTRAX6', 'ring of a six-node triangle; x is the radius', 'PSOLID', six(round))
     card(card_pshell) = new_card('PSHELL', 'plane section', [ &
-      id_field(2, 'PID', 'property'), &
-      id_field(3, 'MID1', 'its MAT1'), &
-      positive(real_field(4, 'T', 'thickness', 'length', required=.true.)), &
-      integer_field(5, 'MID2', '-1: plane strain; blank: as PARAM PLANE says', -1, -1)])
+      id_field('PID', 'property'), &
+      id_field('MID1', 'its MAT1'), &
+      positive(real_field('T', 'thickness', 'length', required=.true.)), &
+      integer_field('MID2', '-1: plane strain; blank: as PARAM PLANE says', -1, -1)])
     card(card_psolid) = new_card('PSOLID', 'section of rings', [ &
-      id_field(2, 'PID', 'property'), &
-      id_field(3, 'MID', 'its MAT1')])
+      id_field('PID', 'property'), &
+      id_field('MID', 'its MAT1')])
     card(card_cbar) = new_card('CBAR', 'boundary line of a mesher: counted, no effect', [ &
-      noted(id_field(2, 'EID', 'element')), &
-      noted(id_field(3, 'PID', 'property, not looked up', required=.false.)), &
-      noted(id_field(4, 'GA', 'first node')), &
-      noted(id_field(5, 'GB', 'second node')), &
-      (any_field(number_of(slot), '', 'anything'), slot=5, 16)])
+      noted(id_field('EID', 'element')), &
+      noted(id_field('PID', 'property, not looked up', required=.false.)), &
+      noted(id_field('GA', 'first node')), &
+      noted(id_field('GB', 'second node')), &
+      (any_field('', 'anything'), slot=5, 16)])
   end subroutine add_mesh
 
   !> Elasticity, and how materials yield.
   pure subroutine add_materials(card)
     type(card_entry), intent(inout) :: card(:)
     type(field_entry) :: ratio, slope
+    integer :: k
 
-    ratio = below(0.5_wp, real_field(5, 'NU', 'Poisson''s ratio', ''))
+    ratio = below(0.5_wp, real_field('NU', 'Poisson''s ratio', ''))
     ratio%lowest = 0.0_wp
     ratio%reason = 'incompressible: the bulk modulus is infinite'
     ratio%instead = '0.4999'
     card(card_mat1) = new_card('MAT1', 'isotropic elastic material; two of E, G, NU', [ &
-      id_field(2, 'MID', 'material'), &
-      positive(real_field(3, 'E', 'Young''s modulus', 'stress')), &
-      positive(real_field(4, 'G', 'shear modulus', 'stress')), &
+      id_field('MID', 'material'), &
+      positive(real_field('E', 'Young''s modulus', 'stress')), &
+      positive(real_field('G', 'shear modulus', 'stress')), &
       ratio, &
-      noted(real_field(6, 'RHO', 'density', '')), &
-      noted(real_field(7, 'A', 'thermal expansion', '')), &
-      noted(real_field(8, 'TREF', 'reference temperature', '')), &
-      noted(real_field(9, 'GE', 'damping', '')), &
-      noted(real_field(12, 'ST', 'limit of tension', 'stress')), &
-      noted(real_field(13, 'SC', 'limit of compression', 'stress')), &
-      noted(real_field(14, 'SS', 'limit of shear', 'stress')), &
-      noted(integer_field(15, 'MCSID', 'material system', 0, largest_id))])
-    slope = zero_field(5, 'H', 'stress over plastic strain beyond LIMIT1; blank with TID', 'stress')
+      noted(real_field('RHO', 'density', '')), &
+      noted(real_field('A', 'thermal expansion', '')), &
+      noted(real_field('TREF', 'reference temperature', '')), &
+      noted(real_field('GE', 'damping', '')), &
+      noted(real_field('ST', 'limit of tension', 'stress')), &
+      noted(real_field('SC', 'limit of compression', 'stress')), &
+      noted(real_field('SS', 'limit of shear', 'stress')), &
+      noted(integer_field('MCSID', 'material system', 0, largest_id))])
+    slope = zero_field('H', 'stress over plastic strain beyond LIMIT1; blank with TID', 'stress')
     slope%lowest = 0.0_wp
     card(card_mats1) = new_card('MATS1', 'yielding of a MAT1: von Mises, total theory', [ &
-      id_field(2, 'MID', 'its MAT1'), &
-      id_field(3, 'TID', 'its TABLES1; blank: bilinear from LIMIT1 and H', required=.false.), &
-      word_field(4, 'TYPE', 'both are taken as total theory', 'PLASTIC NLELAST'), &
+      id_field('MID', 'its MAT1'), &
+      id_field('TID', 'its TABLES1; blank: bilinear from LIMIT1 and H', required=.false.), &
+      word_field('TYPE', 'both are taken as total theory', 'PLASTIC NLELAST'), &
       slope, &
-      integer_field(6, 'YF', 'yield criterion: 1, von Mises', 1, 1, default=1), &
-      integer_field(7, 'HR', 'hardening rule: 1', 1, 1, default=1), &
-      positive(real_field(8, 'LIMIT1', 'yield stress; with TID that of its second point', 'stress'))])
+      integer_field('YF', 'yield criterion: 1, von Mises', 1, 1, default=1), &
+      integer_field('HR', 'hardening rule: 1', 1, 1, default=1), &
+      positive(real_field('LIMIT1', 'yield stress; with TID that of its second point', 'stress'))])
     card(card_tables1) = new_card('TABLES1', 'uniaxial curve of stress over total strain', [ &
-      id_field(2, 'TID', 'table')])
-    call card(card_tables1)%add_list(12, '', &
+      id_field('TID', 'table'), &
+      (field_entry(), k=3, 9)])
+    call card(card_tables1)%add_list('', &
       'strain and stress of each point: 0.0 0.0, the yield point, and on; ENDT behind the last')
     card(card_tables1)%has_points = .true.
   end subroutine add_materials
@@ -122,26 +125,26 @@ contains
     integer :: i
 
     card(card_spc) = new_card('SPC', 'supports, with prescribed displacements', [ &
-      id_field(2, 'SID', 'set'), &
-      id_field(3, 'G1', 'node'), &
-      components_field(4, 'C1', 'directions', required=.true.), &
-      cause(zero_field(5, 'D1', 'displacement', 'length')), &
-      id_field(6, 'G2', 'second node', with=7), &
-      components_field(7, 'C2', 'directions', required=.false., with=6), &
-      cause(zero_field(8, 'D2', 'displacement', 'length'))])
+      id_field('SID', 'set'), &
+      id_field('G1', 'node'), &
+      components_field('C1', 'directions', required=.true.), &
+      cause(zero_field('D1', 'displacement', 'length')), &
+      id_field('G2', 'second node', with=next_field), &
+      components_field('C2', 'directions', required=.false., with=last_field), &
+      cause(zero_field('D2', 'displacement', 'length'))])
     card(card_spc1) = new_card('SPC1', 'supports', [ &
-      id_field(2, 'SID', 'set'), &
-      components_field(3, 'C', 'directions; 3 to 6 have no effect in plane scenes', required=.true.)])
-    call card(card_spc1)%add_list(4, 'G', 'nodes, or G1 THRU G2')
+      id_field('SID', 'set'), &
+      components_field('C', 'directions; 3 to 6 have no effect in plane scenes', required=.true.)])
+    call card(card_spc1)%add_list('G', 'nodes, or G1 THRU G2')
     card(card_spc1)%has_ranges = .true.
     card(card_rbe2) = new_card('RBE2', 'rigid platen: nodes that move as one', [ &
-      id_field(2, 'EID', 'element'), &
-      id_field(3, 'GN', 'node that leads'), &
-      components_field(4, 'CM', 'directions tied', required=.true.)])
-    call card(card_rbe2)%add_list(5, 'GM', 'nodes that follow')
+      id_field('EID', 'element'), &
+      id_field('GN', 'node that leads'), &
+      components_field('CM', 'directions tied', required=.true.)])
+    call card(card_rbe2)%add_list('GM', 'nodes that follow')
     do i = 1, 4
-      reference(2*i - 1) = id_field(2*i, 'ID'//digit(i:i), 'node', required=i == 1, with=2*i + 1)
-      reference(2*i) = components_field(2*i + 1, 'C'//digit(i:i), 'directions', required=i == 1, with=2*i)
+      reference(2*i - 1) = id_field('ID'//digit(i:i), 'node', required=i == 1, with=next_field)
+      reference(2*i) = components_field('C'//digit(i:i), 'directions', required=i == 1, with=last_field)
     end do
     card(card_suport) = &
       new_card('SUPORT', 'reference freedoms of free bodies, solved for: the approach', reference)
@@ -153,23 +156,23 @@ contains
     type(field_entry) :: pressure
 
     card(card_force) = new_card('FORCE', 'force F*N at a node', [ &
-      id_field(2, 'SID', 'set'), &
-      id_field(3, 'G', 'node'), &
-      zero(4, 'CID', 'system of N1 to N3: the basic one'), &
-      cause(real_field(5, 'F', 'factor', 'force', required=.true.)), &
-      zero_field(6, 'N1', 'direction x', ''), &
-      zero_field(7, 'N2', 'direction y', ''), &
-      zero_field(8, 'N3', 'direction z; 0.0 in plane scenes', '')])
-    pressure = cause(real_field(5, 'PB', 'pressure at GB', 'stress'))
-    pressure%same_as = pressure%slot - 1
+      id_field('SID', 'set'), &
+      id_field('G', 'node'), &
+      zero('CID', 'system of N1 to N3: the basic one'), &
+      cause(real_field('F', 'factor', 'force', required=.true.)), &
+      zero_field('N1', 'direction x', ''), &
+      zero_field('N2', 'direction y', ''), &
+      zero_field('N3', 'direction z; 0.0 in plane scenes', '')])
+    pressure = cause(real_field('PB', 'pressure at GB', 'stress'))
+    pressure%same_as = last_field
     card(card_ploadx1) = new_card('PLOADX1', 'pressure on the edge of an element', [ &
-      id_field(2, 'SID', 'set'), &
-      id_field(3, 'EID', 'element'), &
-      cause(real_field(4, 'PA', 'pressure at GA, positive into the element', 'stress', required=.true.)), &
+      id_field('SID', 'set'), &
+      id_field('EID', 'element'), &
+      cause(real_field('PA', 'pressure at GA, positive into the element', 'stress', required=.true.)), &
       pressure, &
-      id_field(6, 'GA', 'corner at which the edge begins'), &
-      id_field(7, 'GB', 'corner at which it ends'), &
-      zero_field(8, 'THETA', 'counter-clockwise from the inward normal', 'degree')])
+      id_field('GA', 'corner at which the edge begins'), &
+      id_field('GB', 'corner at which it ends'), &
+      zero_field('THETA', 'counter-clockwise from the inward normal', 'degree')])
   end subroutine add_loads
 
   !> Pairs of nodes in contact.
@@ -180,30 +183,30 @@ contains
     integer :: i, j
 
     card(card_cord2r) = new_card('CORD2R', 'rectangular coordinate system, for gap directions', [ &
-      id_field(2, 'CID', 'system'), &
-      zero(3, 'RID', 'system of the points: the basic one'), &
-      ((zero_field(number_of(3*i + j - 1), 'ABC'(i:i)//'123'(j:j), meaning(i), 'length'), j=1, 3), i=1, 3)])
+      id_field('CID', 'system'), &
+      zero('RID', 'system of the points: the basic one'), &
+      ((zero_field('ABC'(i:i)//'123'(j:j), meaning(i), 'length'), j=1, 3), i=1, 3)])
     card(card_cgap) = new_card('CGAP', 'contact pair', [ &
-      id_field(2, 'EID', 'pair'), &
-      id_field(3, 'PID', 'its PGAP'), &
-      id_field(4, 'GA', 'node A'), &
-      id_field(5, 'GB', 'node B, pushed along the normal'), &
-      any_field(6, 'X1', 'orientation, or node G0'), &
-      noted(real_field(7, 'X2', 'orientation', '')), &
-      noted(real_field(8, 'X3', 'orientation', '')), &
-      integer_field(9, 'CID', 'system whose x is the normal; blank: from GA to GB', 0, largest_id)])
+      id_field('EID', 'pair'), &
+      id_field('PID', 'its PGAP'), &
+      id_field('GA', 'node A'), &
+      id_field('GB', 'node B, pushed along the normal'), &
+      any_field('X1', 'orientation, or node G0'), &
+      noted(real_field('X2', 'orientation', '')), &
+      noted(real_field('X3', 'orientation', '')), &
+      integer_field('CID', 'system whose x is the normal; blank: from GA to GB', 0, largest_id)])
     card(card_pgap) = new_card('PGAP', 'property of contact pairs', [ &
-      id_field(2, 'PID', 'property'), &
-      cause(zero_field(3, 'U0', 'initial gap', 'length')), &
-      none(zero_field(4, 'F0', 'preload', ''), 'there is no preload'), &
-      noted(real_field(5, 'KA', 'closed stiffness: contact is exact', '')), &
-      noted(real_field(6, 'KB', 'open stiffness', '')), &
-      noted(real_field(7, 'KT', 'tangential stiffness', '')), &
-      none(zero_field(8, 'MU1', 'static friction', ''), 'there is no friction'), &
-      none(zero_field(9, 'MU2', 'kinetic friction', ''), 'there is no friction'), &
-      noted(real_field(12, 'TMAX', 'largest penetration', '')), &
-      noted(real_field(13, 'MAR', 'largest adjustment', '')), &
-      noted(real_field(14, 'TRMIN', 'smallest penetration', ''))])
+      id_field('PID', 'property'), &
+      cause(zero_field('U0', 'initial gap', 'length')), &
+      none(zero_field('F0', 'preload', ''), 'there is no preload'), &
+      noted(real_field('KA', 'closed stiffness: contact is exact', '')), &
+      noted(real_field('KB', 'open stiffness', '')), &
+      noted(real_field('KT', 'tangential stiffness', '')), &
+      none(zero_field('MU1', 'static friction', ''), 'there is no friction'), &
+      none(zero_field('MU2', 'kinetic friction', ''), 'there is no friction'), &
+      noted(real_field('TMAX', 'largest penetration', '')), &
+      noted(real_field('MAR', 'largest adjustment', '')), &
+      noted(real_field('TRMIN', 'smallest penetration', ''))])
   end subroutine add_pairs
 
   !> Boundary lines, and which of them are in contact.
@@ -211,19 +214,20 @@ contains
     type(card_entry), intent(inout) :: card(:)
 
     card(card_blseg) = new_card('BLSEG', 'line of nodes along the boundary of a body', [ &
-      id_field(2, 'ID', 'line')])
-    call card(card_blseg)%add_list(3, 'G', 'nodes in their order, in either sense; G1 THRU G2, or'// &
+      id_field('ID', 'line')])
+    call card(card_blseg)%add_list('G', 'nodes in their order, in either sense; G1 THRU G2, or'// &
                                    ' G1 THRU G2 BY step; a closed line ends with its first node')
     card(card_blseg)%has_ranges = .true.
     card(card_blseg)%has_steps = .true.
     card(card_bconp) = new_card('BCONP', 'contact of the nodes of one line with the segments of another', [ &
-      id_field(2, 'ID', 'contact'), &
-      id_field(3, 'SLAVE', 'BLSEG whose nodes are held off'), &
-      id_field(4, 'MASTER', 'BLSEG whose segments they are held off'), &
-      noted(real_field(6, 'SFAC', 'stiffness factor: contact is exact', '')), &
-      none(zero(7, 'FRICID', 'friction'), 'there is no friction'), &
-      integer_field(8, 'PTYPE', 'forces from slave and master: 1', 1, 1, default=1), &
-      zero(9, 'CID', 'system of the contact plane: the basic one')])
+      id_field('ID', 'contact'), &
+      id_field('SLAVE', 'BLSEG whose nodes are held off'), &
+      id_field('MASTER', 'BLSEG whose segments they are held off'), &
+      field_entry(), &
+      noted(real_field('SFAC', 'stiffness factor: contact is exact', '')), &
+      none(zero('FRICID', 'friction'), 'there is no friction'), &
+      integer_field('PTYPE', 'forces from slave and master: 1', 1, 1, default=1), &
+      zero('CID', 'system of the contact plane: the basic one')])
   end subroutine add_lines
 
   !> All PARAMs: the field VALUE for each NAME.
@@ -234,7 +238,7 @@ contains
     solver = choice('SOLVER', 'AUTO BAND FRONTAL', &
                     'matrices of the bodies: panels of a band, or nested fronts; default AUTO')
     solver%withdrawn = 'SPARSE'
-    corner = positive(real_field(3, 'CORNER', 'sides of a boundary line that turn by more than this meet at a'// &
+    corner = positive(real_field('CORNER', 'sides of a boundary line that turn by more than this meet at a'// &
                                  ' corner; default: decided from the turns beside it', 'degree'))
     corner%highest = 180.0_wp
     field = [ &
@@ -243,18 +247,18 @@ contains
       choice('GAPGEOM', 'NO YES', 'YES adds the distance of the nodes to each gap; default NO'), &
       choice('UNITS', '', 'printed with the results; nothing is converted'), &
       choice('METHOD', 'AUTO SECANT MODSEC INISTR NEWTON', 'plastic iteration; default AUTO'), &
-      below(1.0_wp, positive(real_field(3, 'TOL', 'largest change of a displacement, of the largest, that ends'// &
+      below(1.0_wp, positive(real_field('TOL', 'largest change of a displacement, of the largest, that ends'// &
                                         ' the iteration; default 0.01, for NEWTON 1.E-8', ''))), &
-      integer_field(3, 'MAXIT', 'iterations of a load step; default 100', 1, 100000), &
+      integer_field('MAXIT', 'iterations of a load step; default 100', 1, 100000), &
       choice('MUP', 'EXACT PAPER', &
              'Poisson''s ratio in the equivalent strain: exact, or formula (2-4); default EXACT'), &
-      integer_field(3, 'NLOAD', 'load steps; default 1', 1, 10000), &
-      positive(real_field(3, 'SEARCH', 'how far BCONP looks for a segment; default twice the longest segment of'// &
+      integer_field('NLOAD', 'load steps; default 1', 1, 10000), &
+      positive(real_field('SEARCH', 'how far BCONP looks for a segment; default twice the longest segment of'// &
                           ' the two lines', 'length')), &
       solver, &
       choice('PRECIS', 'DOUBLE MIXED SINGLE', &
              'factors in double or single precision, these refined to double (MIXED) or not; default DOUBLE'), &
-      below(1.0_wp, positive(real_field(3, 'ACCURACY', 'wanted relative error of contact pressures: sets TOL,'// &
+      below(1.0_wp, positive(real_field('ACCURACY', 'wanted relative error of contact pressures: sets TOL,'// &
                                         ' METHOD and PRECIS where they are left out', ''))), &
       corner]
     field%required = .true.
@@ -267,33 +271,31 @@ contains
     integer :: k
 
     card = new_card(name, meaning, [ &
-      id_field(2, 'EID', 'element'), &
-      id_field(3, 'PID', 'its '//property), &
-      (id_field(3 + k, 'G'//text_of(k), node(k)), k=1, size(node))])
+      id_field('EID', 'element'), &
+      id_field('PID', 'its '//property), &
+      (id_field('G'//text_of(k), node(k)), k=1, size(node))])
   end function element
 
   !> A PARAM whose value is one of the words `choices`, or any where there are none.
   pure type(field_entry) function choice(name, choices, meaning) result(field)
     character(len=*), intent(in) :: name, choices, meaning
 
-    field = word_field(3, name, meaning, choices)
+    field = word_field(name, meaning, choices)
   end function choice
 
   !> A coordinate. Gmsh writes them in large field by %.9G of C: 3.0 is `3`, 1.0E-5 is `1E-05`.
-  pure type(field_entry) function coordinate(number, name, meaning) result(field)
-    integer, intent(in) :: number
+  pure type(field_entry) function coordinate(name, meaning) result(field)
     character(len=*), intent(in) :: name, meaning
 
-    field = zero_field(number, name, meaning, 'length')
+    field = zero_field(name, meaning, 'length')
     field%point_optional = .true.
   end function coordinate
 
   !> A whole number that is zero or blank: there is nothing to choose.
-  pure type(field_entry) function zero(number, name, meaning) result(field)
-    integer, intent(in) :: number
+  pure type(field_entry) function zero(name, meaning) result(field)
     character(len=*), intent(in) :: name, meaning
 
-    field = integer_field(number, name, meaning, 0, 0, default=0)
+    field = integer_field(name, meaning, 0, 0, default=0)
   end function zero
 
   !> The field, but zero or blank, and why.

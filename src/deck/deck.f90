@@ -31,10 +31,10 @@ contains
 
   !> Read a deck. Faults in it are collected in `faults`; `error` is set where the file itself cannot be read.
   subroutine read_deck(path, deck, faults, error)
-    character(len=*), intent(in) :: path
-    type(deck_type), intent(out) :: deck
-    type(diagnostics), intent(inout) :: faults
-    type(error_type), allocatable, intent(out) :: error
+    character(len=*), intent(in) :: path   !! of the file
+    type(deck_type), intent(out) :: deck   !! what it says
+    type(diagnostics), intent(inout) :: faults   !! of the deck; they are added
+    type(error_type), allocatable, intent(out) :: error   !! where the file cannot be read
     integer :: bulk
 
     call read_source(path, deck%source, faults, error)
@@ -63,12 +63,9 @@ contains
     integer, intent(in) :: field  !! column in the table; 0: the name of the card
     type(card_fields) :: fields
     type(diagnostics) :: unheard
-    integer :: slot
 
     call gather(self%source, self%card(card)%line(i), fields, unheard)
-    slot = 0
-    if (field > 0) slot = self%card(card)%entry%field(field)%slot
-    place = fields%place(slot)
+    place = fields%place(field)
   end function place
 
   !> Where an item of the open list of a card stands. A card may have ten thousands of them: their places are kept.
@@ -92,7 +89,7 @@ contains
   !> The first PARAM card of a name; 0 where there is none.
   pure integer function parameter_row(self, name) result(row)
     class(deck_type), intent(in) :: self
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !! of the parameter
 
     do row = 1, self%card(card_param)%count
       if (self%card(card_param)%word(1, row) == name) return
@@ -125,7 +122,7 @@ contains
   pure real(wp) function parameter_value(self, name, default) result(value)
     class(deck_type), intent(in) :: self
     character(len=*), intent(in) :: name   !! of the parameter
-    real(wp), intent(in) :: default
+    real(wp), intent(in) :: default   !! the value without such a card
     integer :: row
 
     value = default

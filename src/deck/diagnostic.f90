@@ -6,9 +6,10 @@ module epcont_deck_diagnostic
   private
   public :: place_type, diagnostic, diagnostics
 
-  integer, parameter, public :: severity_error = 1    !! the deck is rejected
-  integer, parameter, public :: severity_warning = 2  !! the deck is read, but look here
-  integer, parameter, public :: severity_note = 3     !! for the listing only
+  integer, parameter, public :: &
+    severity_error = 1, &    !! the deck is rejected
+    severity_warning = 2, &  !! the deck is read, but look here
+    severity_note = 3        !! for the listing only
 
   !> A stretch of columns of one line of the deck.
   type :: place_type
@@ -47,8 +48,8 @@ contains
   !> An error: the deck is rejected.
   subroutine add_error(self, place, what, remedy)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place
-    character(len=*), intent(in) :: what, remedy
+    type(place_type), intent(in) :: place   !! where
+    character(len=*), intent(in) :: what, remedy   !! is wrong, and what would be right (may be empty)
 
     call add(self, diagnostic(severity_error, place, what, remedy))
   end subroutine add_error
@@ -56,8 +57,8 @@ contains
   !> A warning: the deck is read all the same.
   subroutine add_warning(self, place, what, remedy)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place
-    character(len=*), intent(in) :: what, remedy
+    type(place_type), intent(in) :: place   !! where
+    character(len=*), intent(in) :: what, remedy   !! is to be looked at, and what would be right (may be empty)
 
     call add(self, diagnostic(severity_warning, place, what, remedy))
   end subroutine add_warning
@@ -65,8 +66,8 @@ contains
   !> A note: something accepted without effect, or else worth a line in the listing.
   subroutine add_note(self, place, what)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place
-    character(len=*), intent(in) :: what
+    type(place_type), intent(in) :: place   !! where
+    character(len=*), intent(in) :: what   !! is worth a line
 
     call add(self, diagnostic(severity_note, place, what, ''))
   end subroutine add_note
@@ -75,17 +76,11 @@ contains
     type(diagnostics), intent(inout) :: self
     type(diagnostic), intent(in) :: fault
     type(diagnostic), allocatable :: longer(:)
-    integer :: i
 
     if (.not. allocated(self%list)) allocate (self%list(16))
     if (self%count == size(self%list)) then
       allocate (longer(2*self%count))
-      do i = 1, self%count
-        longer(i)%severity = self%list(i)%severity
-        longer(i)%place = self%list(i)%place
-        call move_alloc(self%list(i)%what, longer(i)%what)
-        call move_alloc(self%list(i)%remedy, longer(i)%remedy)
-      end do
+      longer(:self%count) = self%list
       call move_alloc(longer, self%list)
     end if
     self%count = self%count + 1
@@ -93,18 +88,21 @@ contains
     self%counts(fault%severity) = self%counts(fault%severity) + 1
   end subroutine add
 
+  !> How many errors there are.
   pure integer function error_count(self)
     class(diagnostics), intent(in) :: self
 
     error_count = self%counts(severity_error)
   end function error_count
 
+  !> How many warnings.
   pure integer function warning_count(self)
     class(diagnostics), intent(in) :: self
 
     warning_count = self%counts(severity_warning)
   end function warning_count
 
+  !> How many notes.
   pure integer function note_count(self)
     class(diagnostics), intent(in) :: self
 
@@ -115,23 +113,20 @@ contains
   pure function in_deck_order(self) result(order)
     class(diagnostics), intent(in) :: self
     integer, allocatable :: order(:)
-    integer, allocatable :: line(:), column(:)
-    integer :: i
+    integer, allocatable :: line(:)
 
-    allocate (line(self%count), column(self%count))
-    do i = 1, self%count
-      line(i) = self%list(i)%place%line
-      if (line(i) == 0) line(i) = huge(1)
-      column(i) = self%list(i)%place%first
-    end do
-    order = sorted_order(column)
+    order = [integer ::]
+    if (self%count == 0) return
+    line = self%list(:self%count)%place%line
+    where (line == 0) line = huge(1)
+    order = sorted_order(self%list(:self%count)%place%first)
     order = order(sorted_order(line(order)))
   end function in_deck_order
 
   !> The fault that arrived as number `i`.
   pure function item(self, i) result(fault)
     class(diagnostics), intent(in) :: self
-    integer, intent(in) :: i
+    integer, intent(in) :: i   !! in the order of arrival
     type(diagnostic) :: fault
 
     fault = self%list(i)

@@ -7,10 +7,13 @@ module epcont_deck_entry
   public :: field_entry, card_entry, new_card
   public :: id_field, integer_field, real_field, zero_field, components_field, word_field, any_field
   public :: positive, below, cause, noted
-  public :: slot_of, number_of
+  public :: number_of
 
   !> Kinds of fields.
+  integer, parameter :: kind_blank = 0
   integer, parameter, public :: kind_integer = 1, kind_real = 2, kind_components = 3, kind_word = 4, kind_any = 5
+  !> Fields that belong together are neighbours.
+  integer, parameter, public :: next_field = 1, last_field = -1
   !> The largest id.
   integer, parameter, public :: largest_id = 99999999
   !> Data fields on one line: numbers 2 to 9, then 12 to 19, and so on.
@@ -24,15 +27,14 @@ module epcont_deck_entry
 
   !> One field of a card, or one PARAM. The functions below make it, and refine it.
   type :: field_entry
-    integer :: slot = 0                !! which data field of the card it is
     character(len=8) :: name = ''
-    integer :: kind = kind_any
+    integer :: kind = kind_blank       !! it must be blank
     character(len=120) :: meaning = ''
     character(len=8) :: unit = ''
     logical :: used = .true.           !! false: noted, that is accepted without effect
     logical :: required = .false.      !! may not be blank
-    integer :: with = 0                !! may not be blank where this slot is filled
-    integer :: same_as = 0             !! a blank means the value of this slot
+    integer :: with = 0                !! may not be blank where this neighbour is filled; 0: none
+    integer :: same_as = 0             !! a blank means the value of this neighbour; 0: none
     real(wp) :: default = 0.0_wp       !! the value of a blank field
     logical :: has_default = .false.   !! false: a blank has a meaning of its own
     real(wp) :: lowest = -huge(1.0_wp), highest = huge(1.0_wp)
@@ -51,8 +53,7 @@ module epcont_deck_entry
   type :: card_entry
     character(len=8) :: name = ''
     character(len=:), allocatable :: meaning
-    type(field_entry), allocatable :: field(:)   !! in order of position [columns]
-    integer, allocatable :: column_at(:)         !! by slot: the index into `field`; 0 where the field must be blank
+    type(field_entry), allocatable :: field(:)   !! in their order [slots]
     integer :: list_slot = huge(1)               !! where the list begins; beyond all slots: there is none
     logical :: has_ranges = .false.              !! the list may hold `G1 THRU G2`
     logical :: has_steps = .false.               !! ranges may fall, or go on `BY` a step
@@ -61,7 +62,7 @@ module epcont_deck_entry
   contains
     procedure :: add_list
     procedure :: has_list
-    procedure :: column_of
+    procedure :: must_be_blank
     procedure :: field_name
     procedure :: field_text
   end type card_entry
@@ -75,35 +76,24 @@ contains
     number_of = 10*((slot - 1)/fields_a_line) + mod(slot - 1, fields_a_line) + 2
   end function number_of
 
-  !> The inverse of `number_of`.
-  elemental integer function slot_of(number)
-    integer, intent(in) :: number   !! the position of a data field
-
-    slot_of = fields_a_line*((number - 2)/10) + mod(number - 2, 10) + 1
-  end function slot_of
-
   !> A card of these fields.
   pure function new_card(name, meaning, fields) result(card)
     character(len=*), intent(in) :: name, meaning   !! of the card
-    type(field_entry), intent(in) :: fields(:)      !! in order of position
+    type(field_entry), intent(in) :: fields(:)      !! in their order
     type(card_entry) :: card
-    integer :: k
 
     card%name = name
     card%meaning = meaning
     card%field = fields
-    allocate (card%column_at(maxval(fields%slot)), source=0)
-    card%column_at(fields%slot) = [(k, k=1, size(fields))]
   end function new_card
 
-  !> End the card with a list from position `number` on.
-  pure subroutine add_list(self, number, name, meaning)
+  !> End the card with a list behind its fields.
+  pure subroutine add_list(self, name, meaning)
     class(card_entry), intent(inout) :: self
-    integer, intent(in) :: number             !! position of its first field
     character(len=*), intent(in) :: name      !! of its fields, before their numbers
-    character(len=*), intent(in) :: meaning
+    character(len=*), intent(in) :: meaning   !! of them all
 
-    self%list_slot = slot_of(number)
+    self%list_slot = size(self%field) + 1
     self%list_name = name
     self%list_meaning = meaning
   end subroutine add_list
@@ -115,14 +105,14 @@ contains
     has_list = allocated(self%list_name)
   end function has_list
 
-  !> The column of the field in a slot; 0 where it must be blank.
-  pure integer function column_of(self, slot)
+  !> Has the card no field in a slot?
+  pure logical function must_be_blank(self, slot)
     class(card_entry), intent(in) :: self
-    integer, intent(in) :: slot   !! which data field
+    integer, intent(in) :: slot   !! which data field, before its list
 
-    column_of = 0
-    if (slot <= size(self%column_at)) column_of = self%column_at(slot)
-  end function column_of
+    must_be_blank = slot > size(self%field)
+    if (.not. must_be_blank) must_be_blank = self%field(slot)%kind == kind_blank
+  end function must_be_blank
 
   !> The name of the field in a slot; empty where it has none.
   pure function field_name(self, slot) result(name)
@@ -137,8 +127,8 @@ contains
       name = merge('X', 'Y', mod(k, 2) == 0)//text_of(k/2 + 1)
     else if (k >= 0) then
       name = self%list_name//text_of(k + 1)
-    else if (self%column_of(slot) > 0) then
-      name = trim(self%field(self%column_of(slot))%name)
+    else if (slot <= size(self%field)) then
+      name = trim(self%field(slot)%name)
     end if
   end function field_name
 
@@ -153,81 +143,74 @@ contains
   end function field_text
 
   !> An id: from 1 to 99999999.
-  pure function id_field(number, name, meaning, required, with) result(field)
-    integer, intent(in) :: number                 !! its position
-    character(len=*), intent(in) :: name, meaning
+  pure function id_field(name, meaning, required, with) result(field)
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     logical, intent(in), optional :: required     !! default: true, unless it goes with another
-    integer, intent(in), optional :: with         !! position of a field with which it must be filled
+    integer, intent(in), optional :: with         !! the neighbour with which it must be filled
     type(field_entry) :: field
 
-    field = integer_field(number, name, meaning, 1, largest_id)
+    field = integer_field(name, meaning, 1, largest_id)
     field%required = .not. present(with)
     if (present(required)) field%required = required
-    if (present(with)) field%with = slot_of(with)
+    if (present(with)) field%with = with
   end function id_field
 
   !> A whole number. Without default a blank has a meaning of its own.
-  pure function integer_field(number, name, meaning, lowest, highest, default) result(field)
-    integer, intent(in) :: number                 !! its position
-    character(len=*), intent(in) :: name, meaning
+  pure function integer_field(name, meaning, lowest, highest, default) result(field)
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     integer, intent(in) :: lowest, highest        !! the range
     integer, intent(in), optional :: default      !! what a blank means
     type(field_entry) :: field
 
-    field = field_entry(slot_of(number), name, kind_integer, meaning, lowest=real(lowest, wp), highest=real(highest, wp), &
+    field = field_entry(name, kind_integer, meaning, lowest=real(lowest, wp), highest=real(highest, wp), &
                         has_default=present(default))
     if (present(default)) field%default = real(default, wp)
   end function integer_field
 
   !> A real; where it is not required, a blank has a meaning of its own.
-  pure function real_field(number, name, meaning, unit, required) result(field)
-    integer, intent(in) :: number                       !! its position
-    character(len=*), intent(in) :: name, meaning, unit
+  pure function real_field(name, meaning, unit, required) result(field)
+    character(len=*), intent(in) :: name, meaning, unit   !! as the manual of cards prints them; blank: it has no unit
     logical, intent(in), optional :: required           !! may not be blank; default: it may
     type(field_entry) :: field
 
-    field = field_entry(slot_of(number), name, kind_real, meaning, unit)
+    field = field_entry(name, kind_real, meaning, unit)
     if (present(required)) field%required = required
   end function real_field
 
   !> A real; a blank means 0.0.
-  pure function zero_field(number, name, meaning, unit) result(field)
-    integer, intent(in) :: number                       !! its position
-    character(len=*), intent(in) :: name, meaning, unit
+  pure function zero_field(name, meaning, unit) result(field)
+    character(len=*), intent(in) :: name, meaning, unit   !! as the manual of cards prints them; blank: it has no unit
     type(field_entry) :: field
 
-    field = field_entry(slot_of(number), name, kind_real, meaning, unit, has_default=.true.)
+    field = field_entry(name, kind_real, meaning, unit, has_default=.true.)
   end function zero_field
 
   !> Directions, digits from 1 to 6.
-  pure function components_field(number, name, meaning, required, with) result(field)
-    integer, intent(in) :: number                 !! its position
-    character(len=*), intent(in) :: name, meaning
+  pure function components_field(name, meaning, required, with) result(field)
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     logical, intent(in) :: required               !! may not be blank
-    integer, intent(in), optional :: with         !! position of a field with which it must be filled
+    integer, intent(in), optional :: with         !! the neighbour with which it must be filled
     type(field_entry) :: field
 
-    field = field_entry(slot_of(number), name, kind_components, meaning, required=required)
-    if (present(with)) field%with = slot_of(with)
+    field = field_entry(name, kind_components, meaning, required=required)
+    if (present(with)) field%with = with
   end function components_field
 
   !> A word, one of `choices` unless these are blank.
-  pure function word_field(number, name, meaning, choices) result(field)
-    integer, intent(in) :: number                      !! its position
-    character(len=*), intent(in) :: name, meaning
+  pure function word_field(name, meaning, choices) result(field)
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     character(len=*), intent(in) :: choices            !! with blanks between
     type(field_entry) :: field
 
-    field = field_entry(slot_of(number), name, kind_word, meaning, required=.true., choices=choices)
+    field = field_entry(name, kind_word, meaning, required=.true., choices=choices)
   end function word_field
 
   !> A field that may hold anything and has no effect.
-  pure function any_field(number, name, meaning) result(field)
-    integer, intent(in) :: number                 !! its position
-    character(len=*), intent(in) :: name, meaning
+  pure function any_field(name, meaning) result(field)
+    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     type(field_entry) :: field
 
-    field = field_entry(slot_of(number), name, kind_any, meaning, used=.false.)
+    field = field_entry(name, kind_any, meaning, used=.false.)
   end function any_field
 
   !> The field, but above zero.
@@ -242,7 +225,7 @@ contains
 
   !> The field, but below a limit.
   pure type(field_entry) function below(limit, plain) result(field)
-    real(wp), intent(in) :: limit
+    real(wp), intent(in) :: limit   !! out of range itself
     type(field_entry), intent(in) :: plain   !! the field
 
     field = plain

@@ -9,12 +9,13 @@ module epcont_deck_field
   public :: scan_integer, scan_real, scan_components, scan_word
 
   !> What became of a scan.
-  integer, parameter, public :: scan_sound = 0      !! a value
-  integer, parameter, public :: scan_malformed = 1  !! not of the kind asked for
-  integer, parameter, public :: scan_no_point = 2   !! would be a real, but for the decimal point
-  integer, parameter, public :: scan_too_large = 3  !! beyond the largest number
-  integer, parameter, public :: scan_too_small = 4  !! a real that is not zero, but nearer to it than the least normal one
-  integer, parameter, public :: scan_too_long = 5   !! a word of more than eight characters
+  integer, parameter, public :: &
+    scan_sound = 0, &      !! a value
+    scan_malformed = 1, &  !! not of the kind asked for
+    scan_no_point = 2, &   !! would be a real, but for the decimal point
+    scan_too_large = 3, &  !! beyond the largest number
+    scan_too_small = 4, &  !! a real that is not zero, but nearer to it than the least normal one
+    scan_too_long = 5      !! a word of more than eight characters
 
   !> From here on one more decimal digit would not certainly fit an integer of eight bytes: 18 digits do.
   integer(i8), parameter :: full = 10_i8**17
@@ -30,7 +31,7 @@ module epcont_deck_field
   integer, parameter :: largest_exponent = 308
   integer(i8), parameter :: largest_digits = 17976931348623157_i8
   !> No exponent written in a field is followed further than this.
-  integer, parameter :: endless_exponent = 100000
+  integer(i8), parameter :: endless_exponent = 100000
 
   !> The parts of a real as it is written: digits x 10**exponent.
   type :: decimal
@@ -47,7 +48,7 @@ contains
   !> A whole number: a sign, then digits, nothing else.
   pure subroutine scan_integer(text, number, outcome)
     character(len=*), intent(in) :: text  !! without blanks around it
-    integer(i8), intent(out) :: number
+    integer(i8), intent(out) :: number   !! of too many digits, the first of them
     integer, intent(out) :: outcome       !! one of the outcomes above
     integer :: at, first, digit
     logical :: too_large
@@ -137,23 +138,15 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(out) :: exponent
     integer, intent(out) :: outcome
-    integer :: at, first, digit
+    integer(i8) :: number
+    integer :: first
 
-    exponent = 0
+    number = 0
     outcome = scan_malformed
-    first = 1
-    if (scan(text(1:1), 'EeDd') == 1) first = 2
-    if (first <= len(text)) then
-      if (is_sign(text(first:first))) first = first + 1
-    end if
-    if (first == 1 .or. first > len(text)) return
-    do at = first, len(text)
-      digit = iachar(text(at:at)) - iachar('0')
-      if (digit < 0 .or. digit > 9) return
-      exponent = min(10*exponent + digit, endless_exponent)
-    end do
-    if (text(first - 1:first - 1) == '-') exponent = -exponent
-    outcome = scan_sound
+    first = merge(2, 1, scan(text(1:1), 'EeDd') == 1)
+    if (first == 2 .or. is_sign(text(1:1))) call scan_integer(text(first:), number, outcome)
+    if (outcome == scan_too_large) outcome = scan_sound
+    exponent = int(max(-endless_exponent, min(number, endless_exponent)))
   end subroutine take_exponent
 
   !> The real of a mantissa with many digits or a large exponent, by way of READ. What would overflow is
@@ -194,30 +187,24 @@ contains
   !> Directions: digits from 1 to 6, each at most once, such as `12`.
   pure subroutine scan_components(text, number, outcome)
     character(len=*), intent(in) :: text  !! without blanks around it
-    integer(i8), intent(out) :: number
-    integer, intent(out) :: outcome
-    logical :: seen(6)
-    integer :: at, digit
+    integer(i8), intent(out) :: number   !! the same digits
+    integer, intent(out) :: outcome   !! one of the outcomes above
+    integer :: at
 
     number = 0
     outcome = scan_malformed
-    seen = .false.
-    if (len(text) == 0) return
-    do at = 1, len(text)
-      digit = iachar(text(at:at)) - iachar('0')
-      if (digit < 1 .or. digit > 6) return
-      if (seen(digit)) return
-      seen(digit) = .true.
-      number = 10*number + digit
+    if (verify(text, '123456') > 0) return
+    do at = 2, len(text)
+      if (index(text(:at - 1), text(at:at)) > 0) return
     end do
-    outcome = scan_sound
+    call scan_integer(text, number, outcome)
   end subroutine scan_components
 
   !> A word: a letter, then other characters but blanks, eight in all.
   pure subroutine scan_word(text, word, outcome)
     character(len=*), intent(in) :: text  !! without blanks around it
-    character(len=8), intent(out) :: word
-    integer, intent(out) :: outcome
+    character(len=8), intent(out) :: word   !! in capitals, cut at eight characters
+    integer, intent(out) :: outcome   !! one of the outcomes above
 
     word = ''
     outcome = scan_malformed

@@ -17,9 +17,9 @@ contains
 
   !> Read the list of a card into its table.
   subroutine read_list(card, table, faults)
-    type(card_fields), intent(in) :: card
+    type(card_fields), intent(in) :: card   !! its fields
     type(card_table), intent(inout) :: table     !! the card is its last
-    type(diagnostics), intent(inout) :: faults
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
 
     if (table%entry%has_points) then
       call read_points(card, table, faults)
@@ -36,7 +36,7 @@ contains
     integer :: slot
 
     slot = table%entry%list_slot
-    id = id_field(number_of(slot), '', '')
+    id = id_field('', '')
     if (.not. any(card%last(slot:card%count) >= card%first(slot:card%count))) &
       call add_fault(card, table, slot, 'is blank', id%allowed(), faults)
     do while (slot <= card%count)
@@ -92,7 +92,7 @@ contains
     slot = slot + 2
     most = item%step*max(1, abs(length))
     call read_slot(card, table, slot, &
-                   integer_field(number_of(slot), '', '', min(item%step, most), max(item%step, most)), value, faults)
+                   integer_field('', '', min(item%step, most), max(item%step, most)), value, faults)
     if (.not. value%sound) return
     if (mod(length, nint(value%number)) == 0) then
       item%step = nint(value%number)
@@ -114,7 +114,7 @@ contains
     integer :: slot, k
 
     slot = table%entry%list_slot
-    number = real_field(number_of(slot), '', '', '')
+    number = real_field('', '', '')
     do while (.not. card%is_word(slot, end_word))
       do k = 1, 2
         if (card%filled(slot + k - 1)) then

@@ -18,7 +18,7 @@ contains
   !! Each line is ended by a newline.
   function manual(name, found) result(text)
     character(len=*), intent(in) :: name  !! blank: all cards
-    logical, intent(out) :: found
+    logical, intent(out) :: found   !! there is such a card
     character(len=:), allocatable :: text
     type(card_entry) :: entry(card_kinds)
     integer :: k
@@ -45,7 +45,7 @@ contains
 
     text = trim(entry%name)//': '//entry%meaning//newline//newline
     text = text//row('field', 'columns', 'name', 'kind', 'default', 'use', 'meaning [unit], range')
-    last = fields_a_line*((size(entry%column_at) + fields_a_line - 1)/fields_a_line)
+    last = fields_a_line*((size(entry%field) + fields_a_line - 1)/fields_a_line)
     do slot = 1, min(last, entry%list_slot - 1)
       text = text//field_row(entry, slot)
     end do
@@ -66,11 +66,11 @@ contains
     character(len=:), allocatable :: text, number
 
     number = text_of(number_of(slot))
-    if (entry%column_of(slot) == 0) then
+    if (entry%must_be_blank(slot)) then
       text = row(number, columns(slot), '', '', '', 'blank', 'must be blank')
     else
-      associate (field => entry%field(entry%column_of(slot)))
-        text = row(number, columns(slot), field%name, kind_name(field%kind), default_text(entry, field), &
+      associate (field => entry%field(slot))
+        text = row(number, columns(slot), field%name, kind_name(field%kind), default_text(entry, slot), &
                    merge('used ', 'noted', field%used), meaning_text(field))
       end associate
     end if
@@ -110,21 +110,23 @@ contains
   end function columns
 
   !> What a blank means: a value, another field, nothing that would do, or `blank` where it has a meaning of its own.
-  pure function default_text(entry, field) result(text)
+  pure function default_text(entry, slot) result(text)
     type(card_entry), intent(in) :: entry
-    type(field_entry), intent(in) :: field
+    integer, intent(in) :: slot
     character(len=:), allocatable :: text
 
-    if (field%required) then
-      text = 'none'
-    else if (field%same_as > 0) then
-      text = entry%field_name(field%same_as)
-    else if (field%has_default) then
-      text = text_of(nint(field%default))
-      if (field%kind == kind_real) text = text//'.0'
-    else
-      text = 'blank'
-    end if
+    associate (field => entry%field(slot))
+      if (field%required) then
+        text = 'none'
+      else if (field%same_as /= 0) then
+        text = entry%field_name(slot + field%same_as)
+      else if (field%has_default) then
+        text = text_of(nint(field%default))
+        if (field%kind == kind_real) text = text//'.0'
+      else
+        text = 'blank'
+      end if
+    end associate
   end function default_text
 
   pure function meaning_text(field) result(text)

@@ -18,8 +18,8 @@ contains
   !> The errors and warnings in deck order, each line of text ended by a newline; the last line counts them.
   !! Empty where there are none.
   pure function render(faults, lines) result(text)
-    type(diagnostics), intent(in) :: faults
-    type(source), intent(in) :: lines
+    type(diagnostics), intent(in) :: faults   !! of the deck
+    type(source), intent(in) :: lines   !! its lines
     character(len=:), allocatable :: text
     integer, allocatable :: order(:)
     integer :: found(2)   !! errors, warnings
@@ -41,8 +41,8 @@ contains
   !> Warnings and notes in deck order, one line each, for the listing: without the name of the deck, and of included files
   !! the name as seen from it, so that it does not matter from where the deck was read.
   pure function render_notes(faults, lines) result(text)
-    type(diagnostics), intent(in) :: faults
-    type(source), intent(in) :: lines
+    type(diagnostics), intent(in) :: faults   !! of the deck
+    type(source), intent(in) :: lines   !! its lines
     character(len=:), allocatable :: text
     integer, allocatable :: order(:)
     integer :: i
@@ -53,9 +53,7 @@ contains
     do i = 1, size(order)
       fault = faults%item(order(i))
       if (fault%severity == severity_error) cycle
-      text = text//note_file(fault, lines)//columns(fault%place, lines)
-      if (fault%severity == severity_warning) text = text//'warning: '
-      text = text//printable(fault%what)
+      text = text//note_file(fault, lines)//columns(fault%place, lines)//said(fault)
       if (len(fault%remedy) > 0) text = text//'; '//printable(fault%remedy)
       text = text//newline
     end do
@@ -63,7 +61,7 @@ contains
 
   !> `text` with every byte that is no printable ASCII character replaced by a question mark.
   pure function printable(text)
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !! any bytes
     character(len=len(text)) :: printable
     integer :: i
 
@@ -89,36 +87,29 @@ contains
     end do
   end function tally
 
-  !> One fault: heading, line of the deck, carets and remedy.
+  !> One fault: `hertz.dat:41:25-32: GRID 17: field 4 (X1) is not a real number`, line of the deck, carets and remedy.
   pure function paragraph(fault, lines) result(text)
     type(diagnostic), intent(in) :: fault
     type(source), intent(in) :: lines
     character(len=:), allocatable :: text
 
-    text = heading(fault, lines)//newline
     if (fault%place%line > 0) then
-      text = text//excerpt(fault, lines)
-    else if (len(fault%remedy) > 0) then
-      text = text//'  '//fault%remedy//newline
+      text = shown(lines%file_name(fault%place%line))//':'//columns(fault%place, lines)//said(fault)//newline// &
+             excerpt(fault, lines)
+    else
+      text = shown(lines%deck_name())//': '//said(fault)//newline
+      if (len(fault%remedy) > 0) text = text//'  '//fault%remedy//newline
     end if
   end function paragraph
 
-  !> `hertz.dat:41:25-32: GRID 17: field 4 (X1) is not a real number`.
-  pure function heading(fault, lines) result(text)
+  !> What is wrong, a warning named as such.
+  pure function said(fault) result(text)
     type(diagnostic), intent(in) :: fault
-    type(source), intent(in) :: lines
     character(len=:), allocatable :: text
 
-    associate (place => fault%place)
-      if (place%line == 0) then
-        text = shown(lines%deck_name())//': '
-      else
-        text = shown(lines%file_name(place%line))//':'//columns(place, lines)
-      end if
-    end associate
-    if (fault%severity == severity_warning) text = text//'warning: '
-    text = text//printable(fault%what)
-  end function heading
+    text = printable(fault%what)
+    if (fault%severity == severity_warning) text = 'warning: '//text
+  end function said
 
   !> `41:25-32: `; empty for the deck as a whole.
   pure function columns(place, lines) result(text)
@@ -133,28 +124,21 @@ contains
     text = text//': '
   end function columns
 
-  !> The included file that a note is about, and a colon.
+  !> The included file that a note is about, as seen from the deck, and a colon.
   pure function note_file(fault, lines) result(text)
     type(diagnostic), intent(in) :: fault
     type(source), intent(in) :: lines
-    character(len=:), allocatable :: text
+    character(len=:), allocatable :: text, directory
 
     text = ''
     if (fault%place%line == 0) return
     if (lines%line(fault%place%line)%file == 1) return
     text = lines%file_name(fault%place%line)//':'
-    if (index(text, deck_directory(lines)) == 1) text = text(len(deck_directory(lines)) + 1:)
-    text = shown(text)
-  end function note_file
-
-  !> The directory of the deck, with a slash at the end; empty where it was named without one.
-  pure function deck_directory(lines) result(directory)
-    type(source), intent(in) :: lines
-    character(len=:), allocatable :: directory
-
     directory = lines%deck_name()
     directory = directory(:index(directory, '/', back=.true.))
-  end function deck_directory
+    if (index(text, directory) == 1) text = text(len(directory) + 1:)
+    text = shown(text)
+  end function note_file
 
   !> The line of the deck, and below it carets under the value (or the whole field, where that is blank).
   !! Of a line too long to show, the part that holds the place.

@@ -47,7 +47,6 @@ module epcont_deck_source
     procedure :: text_of_line
     procedure :: whole_line
     procedure :: blank
-    procedure :: columns
   end type source
 
 contains
@@ -55,10 +54,10 @@ contains
   !> Read the deck at `path` with all that it includes.
   !! Faults inside go to `faults`; `error` only where the deck itself cannot be read.
   subroutine read_source(path, lines, faults, error)
-    character(len=*), intent(in) :: path
-    type(source), intent(out) :: lines
-    type(diagnostics), intent(inout) :: faults
-    type(error_type), allocatable, intent(out) :: error
+    character(len=*), intent(in) :: path   !! of the deck
+    type(source), intent(out) :: lines   !! of all its files
+    type(diagnostics), intent(inout) :: faults   !! inside, which are added
+    type(error_type), allocatable, intent(out) :: error   !! where the deck itself cannot be read
     character(len=:), allocatable :: trouble
     logical :: ended
 
@@ -80,6 +79,7 @@ contains
     character(len=*), intent(in) :: path
     integer, intent(in) :: parent
     character(len=:), allocatable, intent(out) :: trouble
+    type(source_file), allocatable :: longer(:)
     integer(i8) :: bytes
     integer :: unit, status
     logical :: exists
@@ -112,23 +112,13 @@ contains
     end if
     close (unit, iostat=status)
     if (allocated(trouble)) return
-    call add_file(self, path, parent, self%used + int(bytes))
-  end subroutine load
-
-  !> Enter the file that has just been read, up to the character `last`; there is room for a newline behind.
-  subroutine add_file(self, path, parent, last)
-    type(source), intent(inout) :: self
-    character(len=*), intent(in) :: path
-    integer, intent(in) :: parent, last
-    type(source_file), allocatable :: longer(:)
-
     allocate (longer(size(self%files) + 1))
     longer(:size(self%files)) = self%files
-    longer(size(longer)) = source_file(path, parent, self%used + 1, last)
+    longer(size(longer)) = source_file(path, parent, self%used + 1, self%used + int(bytes))
     call move_alloc(longer, self%files)
-    self%used = last + 1
-    self%text(last + 1:last + 1) = newline
-  end subroutine add_file
+    self%used = self%used + int(bytes) + 1
+    self%text(self%used:self%used) = newline
+  end subroutine load
 
   !> Room for `length` characters. The first file gets just its size; included ones make the buffer double.
   subroutine grow_text(self, length)
@@ -167,7 +157,7 @@ contains
       word = statement(self%text(at:last))
       ended = word == 'ENDDATA'
       if (word == 'INCLUDE') call include_file(self, line, faults)
-      if (word /= '') self%line(line)%last = at - 1
+      if (ended .or. word == 'INCLUDE') self%line(line)%last = at - 1
       at = next
     end do
   end subroutine cut
@@ -320,7 +310,7 @@ contains
   !> The name of the file of a line.
   pure function file_name(self, line) result(name)
     class(source), intent(in) :: self
-    integer, intent(in) :: line
+    integer, intent(in) :: line   !! in deck order
     character(len=:), allocatable :: name
 
     name = self%files(self%line(line)%file)%name
@@ -361,12 +351,4 @@ contains
     blank = self%line(line)%last < self%line(line)%first
   end function blank
 
-  !> The place of the characters `first` to `last` of the buffer, which are in `line`.
-  pure function columns(self, line, first, last) result(place)
-    class(source), intent(in) :: self
-    integer, intent(in) :: line, first, last
-    type(place_type) :: place
-
-    place = place_type(line, first - self%line(line)%first + 1, last - self%line(line)%first + 1)
-  end function columns
 end module epcont_deck_source

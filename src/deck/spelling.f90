@@ -2,18 +2,30 @@
 module epcont_deck_spelling
   implicit none
   private
-  public :: likely_name
+  public :: suggestion
 
 contains
+
+  !> What to say of a word that is not known: the name that was probably meant, or something else.
+  pure function suggestion(word, names, otherwise) result(remedy)
+    character(len=*), intent(in) :: word        !! in capitals
+    character(len=*), intent(in) :: names(:)    !! those that are known
+    character(len=*), intent(in) :: otherwise   !! where none is near
+    character(len=:), allocatable :: remedy
+
+    remedy = otherwise
+    if (likely_name(word, names) > 0) remedy = 'did you mean '//trim(names(likely_name(word, names)))//'?'
+  end function suggestion
 
   !> The name nearest to `word`: same first letter, and one slip away (two for words of more than five letters).
   !! 0 where none is. Digits are no slips: CTRIA6 is not a misspelt CTRIA3.
   pure integer function likely_name(word, names)
     character(len=*), intent(in) :: word      !! in capitals
-    character(len=*), intent(in) :: names(:)
+    character(len=*), intent(in) :: names(:)   !! those that are known
     integer :: slips, least, i
 
     likely_name = 0
+    if (word == '') return
     least = merge(3, 2, len_trim(word) > 5)
     do i = 1, size(names)
       if (names(i)(1:1) /= word(1:1) .or. digits_of(names(i)) /= digits_of(word)) cycle
@@ -49,18 +61,10 @@ contains
       do i = 1, len(a)
         slips(i, j) = min(slips(i - 1, j) + 1, slips(i, j - 1) + 1, &
                           slips(i - 1, j - 1) + merge(0, 1, a(i:i) == b(j:j)))
-        if (exchanged(a(:i), b(:j))) slips(i, j) = min(slips(i, j), slips(max(i - 2, 0), max(j - 2, 0)) + 1)
+        if (i < 2 .or. j < 2) cycle
+        if (a(i - 1:i) == b(j:j)//b(j - 1:j - 1)) slips(i, j) = min(slips(i, j), slips(i - 2, j - 2) + 1)
       end do
     end do
     distance = slips(len(a), len(b))
   end function distance
-
-  !> Are the last two letters of `a` those of `b` in the other order?
-  pure logical function exchanged(a, b)
-    character(len=*), intent(in) :: a, b
-
-    exchanged = .false.
-    if (min(len(a), len(b)) < 2) return
-    exchanged = a(len(a):)//a(len(a) - 1:len(a) - 1) == b(len(b) - 1:)
-  end function exchanged
 end module epcont_deck_spelling

@@ -27,7 +27,7 @@ module epcont_deck_table
     integer, allocatable :: noted(:)                   !! how often each field without effect is filled [columns]
     integer, allocatable :: noted_card(:)              !! the first card in which it is [columns]
     integer :: items = 0                               !! in all lists
-    type(list_item), allocatable :: list(:)            !! of all cards [items]
+    type(list_item), allocatable :: list(:)            !! of all cards [items or more]
     integer, allocatable :: list_start(:)              !! card i has the items list_start(i) to list_start(i+1)-1 [count + 1]
   contains
     procedure :: begin
@@ -35,7 +35,6 @@ module epcont_deck_table
     procedure :: identity
     procedure :: add_card
     procedure :: add_item
-    procedure :: finish
     procedure :: forget_fields
   end type card_table
 
@@ -97,20 +96,13 @@ contains
   !> Add an item to the list of the last card.
   pure subroutine add_item(self, item)
     class(card_table), intent(inout) :: self
-    type(list_item), intent(in) :: item
+    type(list_item), intent(in) :: item   !! ids or a point
 
     if (self%items == size(self%list)) self%list = [self%list, self%list]
     self%items = self%items + 1
     self%list(self%items) = item
     self%list_start(self%count + 1) = self%items + 1
   end subroutine add_item
-
-  !> All cards are there: no more room is wanted.
-  pure subroutine finish(self)
-    class(card_table), intent(inout) :: self
-
-    self%list = self%list(:self%items)
-  end subroutine finish
 
   !> All but the count of cards.
   pure subroutine forget_fields(self)

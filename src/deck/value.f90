@@ -30,12 +30,12 @@ contains
 
   !> Read a field; one that is blank, or cannot be taken, is a fault.
   subroutine read_slot(card, table, slot, entry, value, faults)
-    type(card_fields), intent(in) :: card
+    type(card_fields), intent(in) :: card   !! its fields
     type(card_table), intent(in) :: table     !! the card is its last
     integer, intent(in) :: slot               !! which field
     type(field_entry), intent(in) :: entry    !! what it may hold
-    type(field_value), intent(out) :: value
-    type(diagnostics), intent(inout) :: faults
+    type(field_value), intent(out) :: value   !! what the field says
+    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     character(len=:), allocatable :: what, remedy
     integer :: outcome
 
@@ -50,7 +50,7 @@ contains
     end if
     value%sound = outcome == scan_sound
     if (value%sound) return
-    call fault_of(card%text(card%first(slot):card%last(slot)), entry, outcome, what, remedy)
+    call fault_of(card%text(card%first(slot):card%last(slot)), entry, value, outcome, what, remedy)
     call add_fault(card, table, slot, what, remedy, faults)
   end subroutine read_slot
 
@@ -102,9 +102,10 @@ contains
   end function judged
 
   !> A fault in words: `what` goes behind `field 4 (X1) `.
-  pure subroutine fault_of(text, entry, outcome, what, remedy)
+  pure subroutine fault_of(text, entry, value, outcome, what, remedy)
     character(len=*), intent(in) :: text  !! the field
     type(field_entry), intent(in) :: entry
+    type(field_value), intent(in) :: value
     integer, intent(in) :: outcome
     character(len=:), allocatable, intent(out) :: what, remedy
 
@@ -127,7 +128,14 @@ contains
     case (scan_malformed)
       what = 'is not '//trim(noun(entry%kind))
     case default
-      call range_fault(text, entry, what, remedy)
+      what = 'is out of range'
+      if (entry%kind == kind_word) what = 'is not a word known here'
+      if (entry%withdrawn /= '' .and. value%word == entry%withdrawn) &
+        what = 'is '//trim(entry%withdrawn)//', which is no longer there'
+      if (entry%instead /= '' .and. value%number == entry%highest) then
+        what = 'is '//text//', '//trim(entry%reason)
+        remedy = 'less, such as '//trim(entry%instead)
+      end if
     end select
   end subroutine fault_of
 
@@ -141,25 +149,6 @@ contains
     text = text//' to '//short_real(farthest)
     if (entry%least > 0.0_wp .and. .not. entry%above_lowest) text = text//', or 0.0'
   end function reach_of
-
-  pure subroutine range_fault(text, entry, what, remedy)
-    character(len=*), intent(in) :: text
-    type(field_entry), intent(in) :: entry
-    character(len=:), allocatable, intent(out) :: what
-    character(len=:), allocatable, intent(inout) :: remedy
-    type(field_value) :: value
-    integer :: outcome
-
-    call read_value(text, entry, value, outcome)
-    what = 'is out of range'
-    if (entry%kind == kind_word) what = 'is not a word known here'
-    if (entry%withdrawn /= '' .and. value%word == entry%withdrawn) &
-      what = 'is '//trim(entry%withdrawn)//', which is no longer there'
-    if (entry%instead /= '' .and. value%number == entry%highest) then
-      what = 'is '//text//', '//trim(entry%reason)
-      remedy = 'less, such as '//trim(entry%instead)
-    end if
-  end subroutine range_fault
 
   !> A real written without point, with it: `1E5` becomes `1.E5`.
   pure function with_point(text) result(real_text)

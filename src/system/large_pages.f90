@@ -44,18 +44,14 @@ contains
   !> Ask for large pages under an array that has not been touched yet.
   subroutine use_under_double(array)
     real(wp), contiguous, target, intent(in) :: array(:)
-    integer(c_intptr_t) :: first
 
-    first = transfer(c_loc(array), first)
-    call advise(first, first + size(array, kind=c_intptr_t)*storage_size(array)/8)
+    call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*storage_size(array)/8)
   end subroutine use_under_double
 
   subroutine use_under_single(array)
     real(sp), contiguous, target, intent(in) :: array(:)
-    integer(c_intptr_t) :: first
 
-    first = transfer(c_loc(array), first)
-    call advise(first, first + size(array, kind=c_intptr_t)*storage_size(array)/8)
+    call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*storage_size(array)/8)
   end subroutine use_under_single
 
   !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them. Threads have no heaps of
@@ -73,19 +69,20 @@ contains
     first = sbrk(0_c_intptr_t)
     allocate (array(heap_step/32), stat=status)   ! too large for what the heap has: it grows
     if (status == 0) then
-      call advise(first, sbrk(0_c_intptr_t))
+      call advise(first, sbrk(0_c_intptr_t) - first)
     else
       ignored = mallopt(top_pad, 0_c_int)   ! memory is short: ask for no more than is needed
     end if
   end subroutine prepare_heap
 
-  subroutine advise(first, last)
-    integer(c_intptr_t), intent(in) :: first, last   !! addresses
-    integer(c_intptr_t) :: from
+  !> Advise the system of memory that begins at an address.
+  subroutine advise(first, bytes)
+    integer(c_intptr_t), intent(in) :: first, bytes
+    integer(c_intptr_t) :: from, length
     integer(c_int) :: ignored
 
     from = (first + page - 1)/page*page
-    if (last - from < large_page) return
-    ignored = madvise(from, int(last - from, c_size_t), advice_large_pages)
+    length = bytes - (from - first)
+    if (length >= large_page) ignored = madvise(from, int(length, c_size_t), advice_large_pages)
   end subroutine advise
 end module epcont_system_large_pages

@@ -42,7 +42,7 @@ contains
   !> Does the system give `bytes` in one piece? They are given back untouched. (The heap would keep them, and libraries and threads
   !! want theirs beside it.)
   logical function has_memory(bytes) result(yes)
-    integer(i8), intent(in) :: bytes
+    integer(i8), intent(in) :: bytes   !! wanted
     integer(c_intptr_t) :: address
 
     address = c_mmap(0_c_intptr_t, int(bytes, c_size_t), readable_writable, private_anonymous, no_file, 0_c_long)

@@ -6,21 +6,22 @@ module epcont_system_stopwatch
   public :: stopwatch
 
   !> Stages of a run, in their order.
-  integer, parameter, public :: stage_reading = 1         !! lines, cards, fields
-  integer, parameter, public :: stage_model = 2           !! checked cards, lines in contact
-  integer, parameter, public :: stage_plan = 3            !! free motions, methods, memory
-  integer, parameter, public :: stage_numbering = 4       !! of the equations
-  integer, parameter, public :: stage_stiffness = 5       !! strain operator, what has changed
-  integer, parameter, public :: stage_factor = 6          !! of the bodies, with their assembly
-  integer, parameter, public :: stage_flexibility = 7
-  integer, parameter, public :: stage_contact = 8         !! forces and gaps of the pairs
-  integer, parameter, public :: stage_displacements = 9   !! under forces, with their strains
-  integer, parameter, public :: stage_yielding = 10       !! what the iteration does between two solves
-  integer, parameter, public :: stage_stresses = 11       !! and pressures, of the answer
-  integer, parameter, public :: stage_certificate = 12
-  integer, parameter, public :: stage_accuracy = 13       !! the condition of the stiffness with it
-  integer, parameter, public :: stage_writing = 14
-  integer, parameter, public :: stages = 14
+  integer, parameter, public :: &
+    stage_reading = 1, &        !! lines, cards, fields
+    stage_model = 2, &          !! checked cards, lines in contact
+    stage_plan = 3, &           !! free motions, methods, memory
+    stage_numbering = 4, &      !! of the equations
+    stage_stiffness = 5, &      !! strain operator, what has changed
+    stage_factor = 6, &         !! of the bodies, with their assembly
+    stage_flexibility = 7, &
+    stage_contact = 8, &        !! forces and gaps of the pairs
+    stage_displacements = 9, &  !! under forces, with their strains
+    stage_yielding = 10, &      !! what the iteration does between two solves
+    stage_stresses = 11, &      !! and pressures, of the answer
+    stage_certificate = 12, &
+    stage_accuracy = 13, &      !! the condition of the stiffness with it
+    stage_writing = 14, &
+    stages = 14
 
   character(len=13), parameter, public :: stage_name(stages) = [character(len=13) :: &
     'reading', 'model', 'plan', 'numbering', 'stiffness', 'factor', 'flexibility', 'contact', 'displacements', 'yielding', &
@@ -50,7 +51,7 @@ contains
   !> The time since the last lap was that of `stage`.
   subroutine lap(self, stage)
     class(stopwatch), intent(inout) :: self
-    integer, intent(in) :: stage
+    integer, intent(in) :: stage   !! one of those above
     real(wp) :: ended(2)
 
     ended = now()

@@ -15,7 +15,7 @@ if(NOT EPCONT_STATIC STREQUAL "OFF" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU"
   mark_as_advanced(GOMP_ARCHIVE)
   set(archives "${folder}/libopenblas.a" $<$<BOOL:${GOMP_ARCHIVE}>:${GOMP_ARCHIVE}> pthread ${CMAKE_DL_LIBS})
   set(options -static-libgfortran -static-libgcc -Wl,--as-needed)
-  foreach(name openblas_set_num_threads openblas_get_parallel)   # what src/system/one_thread.f90 looks for, in the program's own table of names
+  foreach(name openblas_set_num_threads openblas_get_parallel)   # what src/system/threads.f90 looks for, in the program's own table of names
     list(APPEND options "-Wl,--undefined=${name},--export-dynamic-symbol=${name}")
   endforeach()
 
