@@ -87,8 +87,7 @@ contains
     type(certificate_type), intent(out) :: certificate
     type(balance_type) :: balance
     real(wp), allocatable :: load(:, :)
-    real(wp) :: forces, largest_force
-    real(wp), dimension(size(figure_name)) :: figure, largest
+    real(wp) :: forces, largest_force, length
 
     certificate%tolerance = max(exact_tolerance, rounding_errors*answer%rounding_error)
     load = answer%load_factor*model%load
@@ -98,11 +97,11 @@ contains
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
     forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
-    certificate%length_scale = ratio(abs(balance%stored), forces)
+    length = ratio(abs(balance%stored), forces)
     associate (u => answer%displacement, reaction => answer%reaction)
       ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there is.
-      if (forces == 0.0_wp) certificate%length_scale = maxval(abs(u))
-      certificate%length_scale = max(certificate%length_scale, least_length)
+      if (forces == 0.0_wp) length = maxval(abs(u))
+      certificate%length_scale = max(length, least_length)
       balance%work = sum(load*u) + sum(reaction*u)
       balance%terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(balance%stored)
     end associate
@@ -116,9 +115,8 @@ contains
     certificate%curve_tolerance = max(certificate%tolerance, curve_tolerance)
     certificate%off_curve_limit = certificate%curve_tolerance &
                                   + min(several*certificate%lost_stress, certificate%curve_tolerance)
-    call certificate%figures(figure, largest)
-    certificate%valid = all(figure <= largest)
-    certificate%balanced = all(figure <= largest .or. figure_name == off_the_curve)
+    certificate%valid = all(within_limits(certificate))
+    certificate%balanced = all(within_limits(certificate) .or. figure_name == off_the_curve)
   end subroutine certify
 
   !> All figures and the largest of each in a valid answer, as `figure_name` has them.
@@ -137,13 +135,20 @@ contains
   !> Is a figure beyond its limit that was not before?
   pure logical function has_spoilt(self, before)
     class(certificate_type), intent(in) :: self
-    type(certificate_type), intent(in) :: before   !! the other certificate
-    real(wp), dimension(size(figure_name)) :: figure, largest, figure_before, largest_before
+    type(certificate_type), intent(in) :: before   !! the certificate of then
 
-    call self%figures(figure, largest)
-    call before%figures(figure_before, largest_before)
-    has_spoilt = any(figure > largest .and. figure_before <= largest_before)
+    has_spoilt = any(within_limits(before) .and. .not. within_limits(self))
   end function has_spoilt
+
+  !> Which figures are no larger than they may be?
+  pure function within_limits(certificate) result(within)
+    class(certificate_type), intent(in) :: certificate
+    logical :: within(size(figure_name))
+    real(wp), dimension(size(figure_name)) :: figure, largest
+
+    call certificate%figures(figure, largest)
+    within = figure <= largest
+  end function within_limits
 
   !> a/b, 0 where both are 0, or a is below; finite, but of what is no number.
   pure real(wp) function ratio(a, b)
@@ -240,7 +245,7 @@ contains
     real(wp), intent(in) :: strain(4), stress(4)
     real(wp), intent(in) :: rounding         !! of the strain
     type(certificate_type), intent(inout) :: certificate
-    real(wp) :: apart(4), off, on_curve(4), scale
+    real(wp) :: apart(4), off, on_curve(4), scale, stiffest
 
     on_curve = stress_on_curve(model, section, strain)
     apart = stress - on_curve
@@ -251,20 +256,14 @@ contains
       off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
     end if
     certificate%off_curve = max(certificate%off_curve, off)
-    certificate%lost_stress = max(certificate%lost_stress, ratio(model%young(section)*rounding, scale), &
-                                  ratio(stiffest_modulus(model, section)*rounding, largest_stress))
-  end subroutine check_stress
-
-  !> Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5 far above E [stress].
-  pure real(wp) function stiffest_modulus(model, section) result(modulus)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: section
-
-    modulus = model%young(section)
-    associate (nu => model%poisson(section))
-      if (model%kinematics(section) /= plane_stress) modulus = modulus*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
+    ! Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5 far above E.
+    associate (young => model%young(section), nu => model%poisson(section))
+      stiffest = young
+      if (model%kinematics(section) /= plane_stress) stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
+      certificate%lost_stress = max(certificate%lost_stress, ratio(young*rounding, scale), &
+                                    ratio(stiffest*rounding, largest_stress))
     end associate
-  end function stiffest_modulus
+  end subroutine check_stress
 
   !> Largest component, whatever its sign.
   pure real(wp) function largest(vector)

@@ -39,7 +39,7 @@ module epcont_certificate_meeting
     type(point_type), allocatable :: middle(:)    !! a point within each part [parts]
     !> Of a circle whose outline is as long as the part's: however it lies, it is the same [length] [parts]
     real(wp), allocatable :: width(:)
-    logical, allocatable :: in_line(:)     !! sides of lines [sides]
+    real(wp), allocatable :: line_length(:)       !! of sides of lines as drawn, 0 of others [length] [sides]
     integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
     real(wp) :: least = 0.0_wp             !! what is allowed between any two sides [length]
     real(wp) :: moved = 0.0_wp             !! largest displacement [length]
@@ -69,10 +69,10 @@ contains
       search%moved = maxval(norm2(displacement, dim=1))
       search%least = least_part*maxval(maxval(x, dim=2) - minval(x, dim=2)) &
                      + roundings*epsilon(1.0_wp)*(maxval(abs(x)) + maxval(abs(displacement)))
-      allocate (search%in_line(outline%sides), source=.false.)
+      allocate (search%line_length(outline%sides), source=0.0_wp)
       if (allocated(model%line)) then
         do k = 1, size(model%line)
-          search%in_line(model%line(k)%side) = .true.
+          search%line_length(model%line(k)%side) = search%allowance%length(model%line(k)%side)
         end do
       end if
       allocate (search%width(outline%parts), search%middle(outline%parts))
@@ -178,9 +178,7 @@ contains
       ! on which of them a point is, rounding decides.
       slide(i) = part_along(search%drawn, side(1, i), s(i), moved)
       if (side(2, i) > 0) slide(i) = min(slide(i), part_along(search%drawn, side(2, i), 1.0_wp - s(i), moved))
-      associate (here => side(:count(side(:, i) > 0), i))
-        longest(i) = maxval(merge(search%allowance%length(here), 0.0_wp, search%in_line(here)))
-      end associate
+      longest(i) = maxval(search%line_length(side(:count(side(:, i) > 0), i)))
     end do
     found%meeting%slide = maxval(slide)
     if (all(longest > 0.0_wp)) found%meeting%longest = maxval(longest)
@@ -229,8 +227,9 @@ contains
     end associate
   end function is_paired
 
-  !> Keep a place if it is the worst by what is allowed about it, the deepest, or the worst by what is not told. Where bodies may
-  !! have overlapped as drawn, that is taken off, and the deepest such overlap kept too.
+  !> Keep a place if it is the worst by what is allowed, the deepest, or the worst by what is not told. Allowed is what sides about
+  !! it allow, where more was found than the nearest two do. Where bodies may have overlapped as drawn, that is taken off, and the
+  !! deepest such overlap kept too.
   pure subroutine keep(search, found, worst, deepest, not_told, point, drawn)
     type(search_type), intent(in) :: search
     type(overlap_place), intent(in) :: found
@@ -243,7 +242,8 @@ contains
     call take_told(search, telling)
     if (.not. (is_worse(found, worst) .or. is_deeper(found, deepest) .or. is_worse(telling, not_told))) return
     place = found
-    call widen_allowance(search, place)
+    if (place%depth > place%allowed) &
+      place%allowed = search%least + allowance_about(search, place, place%side) + allowance_about(search, place, place%other)
     if (present(drawn)) then
       if (place%distance > min(place%allowed, telling%allowed)) call take_drawn(search, point, place, drawn)
       telling%depth = place%depth
@@ -264,15 +264,6 @@ contains
                       + allowance%of_drawing(other, meeting)
     end associate
   end subroutine take_told
-
-  !> Allow what sides about a place allow, where more was found than the nearest two do.
-  pure subroutine widen_allowance(search, place)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(inout) :: place
-
-    if (place%depth <= place%allowed) return
-    place%allowed = search%least + allowance_about(search, place, place%side) + allowance_about(search, place, place%other)
-  end subroutine widen_allowance
 
   !> The most that a side at a place allows, or others of its part that are about as near to that as the two there to each other
   !! [length].

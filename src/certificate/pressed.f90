@@ -63,7 +63,10 @@ contains
     found%pair = pair
     slid = found
     slid%depth = part_along(search%now, place%side, place%s, point%motion - motion_at(search, place%side, place%s))
-    slid%allowed = small_slide(search, found)
+    associate (side => [found%side, found%other])
+      slid%allowed = max(part_of_side*maxval(search%allowance%length(side)), &
+                         part_of_body*minval(search%width(search%now%outline%part(side))))
+    end associate
     call take_worse(slid, scene%slid)
     if (place%inside) return
 
@@ -77,15 +80,4 @@ contains
       call take_worse(found, scene%beside)
     end if
   end subroutine look_at_pair
-
-  !> How far sides may slide along each other and be where they were drawn [length].
-  pure real(wp) function small_slide(search, place) result(small)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(in) :: place
-
-    associate (side => [place%side, place%other])
-      small = max(part_of_side*maxval(search%allowance%length(side)), &
-                  part_of_body*minval(search%width(search%now%outline%part(side))))
-    end associate
-  end function small_slide
 end module epcont_certificate_pressed
