@@ -208,12 +208,10 @@ contains
 
     n = model%order(e)
     ring = model%kinematics(model%section(e)) == axisymmetric
-    do k = 1, n
-      associate (node => model%connectivity(k, e))
-        u(:, k) = answer%deformation(:, node)
-        motion(:, k) = answer%displacement(:, node) - u(:, k)
-      end associate
-    end do
+    associate (node => model%connectivity(:n, e))
+      u(:, :n) = answer%deformation(:, node)
+      motion(:, :n) = answer%displacement(:, node) - u(:, :n)
+    end associate
     moves = any(motion(:, :n) /= 0.0_wp)
     do p = 1, size(volume)
       associate (stress => answer%point_stress(:, model%first_point(e) + p - 1))

@@ -16,6 +16,7 @@ module epcont_certificate_findings
     real(wp) :: allowed = 0.0_wp   !! [length]
     real(wp) :: distance = 0.0_wp  !! of the point from the other outline: the depth, if nothing else is said [length]
     real(wp) :: x(2) = 0.0_wp      !! of the point that lies inside, displaced [length]
+    real(wp) :: drawn(2) = 0.0_wp  !! where that point was drawn [length]
     integer :: side = 0            !! of the outlines, on which the point is; 0: there is no such place
     integer :: other = 0           !! the side of the other body that it is nearest to
     type(meeting_type) :: meeting  !! of these two

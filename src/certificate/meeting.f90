@@ -114,12 +114,12 @@ contains
   pure function boxes_meeting(tree, low, high) result(box)
     type(box_tree), intent(in) :: tree
     real(wp), intent(in) :: low(2), high(2)   !! [length]
-    integer, allocatable :: box(:)
+    integer, allocatable :: box(:), found(:)
     integer :: n
 
-    allocate (box(16))
-    call tree%meeting(low, high, box, n)
-    box = box(:n)
+    allocate (found(16))
+    call tree%meeting(low, high, found, n)
+    box = found(:n)
   end function boxes_meeting
 
   !> The sides of a part whose boxes do.
@@ -129,7 +129,8 @@ contains
     real(wp), intent(in) :: low(2), high(2)   !! [length]
     integer, allocatable :: side(:)
 
-    side = shape%outline%first(part) - 1 + boxes_meeting(shape%side_tree(part), low, high)
+    side = boxes_meeting(shape%side_tree(part), low, high)
+    side = side + (shape%outline%first(part) - 1)
   end function sides_meeting
 
   !> Displacement of a place of a side [length].
@@ -167,7 +168,8 @@ contains
     integer :: i, k, side(2, 2)
     real(wp) :: longest(2), moved(2), own(2), s(2), slide(2)
 
-    found = overlap_place(depth=place%distance, distance=place%distance, x=point%x, side=point%side, other=place%side)
+    found = overlap_place(depth=place%distance, distance=place%distance, x=point%x, drawn=point%drawn, side=point%side, &
+                          other=place%side)
     found%meeting%joined = is_joined(search, point%side, place%side)
     s = [point%s, place%s]
     side(:, 1) = sides_at(search%now%outline, point%side, point%s)
@@ -230,40 +232,31 @@ contains
   !> Keep a place if it is the worst by what is allowed, the deepest, or the worst by what is not told. Allowed is what sides about
   !! it allow, where more was found than the nearest two do. Where bodies may have overlapped as drawn, that is taken off, and the
   !! deepest such overlap kept too.
-  pure subroutine keep(search, found, worst, deepest, not_told, point, drawn)
+  pure subroutine keep(search, found, worst, deepest, not_told, drawn)
     type(search_type), intent(in) :: search
     type(overlap_place), intent(in) :: found
     type(overlap_place), intent(inout) :: worst, deepest, not_told   !! those kept so far
-    type(point_type), intent(in), optional :: point                  !! the one that is there
-    type(overlap_place), intent(inout), optional :: drawn
+    type(overlap_place), intent(inout), optional :: drawn            !! the deepest as drawn
     type(overlap_place) :: place, telling
 
     telling = found
-    call take_told(search, telling)
+    associate (allowance => search%allowance, side => found%side, other => found%other, meeting => found%meeting)
+      telling%moving = 2.0_wp*(allowance%of_motion(side, meeting) + allowance%of_motion(other, meeting)) > found%allowed
+      telling%allowed = search%least + told*search%moved + allowance%of_drawing(side, meeting) &
+                        + allowance%of_drawing(other, meeting)
+    end associate
     if (.not. (is_worse(found, worst) .or. is_deeper(found, deepest) .or. is_worse(telling, not_told))) return
     place = found
     if (place%depth > place%allowed) &
       place%allowed = search%least + allowance_about(search, place, place%side) + allowance_about(search, place, place%other)
     if (present(drawn)) then
-      if (place%distance > min(place%allowed, telling%allowed)) call take_drawn(search, point, place, drawn)
+      if (place%distance > min(place%allowed, telling%allowed)) call take_drawn(search, place, drawn)
       telling%depth = place%depth
     end if
     call take_worse(place, worst)
     call take_deeper(place, deepest)
     call take_worse(telling, not_told)
   end subroutine keep
-
-  !> Of a place where more or less is allowed: how much is not told.
-  pure subroutine take_told(search, place)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(inout) :: place
-
-    associate (allowance => search%allowance, side => place%side, other => place%other, meeting => place%meeting)
-      place%moving = 2.0_wp*(allowance%of_motion(side, meeting) + allowance%of_motion(other, meeting)) > place%allowed
-      place%allowed = search%least + told*search%moved + allowance%of_drawing(side, meeting) &
-                      + allowance%of_drawing(other, meeting)
-    end associate
-  end subroutine take_told
 
   !> The most that a side at a place allows, or others of its part that are about as near to that as the two there to each other
   !! [length].
@@ -286,18 +279,16 @@ contains
   end function allowance_about
 
   !> Take off the depth at a place what the bodies overlapped as drawn, if no pair is to close that.
-  pure subroutine take_drawn(search, point, place, drawn)
+  pure subroutine take_drawn(search, place, drawn)
     type(search_type), intent(in) :: search
-    type(point_type), intent(in) :: point
-    type(overlap_place), intent(inout) :: place
-    type(overlap_place), intent(inout) :: drawn     !! the deepest such overlap
+    type(overlap_place), intent(inout) :: place, drawn   !! the latter is the deepest such overlap
     type(overlap_place) :: found
     type(near_place) :: before
 
     if (is_paired(search, place%side, place%other)) return
-    before = search%drawn%nearest_place(search%drawn%outline%part(place%other), point%drawn)
+    before = search%drawn%nearest_place(search%drawn%outline%part(place%other), place%drawn)
     if (.not. before%inside) return
-    found = overlap_place(depth=before%distance, allowed=place%allowed, x=point%drawn, side=place%side, other=before%side)
+    found = overlap_place(depth=before%distance, allowed=place%allowed, x=place%drawn, side=place%side, other=before%side)
     if (found%depth > found%allowed) call take_deeper(found, drawn)
     place%depth = place%depth - before%distance
   end subroutine take_drawn

@@ -5,7 +5,7 @@
 !> between two places where it crosses the other outline. The depth of a point is its distance from the other outline.
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
-  use epcont_certificate_beyond, only: farthest_beyond_axis, farthest_beyond_mirror
+  use epcont_certificate_beyond, only: look_beyond
   use epcont_certificate_findings, only: beyond_place, overlap_place, scene_type, take_worse
   use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, new_search, point_on, point_type, search_type, &
                                        sides_meeting
@@ -48,8 +48,7 @@ contains
     end do
     call look_at_pairs(model, search, force, scene)
     call look_at_ways(search, scene)
-    scene%axis = farthest_beyond_axis(model, displacement, search%least)
-    scene%mirror = farthest_beyond_mirror(model, displacement, search%least)
+    call look_beyond(model, displacement, search%least, scene)
     scene%changed_side = maxloc(search%allowance%change, dim=1)
     scene%change = search%allowance%change(scene%changed_side)
   end function look_through
@@ -109,7 +108,7 @@ contains
     if (search%now%side_tree(part)%away(1, point%x) > 0.0_wp) return
     place = search%now%nearest_place(part, point%x, search%last)
     search%last = place%side
-    if (place%inside) call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep, point, scene%drawn)
+    if (place%inside) call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep, scene%drawn)
   end subroutine look_at_point
 
   !> Where the chord of a side crosses those of another part, ascending.
