@@ -167,7 +167,7 @@ contains
     type(certificate_type), intent(inout) :: certificate
     real(wp) :: slope(2, most_nodes, most_points, size(model%kinds))
     real(wp) :: unit(4, 2, most_nodes, most_points), volume(most_points), force(2)
-    integer :: c, e, k, p
+    integer :: e, k, p
 
     do k = 1, size(model%kinds)
       call find_slopes(model%kinds(k), slope(:, :, :, k))
@@ -180,9 +180,9 @@ contains
         do k = 1, n
           force = 0.0_wp
           do p = 1, places
-            do c = 1, 2
-              force(c) = force(c) + volume(p)*dot_product(answer%point_stress(:, first + p - 1), unit(:, c, k, p))
-            end do
+            associate (stress => answer%point_stress(:, first + p - 1))
+              force = force + volume(p)*[dot_product(stress, unit(:, 1, k, p)), dot_product(stress, unit(:, 2, k, p))]
+            end associate
           end do
           associate (node => model%connectivity(k, e))
             balance%residual(:, node) = balance%residual(:, node) + force

@@ -75,13 +75,10 @@ contains
           search%line_length(model%line(k)%side) = search%allowance%length(model%line(k)%side)
         end do
       end if
-      allocate (search%width(outline%parts), search%middle(outline%parts))
-      do k = 1, outline%parts
-        associate (first => outline%first(k), last => outline%first(k + 1) - 1)
-          search%width(k) = sum(search%allowance%length(first:last))/acos(-1.0_wp)
-          search%middle(k) = middle_of(model, first, displacement)
-        end associate
-      end do
+      associate (first => outline%first, length => search%allowance%length)
+        search%width = [(sum(length(first(k):first(k + 1) - 1))/acos(-1.0_wp), k=1, outline%parts)]
+        search%middle = [(middle_of(model, first(k), displacement), k=1, outline%parts)]
+      end associate
     end associate
   end function new_search
 

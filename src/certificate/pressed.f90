@@ -56,6 +56,7 @@ contains
     type(scene_type), intent(inout) :: scene
     type(near_place) :: place
     type(overlap_place) :: found, slid
+    integer :: side(2)
     real(wp) :: off
 
     place = search%now%nearest_place(part, point%x)
@@ -63,10 +64,9 @@ contains
     found%pair = pair
     slid = found
     slid%depth = part_along(search%now, place%side, place%s, point%motion - motion_at(search, place%side, place%s))
-    associate (side => [found%side, found%other])
-      slid%allowed = max(part_of_side*maxval(search%allowance%length(side)), &
-                         part_of_body*minval(search%width(search%now%outline%part(side))))
-    end associate
+    side = [found%side, found%other]
+    slid%allowed = max(part_of_side*maxval(search%allowance%length(side)), &
+                       part_of_body*minval(search%width(search%now%outline%part(side))))
     call take_worse(slid, scene%slid)
     if (place%inside) return
 

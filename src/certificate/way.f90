@@ -209,34 +209,22 @@ contains
     real(wp), intent(in) :: reach           !! [length]
     type(near_place), intent(out) :: best
     type(near_place) :: place
-    integer, allocatable :: sides(:)
+    integer, allocatable :: near(:), sides(:)
     real(wp) :: wide, x(2), x_now(2)
     integer :: k
 
     x = walk%point%drawn + time*walk%point%motion
     x_now = x + (1.0_wp - time)*ways%mean(:, walk%part)
     wide = reach + (1.0_wp - time)*ways%spread(walk%part)
-    sides = sides_meeting(search%now, walk%part, x_now - wide, x_now + wide)
-    do k = 1, size(sides)
-      ways%between%x(:, :, sides(k)) = ends_of(sides(k))
-      place = ways%between%near_side(sides(k), x)
+    near = sides_meeting(search%now, walk%part, x_now - wide, x_now + wide)
+    associate (outline => search%now%outline)
+      sides = [near, outline%before(near), outline%after(near)]   ! at a node both of its sides say what is inside
+    end associate
+    ways%between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
+    do k = 1, size(near)
+      place = ways%between%near_side(near(k), x)
       if (place%distance < best%distance) best = place
     end do
-    if (best%side == 0) return
-    associate (before => search%now%outline%before(best%side), after => search%now%outline%after(best%side))
-      ways%between%x(:, :, before) = ends_of(before)
-      ways%between%x(:, :, after) = ends_of(after)
-    end associate
-    best%inside = ways%between%is_inside(best, x)
-
-  contains
-
-    !> Of a side, and its middle, at that time [length].
-    pure function ends_of(side) result(x)
-      integer, intent(in) :: side
-      real(wp) :: x(2, 3)
-
-      x = search%drawn%x(:, :, side) + time*search%motion(:, :, side)
-    end function ends_of
+    if (best%side > 0) best%inside = ways%between%is_inside(best, x)
   end subroutine find_nearest
 end module epcont_certificate_way
