@@ -12,10 +12,10 @@ module epcont_certificate_beyond
 
 contains
 
-  !> Of rings: the node of least radius, if that is below 0. Of all bodies: the node farthest beyond a line along which all of an
-  !! end of its body is held across and somewhere free.
+  !> Of rings: the node of least radius, if that is below 0. Of all bodies: the node farthest beyond a line
+  !! along which all of an end of its body is held across and somewhere free.
   pure subroutine look_beyond(model, displacement, least, scene)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     real(wp), intent(in) :: least                !! less is rounding [length]
     type(scene_type), intent(inout) :: scene     !! its places beyond the axis and beyond a mirror are set
@@ -37,8 +37,9 @@ contains
     end do
   end subroutine look_beyond
 
-  !> The node farthest beyond the end of a part towards lower coordinates (`way` 1), or towards higher ones (-1), where all that was
-  !! drawn on that line is held there, and is free to slide along it somewhere; else none, 0 deep.
+  !> The node farthest beyond the end of a part towards lower coordinates (`way` 1), or towards higher ones
+  !! (-1), where all that was drawn on that line is held there, and is free to slide along it somewhere; else
+  !! none, 0 deep.
   pure type(beyond_place) function beyond_end(model, displacement, least, part, c, way) result(place)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :), least
@@ -53,7 +54,8 @@ contains
         u = way*displacement(c, node)
         edge = minval(x) + on_line*(maxval(x) - minval(x))
         if (.not. all(x > edge .or. is_held(c, node) .and. abs(u) <= least)) return
-        if (all(x > edge .or. way*model%x(c, next) > edge .or. is_held(3 - c, node) .and. is_held(3 - c, next))) return
+        if (all(x > edge .or. way*model%x(c, next) > edge &
+                .or. is_held(3 - c, node) .and. is_held(3 - c, next))) return
         associate (farthest => minloc(x + u, dim=1))
           place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
         end associate

@@ -14,7 +14,7 @@ module epcont_certificate_findings
     real(wp) :: ratio = 0.0_wp     !! depth, of what is allowed
     real(wp) :: depth = 0.0_wp     !! [length]
     real(wp) :: allowed = 0.0_wp   !! [length]
-    real(wp) :: distance = 0.0_wp  !! of the point from the other outline: the depth, if nothing else is said [length]
+    real(wp) :: distance = 0.0_wp  !! of the point from the other outline: mostly the depth [length]
     real(wp) :: x(2) = 0.0_wp      !! of the point that lies inside, displaced [length]
     real(wp) :: drawn(2) = 0.0_wp  !! where that point was drawn [length]
     integer :: side = 0            !! of the outlines, on which the point is; 0: there is no such place
@@ -40,9 +40,9 @@ module epcont_certificate_findings
     type(overlap_place) :: itself          !! deepest in its own body
     type(overlap_place) :: apart           !! the depth is that of a gap across which a pair presses
     type(overlap_place) :: widest          !! the widest of such gaps
-    type(overlap_place) :: beside          !! the depth is how far off the end of the other body a pressed node stands
-    type(overlap_place) :: slid            !! the depth is how far the sides of a pressed pair slid along each other
-    type(overlap_place) :: passed          !! deepest in another body on the way to where it comes out of it again
+    type(overlap_place) :: beside          !! the depth is how far off the end of the other body a node stands
+    type(overlap_place) :: slid            !! the depth is how far sides slid along each other, pressed
+    type(overlap_place) :: passed          !! deepest in another body on the way through it
     type(overlap_place) :: deep            !! deepest in another body, by what is told
     type(overlap_place) :: wide            !! the same of a gap across which a pair presses
     type(beyond_place) :: axis, mirror     !! farthest beyond the axis of rings, beyond a line of symmetry
