@@ -209,7 +209,7 @@ contains
     end do
     do s = 1, size(gap)
       associate (node => model%body_outline%node(:, s))
-        gap(s) = maxval(at_node(node(:merge(3, 2, node(3) > 0))))
+        gap(s) = maxval(at_node(pack(node, node > 0)))
       end associate
     end do
   end function gaps_of_cards

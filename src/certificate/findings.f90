@@ -4,7 +4,7 @@ module epcont_certificate_findings
   use epcont_certificate_allowance, only: meeting_type
   implicit none
   private
-  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, take_deeper, take_worse
+  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, take_if
 
   !> Of places that differ by less than this part the first counts: rounding decides nothing.
   real(wp), parameter :: more = 1.0_wp + 1.0e-9_wp
@@ -78,27 +78,14 @@ contains
     is_deeper = found%depth > more*than%depth
   end function is_deeper
 
-  !> Keep the worse of two places.
-  pure subroutine take_worse(found, worst)
-    type(overlap_place), intent(in) :: found      !! its ratio is not looked at
-    type(overlap_place), intent(inout) :: worst   !! with its ratio
+  !> Keep another place instead, if it is a better one to keep.
+  pure subroutine take_if(better, found, kept)
+    logical, intent(in) :: better                !! than what is kept
+    type(overlap_place), intent(in) :: found     !! its ratio is not looked at
+    type(overlap_place), intent(inout) :: kept   !! with its ratio
 
-    if (is_worse(found, worst)) call take(found, worst)
-  end subroutine take_worse
-
-  !> Keep the deeper of two places.
-  pure subroutine take_deeper(found, deepest)
-    type(overlap_place), intent(in) :: found        !! its ratio is not looked at
-    type(overlap_place), intent(inout) :: deepest   !! with its ratio
-
-    if (is_deeper(found, deepest)) call take(found, deepest)
-  end subroutine take_deeper
-
-  pure subroutine take(found, kept)
-    type(overlap_place), intent(in) :: found
-    type(overlap_place), intent(out) :: kept
-
+    if (.not. better) return
     kept = found
     kept%ratio = found%depth/found%allowed
-  end subroutine take
+  end subroutine take_if
 end module epcont_certificate_findings

@@ -3,7 +3,7 @@
 module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: allowance_type, new_allowance
-  use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, take_deeper, take_worse
+  use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, take_if
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_box_tree, only: box_tree
   use epcont_geometry_outline, only: outline_type
@@ -249,9 +249,9 @@ contains
       if (place%distance > min(place%allowed, telling%allowed)) call take_drawn(search, place, drawn)
       telling%depth = place%depth
     end if
-    call take_worse(place, worst)
-    call take_deeper(place, deepest)
-    call take_worse(telling, not_told)
+    call take_if(is_worse(place, worst), place, worst)
+    call take_if(is_deeper(place, deepest), place, deepest)
+    call take_if(is_worse(telling, not_told), telling, not_told)
   end subroutine keep
 
   !> The most that a side at a place allows, or others of its part that are about as near to that as the two
@@ -286,7 +286,7 @@ contains
     if (.not. before%inside) return
     found = overlap_place(depth=before%distance, allowed=place%allowed, x=place%drawn, side=place%side, &
                           other=before%side)
-    if (found%depth > found%allowed) call take_deeper(found, drawn)
+    call take_if(found%depth > found%allowed .and. is_deeper(found, drawn), found, drawn)
     place%depth = place%depth - before%distance
   end subroutine take_drawn
 

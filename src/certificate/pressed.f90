@@ -2,7 +2,7 @@
 !> the other body the node stands, and how far the two sides have slid along each other.
 module epcont_certificate_pressed
   use epcont_base_kinds, only: wp
-  use epcont_certificate_findings, only: overlap_place, scene_type, take_worse
+  use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_if
   use epcont_certificate_meeting, only: keep, meet, motion_at, part_along, point_on, point_type, search_type
   use epcont_geometry_outline_shape, only: near_place
   use epcont_geometry_plane, only: cross_product
@@ -70,7 +70,7 @@ contains
     side = [found%side, found%other]
     slid%allowed = max(part_of_side*maxval(search%allowance%length(side)), &
                        part_of_body*minval(search%width(search%now%outline%part(side))))
-    call take_worse(slid, scene%slid)
+    call take_if(is_worse(slid, scene%slid), slid, scene%slid)
     if (place%inside) return
 
     found%depth = abs(dot_product(point%x - place%x, normal))
@@ -80,7 +80,7 @@ contains
     else   ! the other body ends before it
       found%depth = off
       found%allowed = found%allowed + slid%allowed
-      call take_worse(found, scene%beside)
+      call take_if(is_worse(found, scene%beside), found, scene%beside)
     end if
   end subroutine look_at_pair
 end module epcont_certificate_pressed

@@ -7,7 +7,7 @@
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
   use epcont_certificate_beyond, only: look_beyond
-  use epcont_certificate_findings, only: beyond_place, overlap_place, scene_type, take_worse
+  use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, scene_type, take_if
   use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, new_search, point_on, point_type, &
                                        search_type, sides_meeting
   use epcont_certificate_pressed, only: look_at_pairs
@@ -159,7 +159,7 @@ contains
         found = meet(search, point, place)
         ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
         drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
-        if (drawn <= found%allowed) call take_worse(found, scene%itself)
+        if (drawn <= found%allowed) call take_if(is_worse(found, scene%itself), found, scene%itself)
       end do
     end associate
   end subroutine look_at_itself

@@ -7,7 +7,7 @@
 !> anew.
 module epcont_certificate_way
   use epcont_base_kinds, only: wp
-  use epcont_certificate_findings, only: overlap_place, scene_type, take_worse
+  use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_if
   use epcont_certificate_meeting, only: boxes_meeting, insert, meet, point_on, point_type, search_type, &
                                        sides_meeting
   use epcont_geometry_box_tree, only: box_tree, new_box_tree
@@ -208,7 +208,7 @@ contains
     found%x = walk%point%drawn + middle*walk%point%motion
     if (.not. walk%point%in_element) &
       found%node = search%now%outline%node(merge(3, 1, walk%point%s > 0.0_wp), found%side)
-    call take_worse(found, scene%passed)
+    call take_if(is_worse(found, scene%passed), found, scene%passed)
   end subroutine look_between
 
   !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none.
