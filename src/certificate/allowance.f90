@@ -1,15 +1,17 @@
-!> By how much displaced outlines may overlap, or stand apart where they press on each other, though every equation holds:
-!> what straight sides, displacements linear between nodes and linear kinematics leave open.
+!> By how much displaced outlines may overlap, or stand apart where they press on each other, though every
+!> equation holds: what straight sides, displacements linear between nodes and linear kinematics leave open.
 !>
-!> A side of length h allows 3 (s + b + k), and as much again as CGAPs there say otherwise than the coordinates:
-!>     s = h theta/8          above its chord lies the smooth curve, to which gaps of pairs are measured; theta the turn
-!>                            at its ends. Where no pair joins the two bodies, there is one at hollow sides alone: their
-!>                            chords lie before the curve, those of others behind it
-!>     b = H |d theta|/8      d theta by how much displacements turn the outline along H; that is h, or where both sides are of
-!>                            lines in contact the longer one: over such a length their gap is zero in the mean
-!>     k = d |w| + d**2 c/2   sliding by d along a side, as drawn, that turns by w, and where s counts has the curvature c: up to
-!>                            h/10, however far it slides
-!>         + h e**2/2         e the larger of its turn and its stretch: where these are not small no shape is left to speak of
+!> A side of length h allows 3 (s + b + k), and as much again as CGAPs there say otherwise than coordinates:
+!>     s = h theta/8        above its chord lies the smooth curve, to which gaps of pairs are measured; theta
+!>                          the turn at its ends. Where no pair joins the two bodies, there is one at hollow
+!>                          sides alone: their chords lie before the curve, those of others behind it
+!>     b = H |d theta|/8    d theta by how much displacements turn the outline along H; that is h, or where
+!>                          both sides are of lines in contact the longer one: over such a length their gap
+!>                          is zero in the mean
+!>     k = d w + d**2 c/2   sliding by d along a side, as drawn, that turns by w, and where s counts has the
+!>                          curvature c: up to h/10, however far it slides
+!>         + h e**2/2       e the larger of its turn and its stretch: where these are not small no shape is
+!>                          left to speak of
 module epcont_certificate_allowance
   use epcont_base_kinds, only: wp
   use epcont_geometry_outline_shape, only: outline_shape
@@ -34,17 +36,18 @@ module epcont_certificate_allowance
     logical :: joined = .false.     !! pairs join the two bodies there
   end type meeting_type
 
+  !> Of all sides of the outlines.
   type :: allowance_type
-    real(wp), allocatable :: length(:)     !! h, as drawn [length] [sides]
-    real(wp), allocatable :: sag(:)        !! s [length] [sides]
-    real(wp), allocatable :: gap(:)        !! that CGAPs there give, less that of the coordinates [length] [sides]
-    logical, allocatable :: hollow(:)      !! the outline is concave at an end of the side, and smooth [sides]
-    logical, allocatable :: smooth(:)      !! it does not end at a corner [sides]
-    real(wp), allocatable :: bend(:)       !! turn that displacements add where a side ends, 0 at corners [rad] [sides]
-    real(wp), allocatable :: arch(:)       !! the same along a side of six-node elements, from end to end [rad] [sides]
-    real(wp), allocatable :: turn(:)       !! w, of the displaced side from that drawn, 0 or more [rad] [sides]
-    real(wp), allocatable :: change(:)     !! e, its turn or the size of its stretch, the larger [sides]
-    real(wp), allocatable :: curvature(:)  !! c [1/length] [sides]
+    real(wp), allocatable :: length(:)     !! h, as drawn [length]
+    real(wp), allocatable :: sag(:)        !! s [length]
+    real(wp), allocatable :: gap(:)        !! that CGAPs there give, less that of the coordinates [length]
+    logical, allocatable :: hollow(:)      !! the outline is concave at an end of the side, and smooth
+    logical, allocatable :: smooth(:)      !! it does not end at a corner
+    real(wp), allocatable :: bend(:)       !! turn that displacements add where it ends, 0 at corners [rad]
+    real(wp), allocatable :: arch(:)       !! the same along a curved side, from end to end [rad]
+    real(wp), allocatable :: turn(:)       !! w, of the displaced side from that drawn, 0 or more [rad]
+    real(wp), allocatable :: change(:)     !! e, its turn or the size of its stretch, the larger
+    real(wp), allocatable :: curvature(:)  !! c [1/length]
     integer, allocatable :: beside(:, :)   !! the sides before and after [2, sides]
   contains
     procedure :: of
@@ -79,7 +82,8 @@ contains
     end associate
   end function of_motion
 
-  !> What of that was there before anything moved, and no more than there was: curves above chords, gaps of CGAPs [length].
+  !> What of that was there before anything moved, and no more than there was: curves above chords, gaps of
+  !! CGAPs [length].
   pure real(wp) function of_drawing(self, side, meeting)
     class(allowance_type), intent(in) :: self
     integer, intent(in) :: side                 !! of the outlines
@@ -128,16 +132,16 @@ contains
 
   !> For all sides of the outlines.
   pure function new_allowance(model, drawn, now) result(allowance)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(outline_shape), intent(in) :: drawn, now   !! the outlines as drawn, and displaced
     type(allowance_type) :: allowance
-    real(wp), allocatable :: joint(:)               !! turn of the outline as drawn where a side ends, 0 at corners [rad]
+    real(wp), allocatable :: joint(:)   !! turn of the outline as drawn where a side ends, 0 at corners [rad]
     real(wp) :: arch
     integer :: n, s
 
     n = drawn%outline%sides
-    allocate (allowance%length(n), allowance%bend(n), allowance%arch(n), allowance%turn(n), allowance%change(n), &
-              allowance%curvature(n), joint(n), source=0.0_wp)
+    allocate (allowance%length(n), allowance%bend(n), allowance%arch(n), allowance%turn(n), &
+              allowance%change(n), allowance%curvature(n), joint(n), source=0.0_wp)
     do s = 1, n
       associate (length => allowance%length(s), next => drawn%outline%after(s))
         length = norm2(drawn%chord(s))
@@ -172,8 +176,8 @@ contains
     angle = atan2(cross_product(from, to), dot_product(from, to))
   end function angle
 
-  !> Where lines are in contact: over its chord each side has the curve with the normals of contact at its ends. The angle between
-  !! normal and side is half the turn [rad] [sides].
+  !> Where lines are in contact: over its chord each side has the curve with the normals of contact at its
+  !! ends. The angle between normal and side is half the turn [rad] [sides].
   pure function turns_of_lines(model, drawn) result(turn)
     type(model_type), intent(in) :: model
     type(outline_shape), intent(in) :: drawn
@@ -205,7 +209,7 @@ contains
     end do
     do s = 1, size(gap)
       associate (node => model%body_outline%node(:, s))
-        gap(s) = maxval(at_node(node(:merge(3, 2, node(3) > 0))))
+        gap(s) = maxval(at_node(pack(node, node > 0)))
       end associate
     end do
   end function gaps_of_cards

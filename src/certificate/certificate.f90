@@ -1,8 +1,8 @@
 !> Recomputes from displacements and forces alone whether they are an answer.
 !>
-!> Shares nothing with the solver: strains come from differences of what the displacements are between the nodes
-!> (epcont_certificate_unit_strains), stresses on the curve from the paper's own equations (epcont_certificate_yielding),
-!> nodal forces from the work of the stresses on unit displacements.
+!> Shares nothing with the solver: strains come from differences of what the displacements are between the
+!> nodes (epcont_certificate_unit_strains), stresses on the curve from the paper's own equations
+!> (epcont_certificate_yielding), nodal forces from the work of the stresses on unit displacements.
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
   use epcont_certificate_scene, only: scene_type
@@ -26,34 +26,35 @@ module epcont_certificate_certificate
   real(wp), parameter :: roundings = 8.0_wp
   !> Stresses are off by as many times `lost_stress`: an element has several nodes.
   real(wp), parameter :: several = 4.0_wp
-  !> Largest part of the bodies' give that the rounding of the gaps may be: a travel far beyond it leaves no digits.
+  !> Largest part of the bodies' give that the rounding of the gaps may be: a travel far beyond it leaves no
+  !! digits.
   real(wp), parameter, public :: largest_rounding = 1.0e-6_wp
 
-  !> A rigid motion strains an element by so many roundings of its displacements, at most: motions of a chain of 40 hinges, sums
-  !! that cancel, were seen to leave 750.
+  !> A rigid motion strains an element by so many roundings of its displacements, at most: motions of a chain
+  !! of 40 hinges, sums that cancel, were seen to leave 750.
   real(wp), parameter, public :: most_roundings = 1.0e4_wp
   !> Bodies give way no less than this: no length over it is beyond the largest number.
   real(wp), parameter :: least_length = 1.0e-200_wp
 
   type :: certificate_type
-    real(wp) :: equilibrium = 0.0_wp      !! largest unbalanced nodal force / largest sum of element forces at a node
+    real(wp) :: equilibrium = 0.0_wp      !! largest unbalanced nodal force / largest sum of element forces
     real(wp) :: smallest_force = 0.0_wp   !! [force]
     real(wp) :: smallest_gap = 0.0_wp     !! [length]
     real(wp) :: overlap = 0.0_wp          !! largest by which a gap is below zero and its rounding [length]
     real(wp) :: force_gap = 0.0_wp        !! largest |R gap| [force*length]
     real(wp) :: off_curve = 0.0_wp        !! largest distance of a stress from its curve (`measure_stress`)
     real(wp) :: motion_strain = 0.0_wp    !! largest strain of the rigid motions / its rounding
-    real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes / what such distances are over
-    real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of all |terms|, or minus the latter's
+    real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes, relative
+    real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of |terms|
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
     real(wp) :: gap_rounding = 0.0_wp     !! rounding of the gaps of pressed pairs, from their travel [length]
-    real(wp) :: tolerance = exact_tolerance  !! largest value of each relative figure but the next of a valid answer
+    real(wp) :: tolerance = exact_tolerance  !! largest value of each relative figure but `off_curve`
     real(wp) :: curve_tolerance = exact_tolerance  !! largest `off_curve` that the iteration was asked for
-    real(wp) :: off_curve_limit = exact_tolerance  !! the same of a valid answer: rounding of displacements may add as much again
+    real(wp) :: off_curve_limit = exact_tolerance  !! of a valid answer: rounding may add as much again
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
     logical :: valid = .false.            !! that one too
-    type(scene_type) :: scene             !! whether bodies pass through each other; looked through where all else is right
+    type(scene_type) :: scene             !! whether bodies pass through each other, where all else is right
   contains
     procedure :: figures
     procedure :: has_spoilt
@@ -63,13 +64,14 @@ module epcont_certificate_certificate
   character(len=*), parameter :: off_the_curve = 'stresses are off their curve by'
   character(len=*), parameter, public :: figure_name(8) = [character(len=70) :: &
     'equilibrium is off by', off_the_curve, 'energy is off by', 'contact forces pull, by', &
-    'gaps overlap, by', 'pressed gaps are open, by', 'the rounding of gaps and travels is, of what the bodies give way,', &
+    'gaps overlap, by', 'pressed gaps are open, by', &
+    'the rounding of gaps and travels is, of what the bodies give way,', &
     'rigid motions strain the bodies; their roundings are']
 
   !> What is summed over elements and pairs.
   type :: balance_type
-    real(wp), allocatable :: residual(:, :)     !! what the forces at each node lack of balance [force] [2, nodes]
-    real(wp), allocatable :: element_force(:)   !! sum of the sizes of the elements' forces at each node [force] [nodes]
+    real(wp), allocatable :: residual(:, :)   !! of each node, out of balance [force] [2, nodes]
+    real(wp), allocatable :: element_force(:)   !! sum of the sizes of the elements' forces there [force]
     real(wp) :: stored = 0.0_wp                 !! work of the stresses
     real(wp) :: work = 0.0_wp                   !! of the forces
     real(wp) :: terms = 0.0_wp                  !! sum of the sizes of all that these two are sums of
@@ -78,17 +80,17 @@ module epcont_certificate_certificate
 
 contains
 
-  !> Of an answer the certificate takes the displacements, with rigid motions and without, the reactions, the stresses at the points,
-  !! the contact forces, the part of the loads, and what single precision may have left.
+  !> Of an answer the certificate takes the displacements, with rigid motions and without, the reactions, the
+  !! stresses at the points, the contact forces, the part of the loads, and what single precision may have
+  !! left.
   pure subroutine certify(model, answer, curve_tolerance, certificate)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    real(wp), intent(in) :: curve_tolerance   !! how far off its curve the iteration may leave a stress; less than the tolerance is not asked
-    type(certificate_type), intent(out) :: certificate
+    type(model_type), intent(in) :: model   !! the scene
+    type(answer_type), intent(in) :: answer   !! what is to be checked
+    real(wp), intent(in) :: curve_tolerance   !! how far off its curve the iteration may leave a stress
+    type(certificate_type), intent(out) :: certificate   !! without its scene
     type(balance_type) :: balance
     real(wp), allocatable :: load(:, :)
-    real(wp) :: forces, largest_force
-    real(wp), dimension(size(figure_name)) :: figure, largest
+    real(wp) :: forces, largest_force, length
 
     certificate%tolerance = max(exact_tolerance, rounding_errors*answer%rounding_error)
     load = answer%load_factor*model%load
@@ -98,11 +100,12 @@ contains
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
     forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
-    certificate%length_scale = ratio(abs(balance%stored), forces)
+    length = ratio(abs(balance%stored), forces)
     associate (u => answer%displacement, reaction => answer%reaction)
-      ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there is.
-      if (forces == 0.0_wp) certificate%length_scale = maxval(abs(u))
-      certificate%length_scale = max(certificate%length_scale, least_length)
+      ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there
+      ! is.
+      if (forces == 0.0_wp) length = maxval(abs(u))
+      certificate%length_scale = max(length, least_length)
       balance%work = sum(load*u) + sum(reaction*u)
       balance%terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(balance%stored)
     end associate
@@ -116,9 +119,8 @@ contains
     certificate%curve_tolerance = max(certificate%tolerance, curve_tolerance)
     certificate%off_curve_limit = certificate%curve_tolerance &
                                   + min(several*certificate%lost_stress, certificate%curve_tolerance)
-    call certificate%figures(figure, largest)
-    certificate%valid = all(figure <= largest)
-    certificate%balanced = all(figure <= largest .or. figure_name == off_the_curve)
+    certificate%valid = all(within_limits(certificate))
+    certificate%balanced = all(within_limits(certificate) .or. figure_name == off_the_curve)
   end subroutine certify
 
   !> All figures and the largest of each in a valid answer, as `figure_name` has them.
@@ -128,22 +130,30 @@ contains
     real(wp) :: exact
 
     exact = self%tolerance*self%length_scale + self%gap_rounding
-    figure = [self%equilibrium, self%off_curve, self%energy, ratio(-self%smallest_force, self%force_scale), self%overlap, &
-              ratio(self%force_gap, self%force_scale), self%gap_rounding/self%length_scale, self%motion_strain]
-    largest = [self%tolerance, self%off_curve_limit, self%tolerance, self%tolerance, exact, exact, largest_rounding, &
-               most_roundings]
+    figure = [self%equilibrium, self%off_curve, self%energy, ratio(-self%smallest_force, self%force_scale), &
+              self%overlap, ratio(self%force_gap, self%force_scale), self%gap_rounding/self%length_scale, &
+              self%motion_strain]
+    largest = [self%tolerance, self%off_curve_limit, self%tolerance, self%tolerance, exact, exact, &
+               largest_rounding, most_roundings]
   end subroutine figures
 
   !> Is a figure beyond its limit that was not before?
   pure logical function has_spoilt(self, before)
     class(certificate_type), intent(in) :: self
-    type(certificate_type), intent(in) :: before   !! the other certificate
-    real(wp), dimension(size(figure_name)) :: figure, largest, figure_before, largest_before
+    type(certificate_type), intent(in) :: before   !! the certificate of then
 
-    call self%figures(figure, largest)
-    call before%figures(figure_before, largest_before)
-    has_spoilt = any(figure > largest .and. figure_before <= largest_before)
+    has_spoilt = any(within_limits(before) .and. .not. within_limits(self))
   end function has_spoilt
+
+  !> Which figures are no larger than they may be?
+  pure function within_limits(certificate) result(within)
+    class(certificate_type), intent(in) :: certificate
+    logical :: within(size(figure_name))
+    real(wp), dimension(size(figure_name)) :: figure, largest
+
+    call certificate%figures(figure, largest)
+    within = figure <= largest
+  end function within_limits
 
   !> a/b, 0 where both are 0, or a is below; finite, but of what is no number.
   pure real(wp) function ratio(a, b)
@@ -153,38 +163,36 @@ contains
     if (.not. a <= 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
   end function ratio
 
-  !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance from the curve
-  !! and what roundings and rigid motions strain go into the certificate.
+  !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance from
+  !! the curve and what roundings and rigid motions strain go into the certificate.
   pure subroutine add_elements(model, answer, balance, certificate)
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
     type(balance_type), intent(inout) :: balance
     type(certificate_type), intent(inout) :: certificate
     real(wp) :: slope(2, most_nodes, most_points, size(model%kinds))
-    real(wp) :: unit(4, 2, most_nodes, most_points), volume(most_points), force(2)
-    integer :: c, e, k, p
+    real(wp) :: unit(4, 2, most_nodes, most_points), volume(most_points), force(2), stress(4)
+    integer :: e, k, node, p, places
 
     do k = 1, size(model%kinds)
       call find_slopes(model%kinds(k), slope(:, :, :, k))
     end do
     balance%largest_stress = maxval(abs(answer%point_stress))
     do e = 1, model%elements
-      associate (n => model%order(e), first => model%first_point(e), places => model%kinds(model%kind(e))%points)
-        call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
-        call check_points(model, answer, e, unit, volume(:places), balance, certificate)
-        do k = 1, n
-          force = 0.0_wp
-          do p = 1, places
-            do c = 1, 2
-              force(c) = force(c) + volume(p)*dot_product(answer%point_stress(:, first + p - 1), unit(:, c, k, p))
-            end do
-          end do
-          associate (node => model%connectivity(k, e))
-            balance%residual(:, node) = balance%residual(:, node) + force
-            balance%element_force(node) = balance%element_force(node) + max(abs(force(1)), abs(force(2)))
-          end associate
+      places = model%kinds(model%kind(e))%points
+      call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
+      call check_points(model, answer, e, unit, volume(:places), balance, certificate)
+      do k = 1, model%order(e)
+        force = 0.0_wp
+        do p = 1, places
+          stress = answer%point_stress(:, model%first_point(e) + p - 1)
+          force(1) = force(1) + volume(p)*dot_product(stress, unit(:, 1, k, p))
+          force(2) = force(2) + volume(p)*dot_product(stress, unit(:, 2, k, p))
         end do
-      end associate
+        node = model%connectivity(k, e)
+        balance%residual(:, node) = balance%residual(:, node) + force
+        balance%element_force(node) = balance%element_force(node) + max(abs(force(1)), abs(force(2)))
+      end do
     end do
   end subroutine add_elements
 
@@ -203,12 +211,10 @@ contains
 
     n = model%order(e)
     ring = model%kinematics(model%section(e)) == axisymmetric
-    do k = 1, n
-      associate (node => model%connectivity(k, e))
-        u(:, k) = answer%deformation(:, node)
-        motion(:, k) = answer%displacement(:, node) - u(:, k)
-      end associate
-    end do
+    associate (node => model%connectivity(:n, e))
+      u(:, :n) = answer%deformation(:, node)
+      motion(:, :n) = answer%displacement(:, node) - u(:, :n)
+    end associate
     moves = any(motion(:, :n) /= 0.0_wp)
     do p = 1, size(volume)
       associate (stress => answer%point_stress(:, model%first_point(e) + p - 1))
@@ -224,15 +230,16 @@ contains
       end associate
       if (.not. moves) cycle
       strain = strain_at(n, ring, motion, unit(:, :, :, p))
-      certificate%motion_strain = max(certificate%motion_strain, &
-                                      ratio(largest(strain), rounding*maxval(abs(motion(:, :n)) + abs(u(:, :n)))))
+      rounding = rounding*maxval(abs(motion(:, :n)) + abs(u(:, :n)))
+      certificate%motion_strain = max(certificate%motion_strain, ratio(largest(strain), rounding))
     end do
   end subroutine check_points
 
-  !> How far a stress is off its curve. Of a material that yields: von Mises stress of the difference over the curve's stress
-  !! there, or below yield the yield stress (a larger one than any stress is no measure), and the difference of the mean parts,
-  !! which are elastic, over the largest stress: hydrostatic stress says nothing of the curve. Of an elastic one: the largest
-  !! difference over the largest stress. What rounding strains makes a stress that is compared with the same.
+  !> How far a stress is off its curve. Of a material that yields: von Mises stress of the difference over the
+  !! curve's stress there, or below yield the yield stress (a larger one than any stress is no measure), and
+  !! the difference of the mean parts, which are elastic, over the largest stress: hydrostatic stress says
+  !! nothing of the curve. Of an elastic one: the largest difference over the largest stress. What rounding
+  !! strains makes a stress that is compared with the same.
   pure subroutine check_stress(model, section, largest_stress, strain, stress, rounding, certificate)
     type(model_type), intent(in) :: model
     integer, intent(in) :: section
@@ -240,7 +247,7 @@ contains
     real(wp), intent(in) :: strain(4), stress(4)
     real(wp), intent(in) :: rounding         !! of the strain
     type(certificate_type), intent(inout) :: certificate
-    real(wp) :: apart(4), off, on_curve(4), scale
+    real(wp) :: apart(4), off, on_curve(4), scale, stiffest
 
     on_curve = stress_on_curve(model, section, strain)
     apart = stress - on_curve
@@ -251,20 +258,16 @@ contains
       off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
     end if
     certificate%off_curve = max(certificate%off_curve, off)
-    certificate%lost_stress = max(certificate%lost_stress, ratio(model%young(section)*rounding, scale), &
-                                  ratio(stiffest_modulus(model, section)*rounding, largest_stress))
-  end subroutine check_stress
-
-  !> Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5 far above E [stress].
-  pure real(wp) function stiffest_modulus(model, section) result(modulus)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: section
-
-    modulus = model%young(section)
-    associate (nu => model%poisson(section))
-      if (model%kinematics(section) /= plane_stress) modulus = modulus*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
+    ! Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5 far
+    ! above E.
+    associate (young => model%young(section), nu => model%poisson(section))
+      stiffest = young
+      if (model%kinematics(section) /= plane_stress) &
+        stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
+      certificate%lost_stress = max(certificate%lost_stress, ratio(young*rounding, scale), &
+                                    ratio(stiffest*rounding, largest_stress))
     end associate
-  end function stiffest_modulus
+  end subroutine check_stress
 
   !> Largest component, whatever its sign.
   pure real(wp) function largest(vector)
@@ -273,8 +276,8 @@ contains
     largest = max(abs(vector(1)), abs(vector(2)), abs(vector(3)), abs(vector(4)))
   end function largest
 
-  !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel without strain,
-  !! and comes off first so that it leaves no rounding.
+  !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel
+  !! without strain, and comes off first so that it leaves no rounding.
   pure function strain_at(nodes, ring, displacement, unit) result(strain)
     integer, intent(in) :: nodes
     logical, intent(in) :: ring
@@ -305,7 +308,8 @@ contains
     certificate%smallest_gap = huge(1.0_wp)
     certificate%force_scale = max(maxval(abs(answer%contact%force)), largest_load, tiny(1.0_wp))
     do k = 1, model%pairs
-      associate (force => answer%contact%force(k), normal => model%normal(:, k), initial_gap => model%initial_gap(k))
+      associate (force => answer%contact%force(k), normal => model%normal(:, k), &
+                 initial_gap => model%initial_gap(k))
         apart = 0.0_wp
         travel = 0.0_wp
         do i = model%row_start(k), model%row_start(k + 1) - 1

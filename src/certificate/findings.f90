@@ -4,7 +4,7 @@ module epcont_certificate_findings
   use epcont_certificate_allowance, only: meeting_type
   implicit none
   private
-  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, take_deeper, take_worse
+  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, take_if
 
   !> Of places that differ by less than this part the first counts: rounding decides nothing.
   real(wp), parameter :: more = 1.0_wp + 1.0e-9_wp
@@ -14,8 +14,9 @@ module epcont_certificate_findings
     real(wp) :: ratio = 0.0_wp     !! depth, of what is allowed
     real(wp) :: depth = 0.0_wp     !! [length]
     real(wp) :: allowed = 0.0_wp   !! [length]
-    real(wp) :: distance = 0.0_wp  !! of the point from the other outline: the depth, if nothing else is said [length]
+    real(wp) :: distance = 0.0_wp  !! of the point from the other outline: mostly the depth [length]
     real(wp) :: x(2) = 0.0_wp      !! of the point that lies inside, displaced [length]
+    real(wp) :: drawn(2) = 0.0_wp  !! where that point was drawn [length]
     integer :: side = 0            !! of the outlines, on which the point is; 0: there is no such place
     integer :: other = 0           !! the side of the other body that it is nearest to
     type(meeting_type) :: meeting  !! of these two
@@ -39,9 +40,9 @@ module epcont_certificate_findings
     type(overlap_place) :: itself          !! deepest in its own body
     type(overlap_place) :: apart           !! the depth is that of a gap across which a pair presses
     type(overlap_place) :: widest          !! the widest of such gaps
-    type(overlap_place) :: beside          !! the depth is how far off the end of the other body a pressed node stands
-    type(overlap_place) :: slid            !! the depth is how far the sides of a pressed pair slid along each other
-    type(overlap_place) :: passed          !! deepest in another body on the way to where it comes out of it again
+    type(overlap_place) :: beside          !! the depth is how far off the end of the other body a node stands
+    type(overlap_place) :: slid            !! the depth is how far sides slid along each other, pressed
+    type(overlap_place) :: passed          !! deepest in another body on the way through it
     type(overlap_place) :: deep            !! deepest in another body, by what is told
     type(overlap_place) :: wide            !! the same of a gap across which a pair presses
     type(beyond_place) :: axis, mirror     !! farthest beyond the axis of rings, beyond a line of symmetry
@@ -77,27 +78,14 @@ contains
     is_deeper = found%depth > more*than%depth
   end function is_deeper
 
-  !> Keep the worse of two places.
-  pure subroutine take_worse(found, worst)
-    type(overlap_place), intent(in) :: found      !! its ratio is not looked at
-    type(overlap_place), intent(inout) :: worst   !! with its ratio
+  !> Keep another place instead, if it is a better one to keep.
+  pure subroutine take_if(better, found, kept)
+    logical, intent(in) :: better                !! than what is kept
+    type(overlap_place), intent(in) :: found     !! its ratio is not looked at
+    type(overlap_place), intent(inout) :: kept   !! with its ratio
 
-    if (is_worse(found, worst)) call take(found, worst)
-  end subroutine take_worse
-
-  !> Keep the deeper of two places.
-  pure subroutine take_deeper(found, deepest)
-    type(overlap_place), intent(in) :: found        !! its ratio is not looked at
-    type(overlap_place), intent(inout) :: deepest   !! with its ratio
-
-    if (is_deeper(found, deepest)) call take(found, deepest)
-  end subroutine take_deeper
-
-  pure subroutine take(found, kept)
-    type(overlap_place), intent(in) :: found
-    type(overlap_place), intent(out) :: kept
-
+    if (.not. better) return
     kept = found
     kept%ratio = found%depth/found%allowed
-  end subroutine take
+  end subroutine take_if
 end module epcont_certificate_findings

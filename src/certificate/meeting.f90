@@ -1,8 +1,9 @@
-!> What a scene is looked through with: the outlines displaced and as drawn, how their sides meet, and what these allow there.
+!> What a scene is looked through with: the outlines displaced and as drawn, how their sides meet, and what
+!> these allow there.
 module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: allowance_type, new_allowance
-  use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, take_deeper, take_worse
+  use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, take_if
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_box_tree, only: box_tree
   use epcont_geometry_outline, only: outline_type
@@ -10,13 +11,14 @@ module epcont_certificate_meeting
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: point_type, search_type, new_search, point_on, boxes_meeting, sides_meeting, part_along, motion_at, meet, keep, insert
+  public :: point_type, search_type, new_search, point_on, boxes_meeting, sides_meeting, motion_at, &
+            part_along, meet, keep, insert
 
-  !> Bodies deeper in each other, or farther apart where they press, than this part of the largest displacement: that is told,
-  !! though it be allowed.
+  !> Bodies deeper in each other, or farther apart where they press, than this part of the largest
+  !! displacement: that is told, though it be allowed.
   real(wp), parameter :: told = 0.1_wp
-  !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths off the largest
-  !! allowance counts.
+  !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths
+  !! off the largest allowance counts.
   real(wp), parameter :: about = 1.5_wp
   !> The least that is allowed: as a part of the scene's extent, and in roundings of its coordinates.
   real(wp), parameter :: least_part = 1.0e-8_wp, roundings = 16.0_wp
@@ -34,23 +36,23 @@ module epcont_certificate_meeting
   !> What is worked with.
   type :: search_type
     type(outline_shape) :: drawn, now      !! the outlines as drawn, and displaced
-    real(wp), allocatable :: motion(:, :, :)      !! of where each side begins and ends, and of its middle [length] [2, 3, sides]
+    real(wp), allocatable :: motion(:, :, :)   !! of begin, end, middle of each side [length] [2, 3, sides]
     type(allowance_type) :: allowance
     type(point_type), allocatable :: middle(:)    !! a point within each part [parts]
     !> Of a circle whose outline is as long as the part's: however it lies, it is the same [length] [parts]
     real(wp), allocatable :: width(:)
-    logical, allocatable :: in_line(:)     !! sides of lines [sides]
+    real(wp), allocatable :: line_length(:)       !! of sides of lines as drawn, 0 of others [length] [sides]
     integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
     real(wp) :: least = 0.0_wp             !! what is allowed between any two sides [length]
     real(wp) :: moved = 0.0_wp             !! largest displacement [length]
-    integer :: last = 1                    !! the side that was nearest to the point before: the next is not far from it
+    integer :: last = 1                    !! the side that was nearest to the point before: near to the next
   end type search_type
 
 contains
 
   !> For a scene that has outlines.
   pure function new_search(model, displacement) result(search)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     type(search_type) :: search
     integer :: k
@@ -58,30 +60,23 @@ contains
     associate (outline => model%body_outline, x => model%x)
       search%drawn = new_outline_shape(outline, x)
       search%now = new_outline_shape(outline, x + displacement)
-      allocate (search%motion(2, 3, outline%sides), source=0.0_wp)
-      do k = 1, outline%sides
-        associate (node => pack(outline%node(:, k), outline%node(:, k) > 0))
-          search%motion(:, :size(node), k) = displacement(:, node)
-        end associate
-      end do
+      ! A middle that is not there has that of the first node, for which nobody asks.
+      search%motion = reshape(displacement(:, [max(outline%node, 1)]), [2, 3, outline%sides])
       search%allowance = new_allowance(model, search%drawn, search%now)
       search%mate = find_mates(model)
       search%moved = maxval(norm2(displacement, dim=1))
       search%least = least_part*maxval(maxval(x, dim=2) - minval(x, dim=2)) &
                      + roundings*epsilon(1.0_wp)*(maxval(abs(x)) + maxval(abs(displacement)))
-      allocate (search%in_line(outline%sides), source=.false.)
+      allocate (search%line_length(outline%sides), source=0.0_wp)
       if (allocated(model%line)) then
         do k = 1, size(model%line)
-          search%in_line(model%line(k)%side) = .true.
+          search%line_length(model%line(k)%side) = search%allowance%length(model%line(k)%side)
         end do
       end if
-      allocate (search%width(outline%parts), search%middle(outline%parts))
-      do k = 1, outline%parts
-        associate (first => outline%first(k), last => outline%first(k + 1) - 1)
-          search%width(k) = sum(search%allowance%length(first:last))/acos(-1.0_wp)
-          search%middle(k) = middle_of(model, first, displacement)
-        end associate
-      end do
+      associate (first => outline%first, length => search%allowance%length)
+        search%width = [(sum(length(first(k):first(k + 1) - 1))/acos(-1.0_wp), k=1, outline%parts)]
+        search%middle = [(middle_of(model, first(k), displacement), k=1, outline%parts)]
+      end associate
     end associate
   end function new_search
 
@@ -103,39 +98,41 @@ contains
 
   !> A point of the outlines.
   pure type(point_type) function point_on(search, side, s) result(point)
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side
+    type(search_type), intent(in) :: search   !! the outlines
+    integer, intent(in) :: side   !! of the outlines
     real(wp), intent(in) :: s   !! along the side, from 0 to 1
 
-    point = point_type(side, s, .false., search%drawn%at(side, s), motion_at(search, side, s), search%now%at(side, s))
+    point = point_type(side, s, .false., search%drawn%at(side, s), motion_at(search, side, s), &
+                       search%now%at(side, s))
   end function point_on
 
   !> The boxes of a tree that meet the one from `low` to `high`.
   pure function boxes_meeting(tree, low, high) result(box)
-    type(box_tree), intent(in) :: tree
+    type(box_tree), intent(in) :: tree   !! of the boxes
     real(wp), intent(in) :: low(2), high(2)   !! [length]
-    integer, allocatable :: box(:)
+    integer, allocatable :: box(:), found(:)
     integer :: n
 
-    allocate (box(16))
-    call tree%meeting(low, high, box, n)
-    box = box(:n)
+    allocate (found(16))
+    call tree%meeting(low, high, found, n)
+    box = found(:n)
   end function boxes_meeting
 
   !> The sides of a part whose boxes do.
   pure function sides_meeting(shape, part, low, high) result(side)
-    type(outline_shape), intent(in) :: shape
-    integer, intent(in) :: part
+    type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
+    integer, intent(in) :: part   !! of the outlines
     real(wp), intent(in) :: low(2), high(2)   !! [length]
     integer, allocatable :: side(:)
 
-    side = shape%outline%first(part) - 1 + boxes_meeting(shape%side_tree(part), low, high)
+    side = boxes_meeting(shape%side_tree(part), low, high)
+    side = side + (shape%outline%first(part) - 1)
   end function sides_meeting
 
   !> Displacement of a place of a side [length].
   pure function motion_at(search, side, s) result(motion)
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side
+    type(search_type), intent(in) :: search   !! the outlines
+    integer, intent(in) :: side   !! of the outlines
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: motion(2)
 
@@ -148,8 +145,8 @@ contains
 
   !> How much of a motion goes along a side, either way [length].
   pure real(wp) function part_along(shape, side, s, motion) result(part)
-    type(outline_shape), intent(in) :: shape
-    integer, intent(in) :: side
+    type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
+    integer, intent(in) :: side   !! of the outlines
     real(wp), intent(in) :: s           !! where on it, from 0 to 1
     real(wp), intent(in) :: motion(2)   !! [length]
 
@@ -158,37 +155,34 @@ contains
     end associate
   end function part_along
 
-  !> A point at the place of another outline, or of its own, that it is near to, and what is allowed there: by the two sides, and
-  !! at a node by the one with which the side shares that, too.
+  !> A point at the place of another outline, or of its own, that it is near to, and what is allowed there: by
+  !! the two sides, and at a node by the one with which the side shares that, too.
   pure type(overlap_place) function meet(search, point, place) result(found)
-    type(search_type), intent(in) :: search
-    type(point_type), intent(in) :: point
-    type(near_place), intent(in) :: place
-    integer :: i, k, side(2, 2)
+    type(search_type), intent(in) :: search   !! the outlines
+    type(point_type), intent(in) :: point   !! displaced
+    type(near_place), intent(in) :: place   !! the nearest one of the other outline
+    integer :: i, side(2, 2)
     real(wp) :: longest(2), moved(2), own(2), s(2), slide(2)
 
-    found = overlap_place(depth=place%distance, distance=place%distance, x=point%x, side=point%side, other=place%side)
+    found = overlap_place(depth=place%distance, distance=place%distance, x=point%x, drawn=point%drawn, &
+                          side=point%side, other=place%side)
     found%meeting%joined = is_joined(search, point%side, place%side)
     s = [point%s, place%s]
     side(:, 1) = sides_at(search%now%outline, point%side, point%s)
     side(:, 2) = sides_at(search%now%outline, place%side, place%s)
     moved = motion_at(search, point%side, point%s) - motion_at(search, place%side, place%s)
     do i = 1, 2
-      ! Along a side as drawn, from which gaps are measured, either way. At a node it is the lesser of those along its two sides:
-      ! on which of them a point is, rounding decides.
+      ! Along a side as drawn, from which gaps are measured, either way. At a node it is the lesser of those
+      ! along its two sides: on which of them a point is, rounding decides.
       slide(i) = part_along(search%drawn, side(1, i), s(i), moved)
       if (side(2, i) > 0) slide(i) = min(slide(i), part_along(search%drawn, side(2, i), 1.0_wp - s(i), moved))
-      associate (here => side(:count(side(:, i) > 0), i))
-        longest(i) = maxval(merge(search%allowance%length(here), 0.0_wp, search%in_line(here)))
-      end associate
+      longest(i) = maxval(search%line_length(side(:count(side(:, i) > 0), i)))
     end do
     found%meeting%slide = maxval(slide)
     if (all(longest > 0.0_wp)) found%meeting%longest = maxval(longest)
-    own = 0.0_wp
     do i = 1, 2
-      do k = 1, count(side(:, i) > 0)
-        own(i) = max(own(i), search%allowance%of(side(k, i), found%meeting))
-      end do
+      own(i) = search%allowance%of(side(1, i), found%meeting)
+      if (side(2, i) > 0) own(i) = max(own(i), search%allowance%of(side(2, i), found%meeting))
     end do
     found%allowed = search%least + own(1) + own(2)
   end function meet
@@ -205,8 +199,8 @@ contains
     if (s >= 1.0_wp) sides(2) = outline%after(side)
   end function sides_at
 
-  !> Does a pair join the two bodies at one of two sides, or of the sides beside them? Pairs end with lines, the smooth curve one
-  !! side later. A body is joined with itself.
+  !> Does a pair join the two bodies at one of two sides, or of the sides beside them? Pairs end with lines,
+  !! the smooth curve one side later. A body is joined with itself.
   pure logical function is_joined(search, side, other)
     type(search_type), intent(in) :: search
     integer, intent(in) :: side, other
@@ -229,53 +223,39 @@ contains
     end associate
   end function is_paired
 
-  !> Keep a place if it is the worst by what is allowed about it, the deepest, or the worst by what is not told. Where bodies may
-  !! have overlapped as drawn, that is taken off, and the deepest such overlap kept too.
-  pure subroutine keep(search, found, worst, deepest, not_told, point, drawn)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(in) :: found
+  !> Keep a place if it is the worst by what is allowed, the deepest, or the worst by what is not told.
+  !! Allowed is what sides about it allow, where more was found than the nearest two do. Where bodies may have
+  !! overlapped as drawn, that is taken off, and the deepest such overlap kept too.
+  pure subroutine keep(search, found, worst, deepest, not_told, drawn)
+    type(search_type), intent(in) :: search   !! the outlines
+    type(overlap_place), intent(in) :: found   !! from `meet`; its depth may be another
     type(overlap_place), intent(inout) :: worst, deepest, not_told   !! those kept so far
-    type(point_type), intent(in), optional :: point                  !! the one that is there
-    type(overlap_place), intent(inout), optional :: drawn
+    type(overlap_place), intent(inout), optional :: drawn            !! the deepest as drawn
     type(overlap_place) :: place, telling
 
     telling = found
-    call take_told(search, telling)
+    associate (allowance => search%allowance, a => found%side, b => found%other, meeting => found%meeting)
+      telling%moving = allowance%of_motion(a, meeting) + allowance%of_motion(b, meeting) &
+                       > 0.5_wp*found%allowed
+      telling%allowed = search%least + told*search%moved &
+                        + allowance%of_drawing(a, meeting) + allowance%of_drawing(b, meeting)
+    end associate
     if (.not. (is_worse(found, worst) .or. is_deeper(found, deepest) .or. is_worse(telling, not_told))) return
     place = found
-    call widen_allowance(search, place)
+    if (place%depth > place%allowed) &
+      place%allowed = search%least + allowance_about(search, place, place%side) &
+                      + allowance_about(search, place, place%other)
     if (present(drawn)) then
-      if (place%distance > min(place%allowed, telling%allowed)) call take_drawn(search, point, place, drawn)
+      if (place%distance > min(place%allowed, telling%allowed)) call take_drawn(search, place, drawn)
       telling%depth = place%depth
     end if
-    call take_worse(place, worst)
-    call take_deeper(place, deepest)
-    call take_worse(telling, not_told)
+    call take_if(is_worse(place, worst), place, worst)
+    call take_if(is_deeper(place, deepest), place, deepest)
+    call take_if(is_worse(telling, not_told), telling, not_told)
   end subroutine keep
 
-  !> Of a place where more or less is allowed: how much is not told.
-  pure subroutine take_told(search, place)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(inout) :: place
-
-    associate (allowance => search%allowance, side => place%side, other => place%other, meeting => place%meeting)
-      place%moving = 2.0_wp*(allowance%of_motion(side, meeting) + allowance%of_motion(other, meeting)) > place%allowed
-      place%allowed = search%least + told*search%moved + allowance%of_drawing(side, meeting) &
-                      + allowance%of_drawing(other, meeting)
-    end associate
-  end subroutine take_told
-
-  !> Allow what sides about a place allow, where more was found than the nearest two do.
-  pure subroutine widen_allowance(search, place)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(inout) :: place
-
-    if (place%depth <= place%allowed) return
-    place%allowed = search%least + allowance_about(search, place, place%side) + allowance_about(search, place, place%other)
-  end subroutine widen_allowance
-
-  !> The most that a side at a place allows, or others of its part that are about as near to that as the two there to each other
-  !! [length].
+  !> The most that a side at a place allows, or others of its part that are about as near to that as the two
+  !! there to each other [length].
   pure real(wp) function allowance_about(search, place, side) result(allowed)
     type(search_type), intent(in) :: search
     type(overlap_place), intent(in) :: place
@@ -295,25 +275,24 @@ contains
   end function allowance_about
 
   !> Take off the depth at a place what the bodies overlapped as drawn, if no pair is to close that.
-  pure subroutine take_drawn(search, point, place, drawn)
+  pure subroutine take_drawn(search, place, drawn)
     type(search_type), intent(in) :: search
-    type(point_type), intent(in) :: point
-    type(overlap_place), intent(inout) :: place
-    type(overlap_place), intent(inout) :: drawn     !! the deepest such overlap
+    type(overlap_place), intent(inout) :: place, drawn   !! the latter is the deepest such overlap
     type(overlap_place) :: found
     type(near_place) :: before
 
     if (is_paired(search, place%side, place%other)) return
-    before = search%drawn%nearest_place(search%drawn%outline%part(place%other), point%drawn)
+    before = search%drawn%nearest_place(search%drawn%outline%part(place%other), place%drawn)
     if (.not. before%inside) return
-    found = overlap_place(depth=before%distance, allowed=place%allowed, x=point%drawn, side=place%side, other=before%side)
-    if (found%depth > found%allowed) call take_deeper(found, drawn)
+    found = overlap_place(depth=before%distance, allowed=place%allowed, x=place%drawn, side=place%side, &
+                          other=before%side)
+    call take_if(found%depth > found%allowed .and. is_deeper(found, drawn), found, drawn)
     place%depth = place%depth - before%distance
   end subroutine take_drawn
 
   !> Put a number into an ascending list.
   pure subroutine insert(number, list)
-    real(wp), intent(in) :: number
+    real(wp), intent(in) :: number   !! what is put in
     real(wp), allocatable, intent(inout) :: list(:)   !! made longer by one
 
     list = [pack(list, list <= number), number, pack(list, list > number)]

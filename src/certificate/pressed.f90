@@ -1,8 +1,8 @@
-!> What pressed pairs press on, once displaced: the gap between the outlines along the normal, how far beside the other body the
-!> node stands, and how far the two sides have slid along each other.
+!> What pressed pairs press on, once displaced: the gap between the outlines along the normal, how far beside
+!> the other body the node stands, and how far the two sides have slid along each other.
 module epcont_certificate_pressed
   use epcont_base_kinds, only: wp
-  use epcont_certificate_findings, only: overlap_place, scene_type, take_worse
+  use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_if
   use epcont_certificate_meeting, only: keep, meet, motion_at, part_along, point_on, point_type, search_type
   use epcont_geometry_outline_shape, only: near_place
   use epcont_geometry_plane, only: cross_product
@@ -13,18 +13,19 @@ module epcont_certificate_pressed
 
   !> A pair presses if its force is more than this part of the largest.
   real(wp), parameter :: pressing = 1.0e-6_wp
-  !> Sides that slide by less than this part of the longer one carry what they carried where they were drawn; so do bodies that
-  !! slide by less than that part of the smaller one. A node may stand as far beside the other body as that.
+  !> Sides that slide by less than this part of the longer one carry what they carried where they were drawn;
+  !! so do bodies that slide by less than that part of the smaller one. A node may stand as far beside the
+  !! other body as that.
   real(wp), parameter :: part_of_side = 0.25_wp, part_of_body = 0.05_wp
 
 contains
 
   !> All pressed pairs of two bodies.
   pure subroutine look_at_pairs(model, search, force, scene)
-    type(model_type), intent(in) :: model
-    type(search_type), intent(in) :: search
+    type(model_type), intent(in) :: model   !! the scene
+    type(search_type), intent(in) :: search   !! its outlines
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
-    type(scene_type), intent(inout) :: scene
+    type(scene_type), intent(inout) :: scene   !! what is found is added
     type(point_type) :: point
     real(wp) :: least
     integer :: k, side, side_of(model%nodes)
@@ -39,9 +40,10 @@ contains
       end associate
     end do
     do k = 1, model%pairs
-      associate (a => model%pair_node(1, k), b => model%pair_node(2, k), part => model%body_outline%part_of)
+      associate (a => model%pair_node(1, k), b => model%pair_node(2, k), part => model%body_outline%part_of, &
+                 node => model%body_outline%node)
         if (force(k) <= least .or. side_of(b) == 0 .or. part(a) == 0 .or. part(a) == part(b)) cycle
-        point = point_on(search, side_of(b), merge(0.5_wp, 0.0_wp, model%body_outline%node(3, side_of(b)) == b))
+        point = point_on(search, side_of(b), merge(0.0_wp, 0.5_wp, node(1, side_of(b)) == b))
         call look_at_pair(search, k, model%normal(:, k), point, part(a), scene)
       end associate
     end do
@@ -56,15 +58,19 @@ contains
     type(scene_type), intent(inout) :: scene
     type(near_place) :: place
     type(overlap_place) :: found, slid
+    integer :: side(2)
     real(wp) :: off
 
     place = search%now%nearest_place(part, point%x)
     found = meet(search, point, place)
     found%pair = pair
     slid = found
-    slid%depth = part_along(search%now, place%side, place%s, point%motion - motion_at(search, place%side, place%s))
-    slid%allowed = small_slide(search, found)
-    call take_worse(slid, scene%slid)
+    slid%depth = part_along(search%now, place%side, place%s, &
+                            point%motion - motion_at(search, place%side, place%s))
+    side = [found%side, found%other]
+    slid%allowed = max(part_of_side*maxval(search%allowance%length(side)), &
+                       part_of_body*minval(search%width(search%now%outline%part(side))))
+    call take_if(is_worse(slid, scene%slid), slid, scene%slid)
     if (place%inside) return
 
     found%depth = abs(dot_product(point%x - place%x, normal))
@@ -74,18 +80,7 @@ contains
     else   ! the other body ends before it
       found%depth = off
       found%allowed = found%allowed + slid%allowed
-      call take_worse(found, scene%beside)
+      call take_if(is_worse(found, scene%beside), found, scene%beside)
     end if
   end subroutine look_at_pair
-
-  !> How far sides may slide along each other and be where they were drawn [length].
-  pure real(wp) function small_slide(search, place) result(small)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(in) :: place
-
-    associate (side => [place%side, place%other])
-      small = max(part_of_side*maxval(search%allowance%length(side)), &
-                  part_of_body*minval(search%width(search%now%outline%part(side))))
-    end associate
-  end function small_slide
 end module epcont_certificate_pressed

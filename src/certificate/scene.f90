@@ -1,14 +1,15 @@
-!> Looks through the displaced outlines of all bodies for places where one lies inside another, or inside itself, and for
-!> forces that press across a gap. Pairs and lines have no say in where it looks.
+!> Looks through the displaced outlines of all bodies for places where one lies inside another, or inside
+!> itself, and for forces that press across a gap. Pairs and lines have no say in where it looks.
 !>
-!> Each side of the outlines that meets the box of another body is sampled: where it begins, at its quarter points, and
-!> between two places where it crosses the other outline. The depth of a point is its distance from the other outline.
+!> Each side of the outlines that meets the box of another body is sampled: where it begins, at its quarter
+!> points, and between two places where it crosses the other outline. The depth of a point is its distance
+!> from the other outline.
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
-  use epcont_certificate_beyond, only: farthest_beyond_axis, farthest_beyond_mirror
-  use epcont_certificate_findings, only: beyond_place, overlap_place, scene_type, take_worse
-  use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, new_search, point_on, point_type, search_type, &
-                                       sides_meeting
+  use epcont_certificate_beyond, only: look_beyond
+  use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, scene_type, take_if
+  use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, new_search, point_on, point_type, &
+                                       search_type, sides_meeting
   use epcont_certificate_pressed, only: look_at_pairs
   use epcont_certificate_way, only: look_at_ways
   use epcont_geometry_outline_shape, only: near_place, outline_shape
@@ -29,7 +30,7 @@ contains
 
   !> Look through the whole scene.
   pure function look_through(model, displacement, force) result(scene)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! what is looked through
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
     type(scene_type) :: scene
@@ -48,8 +49,7 @@ contains
     end do
     call look_at_pairs(model, search, force, scene)
     call look_at_ways(search, scene)
-    scene%axis = farthest_beyond_axis(model, displacement, search%least)
-    scene%mirror = farthest_beyond_mirror(model, displacement, search%least)
+    call look_beyond(model, displacement, search%least, scene)
     scene%changed_side = maxloc(search%allowance%change, dim=1)
     scene%change = search%allowance%change(scene%changed_side)
   end function look_through
@@ -64,7 +64,8 @@ contains
     integer :: b, k
     real(wp) :: h
 
-    associate (low => search%now%low(:, side), high => search%now%high(:, side), part => search%now%outline%part(side))
+    associate (low => search%now%low(:, side), high => search%now%high(:, side), &
+               part => search%now%outline%part(side))
       parts = boxes_meeting(search%now%part_tree, low, high)
       do b = 1, size(parts)
         if (parts(b) == part) cycle
@@ -82,7 +83,8 @@ contains
     end do
   end subroutine look_at_side
 
-  !> A point within a part, in the others whose boxes it meets: of bodies with one outline no point of that lies inside.
+  !> A point within a part, in the others whose boxes it meets: of bodies with one outline no point of that
+  !! lies inside.
   pure subroutine look_at_middle(search, part, scene)
     type(search_type), intent(inout) :: search
     integer, intent(in) :: part
@@ -109,7 +111,8 @@ contains
     if (search%now%side_tree(part)%away(1, point%x) > 0.0_wp) return
     place = search%now%nearest_place(part, point%x, search%last)
     search%last = place%side
-    if (place%inside) call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep, point, scene%drawn)
+    if (place%inside) &
+      call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep, scene%drawn)
   end subroutine look_at_point
 
   !> Where the chord of a side crosses those of another part, ascending.
@@ -151,12 +154,12 @@ contains
       do k = 1, size(quarters)
         point = point_on(search, side, quarters(k))
         place = search%now%near_side(other, point%x)
-        if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. 2.0_wp*place%distance > norm2(search%now%chord(side))) cycle
-        if (.not. search%now%is_inside(place, point%x)) cycle
+        if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. .not. search%now%is_inside(place, point%x)) cycle
+        if (2.0_wp*place%distance > norm2(search%now%chord(side))) cycle
         found = meet(search, point, place)
         ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
         drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
-        if (drawn <= found%allowed) call take_worse(found, scene%itself)
+        if (drawn <= found%allowed) call take_if(is_worse(found, scene%itself), found, scene%itself)
       end do
     end associate
   end subroutine look_at_itself

@@ -1,5 +1,6 @@
-!> Strains of an element from its displacements: of the table of elements only what a displacement is between the nodes and where
-!> the integration points are; derivatives are differences, which are exact for the polynomials met.
+!> Strains of an element from its displacements: of the table of elements only what a displacement is between
+!> the nodes and where the integration points are; derivatives are differences, which are exact for the
+!> polynomials met.
 module epcont_certificate_unit_strains
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes, most_points
@@ -14,10 +15,11 @@ module epcont_certificate_unit_strains
 
 contains
 
-  !> Derivatives of the nodes' shares in what is at each integration point of a kind, by the two local coordinates.
+  !> Derivatives of the nodes' shares in what is at each integration point of a kind, by the two local
+  !! coordinates.
   pure subroutine find_slopes(kind, slope)
-    type(element_kind), intent(in) :: kind
-    real(wp), intent(out) :: slope(2, most_nodes, most_points)
+    type(element_kind), intent(in) :: kind   !! of elements
+    real(wp), intent(out) :: slope(2, most_nodes, most_points)   !! [local coordinates, nodes, points]
     real(wp) :: step(2)
     integer :: c, p
 
@@ -30,13 +32,13 @@ contains
     end do
   end subroutine find_slopes
 
-  !> Strains xx, yy, zz, xy (engineering) that a unit displacement of each freedom gives at the integration places of an
-  !! element, and the volumes that belong to them.
+  !> Strains xx, yy, zz, xy (engineering) that a unit displacement of each freedom gives at the integration
+  !! places of an element, and the volumes that belong to them.
   pure subroutine unit_strains(model, element, slope, strain, volume)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: element
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: element   !! which of its elements
     real(wp), intent(in) :: slope(2, most_nodes, most_points)        !! of its kind, from `find_slopes`
-    real(wp), intent(out) :: strain(4, 2, most_nodes, most_points)   !! [-, directions, nodes, places] [1/length]
+    real(wp), intent(out) :: strain(4, 2, most_nodes, most_points)   !! [1/length]
     real(wp), intent(out) :: volume(most_points)                     !! [length**3]
     real(wp) :: x(2, most_nodes), side(2, 2), away(2), gradient(2), determinant, radius
     integer :: k, n, p
@@ -47,7 +49,8 @@ contains
     end do
     associate (s => model%section(element), kind => model%kinds(model%kind(element)))
       do p = 1, kind%points
-        ! d x/d local, one column each; from the first node, so that a place far from the origin takes no digits.
+        ! d x/d local, one column each; from the first node, so that a place far from the origin takes no
+        ! digits.
         side = 0.0_wp
         do k = 2, n
           away = x(:, k) - x(:, 1)

@@ -1,12 +1,15 @@
-!> Bodies that pass through each other on their way, though they are apart where they come to: nodes go straight from where they
-!> were drawn to where they are, as those of the other outline do, and may enter it and come out again.
+!> Bodies that pass through each other on their way, though they are apart where they come to: nodes go
+!> straight from where they were drawn to where they are, as those of the other outline do, and may enter it
+!> and come out again.
 !>
-!> A path is looked at in a frame that moves with the other body as a whole. There that body's sides are about where they are
-!> displaced, so its tree of boxes tells which of them the path meets, and nothing is built anew.
+!> A path is looked at in a frame that moves with the other body as a whole. There that body's sides are about
+!> where they are displaced, so its tree of boxes tells which of them the path meets, and nothing is built
+!> anew.
 module epcont_certificate_way
   use epcont_base_kinds, only: wp
-  use epcont_certificate_findings, only: overlap_place, scene_type, take_worse
-  use epcont_certificate_meeting, only: boxes_meeting, insert, meet, point_on, point_type, search_type, sides_meeting
+  use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_if
+  use epcont_certificate_meeting, only: boxes_meeting, insert, meet, point_on, point_type, search_type, &
+                                       sides_meeting
   use epcont_geometry_box_tree, only: box_tree, new_box_tree
   use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_geometry_plane, only: cross_product
@@ -14,11 +17,13 @@ module epcont_certificate_way
   private
   public :: look_at_ways
 
-  !> Faces by which a node enters and leaves look against each other, within 26 degrees (cosine): it passes through what is
-  !! between them. Else it cuts a corner, and only by more than a side is that told from what a path does that is not straight.
+  !> Faces by which a node enters and leaves look against each other, within 26 degrees (cosine): it passes
+  !! through what is between them. Else it cuts a corner, and only by more than a side is that told from what
+  !! a path does that is not straight.
   real(wp), parameter :: opposite = -0.9_wp
 
-  !> A body of which a side turns [rad] or is stretched by more than this has no way that is straight, and no shape on it.
+  !> A body of which a side turns [rad] or is stretched by more than this has no way that is straight, and no
+  !! shape on it.
   real(wp), parameter :: shapeless = 1.0_wp
 
   !> How each part moves as a whole, and the outlines on the way.
@@ -39,10 +44,11 @@ module epcont_certificate_way
 
 contains
 
-  !> The paths of all nodes of the outlines, and of a point within each part: of two bodies with one outline no node goes inside.
+  !> The paths of all nodes of the outlines, and of a point within each part: of two bodies with one outline
+  !! no node goes inside.
   pure subroutine look_at_ways(search, scene)
-    type(search_type), intent(in) :: search
-    type(scene_type), intent(inout) :: scene
+    type(search_type), intent(in) :: search   !! the outlines
+    type(scene_type), intent(inout) :: scene   !! what is found is added
     type(ways_type) :: ways
     integer :: part, side
 
@@ -71,12 +77,14 @@ contains
       allocate (ways%mean(2, outline%parts), ways%spread(outline%parts), ways%straight(outline%parts))
       allocate (low(2, outline%parts), high(2, outline%parts))
       do p = 1, outline%parts
-        associate (first => outline%first(p), last => outline%first(p + 1) - 1, tree => search%now%side_tree(p))
+        associate (first => outline%first(p), last => outline%first(p + 1) - 1, &
+                   tree => search%now%side_tree(p))
           ways%straight(p) = all(search%allowance%change(first:last) <= shapeless)
           u = search%motion(:, 1, first:last)   ! what middles bulge besides is allowed three times over
           ways%mean(:, p) = 0.5_wp*(minval(u, dim=2) + maxval(u, dim=2))
           ways%spread(p) = maxval(norm2(u - spread(ways%mean(:, p), 2, size(u, 2)), dim=1))
-          low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))   ! from where it was drawn to where it is
+          ! From where it was drawn to where it is.
+          low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))
           high(:, p) = tree%high(:, 1) - min(0.0_wp, minval(u, dim=2))
         end associate
       end do
@@ -126,12 +134,13 @@ contains
     if (size(time) == 0) return
     time = [0.0_wp, time, 1.0_wp]
     do k = 2, size(time)
-      if ((time(k) - time(k - 1))*walk%length > search%least) call look_between(search, ways, walk, time(k - 1:k), scene)
+      if ((time(k) - time(k - 1))*walk%length > search%least) &
+        call look_between(search, ways, walk, time(k - 1:k), scene)
     end do
   end subroutine look_at_way
 
-  !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area between the point and a
-  !! chord is a square function of time; on the chord it vanishes.
+  !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area
+  !! between the point and a chord is a square function of time; on the chord it vanishes.
   pure subroutine cross_side(search, point, side, time)
     type(search_type), intent(in) :: search
     type(point_type), intent(in) :: point
@@ -147,7 +156,8 @@ contains
       b = search%drawn%x(:, ends(chord + 1), side) - point%drawn
       da = search%motion(:, ends(chord), side) - point%motion
       db = search%motion(:, ends(chord + 1), side) - point%motion
-      root = roots_of_square(cross_product(a, b), cross_product(a, db) + cross_product(da, b), cross_product(da, db))
+      root = roots_of_square(cross_product(a, b), cross_product(a, db) + cross_product(da, b), &
+                             cross_product(da, db))
       do i = 1, 2
         if (root(i) < 0.0_wp .or. root(i) > 1.0_wp) cycle
         if (dot_product(a + root(i)*da, b + root(i)*db) <= 0.0_wp) call insert(root(i), time)
@@ -196,8 +206,9 @@ contains
     if (dot_product(along(:, 1), along(:, 2)) > opposite*norm2(along(:, 1))*norm2(along(:, 2)) .and. &
         within <= maxval(search%allowance%length([found%side, found%other]))) return
     found%x = walk%point%drawn + middle*walk%point%motion
-    if (.not. walk%point%in_element) found%node = search%now%outline%node(merge(3, 1, walk%point%s > 0.0_wp), found%side)
-    call take_worse(found, scene%passed)
+    if (.not. walk%point%in_element) &
+      found%node = search%now%outline%node(merge(3, 1, walk%point%s > 0.0_wp), found%side)
+    call take_if(is_worse(found, scene%passed), found, scene%passed)
   end subroutine look_between
 
   !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none.
@@ -209,34 +220,22 @@ contains
     real(wp), intent(in) :: reach           !! [length]
     type(near_place), intent(out) :: best
     type(near_place) :: place
-    integer, allocatable :: sides(:)
+    integer, allocatable :: near(:), sides(:)
     real(wp) :: wide, x(2), x_now(2)
     integer :: k
 
     x = walk%point%drawn + time*walk%point%motion
     x_now = x + (1.0_wp - time)*ways%mean(:, walk%part)
     wide = reach + (1.0_wp - time)*ways%spread(walk%part)
-    sides = sides_meeting(search%now, walk%part, x_now - wide, x_now + wide)
-    do k = 1, size(sides)
-      ways%between%x(:, :, sides(k)) = ends_of(sides(k))
-      place = ways%between%near_side(sides(k), x)
+    near = sides_meeting(search%now, walk%part, x_now - wide, x_now + wide)
+    associate (outline => search%now%outline)
+      sides = [near, outline%before(near), outline%after(near)]   ! at a node both say what is inside
+    end associate
+    ways%between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
+    do k = 1, size(near)
+      place = ways%between%near_side(near(k), x)
       if (place%distance < best%distance) best = place
     end do
-    if (best%side == 0) return
-    associate (before => search%now%outline%before(best%side), after => search%now%outline%after(best%side))
-      ways%between%x(:, :, before) = ends_of(before)
-      ways%between%x(:, :, after) = ends_of(after)
-    end associate
-    best%inside = ways%between%is_inside(best, x)
-
-  contains
-
-    !> Of a side, and its middle, at that time [length].
-    pure function ends_of(side) result(x)
-      integer, intent(in) :: side
-      real(wp) :: x(2, 3)
-
-      x = search%drawn%x(:, :, side) + time*search%motion(:, :, side)
-    end function ends_of
+    if (best%side > 0) best%inside = ways%between%is_inside(best, x)
   end subroutine find_nearest
 end module epcont_certificate_way

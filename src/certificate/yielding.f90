@@ -1,5 +1,6 @@
-!> The stress that belongs to a strain, from the paper's equations as they stand: the uniaxial curve over total strain,
-!> Poisson's ratio mu of the secant body, and bisection for the equivalent strain. The solver shifts the curve instead.
+!> The stress that belongs to a strain, from the paper's equations as they stand: the uniaxial curve over
+!> total strain, Poisson's ratio mu of the secant body, and bisection for the equivalent strain. The solver
+!> shifts the curve instead.
 module epcont_certificate_yielding
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_stress
@@ -16,9 +17,9 @@ contains
 
   !> Stress xx, yy, zz, xy of a strain xx, yy, zz, xy (engineering) [stress].
   pure function stress_on_curve(model, section, strain) result(stress)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: section
-    real(wp), intent(in) :: strain(4)
+    type(model_type), intent(in) :: model   !! its sections, their curves and PARAM MUP
+    integer, intent(in) :: section   !! of the model
+    real(wp), intent(in) :: strain(4)   !! xx, yy, zz, xy (engineering)
     real(wp) :: stress(4)
     real(wp) :: across, lambda, mu, secant, shear
 
@@ -36,7 +37,8 @@ contains
     end associate
   end function stress_on_curve
 
-  !> Equivalent stress (2-1), from the largest component: squares of very small or large ones are beyond the range of numbers.
+  !> Equivalent stress (2-1), from the largest component: squares of very small or large ones are beyond the
+  !! range of numbers.
   pure real(wp) function von_mises_stress(stress)
     real(wp), intent(in) :: stress(4)   !! xx, yy, zz, xy
     real(wp) :: part(4), largest
@@ -45,8 +47,8 @@ contains
     von_mises_stress = 0.0_wp
     if (largest == 0.0_wp) return
     part = stress/largest
-    von_mises_stress = largest*sqrt(0.5_wp*((part(1) - part(2))**2 + (part(2) - part(3))**2 + (part(3) - part(1))**2) &
-                                    + 3.0_wp*part(4)**2)
+    von_mises_stress = largest*sqrt(0.5_wp*((part(1) - part(2))**2 + (part(2) - part(3))**2 &
+                                            + (part(3) - part(1))**2) + 3.0_wp*part(4)**2)
   end function von_mises_stress
 
   !> E' = sigma_i/eps_i of the curve, and mu: that with which eps_i of the strain is eps_i of the curve.
@@ -81,8 +83,8 @@ contains
     pure logical function is_beyond(total)
       real(wp), intent(in) :: total
 
-      associate (ratio => poisson_ratio(total))
-        is_beyond = equivalent_strain(strain, strain_across(model%kinematics(section), ratio, strain), ratio) > total
+      associate (mu => poisson_ratio(total), kinematics => model%kinematics(section))
+        is_beyond = equivalent_strain(strain, strain_across(kinematics, mu, strain), mu) > total
       end associate
     end function is_beyond
 
@@ -104,8 +106,8 @@ contains
   pure real(wp) function equivalent_strain(strain, across, mu)
     real(wp), intent(in) :: strain(4), across, mu
 
-    equivalent_strain = sqrt(0.5_wp*((strain(1) - strain(2))**2 + (strain(2) - across)**2 + (across - strain(1))**2) &
-                             + 0.75_wp*strain(4)**2)/(1.0_wp + mu)
+    equivalent_strain = sqrt(0.5_wp*((strain(1) - strain(2))**2 + (strain(2) - across)**2 &
+                                     + (across - strain(1))**2) + 0.75_wp*strain(4)**2)/(1.0_wp + mu)
   end function equivalent_strain
 
   !> Strain across the plane: what it is, or in plane stress that of a secant body without stress there.

@@ -1,4 +1,5 @@
-!> Scenes of a few elements, written in a line, and what the certificate finds where one of the bodies is moved.
+!> Scenes of a few elements, written in a line, and what the certificate finds where one of the bodies is
+!> moved.
 module small_scenes
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: allowance_type
