@@ -20,7 +20,7 @@ module epcont_contact_tableau
   use epcont_linalg_dense, only: add_product
   implicit none
   private
-  public :: contact_tableau, new_tableau, pivot, row_of, column_of, entries_of_column, entries_of_rows
+  public :: contact_tableau, new_tableau, pivot, entries_of_column, entries_of_rows
 
   !> The variable that carries the load from 0 to 1.
   integer, parameter, public :: load_factor = 0
@@ -90,22 +90,6 @@ contains
     call add_product(-1.0_wp, problem%motion, approach, entry)
     entry(basis%pairs, :) = force
   end subroutine fill_entries
-
-  !> Row of a variable; 0 while it is nonbasic.
-  elemental integer function row_of(tableau, variable) result(row)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: variable
-
-    row = max(tableau%place(variable), 0)
-  end function row_of
-
-  !> Column of a variable; 0 while it is basic.
-  elemental integer function column_of(tableau, variable) result(column)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: variable
-
-    column = max(-tableau%place(variable), 0)
-  end function column_of
 
   !> The entries of a column.
   pure function entries_of_column(tableau, column) result(entry)
