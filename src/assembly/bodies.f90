@@ -66,7 +66,7 @@ contains
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
 
-    call assemble_body(model, operator, law, changed, numbering%equation, numbering%body(b), self%body(b))
+    call assemble_body(model, operator, law, changed, numbering, b, self%body(b))
     call self%body(b)%factor()
   end subroutine factor_body
 
@@ -124,9 +124,8 @@ contains
 
     condition = 1.0_wp
     do b = 1, size(self%body)
-      associate (body => numbering%body(b), stiffness => self%body(b))
-        if (body%can_yield) &
-          stiffness%matrix%norm = norm_of(model, operator, law, numbering%equation, body, stiffness)
+      associate (stiffness => self%body(b))
+        if (numbering%body(b)%can_yield) stiffness%matrix%norm = norm_of(model, operator, law, numbering, b, stiffness)
         condition = max(condition, stiffness%matrix%condition())
       end associate
     end do
@@ -163,36 +162,48 @@ contains
     real(wp), intent(in) :: force(:, :)          !! [2, nodes]
     real(wp), intent(in) :: part                 !! of the prescribed displacements, with their forces
     type(half_solution), intent(inout) :: half   !! what has been put on before
-    real(wp), allocatable :: border(:, :), inner(:, :)
-    real(wp) :: total
-    integer :: b, c, i, node, number
+    real(wp) :: total(2, size(force, 2))
+    integer :: b
 
     if (.not. allocated(half%body)) allocate (half%body(size(numbering%body)))
-    do b = 1, size(numbering%body)
-      associate (body => numbering%body(b))
-        allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
-        do i = 1, size(body%node)
-          node = body%node(i)
-          do c = 1, 2
-            number = numbering%equation(c, node)
-            total = force(c, node) + part*self%settlement(c, node)
-            if (number > 0) inner(number, 1) = inner(number, 1) + total
-            if (number < 0) border(-number, 1) = border(-number, 1) + total
-          end do
-        end do
-        if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
-          call self%body(b)%solve_lower(inner, border)
-          half%body(b)%loaded = .true.
-        end if
-        if (allocated(half%body(b)%inner)) then
-          inner = inner + half%body(b)%inner
-          border = border + half%body(b)%border
-        end if
-        call move_alloc(inner, half%body(b)%inner)
-        call move_alloc(border, half%body(b)%border)
-      end associate
+    total = force + part*self%settlement
+    do b = 1, size(half%body)
+      call add_to_body(self%body(b), numbering, b, total, half%body(b))
     end do
   end subroutine add_forces
+
+  !> Put forces on one body.
+  pure subroutine add_to_body(stiffness, numbering, b, force, half)
+    type(body_stiffness), intent(in) :: stiffness
+    type(numbering_type), intent(in) :: numbering
+    integer, intent(in) :: b
+    real(wp), intent(in) :: force(:, :)             !! [2, nodes]
+    type(half_solved_body), intent(inout) :: half
+    real(wp), allocatable :: border(:, :), inner(:, :)
+    integer :: c, i
+
+    associate (body => numbering%body(b))
+      allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
+      do i = 1, size(body%node)
+        do c = 1, 2
+          associate (number => numbering%equation(c, body%node(i)), own => force(c, body%node(i)))
+            if (number > 0) inner(number, 1) = inner(number, 1) + own
+            if (number < 0) border(-number, 1) = border(-number, 1) + own
+          end associate
+        end do
+      end do
+    end associate
+    if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
+      call stiffness%solve_lower(inner, border)
+      half%loaded = .true.
+    end if
+    if (allocated(half%inner)) then
+      inner = inner + half%inner
+      border = border + half%border
+    end if
+    call move_alloc(inner, half%inner)
+    call move_alloc(border, half%border)
+  end subroutine add_to_body
 
   !> The other half: displacements under all that has been put on, SUPORT freedoms at zero [2, nodes].
   pure function finish(self, model, numbering, half, part, at_contact) result(u)
@@ -204,7 +215,7 @@ contains
     logical, intent(in) :: at_contact    !! only nodes of pairs are wanted
     real(wp), allocatable :: u(:, :)
     real(wp), allocatable :: border(:, :), inner(:, :)
-    integer :: b, c, i, node, number
+    integer :: b, c, i
 
     allocate (u(2, model%nodes))
     do b = 1, model%bodies
@@ -213,16 +224,16 @@ contains
         border = half%body(b)%border
         if (half%body(b)%loaded) call self%body(b)%solve_upper(inner, border, merge(body%first_contact, 1, at_contact))
         do i = 1, size(body%node)
-          node = body%node(i)
           do c = 1, 2
-            number = numbering%equation(c, node)
-            if (number > 0) then
-              u(c, node) = inner(number, 1)
-            else if (number < 0) then
-              u(c, node) = border(-number, 1)
-            else
-              u(c, node) = part*model%beyond_travel(c, model%leader(c, node))
-            end if
+            associate (node => body%node(i), number => numbering%equation(c, body%node(i)))
+              if (number > 0) then
+                u(c, node) = inner(number, 1)
+              else if (number < 0) then
+                u(c, node) = border(-number, 1)
+              else
+                u(c, node) = part*model%beyond_travel(c, model%leader(c, node))
+              end if
+            end associate
           end do
         end do
       end associate

@@ -3,6 +3,7 @@ module epcont_plan_numbering
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
+  use epcont_element_element_kind, only: most_nodes
   use epcont_linalg_front_layout, only: front_layout, new_front_layout
   use epcont_linalg_panel_layout, only: new_panel_layout, panel_layout
   use epcont_model_controls, only: solver_auto, solver_band, solver_frontal
@@ -38,6 +39,8 @@ module epcont_plan_numbering
     integer, allocatable :: equation(:, :)
     logical, allocatable :: at_contact(:)  !! the node is one of a pair [nodes]
     type(body_numbering), allocatable :: body(:)
+  contains
+    procedure :: of_element
   end type numbering_type
 
   !> Nodes in levels: each level has the neighbours of the one before.
@@ -121,20 +124,33 @@ contains
     end associate
   end subroutine number_fronts
 
-  !> Equations of the elements of a body, x and y of their nodes in turn, zeros behind [any, elements].
+  !> Equations of an element, x and y of its nodes in turn, zeros behind.
+  pure function of_element(self, model, element) result(number)
+    class(numbering_type), intent(in) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element
+    integer :: number(2*most_nodes)
+    integer :: i
+
+    number = 0
+    do i = 1, model%order(element)
+      number(2*i - 1:2*i) = self%equation(:, model%connectivity(i, element))
+    end do
+  end function of_element
+
+  !> The same of all elements of a body [any, elements].
   pure function element_numbers(model, numbering, b) result(numbers)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
     integer, allocatable :: numbers(:, :)
-    integer :: e, i
+    integer :: e, number(2*most_nodes)
 
     associate (element => numbering%body(b)%element)
-      allocate (numbers(2*maxval([model%order(element), 0]), size(element)), source=0)
+      allocate (numbers(2*maxval(model%order(element)), size(element)))
       do e = 1, size(element)
-        do i = 1, model%order(element(e))
-          numbers(2*i - 1:2*i, e) = numbering%equation(:, model%connectivity(i, element(e)))
-        end do
+        number = numbering%of_element(model, element(e))
+        numbers(:, e) = number(:size(numbers, 1))
       end do
     end associate
   end function element_numbers
@@ -317,16 +333,16 @@ contains
     type(model_type), intent(in) :: model
     type(numbering_type), intent(inout) :: numbering
     integer, intent(in) :: b
-    integer, allocatable :: number(:, :), profile(:)
-    integer :: e, i
+    integer, allocatable :: profile(:)
+    integer :: e, i, number(2*most_nodes)
 
     associate (body => numbering%body(b))
       profile = [(i, i=1, body%equations)]
-      number = element_numbers(model, numbering, b)
-      do e = 1, size(number, 2)
-        associate (highest => maxval(number(:, e)))
-          do i = 1, size(number, 1)
-            if (number(i, e) > 0) profile(number(i, e)) = max(profile(number(i, e)), highest)
+      do e = 1, size(body%element)
+        number = numbering%of_element(model, body%element(e))
+        associate (highest => maxval(number))
+          do i = 1, size(number)
+            if (number(i) > 0) profile(number(i)) = max(profile(number(i)), highest)
           end do
         end associate
       end do

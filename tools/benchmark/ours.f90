@@ -138,9 +138,9 @@ contains
         alone = lap()
         spent(assembly) = spent(assembly) + alone
         spent(factor) = spent(factor) - alone
-        call assemble_body(model, operator, law, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
+        call assemble_body(model, operator, law, all_changed, numbering, b, bodies%body(b))
       else
-        call assemble_body(model, operator, law, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
+        call assemble_body(model, operator, law, all_changed, numbering, b, bodies%body(b))
         spent(assembly) = spent(assembly) + lap()
       end if
       call bodies%body(b)%factor()
