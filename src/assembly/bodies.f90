@@ -47,7 +47,7 @@ contains
 
   !> Bodies with room for their factors.
   pure function new_bodies(model, single) result(bodies)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     logical, intent(in) :: single    !! factored in single precision
     type(factored_bodies) :: bodies
 
@@ -59,12 +59,12 @@ contains
   !> Assemble and factor one body; if it was before, as far as elements have changed. Nothing of other bodies is touched.
   subroutine factor_body(self, model, operator, law, changed, numbering, b)
     class(factored_bodies), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
-    type(linear_law), intent(in) :: law
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
+    type(linear_law), intent(in) :: law   !! D of each point
     logical, intent(in) :: changed(:)         !! since the body was factored last [elements]
-    type(numbering_type), intent(in) :: numbering
-    integer, intent(in) :: b
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    integer, intent(in) :: b   !! the body
 
     call assemble_body(model, operator, law, changed, numbering, b, self%body(b))
     call self%body(b)%factor()
@@ -73,9 +73,9 @@ contains
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
   pure subroutine settle(self, model, operator, law)
     class(factored_bodies), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
-    type(linear_law), intent(in) :: law
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
+    type(linear_law), intent(in) :: law   !! stresses of strains
     real(wp), allocatable :: prescribed(:, :)
 
     if (all(model%beyond_travel == 0.0_wp)) return
@@ -86,8 +86,8 @@ contains
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.
   pure subroutine prescribe(model, part, displacement)
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: part
+    type(model_type), intent(in) :: model   !! the scene
+    real(wp), intent(in) :: part   !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [2, nodes]
     integer :: c, node
 
@@ -115,11 +115,11 @@ contains
   !! was when it was assembled first.
   pure subroutine estimate_condition(self, model, operator, law, numbering, condition)
     class(factored_bodies), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
     type(linear_law), intent(in) :: law   !! that the bodies were factored with
-    type(numbering_type), intent(in) :: numbering
-    real(wp), intent(out) :: condition
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    real(wp), intent(out) :: condition   !! 1 where all bodies are rigid
     integer :: b
 
     condition = 1.0_wp
@@ -144,8 +144,8 @@ contains
   !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero [2, nodes].
   pure function displacements(self, model, numbering, force, part) result(u)
     class(factored_bodies), intent(in) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
+    type(model_type), intent(in) :: model   !! the scene
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     real(wp), intent(in) :: force(:, :)  !! [2, nodes]
     real(wp), intent(in) :: part         !! of the prescribed displacements
     real(wp), allocatable :: u(:, :)
@@ -158,7 +158,7 @@ contains
   !> Put forces on the bodies: the half of the solve that can be done before all of them are known.
   pure subroutine add_forces(self, numbering, force, part, half)
     class(factored_bodies), intent(in) :: self
-    type(numbering_type), intent(in) :: numbering
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     real(wp), intent(in) :: force(:, :)          !! [2, nodes]
     real(wp), intent(in) :: part                 !! of the prescribed displacements, with their forces
     type(half_solution), intent(inout) :: half   !! what has been put on before
@@ -208,9 +208,9 @@ contains
   !> The other half: displacements under all that has been put on, SUPORT freedoms at zero [2, nodes].
   pure function finish(self, model, numbering, half, part, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(half_solution), intent(in) :: half
+    type(model_type), intent(in) :: model   !! the scene
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    type(half_solution), intent(in) :: half   !! all that has been put on
     real(wp), intent(in) :: part         !! of the prescribed displacements
     logical, intent(in) :: at_contact    !! only nodes of pairs are wanted
     real(wp), allocatable :: u(:, :)

@@ -42,13 +42,13 @@ contains
   !> Assemble the elements of a body, and factor what is complete on the way. Where only some elements have changed since it was
   !! factored, nothing is touched that does not depend on them.
   subroutine assemble_body(model, operator, law, changed, numbering, b, stiffness)
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
-    type(linear_law), intent(in) :: law
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
+    type(linear_law), intent(in) :: law   !! stresses of strains
     logical, intent(in) :: changed(:)        !! since it was factored last [elements]
-    type(numbering_type), intent(in) :: numbering
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     integer, intent(in) :: b                 !! the body
-    type(body_stiffness), intent(inout) :: stiffness
+    type(body_stiffness), intent(inout) :: stiffness   !! of the body, filled; what could be is factored
     real(wp) :: k((2*most_nodes)**2)
     real(wp), allocatable :: row_sum(:)
     logical, allocatable :: stale(:)
@@ -77,12 +77,12 @@ contains
 
   !> A bound of the 1-norm of a body's stiffness as it is factored, from its elements.
   pure real(wp) function norm_of(model, operator, law, numbering, b, stiffness) result(norm)
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
     type(linear_law), intent(in) :: law       !! as it was assembled with
-    type(numbering_type), intent(in) :: numbering
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     integer, intent(in) :: b                  !! the body
-    type(body_stiffness), intent(in) :: stiffness
+    type(body_stiffness), intent(in) :: stiffness   !! of the body
     real(wp) :: k((2*most_nodes)**2), row_sum(numbering%body(b)%equations)
     integer :: e, n
 
@@ -271,9 +271,9 @@ contains
   !> The second half. Of the inner rows those before `first` are not wanted.
   pure subroutine solve_upper(self, inner, border, first)
     class(body_stiffness), intent(in) :: self
-    real(wp), contiguous, intent(inout) :: inner(:, :)
-    real(wp), contiguous, intent(inout) :: border(:, :)
-    integer, intent(in) :: first
+    real(wp), contiguous, intent(inout) :: inner(:, :)   !! [order of the matrix, 1]
+    real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
+    integer, intent(in) :: first   !! row that is wanted
 
     call self%matrix%solve_upper(inner, first)
     if (size(border) == 0) return

@@ -31,7 +31,7 @@ contains
 
   !> Factor the equations of the chosen pairs. Pairs whose force depends on that of others are left out.
   pure type(contact_basis) function new_basis(problem, chosen) result(basis)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: chosen(:)   !! [n]
     integer, allocatable :: order(:)
     integer :: info, k, rank
@@ -54,8 +54,8 @@ contains
 
   !> What the motions do to a set whose F_g is factored; it is sound if it holds all of them.
   pure subroutine hold_motions(basis, problem)
-    type(contact_basis), intent(inout) :: basis
-    type(scaled_problem), intent(in) :: problem
+    type(contact_basis), intent(inout) :: basis   !! its pairs and the factor of F_g; the rest is found
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     real(wp) :: resistance(size(problem%resultant), size(problem%resultant))
     real(wp), allocatable :: transposed(:, :)
     integer :: info
@@ -72,7 +72,7 @@ contains
 
   !> Forces and motions for right-hand sides h and p; call only if the basis is sound.
   pure subroutine respond(basis, opening, load, force, approach)
-    type(contact_basis), intent(in) :: basis
+    type(contact_basis), intent(in) :: basis   !! a sound one
     real(wp), contiguous, intent(in) :: opening(:, :)      !! h, gaps of the pairs without forces [s, k]
     real(wp), intent(in) :: load(:, :)                     !! p [m, k]
     real(wp), allocatable, intent(out) :: force(:, :)      !! R_S [s, k]
@@ -91,7 +91,7 @@ contains
 
   !> A block of F_g = F + gamma A A'.
   pure function regular_flexibility(problem, gamma, rows, columns) result(block)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     real(wp), intent(in) :: gamma                  !! from `weight_of_motions`
     integer, intent(in) :: rows(:), columns(:)     !! pairs
     real(wp), allocatable :: block(:, :)
@@ -105,7 +105,7 @@ contains
 
   !> gamma, such that F and gamma A A' are of one size.
   pure real(wp) function weight_of_motions(problem) result(gamma)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     real(wp) :: largest
 
     largest = maxval([sum(problem%motion**2, dim=2), 0.0_wp])
@@ -115,7 +115,7 @@ contains
 
   !> A pivot of F_g up to this is rounding: a hundredth of a negligible flexibility, or that of n sums.
   pure real(wp) function rank_tolerance(problem)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
 
     rank_tolerance = max(negligible/100, 4*size(problem%gap)*epsilon(1.0_wp))*largest_flexibility(problem)
   end function rank_tolerance

@@ -28,8 +28,8 @@ contains
 
   !> A basis of no pairs, with room for all.
   pure subroutine begin_blocks(basis, problem)
-    type(contact_basis), intent(out) :: basis
-    type(scaled_problem), intent(in) :: problem
+    type(contact_basis), intent(out) :: basis   !! of no pairs
+    type(scaled_problem), intent(in) :: problem   !! in its own units
 
     allocate (basis%pairs(0), basis%factor(size(problem%gap), size(problem%gap)))
     basis%gamma = weight_of_motions(problem)
@@ -37,8 +37,8 @@ contains
 
   !> Go over to another set. Without unique forces the basis is not sound, and nothing is kept of its factor.
   pure subroutine change_set(basis, problem, closed, firmness)
-    type(contact_basis), intent(inout) :: basis
-    type(scaled_problem), intent(in) :: problem
+    type(contact_basis), intent(inout) :: basis   !! from `begin_blocks`, or of the set before
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: closed(:)      !! the set [n]
     real(wp), intent(in) :: firmness(:)   !! how likely pairs are to stay, largest first [n]
     integer, allocatable :: added(:)

@@ -42,10 +42,10 @@ contains
 
   !> Look for the set of contacts. `found`: its fresh solution passes the test of signs and its forces are unique.
   pure subroutine find_by_blocks(scaled, solution, state, found)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_solution), intent(inout) :: solution   !! steps, and pairs exchanged
-    type(contact_state), intent(out) :: state
-    logical, intent(out) :: found
+    type(contact_state), intent(out) :: state   !! the set found, fresh
+    logical, intent(out) :: found   !! else `state` is of no use
     logical, allocatable :: closed(:)
 
     found = .false.

@@ -25,7 +25,7 @@ contains
 
   !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every motion.
   pure type(contact_state) function fresh_state(scaled, closed) result(state)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     logical, intent(in) :: closed(:)   !! [n]
 
     state%basis = new_basis(scaled, closed)
@@ -36,7 +36,7 @@ contains
   !> Forces, gaps and motions with the pairs of the basis closed and the others free of force.
   pure subroutine solve_set(state, scaled, opening, load, refinements)
     type(contact_state), intent(inout) :: state   !! its basis is solved with
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: opening(:)            !! gaps without forces [n]
     real(wp), intent(in) :: load(:)               !! [m]
     integer, intent(in) :: refinements            !! steps that follow the solution
@@ -61,7 +61,7 @@ contains
 
   !> w = g + F R - A q.
   pure function gaps_under(scaled, opening, force, approach) result(gap)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: opening(:)            !! g [n]
     real(wp), intent(in) :: force(:)              !! R [n]
     real(wp), intent(in) :: approach(:)           !! q [m]
@@ -76,7 +76,7 @@ contains
 
   !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
   pure function basic_values(state) result(values)
-    type(contact_state), intent(in) :: state
+    type(contact_state), intent(in) :: state   !! set and solution
     real(wp), allocatable :: values(:)
 
     values = state%gap
@@ -85,8 +85,8 @@ contains
 
   !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the largest force and gap.
   pure logical function has_right_signs(scaled, state, tolerance) result(right)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_state), intent(in) :: state
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    type(contact_state), intent(in) :: state   !! set and solution
     real(wp), intent(in) :: tolerance   !! one of the above
     real(wp) :: force_tolerance, gap_noise
 
@@ -100,8 +100,8 @@ contains
 
   !> The sum of the magnitudes that each gap is the sum of.
   pure function terms_of_gaps(scaled, state) result(terms)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_state), intent(in) :: state
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    type(contact_state), intent(in) :: state   !! set and solution
     real(wp), allocatable :: terms(:)
     integer :: k
 

@@ -37,9 +37,10 @@ module epcont_contact_equilibrium
 
 contains
 
+  !> Which pairs touch first if the bodies are rigid, or the motion along which nothing resists the load.
   pure subroutine find_rigid_start(problem, start)
-    type(scaled_problem), intent(in) :: problem
-    type(rigid_start), intent(out) :: start
+    type(scaled_problem), intent(in) :: problem   !! in its own units
+    type(rigid_start), intent(out) :: start   !! which pairs touch first, or the motion that nothing resists
     type(programme) :: lp
     integer :: k
 

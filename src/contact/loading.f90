@@ -22,8 +22,8 @@ contains
   !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The partner of the
   !! variable that left enters next (Conry and Seireg 1971).
   pure subroutine follow_load(tableau, pivot_limit, solution, outcome, closed, ray)
-    type(contact_tableau), intent(inout) :: tableau
-    integer, intent(in) :: pivot_limit
+    type(contact_tableau), intent(inout) :: tableau   !! at its start, then where the load path ended
+    integer, intent(in) :: pivot_limit   !! pivots allowed
     type(contact_solution), intent(inout) :: solution   !! pivots are counted and recorded here
     integer, intent(out) :: outcome                     !! one of the above
     logical, allocatable, intent(out) :: closed(:)      !! pairs with a basic force at the end [n]

@@ -17,8 +17,9 @@ module epcont_contact_ratio_test
 
 contains
 
+  !> How far the variable of a column can grow.
   pure type(step_type) function test_ratios(tableau, column) result(step)
-    type(contact_tableau), intent(in) :: tableau
+    type(contact_tableau), intent(in) :: tableau   !! as it stands
     integer, intent(in) :: column   !! of the entering variable
     logical, allocatable :: blocking(:), tied(:)
     real(wp), allocatable :: ratio(:)

@@ -36,8 +36,9 @@ module epcont_contact_scaling
 
 contains
 
+  !> The problem in units of its own, with all of its motions.
   pure type(scaled_problem) function scale_problem(problem) result(scaled)
-    type(contact_problem), intent(in) :: problem
+    type(contact_problem), intent(in) :: problem   !! in the deck's units
     real(wp) :: driving   !! largest gap that asks for forces
     real(wp) :: largest   !! max|F|
     integer :: j, m
@@ -79,7 +80,7 @@ contains
 
   !> Hold the motions in `dropped` at zero: they leave the problem.
   pure subroutine drop_motions(scaled, dropped)
-    type(scaled_problem), intent(inout) :: scaled
+    type(scaled_problem), intent(inout) :: scaled   !! the problem in its own units
     logical, intent(in) :: dropped(:)   !! [m]
     integer, allocatable :: kept(:)
     integer :: j
@@ -92,10 +93,10 @@ contains
 
   !> Put forces, gaps and approach into `solution` in the deck's units; dropped motions stay at zero.
   pure subroutine restore_units(scaled, force, gap, approach, solution)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: force(:), gap(:)      !! [n]
     real(wp), intent(in) :: approach(:)           !! of the kept motions [m]
-    type(contact_solution), intent(inout) :: solution
+    type(contact_solution), intent(inout) :: solution   !! in the deck's units
 
     solution%force = force*scaled%force_unit
     solution%gap = gap*scaled%gap_unit

@@ -33,9 +33,9 @@ contains
 
   !> Follow the load from one set of contacts to the next until a fresh solution passes the test of signs.
   pure subroutine find_contacts(scaled, solution, state, ray)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_solution), intent(inout) :: solution   !! state, and the record of the pivots
-    type(contact_state), intent(out) :: state
+    type(contact_state), intent(out) :: state   !! the set found, fresh
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
     real(wp), allocatable :: lifted(:)
     logical, allocatable :: closed(:)

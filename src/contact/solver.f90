@@ -20,8 +20,8 @@ contains
 
   !> Find forces, gaps and motions of a contact problem, or why there are none.
   pure subroutine solve_contact(problem, solution, start, by_blocks)
-    type(contact_problem), intent(in) :: problem
-    type(contact_solution), intent(out) :: solution
+    type(contact_problem), intent(in) :: problem   !! in the deck's units
+    type(contact_solution), intent(out) :: solution   !! its state says whether there is one
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
     logical, intent(in), optional :: by_blocks  !! RULE BLOCK; not given: CONRY
     type(scaled_problem) :: scaled

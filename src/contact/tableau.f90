@@ -44,8 +44,8 @@ contains
 
   !> The tableau of a sound basis, from `start` at t = 0 to `goal` at t = 1.
   pure type(contact_tableau) function new_tableau(problem, basis, start, goal) result(tableau)
-    type(scaled_problem), intent(in) :: problem
-    type(contact_basis), intent(in) :: basis
+    type(scaled_problem), intent(in) :: problem   !! in its own units
+    type(contact_basis), intent(in) :: basis   !! a sound one: its forces are basic
     real(wp), intent(in) :: start(:)   !! basic variable of each pair at t = 0, all >= 0 [n]
     real(wp), intent(in) :: goal(:)    !! the same at t = 1 [n]
     integer :: k, n
@@ -93,8 +93,8 @@ contains
 
   !> The entries of a column.
   pure function entries_of_column(tableau, column) result(entry)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: column
+    type(contact_tableau), intent(in) :: tableau   !! as it stands
+    integer, intent(in) :: column   !! its number
     real(wp), allocatable :: entry(:)
     integer :: i
 
@@ -106,8 +106,8 @@ contains
 
   !> Those of some rows in a column.
   pure function entries_of_rows(tableau, rows, column) result(entry)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: rows(:), column
+    type(contact_tableau), intent(in) :: tableau   !! as it stands
+    integer, intent(in) :: rows(:), column   !! their numbers
     real(wp) :: entry(size(rows))
     integer :: i
 
@@ -119,8 +119,8 @@ contains
 
   !> Exchange the basic variable of `row` with the nonbasic one of `column`.
   pure subroutine pivot(tableau, row, column, slope)
-    type(contact_tableau), intent(inout) :: tableau
-    integer, intent(in) :: row, column
+    type(contact_tableau), intent(inout) :: tableau   !! moved on to the next event
+    integer, intent(in) :: row, column   !! of the variable that leaves, and of that which enters
     real(wp), intent(in) :: slope(:)   !! entries of the column: change of the basic variables with the entering one [n]
     real(wp) :: ratio
     integer :: entering, j, leaving

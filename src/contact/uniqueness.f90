@@ -22,7 +22,7 @@ contains
   !> With the gaps of the pressed pairs held closed, an idle touching pair j feels the forces z of the idle
   !> ones through the Schur complement M of F_g, and M z = 0 is asked of z.
   pure function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:)      !! gap zero [n]
     logical, intent(in) :: pressed(:)       !! force beyond rounding; of a basis, so unique by themselves [n]
     logical, allocatable :: indeterminate(:)
@@ -73,7 +73,7 @@ contains
 
   !> Pairs with equal rows in F and A share their force equally.
   pure subroutine share_equally(problem, indeterminate, force)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: indeterminate(:)    !! [n]
     real(wp), intent(inout) :: force(:)        !! [n]
     integer, allocatable :: alike(:), pairs(:)
@@ -104,7 +104,7 @@ contains
   !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions: they do where their
   !! forces, none of them a pull, would carry a load along the motion either way.
   pure function find_free_motions(problem, touching, pressed) result(free)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]
     real(wp), allocatable :: closing(:, :), loose(:, :)

@@ -24,11 +24,11 @@ contains
 
   !> One body's part of F = N K^-1 N'.
   pure subroutine find_flexibility(model, numbering, b, stiffness, part)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
+    type(model_type), intent(in) :: model   !! the scene
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     integer, intent(in) :: b                       !! the body
     type(body_stiffness), intent(in) :: stiffness  !! factored
-    type(body_flexibility), intent(out) :: part
+    type(body_flexibility), intent(out) :: part   !! no pairs where the body has none
     type(sparse_rows) :: rows
 
     call find_rows(model, numbering, b, part%pair, rows)
@@ -41,7 +41,7 @@ contains
 
   !> Add a body's part to F.
   pure subroutine add_flexibility(part, flexibility)
-    type(body_flexibility), intent(in) :: part
+    type(body_flexibility), intent(in) :: part   !! one body's
     real(wp), intent(inout) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
     integer :: k
 
@@ -114,7 +114,7 @@ contains
 
   !> Opening of the gaps by displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: displacement(:, :)  !! [2, nodes]
     real(wp), allocatable :: opening(:)
     integer :: k
@@ -127,7 +127,7 @@ contains
 
   !> Forces of the pairs on the nodes: N' R [force] [2, nodes].
   pure function pair_forces(model, force) result(nodal)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: force(:)  !! [pairs]
     real(wp), allocatable :: nodal(:, :)
     integer :: i, k
@@ -145,8 +145,8 @@ contains
   !> A = -N Phi, the closing of the gaps by unit rigid motions [pairs, motions]. There is none of a pair that moves as a whole, or
   !! along itself, but for rounding: else a large force on it would drive the body.
   pure function motion_columns(model, motions) result(columns)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
+    type(model_type), intent(in) :: model   !! the scene
+    type(free_motions), intent(in) :: motions   !! free ones
     real(wp), allocatable :: columns(:, :)
     real(wp), allocatable :: moved(:, :)
     integer :: first, i, k, m
@@ -171,8 +171,8 @@ contains
   !> P = Phi' f, the loads along the free motions [motions]. Where they cancel, or act across the motion, but for rounding, there
   !! are none: else rounding would tell whether the body moves off. What acts on a held freedom does not count: its support has it.
   pure function motion_resultants(model, motions) result(resultant)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
+    type(model_type), intent(in) :: model   !! the scene
+    type(free_motions), intent(in) :: motions   !! free ones
     real(wp), allocatable :: resultant(:)
     real(wp) :: all_loads, load(2), moved(2)
     integer :: c, i, m

@@ -40,7 +40,7 @@ contains
   pure subroutine extend_cholesky(lda, a, done, n, info)
     integer, intent(in) :: lda                        !! rows of `a`, at least n
     real(wp), intent(inout) :: a(lda, *)              !! lower triangle [lda, >= n]
-    integer, intent(in) :: done, n
+    integer, intent(in) :: done, n   !! rows that are factored, and that are to be in all
     integer, intent(out) :: info          !! 0, or the order of the first minor that is not positive
     integer :: rest
 
@@ -99,7 +99,7 @@ contains
 
   !> c = c + factor a b.
   pure subroutine add_product(factor, a, b, c)
-    real(wp), intent(in) :: factor
+    real(wp), intent(in) :: factor   !! of the product
     real(wp), contiguous, intent(in) :: a(:, :)       !! [n, k]
     real(wp), contiguous, intent(in) :: b(:, :)       !! [k, m]
     real(wp), contiguous, intent(inout) :: c(:, :)    !! [n, m]

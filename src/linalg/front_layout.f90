@@ -132,7 +132,7 @@ contains
   !> Where equations, ascending, stand among the rows of a front; they must be there.
   pure function places(self, number, front) result(place)
     class(front_layout), intent(in) :: self
-    integer, intent(in) :: number(:), front
+    integer, intent(in) :: number(:), front   !! equations, ascending
     integer :: place(size(number))
     integer :: at, i
 
@@ -150,7 +150,7 @@ contains
   !> The equations that a front reaches, ascending.
   pure function reached_by(self, front) result(row)
     class(front_layout), intent(in) :: self
-    integer, intent(in) :: front
+    integer, intent(in) :: front   !! its number
     integer :: row(self%reached(front))
 
     row = self%row(self%row_start(front):self%row_start(front + 1) - 1)
@@ -187,7 +187,7 @@ contains
   !! kept, else behind that of its parent, where those that are done with were before. And one behind the last [fronts + 1].
   pure function update_starts(self, kept) result(start)
     class(front_layout), intent(in) :: self
-    logical, intent(in) :: kept
+    logical, intent(in) :: kept   !! all update matrices are kept
     integer(i8) :: start(size(self%first))
     integer(i8) :: last
     integer :: p

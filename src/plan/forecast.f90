@@ -41,7 +41,7 @@ contains
   subroutine check_memory(bytes, limit, error)
     integer(i8), intent(in) :: bytes      !! as forecast
     real(wp), intent(in) :: limit         !! [GB]
-    type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable, intent(out) :: error   !! not enough of it
 
     if (real(bytes, wp) > giga*limit) then
       call raise(error, status_usage, 'the scene needs about '//gigabytes(real(bytes, wp))//' of memory, and --memory allows '// &
@@ -66,11 +66,12 @@ contains
     text = short_real(bytes/giga)//' GB'
   end function gigabytes
 
+  !> What a scene will take.
   pure function forecast(model, motions, numbering, plan) result(expected)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
-    type(iteration_plan), intent(in) :: plan
+    type(model_type), intent(in) :: model   !! the scene
+    type(free_motions), intent(in) :: motions   !! free ones
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    type(iteration_plan), intent(in) :: plan   !! of its iteration
     type(forecast_type) :: expected
     integer, allocatable :: own_pairs(:)
     integer(i8) :: entries, factor, flexibility, saved

@@ -53,8 +53,8 @@ contains
   !> Displacement of a node in unit motion k.
   pure function displacement(self, model, node, k) result(u)
     class(free_motions), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node, k
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: node, k   !! the node, and the number of the motion
     real(wp) :: u(2)
 
     u = 0.0_wp
@@ -66,9 +66,9 @@ contains
 
   !> Find the free motions of all bodies; a body whose SUPORT freedoms do not fit gives a fault.
   subroutine find_free_motions(model, motions, faults)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(out) :: motions
-    type(motion_fault), allocatable, intent(out) :: faults(:)
+    type(model_type), intent(in) :: model   !! the scene
+    type(free_motions), intent(out) :: motions   !! of all bodies without a fault
+    type(motion_fault), allocatable, intent(out) :: faults(:)   !! one of each body that has one
     type(incidence) :: nodes, parts   !! of each body
     integer :: b
 

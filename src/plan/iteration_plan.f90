@@ -58,7 +58,7 @@ contains
 
   !> What this scene gets.
   pure function plan_iteration(model) result(plan)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(iteration_plan) :: plan
     integer :: e
 
@@ -97,7 +97,7 @@ contains
 
   !> The rule that finds the pairs in contact.
   pure function plan_contact(model) result(plan)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(contact_plan) :: plan
 
     plan%chosen_here = model%controls%rule == rule_auto
@@ -107,7 +107,7 @@ contains
   !> That of the deck, else that of the accuracy it wants, else double. Refinement pays where bodies are factored once (0.8 of
   !! the time of double with 42 000 nodes, level with 11 000); where each iteration factors them, it takes 1.3 to 1.6 times as long.
   pure integer function plan_precision(controls, yields) result(precision)
-    type(controls_type), intent(in) :: controls
+    type(controls_type), intent(in) :: controls   !! what the deck asks for
     logical, intent(in) :: yields    !! something can yield
 
     precision = controls%precision

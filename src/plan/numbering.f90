@@ -53,7 +53,7 @@ contains
 
   !> Number all bodies, each for the solver that the deck asks for, or that which is faster.
   pure function number_equations(model) result(numbering)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(numbering_type) :: numbering
     type(incidence) :: elements, nodes
     integer :: b
@@ -127,8 +127,8 @@ contains
   !> Equations of an element, x and y of its nodes in turn, zeros behind.
   pure function of_element(self, model, element) result(number)
     class(numbering_type), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: element
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: element             !! its number
     integer :: number(2*most_nodes)
     integer :: i
 

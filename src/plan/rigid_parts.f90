@@ -28,8 +28,9 @@ module epcont_plan_rigid_parts
 
 contains
 
+  !> The rigid parts of all bodies, with their hinges.
   pure function find_rigid_parts(model) result(parts)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(rigid_parts) :: parts
     integer, allocatable :: of_element(:)
     integer :: e, hinges, i, k
@@ -118,8 +119,8 @@ contains
   !! y, and a turn that moves the body's extent by one.
   pure function row(self, model, node, c)
     class(rigid_parts), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node, c
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: node, c   !! the place, and component
     real(wp) :: row(3)
 
     associate (turned => self%turn(model, node))
@@ -130,8 +131,8 @@ contains
   !> Displacement of a place of a body by the turn that moves the body's extent by one.
   pure function turn(self, model, node)
     class(rigid_parts), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: node   !! the place
     real(wp) :: turn(2)
 
     associate (b => model%body(node))

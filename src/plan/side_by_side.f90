@@ -17,9 +17,9 @@ contains
 
   !> Threads for a scene: one where there is no memory for more.
   integer function plan_threads(numbering, bytes, granted) result(threads)
-    type(numbering_type), intent(in) :: numbering
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     integer(i8), intent(in) :: bytes      !! that the run will hold on one thread
-    integer, intent(in) :: granted
+    integer, intent(in) :: granted   !! threads, by OMP_NUM_THREADS
     real(wp), allocatable :: operations(:)
 
     operations = numbering%body%operations
@@ -32,7 +32,7 @@ contains
   !! little to do.
   pure integer function threads_for(operations, granted) result(threads)
     real(wp), intent(in) :: operations(:)   !! of each body
-    integer, intent(in) :: granted
+    integer, intent(in) :: granted   !! threads
     real(wp) :: all, largest
 
     threads = 1
@@ -44,7 +44,7 @@ contains
 
   !> The order in which threads take bodies up: the heaviest first, to a factor of two, so that none of them is left for the end.
   pure function heaviest_first(operations) result(order)
-    real(wp), intent(in) :: operations(:)
+    real(wp), intent(in) :: operations(:)   !! of each body
     integer, allocatable :: order(:)
 
     order = sorted_order(-exponent(operations))
