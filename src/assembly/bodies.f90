@@ -30,7 +30,8 @@ module epcont_assembly_bodies
   type :: factored_bodies
     type(body_stiffness), allocatable :: body(:)
     integer :: factorizations = 0              !! done so far, of bodies that have equations
-    real(wp), allocatable :: settlement(:, :)  !! forces of prescribed displacements on free freedoms [2, nodes]
+    !> Forces of prescribed displacements on free freedoms [2, nodes]
+    real(wp), allocatable :: settlement(:, :)
   contains
     procedure :: factor_body
     procedure :: settle
@@ -56,7 +57,8 @@ contains
     allocate (bodies%settlement(2, model%nodes), source=0.0_wp)
   end function new_bodies
 
-  !> Assemble and factor one body; if it was before, as far as elements have changed. Nothing of other bodies is touched.
+  !> Assemble and factor one body; if it was before, as far as elements have changed. Nothing of other bodies
+  !! is touched.
   subroutine factor_body(self, model, operator, law, changed, numbering, b)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model   !! the scene
@@ -111,8 +113,8 @@ contains
     end do
   end function lacks_memory
 
-  !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is not as stiff as it
-  !! was when it was assembled first.
+  !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
+  !! not as stiff as it was when it was assembled first.
   pure subroutine estimate_condition(self, model, operator, law, numbering, condition)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model   !! the scene
@@ -125,7 +127,9 @@ contains
     condition = 1.0_wp
     do b = 1, size(self%body)
       associate (stiffness => self%body(b))
-        if (numbering%body(b)%can_yield) stiffness%matrix%norm = norm_of(model, operator, law, numbering, b, stiffness)
+        if (numbering%body(b)%can_yield) then
+          stiffness%matrix%norm = norm_of(model, operator, law, numbering, b, stiffness)
+        end if
         condition = max(condition, stiffness%matrix%condition())
       end associate
     end do
@@ -141,7 +145,8 @@ contains
     end do
   end function weakest
 
-  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero [2, nodes].
+  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero [2,
+  !! nodes].
   pure function displacements(self, model, numbering, force, part) result(u)
     class(factored_bodies), intent(in) :: self
     type(model_type), intent(in) :: model   !! the scene
@@ -222,7 +227,9 @@ contains
       associate (body => numbering%body(b))
         inner = half%body(b)%inner
         border = half%body(b)%border
-        if (half%body(b)%loaded) call self%body(b)%solve_upper(inner, border, merge(body%first_contact, 1, at_contact))
+        if (half%body(b)%loaded) then
+          call self%body(b)%solve_upper(inner, border, merge(body%first_contact, 1, at_contact))
+        end if
         do i = 1, size(body%node)
           do c = 1, 2
             associate (node => body%node(i), number => numbering%equation(c, body%node(i)))

@@ -27,7 +27,8 @@ module epcont_assembly_stiffness
     real(wp), allocatable :: coupling(:, :)   !! K_br, then W [equations, border]
     real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
     logical :: single = .false.               !! K_bb is factored in single precision
-    real(wp) :: unit = 1.0_wp                 !! K is over this, in the range of single precision; a power of four [force/length]
+    !> K is over this, in the range of single precision; a power of four [force/length]
+    real(wp) :: unit = 1.0_wp
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
     integer :: weakest = 0                    !! its equation
   contains
@@ -39,8 +40,8 @@ module epcont_assembly_stiffness
 
 contains
 
-  !> Assemble the elements of a body, and factor what is complete on the way. Where only some elements have changed since it was
-  !! factored, nothing is touched that does not depend on them.
+  !> Assemble the elements of a body, and factor what is complete on the way. Where only some elements have
+  !! changed since it was factored, nothing is touched that does not depend on them.
   subroutine assemble_body(model, operator, law, changed, numbering, b, stiffness)
     type(model_type), intent(in) :: model   !! the scene
     type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
@@ -56,7 +57,9 @@ contains
     logical :: first
 
     first = .not. allocated(stiffness%matrix)
-    if (first .and. stiffness%single) stiffness%unit = unit_of(model, operator, law, numbering%body(b)%element)
+    if (first .and. stiffness%single) then
+      stiffness%unit = unit_of(model, operator, law, numbering%body(b)%element)
+    end if
     call begin(model, changed, numbering, b, stiffness, stale)
     if (stiffness%matrix%lacks_memory) return
     associate (body => numbering%body(b))
@@ -97,8 +100,8 @@ contains
     norm = max(0.0_wp, maxval(row_sum))/stiffness%unit
   end function norm_of
 
-  !> Add an element's part of the sums of the magnitudes of each row. (A matrix has no larger ones: where elements meet, their
-  !! entries may cancel.)
+  !> Add an element's part of the sums of the magnitudes of each row. (A matrix has no larger ones: where
+  !! elements meet, their entries may cancel.)
   pure subroutine add_magnitudes(n, number, k, row_sum)
     integer, intent(in) :: n, number(n)
     real(wp), intent(in) :: k(n, n)
@@ -128,7 +131,8 @@ contains
     do e = 1, size(element)
       do p = model%first_point(element(e)), model%first_point(element(e) + 1) - 1
         associate (b => operator%b(:, operator%column(p) + 1:operator%column(p) + 2*model%order(element(e))))
-          largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p))))*maxval(abs(b))**2)
+          largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
+                        *maxval(abs(b))**2)
         end associate
       end do
     end do
@@ -149,7 +153,8 @@ contains
     any_of = .false.
   end function any_of
 
-  !> Make the stiffness ready to be filled: anew where elements have changed and its factor can be kept, else all of it.
+  !> Make the stiffness ready to be filled: anew where elements have changed and its factor can be kept, else
+  !! all of it.
   subroutine begin(model, changed, numbering, b, stiffness, stale)
     type(model_type), intent(in) :: model
     logical, intent(in) :: changed(:)
@@ -177,7 +182,8 @@ contains
         call stiffness%matrix%clear(stale)
         deallocate (stiffness%coupling, stiffness%schur)
       end if
-      allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
+      allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), &
+                source=0.0_wp)
     end associate
   end subroutine begin
 

@@ -14,7 +14,8 @@ module epcont_contact_basis
   public :: contact_basis, new_basis, hold_motions, respond
   public :: regular_flexibility, rank_tolerance, weight_of_motions
 
-  !> Pivots of F_g, parts of the largest flexibility, from which on no force depends on the others whatever the order.
+  !> Pivots of F_g, parts of the largest flexibility, from which on no force depends on the others whatever
+  !! the order.
   real(wp), parameter :: clearly_definite = 1.0e-8_wp
 
   !> A set of pairs in contact whose forces are unique, and the factors that give them.
@@ -23,7 +24,8 @@ module epcont_contact_basis
     integer, allocatable :: pairs(:)          !! S, in the order of the factor [s]
     real(wp) :: gamma = 0.0_wp                !! weight of A A' in F_g
     real(wp), allocatable :: factor(:, :)     !! its leading rows: Cholesky factor of F_g,SS [>= s, >= s]
-    real(wp), allocatable :: carried(:, :)    !! forces that hold S closed under unit motions, F_g,SS^-1 A_S [s, m]
+    !> Forces that hold S closed under unit motions, F_g,SS^-1 A_S [s, m]
+    real(wp), allocatable :: carried(:, :)
     real(wp), allocatable :: resistance(:, :) !! Cholesky factor of A_S' F_g,SS^-1 A_S [m, m]
   end type contact_basis
 
@@ -41,7 +43,9 @@ contains
     basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
     call cholesky_factor(basis%factor, info)
     if (info == 0) then
-      if (any([(basis%factor(k, k)**2, k=1, size(basis%pairs))] < clearly_definite*largest_flexibility(problem))) info = 1
+      associate (pivots => [(basis%factor(k, k)**2, k=1, size(basis%pairs))])
+        if (any(pivots < clearly_definite*largest_flexibility(problem))) info = 1
+      end associate
     end if
     if (info /= 0) then   ! the order of pivots, which takes longer, tells who depends on whom
       basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)

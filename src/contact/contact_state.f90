@@ -7,8 +7,9 @@ module epcont_contact_contact_state
   private
   public :: contact_state, fresh_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
 
-  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can be asked where
-  !! the flexibility is badly conditioned, and what is asked of a guess, from which better sets may be found.
+  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can
+  !! be asked where the flexibility is badly conditioned, and what is asked of a guess, from which better sets
+  !! may be found.
   real(wp), parameter, public :: sign_tolerance = 1.0e-10_wp, guess_tolerance = 1.0e-12_wp
   !> Part of a quantity that rounding leaves where it should cancel.
   real(wp), parameter, public :: noise = 100*epsilon(1.0_wp)
@@ -23,7 +24,8 @@ module epcont_contact_contact_state
 
 contains
 
-  !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every motion.
+  !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every
+  !! motion.
   pure type(contact_state) function fresh_state(scaled, closed) result(state)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     logical, intent(in) :: closed(:)   !! [n]
@@ -41,7 +43,8 @@ contains
     real(wp), intent(in) :: load(:)               !! [m]
     integer, intent(in) :: refinements            !! steps that follow the solution
     real(wp), allocatable :: force(:, :), approach(:, :)
-    real(wp), allocatable :: excess(:, :), unbalanced(:, :)   !! what is not closed or carried yet [s, 1], [m, 1]
+    !> What is not closed or carried yet [s, 1], [m, 1]
+    real(wp), allocatable :: excess(:, :), unbalanced(:, :)
     integer :: step
 
     state%gap = opening
@@ -83,7 +86,8 @@ contains
     values(state%basis%pairs) = state%force(state%basis%pairs)
   end function basic_values
 
-  !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the largest force and gap.
+  !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the
+  !! largest force and gap.
   pure logical function has_right_signs(scaled, state, tolerance) result(right)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_state), intent(in) :: state   !! set and solution
@@ -92,7 +96,8 @@ contains
 
     force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
     gap_noise = noise*maxval([abs(scaled%gap), 0.0_wp])
-    right = state%basis%sound .and. all(state%force >= -force_tolerance) .and. all(state%gap >= -(force_tolerance + gap_noise))
+    right = state%basis%sound .and. all(state%force >= -force_tolerance) .and. &
+        all(state%gap >= -(force_tolerance + gap_noise))
     if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
     ! The largest force, at a stop that hardly gives way, says nothing of gaps that it has no part in.
     right = all(state%gap >= -(tolerance*max(terms_of_gaps(scaled, state), 1.0_wp) + gap_noise))

@@ -26,7 +26,8 @@ module epcont_contact_equilibrium
   !> A row whose entries are all below this, with A and P of size one, depends on the others.
   real(wp), parameter :: dependence_tolerance = 1.0e-9_wp
 
-  !> Rows: equations of equilibrium, with the signs that make P >= 0. Columns: forces 1..n, then one artificial force a row.
+  !> Rows: equations of equilibrium, with the signs that make P >= 0. Columns: forces 1..n, then one
+  !! artificial force a row.
   type :: programme
     integer :: n = 0                          !! true forces
     real(wp), allocatable :: entry(:, :)      !! [m, n + m]
@@ -112,9 +113,12 @@ contains
     end do
   end subroutine price
 
-  !> Exchange until no force lowers the cost. The force that lowers it most enters (Dantzig; of ties the first), so that the basis
-  !> keeps clear of pairs that all but depend on each other: two opposite ones would have to carry a load across them by wedging.
-  !> That may run in circles among ties; Bland's rule ends. The limit guards against rounding, and a set that is not quite the best
+  !> Exchange until no force lowers the cost. The force that lowers it most enters (Dantzig; of ties the
+  !! first), so that the basis
+  !> keeps clear of pairs that all but depend on each other: two opposite ones would have to carry a load
+  !! across them by wedging.
+  !> That may run in circles among ties; Bland's rule ends. The limit guards against rounding, and a set that
+  !! is not quite the best
   !> serves as well, since the contact simplex lifts its start.
   pure subroutine minimise(lp)
     type(programme), intent(inout) :: lp
@@ -137,7 +141,8 @@ contains
     end associate
   end subroutine minimise
 
-  !> The first of those that are the largest but for rounding, so that it is the same on every processor; 0: none is above `least`.
+  !> The first of those that are the largest but for rounding, so that it is the same on every processor; 0:
+  !! none is above `least`.
   pure integer function first_largest(values, least) result(at)
     real(wp), intent(in) :: values(:)
     real(wp), intent(in) :: least     !! > 0
@@ -145,10 +150,13 @@ contains
 
     at = 0
     largest = maxval([values, least])
-    if (largest > least) at = findloc(values > max(largest - negligible*maxval(abs(values)), least), .true., dim=1)
+    if (largest > least) then
+      at = findloc(values > max(largest - negligible*maxval(abs(values)), least), .true., dim=1)
+    end if
   end function first_largest
 
-  !> Least ratio; of ties, the first of the largest pivots, or the variable of least index (Bland). 0: none decreases.
+  !> Least ratio; of ties, the first of the largest pivots, or the variable of least index (Bland). 0: none
+  !! decreases.
   pure integer function leaving_row(lp, column, by_index) result(row)
     type(programme), intent(in) :: lp
     integer, intent(in) :: column

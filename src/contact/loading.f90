@@ -19,8 +19,8 @@ module epcont_contact_loading
 
 contains
 
-  !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The partner of the
-  !! variable that left enters next (Conry and Seireg 1971).
+  !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The
+  !! partner of the variable that left enters next (Conry and Seireg 1971).
   pure subroutine follow_load(tableau, pivot_limit, solution, outcome, closed, ray)
     type(contact_tableau), intent(inout) :: tableau   !! at its start, then where the load path ended
     integer, intent(in) :: pivot_limit   !! pivots allowed
@@ -47,7 +47,8 @@ contains
       left = tableau%basic(step%row)
       call pivot(tableau, step%row, column, step%slope)
       call record(tableau, entering, left, step%ratio, solution)
-      entering = -left   ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
+      ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
+      entering = -left
     end do
     closed = tableau%place(1:) > 0
     ! The force on its way in at full load is positive; where it moved no load it stays out.

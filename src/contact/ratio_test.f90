@@ -54,9 +54,12 @@ contains
     end associate
   end subroutine test_load
 
-  !> The one of the tied rows that would block first if the basic variables of the start were larger by e, e^2, ...
-  !> (lexicographic order). Without it ties could make the simplex go round in circles. Row i changes with such a variable
-  !> by 1 if it is basic in it, not at all if it is basic elsewhere, and else by minus the entry of its column.
+  !> The one of the tied rows that would block first if the basic variables of the start were larger by e,
+  !! e^2, ...
+  !> (lexicographic order). Without it ties could make the simplex go round in circles. Row i changes with
+  !! such a variable
+  !> by 1 if it is basic in it, not at all if it is basic elsewhere, and else by minus the entry of its
+  !! column.
   pure integer function least_row(tableau, slope, tied) result(row)
     type(contact_tableau), intent(in) :: tableau
     real(wp), intent(in) :: slope(:)   !! of the entering column [n]

@@ -31,7 +31,7 @@ module epcont_contact_scaling
     real(wp), allocatable :: motion_size(:)     !! largest entry of each column of the given A [all motions]
     integer, allocatable :: kept(:)             !! which of the given motions these are [m]
     logical, allocatable :: first_touching(:)   !! pairs that hold every motion [n]
-    logical, allocatable :: guess(:)            !! of the pairs in contact; not allocated where there is none [n]
+    logical, allocatable :: guess(:)   !! of the pairs in contact; not allocated where there is none [n]
   end type scaled_problem
 
 contains
@@ -56,7 +56,9 @@ contains
     if (scaled%force_unit <= 0.0_wp) scaled%force_unit = force_unit(largest, largest_of(scaled%gap), 0.0_wp)
     if (scaled%force_unit <= 0.0_wp) scaled%force_unit = 1.0_wp
     scaled%gap_unit = scaled%force_unit*largest
-    if (scaled%gap_unit <= 0.0_wp) scaled%gap_unit = max(largest_of(scaled%gap), largest_of(scaled%unloaded_gap))
+    if (scaled%gap_unit <= 0.0_wp) then
+      scaled%gap_unit = max(largest_of(scaled%gap), largest_of(scaled%unloaded_gap))
+    end if
     if (scaled%gap_unit <= 0.0_wp) scaled%gap_unit = 1.0_wp
 
     scaled%flexibility = problem%flexibility*(scaled%force_unit/scaled%gap_unit)

@@ -11,8 +11,9 @@
 !>     R, w |     entry     |  x - c |  row k: the basic one of R_k, w_k, at first
 !>          +---------------+--------+
 !>
-!> A pivot adds a column times a row to the entries. These are kept apart until there are `panel` of them, and then added by
-!> one dgemm; a column or a row of the tableau is put together when it is asked for:  entry = settled + left right.
+!> A pivot adds a column times a row to the entries. These are kept apart until there are `panel` of them, and
+!> then added by one dgemm; a column or a row of the tableau is put together when it is asked for: entry =
+!> settled + left right.
 module epcont_contact_tableau
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, respond
@@ -36,7 +37,8 @@ module epcont_contact_tableau
     real(wp), allocatable :: value(:)      !! basic variables [n]
     integer, allocatable :: basic(:)       !! variable of each row [n]
     integer, allocatable :: nonbasic(:)    !! variable of each column [n + 1]
-    integer, allocatable :: first_basic(:) !! basic variables of the start; they are perturbed against ties [n]
+    !> Basic variables of the start; they are perturbed against ties [n]
+    integer, allocatable :: first_basic(:)
     integer, allocatable :: place(:)       !! of each variable: its row, or minus its column [-n:n]
   end type contact_tableau
 
@@ -67,7 +69,8 @@ contains
     tableau%settled(:, n + 1) = goal - start
   end function new_tableau
 
-  !> Response of the basic variables to unit nonbasic ones: gaps of the pairs in contact, forces of the others.
+  !> Response of the basic variables to unit nonbasic ones: gaps of the pairs in contact, forces of the
+  !! others.
   pure subroutine fill_entries(problem, basis, entry)
     type(scaled_problem), intent(in) :: problem
     type(contact_basis), intent(in) :: basis
@@ -121,7 +124,8 @@ contains
   pure subroutine pivot(tableau, row, column, slope)
     type(contact_tableau), intent(inout) :: tableau   !! moved on to the next event
     integer, intent(in) :: row, column   !! of the variable that leaves, and of that which enters
-    real(wp), intent(in) :: slope(:)   !! entries of the column: change of the basic variables with the entering one [n]
+    !> Entries of the column: change of the basic variables with the entering one [n]
+    real(wp), intent(in) :: slope(:)
     real(wp) :: ratio
     integer :: entering, j, leaving
 
@@ -133,7 +137,8 @@ contains
     ! The entering row and the leaving column are replaced as a whole by the product; the others change by it.
     associate (p => tableau%pending + 1)
       do j = 1, size(tableau%nonbasic)
-        tableau%right(p, j) = -(tableau%settled(row, j) + dot_product(tableau%left(row, :p - 1), tableau%right(:p - 1, j))) &
+        tableau%right(p, j) = -(tableau%settled(row, j) &
+                                + dot_product(tableau%left(row, :p - 1), tableau%right(:p - 1, j))) &
                               /slope(row)
         tableau%settled(row, j) = 0.0_wp
       end do

@@ -11,7 +11,8 @@ module epcont_contact_uniqueness
 
   !> Components of a null vector (largest about 1) up to this are zero.
   real(wp), parameter :: null_tolerance = 1.0e-7_wp
-  !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this is allowed for.
+  !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this is
+  !! allowed for.
   real(wp), parameter :: amplification = 100.0_wp
 
 contains
@@ -101,8 +102,8 @@ contains
     if (alike) alike = all(abs(problem%flexibility(:, i) - problem%flexibility(:, k)) <= zero)
   end function are_alike
 
-  !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions: they do where their
-  !! forces, none of them a pull, would carry a load along the motion either way.
+  !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions:
+  !! they do where their forces, none of them a pull, would carry a load along the motion either way.
   pure function find_free_motions(problem, touching, pressed) result(free)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:), pressed(:)   !! [n]

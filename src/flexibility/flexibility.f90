@@ -9,7 +9,8 @@ module epcont_flexibility_flexibility
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, motion_resultants, pair_forces
+  public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
+    motion_resultants, pair_forces
 
   !> Part of what a sum is made of that rounding leaves where it should cancel.
   real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
@@ -52,8 +53,8 @@ contains
     end do
   end subroutine add_flexibility
 
-  !> Rows of N in one body, of the pairs that have any entry there; negative equations are of the border. Freedoms that are
-  !! held, across the normal or of another body are left out.
+  !> Rows of N in one body, of the pairs that have any entry there; negative equations are of the border.
+  !! Freedoms that are held, across the normal or of another body are left out.
   pure subroutine find_rows(model, numbering, b, pair, rows)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
@@ -121,7 +122,9 @@ contains
 
     allocate (opening(model%pairs))
     do k = 1, model%pairs
-      opening(k) = model%opening(k, displacement(:, model%row_node(model%row_start(k):model%row_start(k + 1) - 1)))
+      associate (node => model%row_node(model%row_start(k):model%row_start(k + 1) - 1))
+        opening(k) = model%opening(k, displacement(:, node))
+      end associate
     end do
   end function gap_opening
 
@@ -142,8 +145,8 @@ contains
     end do
   end function pair_forces
 
-  !> A = -N Phi, the closing of the gaps by unit rigid motions [pairs, motions]. There is none of a pair that moves as a whole, or
-  !! along itself, but for rounding: else a large force on it would drive the body.
+  !> A = -N Phi, the closing of the gaps by unit rigid motions [pairs, motions]. There is none of a pair that
+  !! moves as a whole, or along itself, but for rounding: else a large force on it would drive the body.
   pure function motion_columns(model, motions) result(columns)
     type(model_type), intent(in) :: model   !! the scene
     type(free_motions), intent(in) :: motions   !! free ones
@@ -168,8 +171,9 @@ contains
     end do
   end function motion_columns
 
-  !> P = Phi' f, the loads along the free motions [motions]. Where they cancel, or act across the motion, but for rounding, there
-  !! are none: else rounding would tell whether the body moves off. What acts on a held freedom does not count: its support has it.
+  !> P = Phi' f, the loads along the free motions [motions]. Where they cancel, or act across the motion, but
+  !! for rounding, there are none: else rounding would tell whether the body moves off. What acts on a held
+  !! freedom does not count: its support has it.
   pure function motion_resultants(model, motions) result(resultant)
     type(model_type), intent(in) :: model   !! the scene
     type(free_motions), intent(in) :: motions   !! free ones

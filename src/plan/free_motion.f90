@@ -1,8 +1,8 @@
 !> Rigid motions that supports leave free, and the SUPORT freedoms that measure them.
 !>
-!> Found before anything is factored, since a Cholesky factorization calls many singular matrices definite. The
-!> free motions of a body are the null space of one matrix: three columns a rigid part, a row for each hinge, tie
-!> and support.
+!> Found before anything is factored, since a Cholesky factorization calls many singular matrices definite.
+!> The free motions of a body are the null space of one matrix: three columns a rigid part, a row for each
+!> hinge, tie and support.
 module epcont_plan_free_motion
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -35,7 +35,7 @@ module epcont_plan_free_motion
     integer :: motions = 0, references = 0    !! free motions, SUPORT freedoms
     integer, allocatable :: freedom(:, :)     !! node, component that would hold each motion not held [2, any]
     real(wp), allocatable :: direction(:, :)  !! motion of that node [2, any]
-    real(wp), allocatable :: turn(:)          !! how differently the nodes of its part move; 0: it shifts [any]
+    real(wp), allocatable :: turn(:)   !! how differently the nodes of its part move; 0: it shifts [any]
   end type motion_fault
 
   !> The free motions of all bodies.
@@ -43,7 +43,8 @@ module epcont_plan_free_motion
     integer :: count = 0
     integer, allocatable :: body(:), node(:), component(:)  !! of each motion: body, SUPORT freedom [count]
     type(rigid_parts) :: parts
-    real(wp), allocatable :: coefficient(:, :, :)  !! of x, y, turn of each part in each motion [3, parts, count]
+    !> Of x, y, turn of each part in each motion [3, parts, count]
+    real(wp), allocatable :: coefficient(:, :, :)
   contains
     procedure :: displacement
   end type free_motions
@@ -161,21 +162,23 @@ contains
     integer :: c, columns, i, references, rows
 
     columns = maxval(column) + 3
-    allocate (held(2*count(column(parts%hinge(2, :)) + column(parts%hinge(3, :)) > 0) + columns &
-                   + count(model%held(:, nodes)) + count(model%leader(:, nodes) /= spread(nodes, 1, 2)), columns), &
-              measured(count(model%reference(:, nodes)), columns), source=0.0_wp)
+    rows = 2*count(column(parts%hinge(2, :)) + column(parts%hinge(3, :)) > 0) + columns &
+           + count(model%held(:, nodes) .or. model%leader(:, nodes) /= spread(nodes, 1, 2))
+    allocate (held(rows, columns), measured(count(model%reference(:, nodes)), columns), source=0.0_wp)
     allocate (freedom(2, size(measured, 1)))
     call hold_parts(model, parts, model%body(nodes(1)), column, held, rows)
     references = 0
     do i = 1, size(nodes)
       associate (node => nodes(i), at => column(parts%of_node(nodes(i))))
         do c = 1, 2
-          associate (leader => model%leader(c, node), at_leader => column(parts%of_node(model%leader(c, node))))
+          associate (leader => model%leader(c, node), &
+                     at_leader => column(parts%of_node(model%leader(c, node))))
             if (leader /= node .or. model%held(c, node)) then
               rows = rows + 1
               held(rows, at + 1:at + 3) = parts%row(model, node, c)
-              if (leader /= node) held(rows, at_leader + 1:at_leader + 3) = held(rows, at_leader + 1:at_leader + 3) &
-                                                                            - parts%row(model, leader, c)
+              associate (others => held(rows, at_leader + 1:at_leader + 3))
+                if (leader /= node) others = others - parts%row(model, leader, c)
+              end associate
             end if
           end associate
           if (.not. model%reference(c, node)) cycle
@@ -188,7 +191,8 @@ contains
     held = held(:rows, :)
   end subroutine collect_rows
 
-  !> Rows of hinges, and of what parts cannot do: rings do not move along x nor turn, and what has no elements does not turn.
+  !> Rows of hinges, and of what parts cannot do: rings do not move along x nor turn, and what has no elements
+  !! does not turn.
   pure subroutine hold_parts(model, parts, body, column, held, rows)
     type(model_type), intent(in) :: model
     type(rigid_parts), intent(in) :: parts
@@ -218,8 +222,8 @@ contains
     end do
   end subroutine hold_parts
 
-  !> Freedoms that would hold the loose motions: those that move most, one after the other, each motion taken out
-  !! of the others at the freedom chosen for it.
+  !> Freedoms that would hold the loose motions: those that move most, one after the other, each motion taken
+  !! out of the others at the freedom chosen for it.
   subroutine suggest(model, parts, nodes, column, loose, fault)
     type(model_type), intent(in) :: model
     type(rigid_parts), intent(in) :: parts
@@ -235,7 +239,9 @@ contains
       k = column(parts%of_node(nodes(i)))
       motion(2*i - 1, :) = matmul(parts%row(model, nodes(i), 1), loose(k + 1:k + 3, :))
       motion(2*i, :) = matmul(parts%row(model, nodes(i), 2), loose(k + 1:k + 3, :))
-      if (fault%moving == 0 .and. any(abs(loose(k + 1:k + 3, :)) > moves*maxval(abs(loose)))) fault%moving = nodes(i)
+      if (fault%moving == 0 .and. any(abs(loose(k + 1:k + 3, :)) > moves*maxval(abs(loose)))) then
+        fault%moving = nodes(i)
+      end if
     end do
     do k = 1, m
       ! The first of those that move nearly as much as the largest, so that rounding does not choose.

@@ -13,8 +13,8 @@ module epcont_plan_numbering
   private
   public :: body_numbering, numbering_type, number_equations
 
-  !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact bodies (7 000 nodes
-  !! of two cylinders) and on long ones, on elastic ones and on those that yield.
+  !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact
+  !! bodies (7 000 nodes of two cylinders) and on long ones, on elastic ones and on those that yield.
   real(wp), parameter, public :: many_operations = 2.0e8_wp
 
   !> One body's system of equations.
@@ -81,9 +81,9 @@ contains
     end do
   end function number_equations
 
-  !> Number a body for nested fronts, the contact nodes in the last of them. It is parted along x, along y and along the
-  !! distance from the contact, in elements: there they are the smallest, mostly, and what lies around it has the shortest
-  !! edge.
+  !> Number a body for nested fronts, the contact nodes in the last of them. It is parted along x, along y and
+  !! along the distance from the contact, in elements: there they are the smallest, mostly, and what lies
+  !! around it has the shortest edge.
   pure subroutine number_fronts(model, numbering, b)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(inout) :: numbering
@@ -113,7 +113,8 @@ contains
       allocate (first(size(found%first)), source=1)
       do p = 1, size(first) - 1
         associate (node => found%node(found%first(p):found%first(p + 1) - 1))
-          first(p + 1) = first(p) + count(numbering%equation(:, node) > 0 .and. model%leader(:, node) == spread(node, 1, 2))
+          first(p + 1) = first(p) + count(numbering%equation(:, node) > 0 .and. &
+                                          model%leader(:, node) == spread(node, 1, 2))
         end associate
       end do
       body%fronts = new_front_layout(pack(first, [first(2:) > first(:size(first) - 1), .true.]), &
@@ -155,10 +156,10 @@ contains
     end associate
   end function element_numbers
 
-  !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come last: then the
-  !! trailing block of the factor alone gives the flexibility. Or, where that widens the band by more than forward
-  !! substitution of all pairs costs, they are rooted at the body's far end. Where even that band is a wide one, fronts are
-  !! taken.
+  !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come
+  !! last: then the trailing block of the factor alone gives the flexibility. Or, where that widens the band
+  !! by more than forward substitution of all pairs costs, they are rooted at the body's far end. Where even
+  !! that band is a wide one, fronts are taken.
   pure subroutine number_band(model, numbering, b)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(inout) :: numbering
@@ -175,8 +176,11 @@ contains
     end if
     order = sweep(model, order%node(size(nodes):), nodes)
     order = sweep(model, order%node(size(nodes):), nodes)
-    ! The contact comes late in the reversed order, and with it what yields: what stands before is factored once.
-    if (mean_place(order%node, numbering%at_contact) > 0.5_wp) order = sweep(model, order%node(size(nodes):), nodes)
+    ! The contact comes late in the reversed order, and with it what yields: what stands before is factored
+    ! once.
+    if (mean_place(order%node, numbering%at_contact) > 0.5_wp) then
+      order = sweep(model, order%node(size(nodes):), nodes)
+    end if
     call number_nodes(model, order%node(size(nodes):1:-1), numbering, b)
     call find_panels(model, numbering, b)
     associate (body => numbering%body(b))
@@ -218,7 +222,9 @@ contains
     logical, intent(in) :: marked(:)
     integer :: i
 
-    mean_place = sum(pack([(real(i, wp), i=1, size(order))], marked(order)))/(max(1, count(marked(order)))*real(size(order), wp))
+    associate (places => pack([(real(i, wp), i=1, size(order))], marked(order)))
+      mean_place = sum(places)/(max(1, size(places))*real(size(order), wp))
+    end associate
   end function mean_place
 
   !> Breadth-first order from `roots`, at each node its new neighbours by their number of elements. Nodes that
@@ -256,7 +262,9 @@ contains
       end do
       if (filled > first) then
         found = order%node(first:filled)
-        order%node(first:filled) = found(sorted_order(model%around%start(found + 1) - model%around%start(found)))
+        associate (elements => model%around%start(found + 1) - model%around%start(found))
+          order%node(first:filled) = found(sorted_order(elements))
+        end associate
       end if
     end do
   end function sweep

@@ -77,7 +77,8 @@ contains
     integer, allocatable, intent(out) :: of_element(:)
     integer, intent(out) :: count
     type(partition) :: sets
-    integer, allocatable :: met_by(:)   !! the last element with which each was found to share a node [elements]
+    !> The last element with which each was found to share a node [elements]
+    integer, allocatable :: met_by(:)
     integer :: e, j, k, neighbour
 
     sets = new_partition(model%elements)
@@ -115,8 +116,8 @@ contains
     where (parts%extent <= 0.0_wp) parts%extent = 1.0_wp
   end subroutine measure
 
-  !> Displacement of component c at a place of a body by unit motions of the part it belongs to: along x, along
-  !! y, and a turn that moves the body's extent by one.
+  !> Displacement of component c at a place of a body by unit motions of the part it belongs to: along x,
+  !! along y, and a turn that moves the body's extent by one.
   pure function row(self, model, node, c)
     class(rigid_parts), intent(in) :: self
     type(model_type), intent(in) :: model   !! the scene
