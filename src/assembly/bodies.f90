@@ -30,7 +30,8 @@ module epcont_assembly_bodies
   type :: factored_bodies
     type(body_stiffness), allocatable :: body(:)
     integer :: factorizations = 0              !! done so far, of bodies that have equations
-    real(wp), allocatable :: settlement(:, :)  !! forces of prescribed displacements on free freedoms [2, nodes]
+    !> Forces of prescribed displacements on free freedoms [2, nodes]
+    real(wp), allocatable :: settlement(:, :)
   contains
     procedure :: factor_body
     procedure :: settle
@@ -47,7 +48,7 @@ contains
 
   !> Bodies with room for their factors.
   pure function new_bodies(model, single) result(bodies)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     logical, intent(in) :: single    !! factored in single precision
     type(factored_bodies) :: bodies
 
@@ -56,26 +57,27 @@ contains
     allocate (bodies%settlement(2, model%nodes), source=0.0_wp)
   end function new_bodies
 
-  !> Assemble and factor one body; if it was before, as far as elements have changed. Nothing of other bodies is touched.
+  !> Assemble and factor one body; if it was before, as far as elements have changed. Nothing of other bodies
+  !! is touched.
   subroutine factor_body(self, model, operator, law, changed, numbering, b)
     class(factored_bodies), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
-    type(linear_law), intent(in) :: law
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
+    type(linear_law), intent(in) :: law   !! D of each point
     logical, intent(in) :: changed(:)         !! since the body was factored last [elements]
-    type(numbering_type), intent(in) :: numbering
-    integer, intent(in) :: b
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    integer, intent(in) :: b   !! the body
 
-    call assemble_body(model, operator, law, changed, numbering%equation, numbering%body(b), self%body(b))
+    call assemble_body(model, operator, law, changed, numbering, b, self%body(b))
     call self%body(b)%factor()
   end subroutine factor_body
 
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
   pure subroutine settle(self, model, operator, law)
     class(factored_bodies), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
-    type(linear_law), intent(in) :: law
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
+    type(linear_law), intent(in) :: law   !! stresses of strains
     real(wp), allocatable :: prescribed(:, :)
 
     if (all(model%beyond_travel == 0.0_wp)) return
@@ -86,8 +88,8 @@ contains
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.
   pure subroutine prescribe(model, part, displacement)
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: part
+    type(model_type), intent(in) :: model   !! the scene
+    real(wp), intent(in) :: part   !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [2, nodes]
     integer :: c, node
 
@@ -111,22 +113,23 @@ contains
     end do
   end function lacks_memory
 
-  !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is not as stiff as it
-  !! was when it was assembled first.
+  !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
+  !! not as stiff as it was when it was assembled first.
   pure subroutine estimate_condition(self, model, operator, law, numbering, condition)
     class(factored_bodies), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
     type(linear_law), intent(in) :: law   !! that the bodies were factored with
-    type(numbering_type), intent(in) :: numbering
-    real(wp), intent(out) :: condition
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    real(wp), intent(out) :: condition   !! 1 where all bodies are rigid
     integer :: b
 
     condition = 1.0_wp
     do b = 1, size(self%body)
-      associate (body => numbering%body(b), stiffness => self%body(b))
-        if (body%can_yield) &
-          stiffness%matrix%norm = norm_of(model, operator, law, numbering%equation, body, stiffness)
+      associate (stiffness => self%body(b))
+        if (numbering%body(b)%can_yield) then
+          stiffness%matrix%norm = norm_of(model, operator, law, numbering, b, stiffness)
+        end if
         condition = max(condition, stiffness%matrix%condition())
       end associate
     end do
@@ -142,11 +145,12 @@ contains
     end do
   end function weakest
 
-  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero [2, nodes].
+  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero [2,
+  !! nodes].
   pure function displacements(self, model, numbering, force, part) result(u)
     class(factored_bodies), intent(in) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
+    type(model_type), intent(in) :: model   !! the scene
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     real(wp), intent(in) :: force(:, :)  !! [2, nodes]
     real(wp), intent(in) :: part         !! of the prescribed displacements
     real(wp), allocatable :: u(:, :)
@@ -159,70 +163,84 @@ contains
   !> Put forces on the bodies: the half of the solve that can be done before all of them are known.
   pure subroutine add_forces(self, numbering, force, part, half)
     class(factored_bodies), intent(in) :: self
-    type(numbering_type), intent(in) :: numbering
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     real(wp), intent(in) :: force(:, :)          !! [2, nodes]
     real(wp), intent(in) :: part                 !! of the prescribed displacements, with their forces
     type(half_solution), intent(inout) :: half   !! what has been put on before
-    real(wp), allocatable :: border(:, :), inner(:, :)
-    real(wp) :: total
-    integer :: b, c, i, node, number
+    real(wp) :: total(2, size(force, 2))
+    integer :: b
 
     if (.not. allocated(half%body)) allocate (half%body(size(numbering%body)))
-    do b = 1, size(numbering%body)
-      associate (body => numbering%body(b))
-        allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
-        do i = 1, size(body%node)
-          node = body%node(i)
-          do c = 1, 2
-            number = numbering%equation(c, node)
-            total = force(c, node) + part*self%settlement(c, node)
-            if (number > 0) inner(number, 1) = inner(number, 1) + total
-            if (number < 0) border(-number, 1) = border(-number, 1) + total
-          end do
-        end do
-        if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
-          call self%body(b)%solve_lower(inner, border)
-          half%body(b)%loaded = .true.
-        end if
-        if (allocated(half%body(b)%inner)) then
-          inner = inner + half%body(b)%inner
-          border = border + half%body(b)%border
-        end if
-        call move_alloc(inner, half%body(b)%inner)
-        call move_alloc(border, half%body(b)%border)
-      end associate
+    total = force + part*self%settlement
+    do b = 1, size(half%body)
+      call add_to_body(self%body(b), numbering, b, total, half%body(b))
     end do
   end subroutine add_forces
+
+  !> Put forces on one body.
+  pure subroutine add_to_body(stiffness, numbering, b, force, half)
+    type(body_stiffness), intent(in) :: stiffness
+    type(numbering_type), intent(in) :: numbering
+    integer, intent(in) :: b
+    real(wp), intent(in) :: force(:, :)             !! [2, nodes]
+    type(half_solved_body), intent(inout) :: half
+    real(wp), allocatable :: border(:, :), inner(:, :)
+    integer :: c, i
+
+    associate (body => numbering%body(b))
+      allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
+      do i = 1, size(body%node)
+        do c = 1, 2
+          associate (number => numbering%equation(c, body%node(i)), own => force(c, body%node(i)))
+            if (number > 0) inner(number, 1) = inner(number, 1) + own
+            if (number < 0) border(-number, 1) = border(-number, 1) + own
+          end associate
+        end do
+      end do
+    end associate
+    if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
+      call stiffness%solve_lower(inner, border)
+      half%loaded = .true.
+    end if
+    if (allocated(half%inner)) then
+      inner = inner + half%inner
+      border = border + half%border
+    end if
+    call move_alloc(inner, half%inner)
+    call move_alloc(border, half%border)
+  end subroutine add_to_body
 
   !> The other half: displacements under all that has been put on, SUPORT freedoms at zero [2, nodes].
   pure function finish(self, model, numbering, half, part, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    type(half_solution), intent(in) :: half
+    type(model_type), intent(in) :: model   !! the scene
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    type(half_solution), intent(in) :: half   !! all that has been put on
     real(wp), intent(in) :: part         !! of the prescribed displacements
     logical, intent(in) :: at_contact    !! only nodes of pairs are wanted
     real(wp), allocatable :: u(:, :)
     real(wp), allocatable :: border(:, :), inner(:, :)
-    integer :: b, c, i, node, number
+    integer :: b, c, i
 
     allocate (u(2, model%nodes))
     do b = 1, model%bodies
       associate (body => numbering%body(b))
         inner = half%body(b)%inner
         border = half%body(b)%border
-        if (half%body(b)%loaded) call self%body(b)%solve_upper(inner, border, merge(body%first_contact, 1, at_contact))
+        if (half%body(b)%loaded) then
+          call self%body(b)%solve_upper(inner, border, merge(body%first_contact, 1, at_contact))
+        end if
         do i = 1, size(body%node)
-          node = body%node(i)
           do c = 1, 2
-            number = numbering%equation(c, node)
-            if (number > 0) then
-              u(c, node) = inner(number, 1)
-            else if (number < 0) then
-              u(c, node) = border(-number, 1)
-            else
-              u(c, node) = part*model%beyond_travel(c, model%leader(c, node))
-            end if
+            associate (node => body%node(i), number => numbering%equation(c, body%node(i)))
+              if (number > 0) then
+                u(c, node) = inner(number, 1)
+              else if (number < 0) then
+                u(c, node) = border(-number, 1)
+              else
+                u(c, node) = part*model%beyond_travel(c, model%leader(c, node))
+              end if
+            end associate
           end do
         end do
       end associate

@@ -17,7 +17,7 @@ module epcont_assembly_stiffness
   use epcont_material_linear_law, only: linear_law
   use epcont_model_controls, only: solver_frontal
   use epcont_model_model, only: model_type
-  use epcont_plan_numbering, only: body_numbering
+  use epcont_plan_numbering, only: body_numbering, numbering_type
   implicit none
   private
   public :: body_stiffness, assemble_body, norm_of
@@ -27,7 +27,8 @@ module epcont_assembly_stiffness
     real(wp), allocatable :: coupling(:, :)   !! K_br, then W [equations, border]
     real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
     logical :: single = .false.               !! K_bb is factored in single precision
-    real(wp) :: unit = 1.0_wp                 !! K is over this, in the range of single precision; a power of four [force/length]
+    !> K is over this, in the range of single precision; a power of four [force/length]
+    real(wp) :: unit = 1.0_wp
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
     integer :: weakest = 0                    !! its equation
   contains
@@ -39,77 +40,68 @@ module epcont_assembly_stiffness
 
 contains
 
-  !> Assemble the elements of a body, and factor what is complete on the way. Where only some elements have changed since it was
-  !! factored, nothing is touched that does not depend on them.
-  subroutine assemble_body(model, operator, law, changed, equation, body, stiffness)
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
-    type(linear_law), intent(in) :: law
-    logical, intent(in) :: changed(:)        !! [elements]
-    integer, intent(in) :: equation(:, :)
-    type(body_numbering), intent(in) :: body
-    type(body_stiffness), intent(inout) :: stiffness
+  !> Assemble the elements of a body, and factor what is complete on the way. Where only some elements have
+  !! changed since it was factored, nothing is touched that does not depend on them.
+  subroutine assemble_body(model, operator, law, changed, numbering, b, stiffness)
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
+    type(linear_law), intent(in) :: law   !! stresses of strains
+    logical, intent(in) :: changed(:)        !! since it was factored last [elements]
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    integer, intent(in) :: b                 !! the body
+    type(body_stiffness), intent(inout) :: stiffness   !! of the body, filled; what could be is factored
     real(wp) :: k((2*most_nodes)**2)
     real(wp), allocatable :: row_sum(:)
     logical, allocatable :: stale(:)
-    integer :: e, i, n, number(2*most_nodes)
+    integer :: e, n, number(2*most_nodes)
     logical :: first
 
-    allocate (stale(body%equations), source=.true.)
     first = .not. allocated(stiffness%matrix)
-    if (.not. first) then
-      if (stiffness%is_sound() .and. body%border == 0) stale = changed_equations(model, changed, equation, body)
-      call stiffness%matrix%clear(stale)
-    else
-      call begin(body, stiffness%single, stiffness%matrix)
-      if (stiffness%single) stiffness%unit = unit_of(model, operator, law, body)
+    if (first .and. stiffness%single) then
+      stiffness%unit = unit_of(model, operator, law, numbering%body(b)%element)
     end if
-    allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
-    if (allocated(stiffness%coupling)) deallocate (stiffness%coupling, stiffness%schur)
+    call begin(model, changed, numbering, b, stiffness, stale)
     if (stiffness%matrix%lacks_memory) return
-    allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), source=0.0_wp)
-    do e = 1, size(body%element)
-      associate (element => body%element(e))
-        n = 2*model%order(element)
-        do i = 1, n/2
-          number(2*i - 1:2*i) = equation(:, model%connectivity(i, element))
-        end do
-        if (body%border == 0 .and. .not. any_of(stale, number(:n))) cycle
-        call operator%element_stiffness(model, element, law, n, k)
+    associate (body => numbering%body(b))
+      allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
+      do e = 1, size(body%element)
+        n = 2*model%order(body%element(e))
+        number = numbering%of_element(model, body%element(e))
+        if (body%border == 0 .and. .not. any_of(stale, number)) cycle
+        call operator%element_stiffness(model, body%element(e), law, n, k)
         if (stiffness%single) k(:n**2) = k(:n**2)/stiffness%unit
         call stiffness%matrix%add(n, number, k)
         if (body%border > 0) call add_to_border(n, number, k, stiffness)
         if (first) call add_magnitudes(n, number, k, row_sum)
-      end associate
-    end do
+      end do
+    end associate
     if (first) stiffness%matrix%norm = max(0.0_wp, maxval(row_sum))
   end subroutine assemble_body
 
   !> A bound of the 1-norm of a body's stiffness as it is factored, from its elements.
-  pure real(wp) function norm_of(model, operator, law, equation, body, stiffness) result(norm)
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
+  pure real(wp) function norm_of(model, operator, law, numbering, b, stiffness) result(norm)
+    type(model_type), intent(in) :: model   !! the scene
+    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
     type(linear_law), intent(in) :: law       !! as it was assembled with
-    integer, intent(in) :: equation(:, :)
-    type(body_numbering), intent(in) :: body
-    type(body_stiffness), intent(in) :: stiffness
-    real(wp) :: k((2*most_nodes)**2)
-    real(wp), allocatable :: row_sum(:)
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    integer, intent(in) :: b                  !! the body
+    type(body_stiffness), intent(in) :: stiffness   !! of the body
+    real(wp) :: k((2*most_nodes)**2), row_sum(numbering%body(b)%equations)
     integer :: e, n
 
-    allocate (row_sum(body%equations), source=0.0_wp)
-    do e = 1, size(body%element)
-      associate (element => body%element(e))
+    row_sum = 0.0_wp
+    do e = 1, size(numbering%body(b)%element)
+      associate (element => numbering%body(b)%element(e))
         n = 2*model%order(element)
         call operator%element_stiffness(model, element, law, n, k)
-        call add_magnitudes(n, reshape(equation(:, model%connectivity(:n/2, element)), [n]), k, row_sum)
+        call add_magnitudes(n, numbering%of_element(model, element), k, row_sum)
       end associate
     end do
     norm = max(0.0_wp, maxval(row_sum))/stiffness%unit
   end function norm_of
 
-  !> Add an element's part of the sums of the magnitudes of each row. (A matrix has no larger ones: where elements meet, their
-  !! entries may cancel.)
+  !> Add an element's part of the sums of the magnitudes of each row. (A matrix has no larger ones: where
+  !! elements meet, their entries may cancel.)
   pure subroutine add_magnitudes(n, number, k, row_sum)
     integer, intent(in) :: n, number(n)
     real(wp), intent(in) :: k(n, n)
@@ -126,20 +118,21 @@ contains
     end do
   end subroutine add_magnitudes
 
-  !> A power of four near the largest stiffness of a body's elements [force/length].
-  pure real(wp) function unit_of(model, operator, law, body)
+  !> A power of four near the largest stiffness of some elements [force/length].
+  pure real(wp) function unit_of(model, operator, law, element)
     type(model_type), intent(in) :: model
     type(strain_operator), intent(in) :: operator
     type(linear_law), intent(in) :: law
-    type(body_numbering), intent(in) :: body
+    integer, intent(in) :: element(:)
     real(wp) :: largest
     integer :: e, p
 
     largest = 0.0_wp
-    do e = 1, size(body%element)
-      do p = model%first_point(body%element(e)), model%first_point(body%element(e) + 1) - 1
-        associate (b => operator%b(:, operator%column(p) + 1:operator%column(p) + 2*model%order(body%element(e))))
-          largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p))))*maxval(abs(b))**2)
+    do e = 1, size(element)
+      do p = model%first_point(element(e)), model%first_point(element(e) + 1) - 1
+        associate (b => operator%b(:, operator%column(p) + 1:operator%column(p) + 2*model%order(element(e))))
+          largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
+                        *maxval(abs(b))**2)
         end associate
       end do
     end do
@@ -160,41 +153,51 @@ contains
     any_of = .false.
   end function any_of
 
-  !> Which equations the elements that have changed have [equations].
-  pure function changed_equations(model, changed, equation, body) result(stale)
+  !> Make the stiffness ready to be filled: anew where elements have changed and its factor can be kept, else
+  !! all of it.
+  subroutine begin(model, changed, numbering, b, stiffness, stale)
     type(model_type), intent(in) :: model
     logical, intent(in) :: changed(:)
-    integer, intent(in) :: equation(:, :)
-    type(body_numbering), intent(in) :: body
-    logical :: stale(body%equations)
-    integer :: c, e, i
+    type(numbering_type), intent(in) :: numbering
+    integer, intent(in) :: b
+    type(body_stiffness), intent(inout) :: stiffness
+    logical, allocatable, intent(out) :: stale(:)   !! which equations are to be filled
+    integer :: e, i, number(2*most_nodes)
 
-    stale = .false.
-    do e = 1, size(body%element)
-      if (.not. changed(body%element(e))) cycle
-      do i = 1, model%order(body%element(e))
-        do c = 1, 2
-          associate (number => equation(c, model%connectivity(i, body%element(e))))
-            if (number > 0) stale(number) = .true.
-          end associate
-        end do
-      end do
-    end do
-  end function changed_equations
+    associate (body => numbering%body(b))
+      allocate (stale(body%equations), source=.true.)
+      if (.not. allocated(stiffness%matrix)) then
+        call begin_matrix(body, stiffness%single, stiffness%matrix)
+      else
+        if (stiffness%is_sound() .and. body%border == 0) then
+          stale = .false.
+          do e = 1, size(body%element)
+            if (.not. changed(body%element(e))) cycle
+            number = numbering%of_element(model, body%element(e))
+            do i = 1, size(number)
+              if (number(i) > 0) stale(number(i)) = .true.
+            end do
+          end do
+        end if
+        call stiffness%matrix%clear(stale)
+        deallocate (stiffness%coupling, stiffness%schur)
+      end if
+      allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), &
+                source=0.0_wp)
+    end associate
+  end subroutine begin
 
   !> A matrix of zeros, of the kind that the plan has chosen.
-  subroutine begin(body, single, matrix)
+  subroutine begin_matrix(body, single, matrix)
     type(body_numbering), intent(in) :: body
     logical, intent(in) :: single
-    class(assembled_matrix), allocatable, intent(inout) :: matrix
+    class(assembled_matrix), allocatable, intent(out) :: matrix
     type(front_matrix), allocatable :: fronts
     type(single_front_matrix), allocatable :: single_fronts
     type(panel_matrix), allocatable :: panels
     type(single_panel_matrix), allocatable :: single_panels
-    integer :: trailing
 
-    trailing = merge(body%contact_equations, 0, body%contact_last)
-    associate (once => .not. body%can_yield)
+    associate (once => .not. body%can_yield, trailing => merge(body%contact_equations, 0, body%contact_last))
       if (body%solver == solver_frontal .and. single) then
         allocate (single_fronts)
         call single_fronts%begin(body%fronts, once, trailing)
@@ -213,7 +216,7 @@ contains
         call move_alloc(panels, matrix)
       end if
     end associate
-  end subroutine begin
+  end subroutine begin_matrix
 
   !> Add an element matrix to the coupling and the border.
   pure subroutine add_to_border(n, number, k, stiffness)
@@ -274,9 +277,9 @@ contains
   !> The second half. Of the inner rows those before `first` are not wanted.
   pure subroutine solve_upper(self, inner, border, first)
     class(body_stiffness), intent(in) :: self
-    real(wp), contiguous, intent(inout) :: inner(:, :)
-    real(wp), contiguous, intent(inout) :: border(:, :)
-    integer, intent(in) :: first
+    real(wp), contiguous, intent(inout) :: inner(:, :)   !! [order of the matrix, 1]
+    real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
+    integer, intent(in) :: first   !! row that is wanted
 
     call self%matrix%solve_upper(inner, first)
     if (size(border) == 0) return

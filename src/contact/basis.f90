@@ -14,7 +14,8 @@ module epcont_contact_basis
   public :: contact_basis, new_basis, hold_motions, respond
   public :: regular_flexibility, rank_tolerance, weight_of_motions
 
-  !> Pivots of F_g, parts of the largest flexibility, from which on no force depends on the others whatever the order.
+  !> Pivots of F_g, parts of the largest flexibility, from which on no force depends on the others whatever
+  !! the order.
   real(wp), parameter :: clearly_definite = 1.0e-8_wp
 
   !> A set of pairs in contact whose forces are unique, and the factors that give them.
@@ -23,7 +24,8 @@ module epcont_contact_basis
     integer, allocatable :: pairs(:)          !! S, in the order of the factor [s]
     real(wp) :: gamma = 0.0_wp                !! weight of A A' in F_g
     real(wp), allocatable :: factor(:, :)     !! its leading rows: Cholesky factor of F_g,SS [>= s, >= s]
-    real(wp), allocatable :: carried(:, :)    !! forces that hold S closed under unit motions, F_g,SS^-1 A_S [s, m]
+    !> Forces that hold S closed under unit motions, F_g,SS^-1 A_S [s, m]
+    real(wp), allocatable :: carried(:, :)
     real(wp), allocatable :: resistance(:, :) !! Cholesky factor of A_S' F_g,SS^-1 A_S [m, m]
   end type contact_basis
 
@@ -31,7 +33,7 @@ contains
 
   !> Factor the equations of the chosen pairs. Pairs whose force depends on that of others are left out.
   pure type(contact_basis) function new_basis(problem, chosen) result(basis)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: chosen(:)   !! [n]
     integer, allocatable :: order(:)
     integer :: info, k, rank
@@ -41,7 +43,9 @@ contains
     basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
     call cholesky_factor(basis%factor, info)
     if (info == 0) then
-      if (any([(basis%factor(k, k)**2, k=1, size(basis%pairs))] < clearly_definite*largest_flexibility(problem))) info = 1
+      associate (pivots => [(basis%factor(k, k)**2, k=1, size(basis%pairs))])
+        if (any(pivots < clearly_definite*largest_flexibility(problem))) info = 1
+      end associate
     end if
     if (info /= 0) then   ! the order of pivots, which takes longer, tells who depends on whom
       basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
@@ -54,8 +58,8 @@ contains
 
   !> What the motions do to a set whose F_g is factored; it is sound if it holds all of them.
   pure subroutine hold_motions(basis, problem)
-    type(contact_basis), intent(inout) :: basis
-    type(scaled_problem), intent(in) :: problem
+    type(contact_basis), intent(inout) :: basis   !! its pairs and the factor of F_g; the rest is found
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     real(wp) :: resistance(size(problem%resultant), size(problem%resultant))
     real(wp), allocatable :: transposed(:, :)
     integer :: info
@@ -72,7 +76,7 @@ contains
 
   !> Forces and motions for right-hand sides h and p; call only if the basis is sound.
   pure subroutine respond(basis, opening, load, force, approach)
-    type(contact_basis), intent(in) :: basis
+    type(contact_basis), intent(in) :: basis   !! a sound one
     real(wp), contiguous, intent(in) :: opening(:, :)      !! h, gaps of the pairs without forces [s, k]
     real(wp), intent(in) :: load(:, :)                     !! p [m, k]
     real(wp), allocatable, intent(out) :: force(:, :)      !! R_S [s, k]
@@ -91,7 +95,7 @@ contains
 
   !> A block of F_g = F + gamma A A'.
   pure function regular_flexibility(problem, gamma, rows, columns) result(block)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     real(wp), intent(in) :: gamma                  !! from `weight_of_motions`
     integer, intent(in) :: rows(:), columns(:)     !! pairs
     real(wp), allocatable :: block(:, :)
@@ -105,7 +109,7 @@ contains
 
   !> gamma, such that F and gamma A A' are of one size.
   pure real(wp) function weight_of_motions(problem) result(gamma)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     real(wp) :: largest
 
     largest = maxval([sum(problem%motion**2, dim=2), 0.0_wp])
@@ -115,7 +119,7 @@ contains
 
   !> A pivot of F_g up to this is rounding: a hundredth of a negligible flexibility, or that of n sums.
   pure real(wp) function rank_tolerance(problem)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
 
     rank_tolerance = max(negligible/100, 4*size(problem%gap)*epsilon(1.0_wp))*largest_flexibility(problem)
   end function rank_tolerance

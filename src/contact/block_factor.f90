@@ -1,7 +1,7 @@
 !> The factor of a basis whose set of contacts changes by blocks.
 !>
-!> Pairs that are likely to stay stand first. When the set changes, the factor is kept up to the first pair that has
-!> gone, and only the rows below it are factored anew:
+!> Pairs that are likely to stay stand first. When the set changes, the factor is kept up to the first pair
+!> that has gone, and only the rows below it are factored anew:
 !>
 !>     +------+
 !>     | kept |         pairs of large force
@@ -18,8 +18,9 @@ module epcont_contact_block_factor
   private
   public :: begin_blocks, change_set
 
-  !> Part of a set from which on its factor is kept. With 1/2, where pairs that come as the candidates are doubled stand
-  !! behind edges that go, block pivoting takes half as long again; without keeping anything it does so too.
+  !> Part of a set from which on its factor is kept. With 1/2, where pairs that come as the candidates are
+  !! doubled stand behind edges that go, block pivoting takes half as long again; without keeping anything it
+  !! does so too.
   real(wp), parameter :: worth_keeping = 0.75_wp
   !> Firmness is told apart to this part of the largest.
   real(wp), parameter :: firmness_steps = 1.0e6_wp
@@ -28,8 +29,8 @@ contains
 
   !> A basis of no pairs, with room for all.
   pure subroutine begin_blocks(basis, problem)
-    type(contact_basis), intent(out) :: basis
-    type(scaled_problem), intent(in) :: problem
+    type(contact_basis), intent(out) :: basis   !! of no pairs
+    type(scaled_problem), intent(in) :: problem   !! in its own units
 
     allocate (basis%pairs(0), basis%factor(size(problem%gap), size(problem%gap)))
     basis%gamma = weight_of_motions(problem)
@@ -37,8 +38,8 @@ contains
 
   !> Go over to another set. Without unique forces the basis is not sound, and nothing is kept of its factor.
   pure subroutine change_set(basis, problem, closed, firmness)
-    type(contact_basis), intent(inout) :: basis
-    type(scaled_problem), intent(in) :: problem
+    type(contact_basis), intent(inout) :: basis   !! from `begin_blocks`, or of the set before
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: closed(:)      !! the set [n]
     real(wp), intent(in) :: firmness(:)   !! how likely pairs are to stay, largest first [n]
     integer, allocatable :: added(:)

@@ -1,30 +1,33 @@
 !> RULE BLOCK: block principal pivoting. All pairs of wrong sign change sides at once.
 !>
-!> A set of contacts is solved with a Cholesky factor; of its pairs those that pull open, of the others those that
-!> overlap close (Kostreva 1978; Judice and Pires 1994). As this may run in circles, the least number of wrong pairs is
-!> kept: when it has not fallen in `patience` steps, only the last wrong pair changes sides (Murty 1974) until it
-!> falls. Without an earlier set it begins with few candidates, every 2**k-th pair, and makes them twice as many whenever
-!> none of them is wrong: so the large sets are nearly right when they are met.
+!> A set of contacts is solved with a Cholesky factor; of its pairs those that pull open, of the others those
+!> that overlap close (Kostreva 1978; Judice and Pires 1994). As this may run in circles, the least number of
+!> wrong pairs is kept: when it has not fallen in `patience` steps, only the last wrong pair changes sides
+!> (Murty 1974) until it falls. Without an earlier set it begins with few candidates, every 2**k-th pair, and
+!> makes them twice as many whenever none of them is wrong: so the large sets are nearly right when they are
+!> met.
 !>
-!> Only what is definite is solved here. Where forces or motions of a set are not unique, or the steps are used up, it
-!> says so, and RULE CONRY has the problem.
+!> Only what is definite is solved here. Where forces or motions of a set are not unique, or the steps are
+!> used up, it says so, and RULE CONRY has the problem.
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
   use epcont_contact_block_factor, only: begin_blocks, change_set
-  use epcont_contact_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, sign_tolerance, &
-    solve_set
+  use epcont_contact_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, &
+    sign_tolerance, solve_set
   use epcont_contact_problem, only: contact_solution, contact_solved
   use epcont_contact_scaling, only: scaled_problem
   implicit none
   private
   public :: find_by_blocks
 
-  !> Part of the largest force by which forces and gaps may have the wrong sign while there is something to gain. Where
-  !! rounding is larger the steps end without progress, and the test of the fresh solution decides.
+  !> Part of the largest force by which forces and gaps may have the wrong sign while there is something to
+  !! gain. Where rounding is larger the steps end without progress, and the test of the fresh solution
+  !! decides.
   real(wp), parameter :: exchange_tolerance = 1.0e-13_wp
   !> Steps without fewer wrong pairs before single pairs are exchanged.
   integer, parameter :: patience_limit = 10
-  !> Steps from a guess, and from nothing where that fails. A full step costs less than 1/50 of what RULE CONRY takes.
+  !> Steps from a guess, and from nothing where that fails. A full step costs less than 1/50 of what RULE
+  !! CONRY takes.
   integer, parameter :: step_limit = 100
   !> Sets that do not hold the motions before the problem is given up.
   integer, parameter :: repair_limit = 3
@@ -40,12 +43,13 @@ module epcont_contact_block_pivoting
 
 contains
 
-  !> Look for the set of contacts. `found`: its fresh solution passes the test of signs and its forces are unique.
+  !> Look for the set of contacts. `found`: its fresh solution passes the test of signs and its forces are
+  !! unique.
   pure subroutine find_by_blocks(scaled, solution, state, found)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_solution), intent(inout) :: solution   !! steps, and pairs exchanged
-    type(contact_state), intent(out) :: state
-    logical, intent(out) :: found
+    type(contact_state), intent(out) :: state   !! the set found, fresh
+    logical, intent(out) :: found   !! else `state` is of no use
     logical, allocatable :: closed(:)
 
     found = .false.
@@ -75,7 +79,8 @@ contains
     if (right) right = has_right_signs(scaled, state, tolerance)
   end subroutine test_afresh
 
-  !> Exchange until no pair is wrong, or no more steps are left, and test the set. Not if there were sets without an own solution.
+  !> Exchange until no pair is wrong, or no more steps are left, and test the set. Not if there were sets
+  !! without an own solution.
   pure subroutine exchange_blocks(scaled, stride, tolerance, solution, closed, state, found)
     type(scaled_problem), intent(in) :: scaled
     integer, intent(in) :: stride                       !! of the first candidates

@@ -7,8 +7,9 @@ module epcont_contact_contact_state
   private
   public :: contact_state, fresh_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
 
-  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can be asked where
-  !! the flexibility is badly conditioned, and what is asked of a guess, from which better sets may be found.
+  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can
+  !! be asked where the flexibility is badly conditioned, and what is asked of a guess, from which better sets
+  !! may be found.
   real(wp), parameter, public :: sign_tolerance = 1.0e-10_wp, guess_tolerance = 1.0e-12_wp
   !> Part of a quantity that rounding leaves where it should cancel.
   real(wp), parameter, public :: noise = 100*epsilon(1.0_wp)
@@ -23,9 +24,10 @@ module epcont_contact_contact_state
 
 contains
 
-  !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every motion.
+  !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every
+  !! motion.
   pure type(contact_state) function fresh_state(scaled, closed) result(state)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     logical, intent(in) :: closed(:)   !! [n]
 
     state%basis = new_basis(scaled, closed)
@@ -36,12 +38,13 @@ contains
   !> Forces, gaps and motions with the pairs of the basis closed and the others free of force.
   pure subroutine solve_set(state, scaled, opening, load, refinements)
     type(contact_state), intent(inout) :: state   !! its basis is solved with
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: opening(:)            !! gaps without forces [n]
     real(wp), intent(in) :: load(:)               !! [m]
     integer, intent(in) :: refinements            !! steps that follow the solution
     real(wp), allocatable :: force(:, :), approach(:, :)
-    real(wp), allocatable :: excess(:, :), unbalanced(:, :)   !! what is not closed or carried yet [s, 1], [m, 1]
+    !> What is not closed or carried yet [s, 1], [m, 1]
+    real(wp), allocatable :: excess(:, :), unbalanced(:, :)
     integer :: step
 
     state%gap = opening
@@ -61,7 +64,7 @@ contains
 
   !> w = g + F R - A q.
   pure function gaps_under(scaled, opening, force, approach) result(gap)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: opening(:)            !! g [n]
     real(wp), intent(in) :: force(:)              !! R [n]
     real(wp), intent(in) :: approach(:)           !! q [m]
@@ -76,23 +79,25 @@ contains
 
   !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
   pure function basic_values(state) result(values)
-    type(contact_state), intent(in) :: state
+    type(contact_state), intent(in) :: state   !! set and solution
     real(wp), allocatable :: values(:)
 
     values = state%gap
     values(state%basis%pairs) = state%force(state%basis%pairs)
   end function basic_values
 
-  !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the largest force and gap.
+  !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the
+  !! largest force and gap.
   pure logical function has_right_signs(scaled, state, tolerance) result(right)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_state), intent(in) :: state
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    type(contact_state), intent(in) :: state   !! set and solution
     real(wp), intent(in) :: tolerance   !! one of the above
     real(wp) :: force_tolerance, gap_noise
 
     force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
     gap_noise = noise*maxval([abs(scaled%gap), 0.0_wp])
-    right = state%basis%sound .and. all(state%force >= -force_tolerance) .and. all(state%gap >= -(force_tolerance + gap_noise))
+    right = state%basis%sound .and. all(state%force >= -force_tolerance) .and. &
+        all(state%gap >= -(force_tolerance + gap_noise))
     if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
     ! The largest force, at a stop that hardly gives way, says nothing of gaps that it has no part in.
     right = all(state%gap >= -(tolerance*max(terms_of_gaps(scaled, state), 1.0_wp) + gap_noise))
@@ -100,8 +105,8 @@ contains
 
   !> The sum of the magnitudes that each gap is the sum of.
   pure function terms_of_gaps(scaled, state) result(terms)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_state), intent(in) :: state
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    type(contact_state), intent(in) :: state   !! set and solution
     real(wp), allocatable :: terms(:)
     integer :: k
 

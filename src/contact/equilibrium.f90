@@ -26,8 +26,10 @@ module epcont_contact_equilibrium
   !> A row whose entries are all below this, with A and P of size one, depends on the others.
   real(wp), parameter :: dependence_tolerance = 1.0e-9_wp
 
-  !> Rows: equations of equilibrium, with the signs that make P >= 0. Columns: forces 1..n, then one artificial force a row.
+  !> Rows: equations of equilibrium, with the signs that make P >= 0. Columns: forces 1..n, then one
+  !! artificial force a row.
   type :: programme
+    integer :: n = 0                          !! true forces
     real(wp), allocatable :: entry(:, :)      !! [m, n + m]
     real(wp), allocatable :: value(:)         !! basic variables [m]
     integer, allocatable :: basic(:)          !! which variable is basic in each row [m]
@@ -36,28 +38,25 @@ module epcont_contact_equilibrium
 
 contains
 
+  !> Which pairs touch first if the bodies are rigid, or the motion along which nothing resists the load.
   pure subroutine find_rigid_start(problem, start)
-    type(scaled_problem), intent(in) :: problem
-    type(rigid_start), intent(out) :: start
+    type(scaled_problem), intent(in) :: problem   !! in its own units
+    type(rigid_start), intent(out) :: start   !! which pairs touch first, or the motion that nothing resists
     type(programme) :: lp
-    integer :: m, n
+    integer :: k
 
-    n = size(problem%gap)
-    m = size(problem%resultant)
-    allocate (start%touching(n), source=.false.)
-    allocate (start%redundant(m), source=.false.)
     lp = first_programme(problem%motion, problem%resultant)
-    call minimise(lp, n)
-    start%balanced = is_balanced(lp, n)
+    call minimise(lp)
+    start%balanced = is_balanced(lp)
     if (.not. start%balanced) then
-      start%escape = sign(1.0_wp, problem%resultant)*(1.0_wp - lp%reduced_cost(n + 1:))
+      start%escape = sign(1.0_wp, problem%resultant)*(1.0_wp - lp%reduced_cost(lp%n + 1:))
       return
     end if
-    call expel_artificials(lp, n)
+    call expel_artificials(lp)
     call price(lp, problem%unloaded_gap)
-    call minimise(lp, n)
-    start%touching(pack(lp%basic, lp%basic <= n)) = .true.
-    start%redundant(pack(lp%basic, lp%basic > n) - n) = .true.
+    call minimise(lp)
+    start%touching = [(any(lp%basic == k), k=1, lp%n)]
+    start%redundant = [(any(lp%basic == lp%n + k), k=1, size(problem%resultant))]
   end subroutine find_rigid_start
 
   !> Are there R >= 0 with A'R = P?
@@ -67,16 +66,15 @@ contains
     type(programme) :: lp
 
     lp = first_programme(motion, resultant)
-    call minimise(lp, size(motion, 1))
-    carried = is_balanced(lp, size(motion, 1))
+    call minimise(lp)
+    carried = is_balanced(lp)
   end function can_carry
 
-  !> Do the true forces, variables up to n, carry all of the load?
-  pure logical function is_balanced(lp, n) result(balanced)
+  !> Do the true forces carry all of the load?
+  pure logical function is_balanced(lp) result(balanced)
     type(programme), intent(in) :: lp
-    integer, intent(in) :: n
 
-    balanced = sum(lp%value, mask=lp%basic > n) <= balance_tolerance
+    balanced = sum(lp%value, mask=lp%basic > lp%n) <= balance_tolerance
   end function is_balanced
 
   !> Phase 1: the artificial forces carry all of the load and cost one a unit.
@@ -88,6 +86,7 @@ contains
 
     n = size(motion, 1)
     m = size(resultant)
+    lp%n = n
     size_of_load = maxval([abs(resultant), 0.0_wp])
     if (size_of_load <= 0.0_wp) size_of_load = 1.0_wp
     lp%value = abs(resultant)/size_of_load
@@ -105,42 +104,45 @@ contains
   pure subroutine price(lp, gap)
     type(programme), intent(inout) :: lp
     real(wp), intent(in) :: gap(:)   !! [n]
-    integer :: i, n
+    integer :: i
 
-    n = size(gap)
     lp%reduced_cost = 0.0_wp
-    lp%reduced_cost(:n) = gap
+    lp%reduced_cost(:lp%n) = gap
     do i = 1, size(lp%basic)
-      if (lp%basic(i) > n) cycle
-      lp%reduced_cost = lp%reduced_cost - gap(lp%basic(i))*lp%entry(i, :)
+      if (lp%basic(i) <= lp%n) lp%reduced_cost = lp%reduced_cost - gap(lp%basic(i))*lp%entry(i, :)
     end do
   end subroutine price
 
-  !> Exchange until no force lowers the cost. The force that lowers it most enters (Dantzig; of ties the first), so that the basis
-  !> keeps clear of pairs that all but depend on each other: two opposite ones would have to carry a load across them by wedging.
-  !> That may run in circles among ties; Bland's rule ends. The limit guards against rounding, and a set that is not quite the best
+  !> Exchange until no force lowers the cost. The force that lowers it most enters (Dantzig; of ties the
+  !! first), so that the basis
+  !> keeps clear of pairs that all but depend on each other: two opposite ones would have to carry a load
+  !! across them by wedging.
+  !> That may run in circles among ties; Bland's rule ends. The limit guards against rounding, and a set that
+  !! is not quite the best
   !> serves as well, since the contact simplex lifts its start.
-  pure subroutine minimise(lp, n)
+  pure subroutine minimise(lp)
     type(programme), intent(inout) :: lp
-    integer, intent(in) :: n   !! columns that may enter
     integer :: column, count, row
     logical :: by_index
 
-    do count = 1, 100*(n + size(lp%basic))
-      by_index = count > 10*(n + size(lp%basic))
-      if (by_index) then
-        column = findloc(lp%reduced_cost(:n) < -negligible, .true., dim=1)
-      else
-        column = first_largest(-lp%reduced_cost(:n), negligible)
-      end if
-      if (column == 0) exit
-      row = leaving_row(lp, column, by_index)
-      if (row == 0) exit
-      call exchange(lp, row, column)
-    end do
+    associate (cost => lp%reduced_cost(:lp%n), unknowns => size(lp%reduced_cost))
+      do count = 1, 100*unknowns
+        by_index = count > 10*unknowns
+        if (by_index) then
+          column = findloc(cost < -negligible, .true., dim=1)
+        else
+          column = first_largest(-cost, negligible)
+        end if
+        if (column == 0) exit
+        row = leaving_row(lp, column, by_index)
+        if (row == 0) exit
+        call exchange(lp, row, column)
+      end do
+    end associate
   end subroutine minimise
 
-  !> The first of those that are the largest but for rounding, so that it is the same on every processor; 0: none is above `least`.
+  !> The first of those that are the largest but for rounding, so that it is the same on every processor; 0:
+  !! none is above `least`.
   pure integer function first_largest(values, least) result(at)
     real(wp), intent(in) :: values(:)
     real(wp), intent(in) :: least     !! > 0
@@ -148,10 +150,13 @@ contains
 
     at = 0
     largest = maxval([values, least])
-    if (largest > least) at = findloc(values > max(largest - negligible*maxval(abs(values)), least), .true., dim=1)
+    if (largest > least) then
+      at = findloc(values > max(largest - negligible*maxval(abs(values)), least), .true., dim=1)
+    end if
   end function first_largest
 
-  !> Least ratio; of ties, the first of the largest pivots, or the variable of least index (Bland). 0: none decreases.
+  !> Least ratio; of ties, the first of the largest pivots, or the variable of least index (Bland). 0: none
+  !! decreases.
   pure integer function leaving_row(lp, column, by_index) result(row)
     type(programme), intent(in) :: lp
     integer, intent(in) :: column
@@ -198,19 +203,18 @@ contains
 
   !> Replace each artificial force that is basic at zero by a true one; where none can, the equation is
   !> redundant and the artificial stays to mark it.
-  pure subroutine expel_artificials(lp, n)
+  pure subroutine expel_artificials(lp)
     type(programme), intent(inout) :: lp
-    integer, intent(in) :: n
     integer :: column, i
 
     do i = 1, size(lp%basic)
-      if (lp%basic(i) <= n) cycle
+      if (lp%basic(i) <= lp%n) cycle
       lp%value(i) = 0.0_wp
-      column = first_largest(abs(lp%entry(i, :n)), dependence_tolerance)
+      column = first_largest(abs(lp%entry(i, :lp%n)), dependence_tolerance)
       if (column > 0) then
         call exchange(lp, i, column)
       else
-        lp%entry(i, :n) = 0.0_wp
+        lp%entry(i, :lp%n) = 0.0_wp
       end if
     end do
   end subroutine expel_artificials

@@ -4,7 +4,7 @@ module epcont_contact_loading
   use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
   use epcont_contact_ratio_test, only: step_type, test_ratios
   use epcont_contact_scaling, only: negligible
-  use epcont_contact_tableau, only: column_of, contact_tableau, load_factor, pivot, row_of
+  use epcont_contact_tableau, only: contact_tableau, load_factor, pivot
   implicit none
   private
   public :: follow_load
@@ -19,23 +19,23 @@ module epcont_contact_loading
 
 contains
 
-  !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The partner of the
-  !! variable that left enters next (Conry and Seireg 1971).
+  !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The
+  !! partner of the variable that left enters next (Conry and Seireg 1971).
   pure subroutine follow_load(tableau, pivot_limit, solution, outcome, closed, ray)
-    type(contact_tableau), intent(inout) :: tableau
-    integer, intent(in) :: pivot_limit
+    type(contact_tableau), intent(inout) :: tableau   !! at its start, then where the load path ended
+    integer, intent(in) :: pivot_limit   !! pivots allowed
     type(contact_solution), intent(inout) :: solution   !! pivots are counted and recorded here
     integer, intent(out) :: outcome                     !! one of the above
     logical, allocatable, intent(out) :: closed(:)      !! pairs with a basic force at the end [n]
     real(wp), allocatable, intent(out) :: ray(:)        !! growth of the forces along a ray [n]
     type(step_type) :: step
-    integer :: column, count, entering, k, left
+    integer :: column, count, entering, left
 
     allocate (ray(size(tableau%basic)), source=0.0_wp)
     outcome = path_endless
     entering = load_factor
     do count = 0, pivot_limit
-      column = column_of(tableau, entering)
+      column = -tableau%place(entering)
       step = test_ratios(tableau, column)
       if (is_complete(tableau, step)) then
         outcome = path_complete
@@ -47,9 +47,10 @@ contains
       left = tableau%basic(step%row)
       call pivot(tableau, step%row, column, step%slope)
       call record(tableau, entering, left, step%ratio, solution)
-      entering = -left   ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
+      ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
+      entering = -left
     end do
-    closed = [(row_of(tableau, k) > 0, k=1, size(tableau%basic))]
+    closed = tableau%place(1:) > 0
     ! The force on its way in at full load is positive; where it moved no load it stays out.
     if (entering > 0 .and. step%load_rate > 0.0_wp) closed(entering) = .true.
   end subroutine follow_load
@@ -58,11 +59,11 @@ contains
   pure logical function is_complete(tableau, step) result(complete)
     type(contact_tableau), intent(in) :: tableau
     type(step_type), intent(in) :: step
-    integer :: row
 
     complete = step%load_rate > 0.0_wp .and. step%full_load*(1.0_wp - load_tolerance) <= step%ratio
-    row = row_of(tableau, load_factor)
-    if (row > 0) complete = complete .or. tableau%value(row) >= 1.0_wp - load_tolerance
+    associate (row => tableau%place(load_factor))
+      if (row > 0) complete = complete .or. tableau%value(row) >= 1.0_wp - load_tolerance
+    end associate
   end function is_complete
 
   !> Growth of each force with the entering variable.
@@ -86,12 +87,12 @@ contains
     integer, intent(in) :: entered, left
     real(wp), intent(in) :: ratio
     type(contact_solution), intent(inout) :: solution
-    integer :: row
 
     solution%pivots = solution%pivots + 1
     if (ratio <= negligible) solution%degenerate_pivots = solution%degenerate_pivots + 1
     if (solution%pivots > history_limit) return
-    row = row_of(tableau, load_factor)
-    solution%history = [solution%history, pivot_record(entered, left, tableau%value(row), ratio)]
+    associate (load => tableau%value(tableau%place(load_factor)))
+      solution%history = [solution%history, pivot_record(entered, left, load, ratio)]
+    end associate
   end subroutine record
 end module epcont_contact_loading

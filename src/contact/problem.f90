@@ -13,16 +13,20 @@ module epcont_contact_problem
   public :: contact_problem, contact_solution, pivot_record
 
   !> What is true of the problem.
-  integer, parameter, public :: contact_solved = 0          !! forces, gaps and approach satisfy all conditions
-  integer, parameter, public :: contact_no_equilibrium = 1  !! no R >= 0 carry P: the bodies move off along `escape`
-  integer, parameter, public :: contact_overlap = 2         !! the pairs `overlapping` are too close and nothing gives way
-  integer, parameter, public :: contact_stalled = 3         !! no set of touching pairs passed the test: rounding has won
+  integer, parameter, public :: contact_solved = 0   !! forces, gaps and approach satisfy all conditions
+  !> No R >= 0 carry P: the bodies move off along `escape`.
+  integer, parameter, public :: contact_no_equilibrium = 1
+  !> The pairs `overlapping` are too close and nothing gives way.
+  integer, parameter, public :: contact_overlap = 2
+  !> No set of touching pairs passed the test: rounding has won.
+  integer, parameter, public :: contact_stalled = 3
 
   !> Number of pivots kept in `history`; all are counted.
   integer, parameter, public :: history_limit = 50
 
   type :: contact_problem
-    real(wp), allocatable :: flexibility(:, :)  !! F, opening of pair i by a unit force at pair j [length/force] [n, n]
+    !> F, opening of pair i by a unit force at pair j [length/force] [n, n]
+    real(wp), allocatable :: flexibility(:, :)
     real(wp), allocatable :: motion(:, :)       !! A, closing of the gaps by unit rigid motions [n, m]
     real(wp), allocatable :: initial_gap(:)     !! g0, negative: an overlap [length] [n]
     real(wp), allocatable :: load_gap(:)        !! gl, opening by the loads without contact [length] [n]
@@ -45,10 +49,12 @@ module epcont_contact_problem
     logical, allocatable :: touching(:)      !! closed pairs, pressed or not [n]
     real(wp), allocatable :: escape(:)       !! y with P'y > 0 and A y <= 0, if there is no equilibrium [m]
     logical, allocatable :: overlapping(:)   !! pairs that overlap and cannot give way [n]
-    logical, allocatable :: indeterminate(:) !! pairs whose force is not unique: `force` is one choice of many [n]
-    logical, allocatable :: motion_free(:)   !! motions that nothing determines; `approach` is one choice of many [m]
+    !> Pairs whose force is not unique: `force` is one choice of many [n]
+    logical, allocatable :: indeterminate(:)
+    !> Motions that nothing determines; `approach` is one choice of many [m]
+    logical, allocatable :: motion_free(:)
     logical :: by_blocks = .false.           !! the set was found by RULE BLOCK, not by CONRY
-    integer :: block_steps = 0               !! sets that RULE BLOCK has solved, also where CONRY had to take over
+    integer :: block_steps = 0   !! sets that RULE BLOCK has solved, also where CONRY had to take over
     integer :: pivots = 0                    !! pairs exchanged by the rule that found the set
     integer :: degenerate_pivots = 0         !! of these, without change of any variable
     integer :: restarts = 0                  !! fresh starts, after a set failed the test at full load

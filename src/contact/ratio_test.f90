@@ -2,7 +2,7 @@
 module epcont_contact_ratio_test
   use epcont_base_kinds, only: wp
   use epcont_contact_scaling, only: negligible
-  use epcont_contact_tableau, only: column_of, contact_tableau, entries_of_column, entries_of_rows, load_factor, row_of
+  use epcont_contact_tableau, only: contact_tableau, entries_of_column, entries_of_rows, load_factor
   implicit none
   private
   public :: step_type, test_ratios
@@ -17,8 +17,9 @@ module epcont_contact_ratio_test
 
 contains
 
+  !> How far the variable of a column can grow.
   pure type(step_type) function test_ratios(tableau, column) result(step)
-    type(contact_tableau), intent(in) :: tableau
+    type(contact_tableau), intent(in) :: tableau   !! as it stands
     integer, intent(in) :: column   !! of the entering variable
     logical, allocatable :: blocking(:), tied(:)
     real(wp), allocatable :: ratio(:)
@@ -40,22 +41,25 @@ contains
     type(contact_tableau), intent(in) :: tableau
     integer, intent(in) :: column
     type(step_type), intent(inout) :: step
-    integer :: row
 
-    row = row_of(tableau, load_factor)
-    if (row == 0) then
-      if (tableau%nonbasic(column) /= load_factor) return
-      step%load_rate = 1.0_wp
-      step%full_load = 1.0_wp
-    else if (step%slope(row) > negligible) then
-      step%load_rate = step%slope(row)
-      step%full_load = max(1.0_wp - tableau%value(row), 0.0_wp)/step%load_rate
-    end if
+    associate (row => tableau%place(load_factor))
+      if (row == -column) then
+        step%load_rate = 1.0_wp
+        step%full_load = 1.0_wp
+      else if (row > 0) then
+        if (step%slope(row) <= negligible) return
+        step%load_rate = step%slope(row)
+        step%full_load = max(1.0_wp - tableau%value(row), 0.0_wp)/step%load_rate
+      end if
+    end associate
   end subroutine test_load
 
-  !> The one of the tied rows that would block first if the basic variables of the start were larger by e, e^2, ...
-  !> (lexicographic order). Without it ties could make the simplex go round in circles. Row i changes with such a variable
-  !> by 1 if it is basic in it, not at all if it is basic elsewhere, and else by minus the entry of its column.
+  !> The one of the tied rows that would block first if the basic variables of the start were larger by e,
+  !! e^2, ...
+  !> (lexicographic order). Without it ties could make the simplex go round in circles. Row i changes with
+  !! such a variable
+  !> by 1 if it is basic in it, not at all if it is basic elsewhere, and else by minus the entry of its
+  !! column.
   pure integer function least_row(tableau, slope, tied) result(row)
     type(contact_tableau), intent(in) :: tableau
     real(wp), intent(in) :: slope(:)   !! of the entering column [n]
@@ -64,21 +68,20 @@ contains
     integer, allocatable :: rows(:)
     real(wp), allocatable :: ratio(:)
     real(wp) :: least
-    integer :: column, i, j, ties
+    integer :: i, j, ties
 
     left = tied
     ties = count(left)
     do j = 1, size(tableau%first_basic)
       if (ties == 1) exit
-      column = column_of(tableau, tableau%first_basic(j))
-      if (column == 0) then
-        row = row_of(tableau, tableau%first_basic(j))
+      row = tableau%place(tableau%first_basic(j))
+      if (row > 0) then
         if (.not. left(row) .or. -negligible*slope(row) >= 1.0_wp) cycle
         left(row) = .false.
         ties = ties - 1
       else
         rows = pack([(i, i=1, size(left))], left)
-        ratio = entries_of_rows(tableau, rows, column)/slope(rows)
+        ratio = entries_of_rows(tableau, rows, -row)/slope(rows)
         least = minval(ratio)
         left(rows) = ratio <= least + negligible*max(abs(least), 1.0_wp)
         ties = count(left)

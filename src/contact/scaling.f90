@@ -31,13 +31,14 @@ module epcont_contact_scaling
     real(wp), allocatable :: motion_size(:)     !! largest entry of each column of the given A [all motions]
     integer, allocatable :: kept(:)             !! which of the given motions these are [m]
     logical, allocatable :: first_touching(:)   !! pairs that hold every motion [n]
-    logical, allocatable :: guess(:)            !! of the pairs in contact; not allocated where there is none [n]
+    logical, allocatable :: guess(:)   !! of the pairs in contact; not allocated where there is none [n]
   end type scaled_problem
 
 contains
 
+  !> The problem in units of its own, with all of its motions.
   pure type(scaled_problem) function scale_problem(problem) result(scaled)
-    type(contact_problem), intent(in) :: problem
+    type(contact_problem), intent(in) :: problem   !! in the deck's units
     real(wp) :: driving   !! largest gap that asks for forces
     real(wp) :: largest   !! max|F|
     integer :: j, m
@@ -55,7 +56,9 @@ contains
     if (scaled%force_unit <= 0.0_wp) scaled%force_unit = force_unit(largest, largest_of(scaled%gap), 0.0_wp)
     if (scaled%force_unit <= 0.0_wp) scaled%force_unit = 1.0_wp
     scaled%gap_unit = scaled%force_unit*largest
-    if (scaled%gap_unit <= 0.0_wp) scaled%gap_unit = max(largest_of(scaled%gap), largest_of(scaled%unloaded_gap))
+    if (scaled%gap_unit <= 0.0_wp) then
+      scaled%gap_unit = max(largest_of(scaled%gap), largest_of(scaled%unloaded_gap))
+    end if
     if (scaled%gap_unit <= 0.0_wp) scaled%gap_unit = 1.0_wp
 
     scaled%flexibility = problem%flexibility*(scaled%force_unit/scaled%gap_unit)
@@ -79,7 +82,7 @@ contains
 
   !> Hold the motions in `dropped` at zero: they leave the problem.
   pure subroutine drop_motions(scaled, dropped)
-    type(scaled_problem), intent(inout) :: scaled
+    type(scaled_problem), intent(inout) :: scaled   !! the problem in its own units
     logical, intent(in) :: dropped(:)   !! [m]
     integer, allocatable :: kept(:)
     integer :: j
@@ -92,10 +95,10 @@ contains
 
   !> Put forces, gaps and approach into `solution` in the deck's units; dropped motions stay at zero.
   pure subroutine restore_units(scaled, force, gap, approach, solution)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: force(:), gap(:)      !! [n]
     real(wp), intent(in) :: approach(:)           !! of the kept motions [m]
-    type(contact_solution), intent(inout) :: solution
+    type(contact_solution), intent(inout) :: solution   !! in the deck's units
 
     solution%force = force*scaled%force_unit
     solution%gap = gap*scaled%gap_unit

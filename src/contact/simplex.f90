@@ -3,15 +3,16 @@
 !> The set found is never trusted: forces and gaps are solved afresh from F and A, and if one of them
 !> has the wrong sign the simplex goes on from there. A guessed set is treated in the same way.
 !>
-!> On smooth, badly conditioned flexibilities (1e10) pairs close and open again many times while the load grows: the path
-!> takes some n**2/20 pivots, and the tableau's entries, which go up to the condition number and back, lose as many digits on
-!> it. Such a path is not followed to its end: block pivoting decides, which solves each set by a factor of its own; where forces
-!> depend on each other, once each pair has a hair of flexibility of its own.
+!> On smooth, badly conditioned flexibilities (1e10) pairs close and open again many times while the load
+!> grows: the path takes some n**2/20 pivots, and the tableau's entries, which go up to the condition number
+!> and back, lose as many digits on it. Such a path is not followed to its end: block pivoting decides, which
+!> solves each set by a factor of its own; where forces depend on each other, once each pair has a hair of
+!> flexibility of its own.
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
   use epcont_contact_block_pivoting, only: find_by_blocks
-  use epcont_contact_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, has_right_signs, &
-    noise, sign_tolerance, solve_set
+  use epcont_contact_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, &
+    has_right_signs, noise, sign_tolerance, solve_set
   use epcont_contact_loading, only: follow_load, path_complete, path_ray
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: negligible, scaled_problem
@@ -22,9 +23,11 @@ module epcont_contact_simplex
 
   !> Part of its forces by which a ray may miss F z = 0 and A'z = 0.
   real(wp), parameter, public :: ray_tolerance = 1.0e-7_wp
-  !> Pivots allowed for each unknown before rounding is taken to have broken the path; sound ones were seen to take up to 2.
+  !> Pivots allowed for each unknown before rounding is taken to have broken the path; sound ones were seen to
+  !! take up to 2.
   integer, parameter :: pivots_per_unknown = 4
-  !> Flexibility of its own that tells pairs apart whose forces depend on each other; it opens gaps by less than their rounding.
+  !> Flexibility of its own that tells pairs apart whose forces depend on each other; it opens gaps by less
+  !! than their rounding.
   real(wp), parameter :: own_flexibility = 1.0e-10_wp
   !> Fresh starts before the problem is given up.
   integer, parameter :: restart_limit = 10
@@ -33,9 +36,9 @@ contains
 
   !> Follow the load from one set of contacts to the next until a fresh solution passes the test of signs.
   pure subroutine find_contacts(scaled, solution, state, ray)
-    type(scaled_problem), intent(in) :: scaled
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_solution), intent(inout) :: solution   !! state, and the record of the pivots
-    type(contact_state), intent(out) :: state
+    type(contact_state), intent(out) :: state   !! the set found, fresh
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
     real(wp), allocatable :: lifted(:)
     logical, allocatable :: closed(:)
@@ -72,8 +75,8 @@ contains
     if (.not. has_right_signs(scaled, state, sign_tolerance)) solution%state = contact_stalled
   end subroutine find_contacts
 
-  !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless the set is right
-  !! without that too.
+  !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless
+  !! the set is right without that too.
   pure subroutine exchange_afresh(scaled, own, solution, state, found)
     type(scaled_problem), intent(in) :: scaled
     real(wp), intent(in) :: own                         !! part of the largest flexibility

@@ -1,11 +1,13 @@
-!> From a contact problem to its answer: scaling, rigid start, the set of contacts by one rule or the other, units.
+!> From a contact problem to its answer: scaling, rigid start, the set of contacts by one rule or the other,
+!> units.
 module epcont_contact_solver
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: new_basis
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_contact_state, only: contact_state, gaps_under, noise, solve_set, terms_of_gaps
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
-  use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, contact_solution, contact_stalled
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
+    contact_solution, contact_stalled
   use epcont_contact_scaling, only: drop_motions, negligible, restore_units, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts, ray_tolerance
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
@@ -20,8 +22,8 @@ contains
 
   !> Find forces, gaps and motions of a contact problem, or why there are none.
   pure subroutine solve_contact(problem, solution, start, by_blocks)
-    type(contact_problem), intent(in) :: problem
-    type(contact_solution), intent(out) :: solution
+    type(contact_problem), intent(in) :: problem   !! in the deck's units
+    type(contact_solution), intent(out) :: solution   !! its state says whether there is one
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
     logical, intent(in), optional :: by_blocks  !! RULE BLOCK; not given: CONRY
     type(scaled_problem) :: scaled
@@ -45,7 +47,8 @@ contains
     if (.not. solution%by_blocks) call solve_by_simplex(scaled, solution)
   end subroutine solve_contact
 
-  !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left of it.
+  !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left of
+  !! it.
   pure subroutine solve_by_blocks(scaled, solution)
     type(scaled_problem), intent(in) :: scaled
     type(contact_solution), intent(inout) :: solution
@@ -105,7 +108,8 @@ contains
     type(contact_state), intent(inout) :: state
     type(contact_solution), intent(inout) :: solution
     logical, allocatable :: pressed(:)
-    real(wp), allocatable :: terms(:)   !! what gaps are the sum of; the motions have the rounding of those that hold them [n]
+    !> What gaps are the sum of; the motions have the rounding of those that hold them [n]
+    real(wp), allocatable :: terms(:)
     real(wp) :: zero                    !! force that rounding leaves of none
 
     zero = negligible*maxval([state%force, 1.0_wp])
@@ -121,9 +125,9 @@ contains
     call restore_units(scaled, state%force, state%gap, state%approach, solution)
   end subroutine settle
 
-  !> Forces and motions without what rounding has left of none. A force that is cut off may have been less than none: its pair need
-  !! not be closed. Where rigid stops take the load, gaps may be far below the size that they are measured in, and that force may
-  !! have held other pairs closed: those are solved for again.
+  !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
+  !! than none: its pair need not be closed. Where rigid stops take the load, gaps may be far below the size
+  !! that they are measured in, and that force may have held other pairs closed: those are solved for again.
   pure subroutine cut_rounding(scaled, state, terms)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
@@ -140,7 +144,8 @@ contains
       where (.not. moving) state%approach = 0.0_wp
       terms = terms_of_gaps(scaled, state)
       state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
-      if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. all(pressed(state%basis%pairs))) return
+      if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. &
+          all(pressed(state%basis%pairs))) return
       fewer%basis = new_basis(scaled, pressed)
       if (.not. fewer%basis%sound) return   ! a motion is held by rounding
       call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)

@@ -11,8 +11,9 @@
 !>     R, w |     entry     |  x - c |  row k: the basic one of R_k, w_k, at first
 !>          +---------------+--------+
 !>
-!> A pivot adds a column times a row to the entries. These are kept apart until there are `panel` of them, and then added by
-!> one dgemm; a column or a row of the tableau is put together when it is asked for:  entry = settled + left right.
+!> A pivot adds a column times a row to the entries. These are kept apart until there are `panel` of them, and
+!> then added by one dgemm; a column or a row of the tableau is put together when it is asked for: entry =
+!> settled + left right.
 module epcont_contact_tableau
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, respond
@@ -20,7 +21,7 @@ module epcont_contact_tableau
   use epcont_linalg_dense, only: add_product
   implicit none
   private
-  public :: contact_tableau, new_tableau, pivot, row_of, column_of, entries_of_column, entries_of_rows
+  public :: contact_tableau, new_tableau, pivot, entries_of_column, entries_of_rows
 
   !> The variable that carries the load from 0 to 1.
   integer, parameter, public :: load_factor = 0
@@ -36,7 +37,8 @@ module epcont_contact_tableau
     real(wp), allocatable :: value(:)      !! basic variables [n]
     integer, allocatable :: basic(:)       !! variable of each row [n]
     integer, allocatable :: nonbasic(:)    !! variable of each column [n + 1]
-    integer, allocatable :: first_basic(:) !! basic variables of the start; they are perturbed against ties [n]
+    !> Basic variables of the start; they are perturbed against ties [n]
+    integer, allocatable :: first_basic(:)
     integer, allocatable :: place(:)       !! of each variable: its row, or minus its column [-n:n]
   end type contact_tableau
 
@@ -44,8 +46,8 @@ contains
 
   !> The tableau of a sound basis, from `start` at t = 0 to `goal` at t = 1.
   pure type(contact_tableau) function new_tableau(problem, basis, start, goal) result(tableau)
-    type(scaled_problem), intent(in) :: problem
-    type(contact_basis), intent(in) :: basis
+    type(scaled_problem), intent(in) :: problem   !! in its own units
+    type(contact_basis), intent(in) :: basis   !! a sound one: its forces are basic
     real(wp), intent(in) :: start(:)   !! basic variable of each pair at t = 0, all >= 0 [n]
     real(wp), intent(in) :: goal(:)    !! the same at t = 1 [n]
     integer :: k, n
@@ -67,7 +69,8 @@ contains
     tableau%settled(:, n + 1) = goal - start
   end function new_tableau
 
-  !> Response of the basic variables to unit nonbasic ones: gaps of the pairs in contact, forces of the others.
+  !> Response of the basic variables to unit nonbasic ones: gaps of the pairs in contact, forces of the
+  !! others.
   pure subroutine fill_entries(problem, basis, entry)
     type(scaled_problem), intent(in) :: problem
     type(contact_basis), intent(in) :: basis
@@ -91,26 +94,10 @@ contains
     entry(basis%pairs, :) = force
   end subroutine fill_entries
 
-  !> Row of a variable; 0 while it is nonbasic.
-  elemental integer function row_of(tableau, variable) result(row)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: variable
-
-    row = max(tableau%place(variable), 0)
-  end function row_of
-
-  !> Column of a variable; 0 while it is basic.
-  elemental integer function column_of(tableau, variable) result(column)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: variable
-
-    column = max(-tableau%place(variable), 0)
-  end function column_of
-
   !> The entries of a column.
   pure function entries_of_column(tableau, column) result(entry)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: column
+    type(contact_tableau), intent(in) :: tableau   !! as it stands
+    integer, intent(in) :: column   !! its number
     real(wp), allocatable :: entry(:)
     integer :: i
 
@@ -122,8 +109,8 @@ contains
 
   !> Those of some rows in a column.
   pure function entries_of_rows(tableau, rows, column) result(entry)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: rows(:), column
+    type(contact_tableau), intent(in) :: tableau   !! as it stands
+    integer, intent(in) :: rows(:), column   !! their numbers
     real(wp) :: entry(size(rows))
     integer :: i
 
@@ -135,9 +122,10 @@ contains
 
   !> Exchange the basic variable of `row` with the nonbasic one of `column`.
   pure subroutine pivot(tableau, row, column, slope)
-    type(contact_tableau), intent(inout) :: tableau
-    integer, intent(in) :: row, column
-    real(wp), intent(in) :: slope(:)   !! entries of the column: change of the basic variables with the entering one [n]
+    type(contact_tableau), intent(inout) :: tableau   !! moved on to the next event
+    integer, intent(in) :: row, column   !! of the variable that leaves, and of that which enters
+    !> Entries of the column: change of the basic variables with the entering one [n]
+    real(wp), intent(in) :: slope(:)
     real(wp) :: ratio
     integer :: entering, j, leaving
 
@@ -149,7 +137,8 @@ contains
     ! The entering row and the leaving column are replaced as a whole by the product; the others change by it.
     associate (p => tableau%pending + 1)
       do j = 1, size(tableau%nonbasic)
-        tableau%right(p, j) = -(tableau%settled(row, j) + dot_product(tableau%left(row, :p - 1), tableau%right(:p - 1, j))) &
+        tableau%right(p, j) = -(tableau%settled(row, j) &
+                                + dot_product(tableau%left(row, :p - 1), tableau%right(:p - 1, j))) &
                               /slope(row)
         tableau%settled(row, j) = 0.0_wp
       end do

@@ -11,7 +11,8 @@ module epcont_contact_uniqueness
 
   !> Components of a null vector (largest about 1) up to this are zero.
   real(wp), parameter :: null_tolerance = 1.0e-7_wp
-  !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this is allowed for.
+  !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this is
+  !! allowed for.
   real(wp), parameter :: amplification = 100.0_wp
 
 contains
@@ -22,7 +23,7 @@ contains
   !> With the gaps of the pressed pairs held closed, an idle touching pair j feels the forces z of the idle
   !> ones through the Schur complement M of F_g, and M z = 0 is asked of z.
   pure function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:)      !! gap zero [n]
     logical, intent(in) :: pressed(:)       !! force beyond rounding; of a basis, so unique by themselves [n]
     logical, allocatable :: indeterminate(:)
@@ -73,7 +74,7 @@ contains
 
   !> Pairs with equal rows in F and A share their force equally.
   pure subroutine share_equally(problem, indeterminate, force)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: indeterminate(:)    !! [n]
     real(wp), intent(inout) :: force(:)        !! [n]
     integer, allocatable :: alike(:), pairs(:)
@@ -101,10 +102,10 @@ contains
     if (alike) alike = all(abs(problem%flexibility(:, i) - problem%flexibility(:, k)) <= zero)
   end function are_alike
 
-  !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions: they do where their
-  !! forces, none of them a pull, would carry a load along the motion either way.
+  !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions:
+  !! they do where their forces, none of them a pull, would carry a load along the motion either way.
   pure function find_free_motions(problem, touching, pressed) result(free)
-    type(scaled_problem), intent(in) :: problem
+    type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]
     real(wp), allocatable :: closing(:, :), loose(:, :)

@@ -9,7 +9,8 @@ module epcont_flexibility_flexibility
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, motion_resultants, pair_forces
+  public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
+    motion_resultants, pair_forces
 
   !> Part of what a sum is made of that rounding leaves where it should cancel.
   real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
@@ -24,11 +25,11 @@ contains
 
   !> One body's part of F = N K^-1 N'.
   pure subroutine find_flexibility(model, numbering, b, stiffness, part)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
+    type(model_type), intent(in) :: model   !! the scene
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     integer, intent(in) :: b                       !! the body
     type(body_stiffness), intent(in) :: stiffness  !! factored
-    type(body_flexibility), intent(out) :: part
+    type(body_flexibility), intent(out) :: part   !! no pairs where the body has none
     type(sparse_rows) :: rows
 
     call find_rows(model, numbering, b, part%pair, rows)
@@ -41,7 +42,7 @@ contains
 
   !> Add a body's part to F.
   pure subroutine add_flexibility(part, flexibility)
-    type(body_flexibility), intent(in) :: part
+    type(body_flexibility), intent(in) :: part   !! one body's
     real(wp), intent(inout) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
     integer :: k
 
@@ -52,8 +53,8 @@ contains
     end do
   end subroutine add_flexibility
 
-  !> Rows of N in one body, of the pairs that have any entry there; negative equations are of the border. Freedoms that are
-  !! held, across the normal or of another body are left out.
+  !> Rows of N in one body, of the pairs that have any entry there; negative equations are of the border.
+  !! Freedoms that are held, across the normal or of another body are left out.
   pure subroutine find_rows(model, numbering, b, pair, rows)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
@@ -114,20 +115,22 @@ contains
 
   !> Opening of the gaps by displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: displacement(:, :)  !! [2, nodes]
     real(wp), allocatable :: opening(:)
     integer :: k
 
     allocate (opening(model%pairs))
     do k = 1, model%pairs
-      opening(k) = model%opening(k, displacement(:, model%row_node(model%row_start(k):model%row_start(k + 1) - 1)))
+      associate (node => model%row_node(model%row_start(k):model%row_start(k + 1) - 1))
+        opening(k) = model%opening(k, displacement(:, node))
+      end associate
     end do
   end function gap_opening
 
   !> Forces of the pairs on the nodes: N' R [force] [2, nodes].
   pure function pair_forces(model, force) result(nodal)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: force(:)  !! [pairs]
     real(wp), allocatable :: nodal(:, :)
     integer :: i, k
@@ -142,11 +145,11 @@ contains
     end do
   end function pair_forces
 
-  !> A = -N Phi, the closing of the gaps by unit rigid motions [pairs, motions]. There is none of a pair that moves as a whole, or
-  !! along itself, but for rounding: else a large force on it would drive the body.
+  !> A = -N Phi, the closing of the gaps by unit rigid motions [pairs, motions]. There is none of a pair that
+  !! moves as a whole, or along itself, but for rounding: else a large force on it would drive the body.
   pure function motion_columns(model, motions) result(columns)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
+    type(model_type), intent(in) :: model   !! the scene
+    type(free_motions), intent(in) :: motions   !! free ones
     real(wp), allocatable :: columns(:, :)
     real(wp), allocatable :: moved(:, :)
     integer :: first, i, k, m
@@ -168,11 +171,12 @@ contains
     end do
   end function motion_columns
 
-  !> P = Phi' f, the loads along the free motions [motions]. Where they cancel, or act across the motion, but for rounding, there
-  !! are none: else rounding would tell whether the body moves off. What acts on a held freedom does not count: its support has it.
+  !> P = Phi' f, the loads along the free motions [motions]. Where they cancel, or act across the motion, but
+  !! for rounding, there are none: else rounding would tell whether the body moves off. What acts on a held
+  !! freedom does not count: its support has it.
   pure function motion_resultants(model, motions) result(resultant)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
+    type(model_type), intent(in) :: model   !! the scene
+    type(free_motions), intent(in) :: motions   !! free ones
     real(wp), allocatable :: resultant(:)
     real(wp) :: all_loads, load(2), moved(2)
     integer :: c, i, m

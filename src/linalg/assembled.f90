@@ -1,16 +1,18 @@
-!> What bodies ask of their stiffness matrices, however these are stored: filled element by element, factored, solved
-!> with, and seen by the pairs. How one begins, by its panels or by its fronts, is the affair of each kind.
+!> What bodies ask of their stiffness matrices, however these are stored: filled element by element, factored,
+!> solved with, and seen by the pairs. How one begins, by its panels or by its fronts, is the affair of each
+!> kind.
 !>
-!> The elements of fronts are added in the order of the first front that they have equations of (`front_layout`): what
-!> stands before is complete then, and is factored while it is at hand. So `add` does most of the work, `factor` the rest.
+!> The elements of fronts are added in the order of the first front that they have equations of
+!> (`front_layout`): what stands before is complete then, and is factored while it is at hand. So `add` does
+!> most of the work, `factor` the rest.
 module epcont_linalg_assembled
   use epcont_base_kinds, only: wp
   implicit none
   private
   public :: assembled_matrix, sparse_rows, add_seen_through, probes
 
-  !> Rows of a sparse matrix N: entries start(k) to start(k+1)-1 of row k are equations and weights. Equations that are
-  !! not positive count for nothing.
+  !> Rows of a sparse matrix N: entries start(k) to start(k+1)-1 of row k are equations and weights. Equations
+  !! that are not positive count for nothing.
   type :: sparse_rows
     integer, allocatable :: start(:)       !! [rows + 1]
     integer, allocatable :: equation(:)    !! [entries]
@@ -19,7 +21,7 @@ module epcont_linalg_assembled
 
   type, abstract :: assembled_matrix
     integer :: order = 0
-    integer :: trailing = 0             !! last equations, the only ones that `add_compliance` is asked for; 0: any
+    integer :: trailing = 0   !! last equations, the only ones that `add_compliance` is asked for; 0: any
     real(wp) :: norm = 0.0_wp           !! 1-norm of the matrix, or a bound of it
     real(wp) :: rounding = epsilon(1.0_wp)   !! relative, of its entries and of what is done with them
     logical :: lacks_memory = .false.   !! there was not enough to begin it
@@ -38,16 +40,17 @@ module epcont_linalg_assembled
   end type assembled_matrix
 
   abstract interface
-    !> Make ready to be filled anew where only the columns of these equations have changed: stale columns begin with
-    !! zeros, the others remain as they are, even factored.
+    !> Make ready to be filled anew where only the columns of these equations have changed: stale columns
+    !! begin with zeros, the others remain as they are, even factored.
     pure subroutine clear_entries(self, stale)
       import :: assembled_matrix
       class(assembled_matrix), intent(inout) :: self
-      logical, intent(inout) :: stale(:)     !! on return with those that have to be filled anew on their account [order]
+      !> On return with those that have to be filled anew on their account [order]
+      logical, intent(inout) :: stale(:)
     end subroutine clear_entries
 
-    !> Add the matrix of the next element; rows and columns of number 0 and less are left out, and columns that are not
-    !! stale.
+    !> Add the matrix of the next element; rows and columns of number 0 and less are left out, and columns
+    !! that are not stale.
     pure subroutine add_element(self, n, number, k)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(inout) :: self
@@ -63,7 +66,8 @@ module epcont_linalg_assembled
       integer, intent(out) :: failed         !! equation that has no pivot; 0: none, the matrix is definite
     end subroutine eliminate_rest
 
-    !> The first half of a solve, L^-1 x: right-hand sides that have it behind them may still be added to each other.
+    !> The first half of a solve, L^-1 x: right-hand sides that have it behind them may still be added to each
+    !! other.
     pure subroutine first_half(self, x)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
@@ -78,7 +82,8 @@ module epcont_linalg_assembled
       integer, intent(in) :: first
     end subroutine second_half
 
-    !> `probes` with the first half of the solve behind them; they were taken along when the factor was made, perhaps.
+    !> `probes` with the first half of the solve behind them; they were taken along when the factor was made,
+    !! perhaps.
     pure function solved_probes(self) result(x)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
@@ -96,8 +101,8 @@ module epcont_linalg_assembled
 
 contains
 
-  !> End with the Cholesky factor of the matrix. Many singular matrices pass for definite, so the ratio of the smallest
-  !! pivot to its diagonal entry is returned as well.
+  !> End with the Cholesky factor of the matrix. Many singular matrices pass for definite, so the ratio of the
+  !! smallest pivot to its diagonal entry is returned as well.
   pure subroutine factor(self, smallest_ratio, at)
     class(assembled_matrix), intent(inout) :: self
     real(wp), intent(out) :: smallest_ratio  !! 0 where the matrix is not definite
@@ -122,12 +127,13 @@ contains
     call self%solve_upper(x, 1)
   end subroutine solve
 
-  !> Estimate of the condition in the 1-norm, from the factor: of the inverse's norm a lower bound, seldom under a third
-  !! of it. Two columns at a time (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21 (2000) 1185) in two solves, since a
-  !! factor takes longer to read than to use: `dlacn2`, one column in each of five solves, takes two and a half times as
-  !! long for the same figure; the alternating column alone takes three quarters, but its figure depends on the order of
-  !! the equations (0.6 to 1 of this one). (Begun with a solution already known it would take one, but where that has ties
-  !! or zeros the figure would be a matter of rounding: 0.4 to 1 of this one.)
+  !> Estimate of the condition in the 1-norm, from the factor: of the inverse's norm a lower bound, seldom
+  !! under a third of it. Two columns at a time (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21 (2000)
+  !! 1185) in two solves, since a factor takes longer to read than to use: `dlacn2`, one column in each of
+  !! five solves, takes two and a half times as long for the same figure; the alternating column alone takes
+  !! three quarters, but its figure depends on the order of the equations (0.6 to 1 of this one). (Begun with
+  !! a solution already known it would take one, but where that has ties or zeros the figure would be a matter
+  !! of rounding: 0.4 to 1 of this one.)
   pure real(wp) function condition(self)
     class(assembled_matrix), intent(in) :: self
     real(wp), allocatable :: x(:, :)
@@ -144,22 +150,23 @@ contains
     condition = self%norm*max(inverse_norm, maxval(abs(x)))
   end function condition
 
-  !> What the estimate begins with, of 1-norm 1: equal parts, and the alternating column that finds what they cancel
-  !! (Higham's).
+  !> What the estimate begins with, of 1-norm 1: equal parts, and the alternating column that finds what they
+  !! cancel (Higham's).
   pure function probes(order) result(x)
     integer, intent(in) :: order           !! of the matrix
     real(wp) :: x(order, 2)
     integer :: i
 
     x(:, 1) = 1.0_wp/max(1, order)
-    x(:, 2) = [(merge(1.0_wp, -1.0_wp, mod(i, 2) == 1)*(1.0_wp + real(i - 1, wp)/max(1, order - 1)), i=1, order)]
+    x(:, 2) = [(1.0_wp + real(i - 1, wp)/max(1, order - 1), i=1, order)]
+    x(2::2, 2) = -x(2::2, 2)
     x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
   end function probes
 
   !> Add N C N', C being the trailing block of an inverse.
   pure subroutine add_seen_through(inverse, before, rows, compliance)
     real(wp), intent(in) :: inverse(:, :)       !! C
-    integer, intent(in) :: before               !! equations that stand before those of C, and count for nothing
+    integer, intent(in) :: before   !! equations that stand before those of C, and count for nothing
     type(sparse_rows), intent(in) :: rows       !! N
     real(wp), intent(inout) :: compliance(:, :)       !! [rows, rows]
     real(wp) :: opening, response(size(inverse, 1))

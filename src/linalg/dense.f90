@@ -23,14 +23,16 @@ contains
 
   !> Replace each column of `b` by the solution of LL'x = b, L being the leading rows of `factor`.
   pure subroutine cholesky_solve(factor, b)
-    real(wp), contiguous, intent(in) :: factor(:, :)  !! from `cholesky_factor` or `extend_cholesky` [>= n, >= n]
+    !> From `cholesky_factor` or `extend_cholesky` [>= n, >= n]
+    real(wp), contiguous, intent(in) :: factor(:, :)
     real(wp), contiguous, intent(inout) :: b(:, :)    !! right-hand sides, then solutions [n, k]
     integer :: info
 
     if (size(b) > 0) call dpotrs('L', size(b, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
   end subroutine cholesky_solve
 
-  !> Carry a factor on: of the leading n rows of `a` the first `done` hold L, the others the matrix; then all hold L.
+  !> Carry a factor on: of the leading n rows of `a` the first `done` hold L, the others the matrix; then all
+  !! hold L.
   !>
   !>     +-----+
   !>     | L11 |            L21 = A21 L11'^-1
@@ -40,7 +42,7 @@ contains
   pure subroutine extend_cholesky(lda, a, done, n, info)
     integer, intent(in) :: lda                        !! rows of `a`, at least n
     real(wp), intent(inout) :: a(lda, *)              !! lower triangle [lda, >= n]
-    integer, intent(in) :: done, n
+    integer, intent(in) :: done, n   !! rows that are factored, and that are to be in all
     integer, intent(out) :: info          !! 0, or the order of the first minor that is not positive
     integer :: rest
 
@@ -57,7 +59,8 @@ contains
 
   !> Replace a Cholesky factor L by the inverse of LL', whole.
   pure subroutine cholesky_inverse(a)
-    real(wp), contiguous, intent(inout) :: a(:, :)    !! lower triangle: L; then both triangles of the inverse [n, n]
+    !> Lower triangle: L; then both triangles of the inverse [n, n]
+    real(wp), contiguous, intent(inout) :: a(:, :)
     integer :: info, j
 
     if (size(a) == 0) return
@@ -90,7 +93,7 @@ contains
   pure subroutine lu_solve(a, b, info)
     real(wp), contiguous, intent(inout) :: a(:, :)    !! [n, n]
     real(wp), contiguous, intent(inout) :: b(:, :)    !! right-hand sides, then solutions [n, k]
-    integer, intent(out) :: info          !! 0, or the first pivot that is exactly zero (`b` is then untouched)
+    integer, intent(out) :: info   !! 0, or the first pivot that is exactly zero (`b` is then untouched)
     integer :: pivots(size(a, 1))
 
     info = 0
@@ -99,7 +102,7 @@ contains
 
   !> c = c + factor a b.
   pure subroutine add_product(factor, a, b, c)
-    real(wp), intent(in) :: factor
+    real(wp), intent(in) :: factor   !! of the product
     real(wp), contiguous, intent(in) :: a(:, :)       !! [n, k]
     real(wp), contiguous, intent(in) :: b(:, :)       !! [k, m]
     real(wp), contiguous, intent(inout) :: c(:, :)    !! [n, m]

@@ -1,14 +1,17 @@
-!> Symmetric positive definite matrices in fronts, by the multifrontal method: what `panel_matrix` does, for large systems.
+!> Symmetric positive definite matrices in fronts, by the multifrontal method: what `panel_matrix` does, for
+!> large systems.
 !>
-!> The columns of front p are stored with the rows of its own equations and those that it reaches, one below the other:
+!> The columns of front p are stored with the rows of its own equations and those that it reaches, one below
+!> the other:
 !>
 !>     x .        own equations: x: stored, .: stored but above the diagonal, never read
 !>     x x
 !>     x x        the later equations that it reaches, close together however far apart they are in the matrix
 !>     x x
 !>
-!> When they have been eliminated, what is left to the reached equations is a full matrix, which is passed on to the parent.
-!> Where nested dissection has found the fronts, few operations are done, and all of them on full matrices.
+!> When they have been eliminated, what is left to the reached equations is a full matrix, which is passed on
+!> to the parent. Where nested dissection has found the fronts, few operations are done, and all of them on
+!> full matrices.
 module epcont_linalg_front
   use epcont_base_kinds, only: i8, rp => wp, wp
   use epcont_linalg_assembled, only: add_seen_through, assembled_matrix, probes, sparse_rows

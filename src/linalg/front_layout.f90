@@ -1,7 +1,8 @@
 !> Fronts: which equations are eliminated together, and which of the later ones they are then coupled with.
 !>
-!> Front p has the equations first(p) to first(p+1)-1 of its own, and reaches the equations row(row_start(p)) to
-!> row(row_start(p+1)-1). All these stand in its parent, the front that the first of them belongs to, or are reached by it.
+!> Front p has the equations first(p) to first(p+1)-1 of its own, and reaches the equations row(row_start(p))
+!> to row(row_start(p+1)-1). All these stand in its parent, the front that the first of them belongs to, or
+!> are reached by it.
 module epcont_linalg_front_layout
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
@@ -19,7 +20,8 @@ module epcont_linalg_front_layout
     integer, allocatable :: own(:)         !! how many equations are a front's own [fronts]
     integer, allocatable :: reached(:)     !! and how many it reaches [fronts]
     logical :: in_sequence = .true.        !! all fronts below one stand right before it
-    integer, allocatable :: element(:)     !! the elements in the order of the first fronts that they have equations of
+    !> The elements in the order of the first fronts that they have equations of.
+    integer, allocatable :: element(:)
   contains
     procedure :: places
     procedure :: reached_by
@@ -53,8 +55,8 @@ contains
     layout%in_sequence = stand_in_sequence(layout%parent)
   end function new_front_layout
 
-  !> The rows of each front, and its parent. A front reaches what elements join to its equations and what the fronts below it
-  !! reach, as far as that comes later.
+  !> The rows of each front, and its parent. A front reaches what elements join to its equations and what the
+  !! fronts below it reach, as far as that comes later.
   pure subroutine find_rows(layout, at, numbers)
     type(front_layout), intent(inout) :: layout
     type(incidence), intent(in) :: at
@@ -75,7 +77,8 @@ contains
       end do
       c = child(p)
       do while (c > 0)
-        call add_new(row(layout%row_start(c):layout%row_start(c + 1) - 1), layout%first(p + 1), seen, found, count)
+        call add_new(row(layout%row_start(c):layout%row_start(c + 1) - 1), layout%first(p + 1), seen, &
+                     found, count)
         c = next(c)
       end do
       layout%row_start(p + 1) = layout%row_start(p) + count
@@ -132,7 +135,7 @@ contains
   !> Where equations, ascending, stand among the rows of a front; they must be there.
   pure function places(self, number, front) result(place)
     class(front_layout), intent(in) :: self
-    integer, intent(in) :: number(:), front
+    integer, intent(in) :: number(:), front   !! equations, ascending
     integer :: place(size(number))
     integer :: at, i
 
@@ -150,7 +153,7 @@ contains
   !> The equations that a front reaches, ascending.
   pure function reached_by(self, front) result(row)
     class(front_layout), intent(in) :: self
-    integer, intent(in) :: front
+    integer, intent(in) :: front   !! its number
     integer :: row(self%reached(front))
 
     row = self%row(self%row_start(front):self%row_start(front + 1) - 1)
@@ -166,8 +169,8 @@ contains
     entries = sum(int(self%own, i8)*(self%own + self%reached)) + start(size(start)) - 1
   end function entries
 
-  !> Whether the fronts below each stand right before it: else what one leaves may still be wanted when others, not below the
-  !! same, are eliminated.
+  !> Whether the fronts below each stand right before it: else what one leaves may still be wanted when
+  !! others, not below the same, are eliminated.
   pure logical function stand_in_sequence(parent)
     integer, intent(in) :: parent(:)
     integer :: below(size(parent)), lowest(size(parent)), p
@@ -183,11 +186,12 @@ contains
     end do
   end function stand_in_sequence
 
-  !> Where the update matrix of each front, what it leaves to the later equations, begins: in its own place where all are
-  !! kept, else behind that of its parent, where those that are done with were before. And one behind the last [fronts + 1].
+  !> Where the update matrix of each front, what it leaves to the later equations, begins: in its own place
+  !! where all are kept, else behind that of its parent, where those that are done with were before. And one
+  !! behind the last [fronts + 1].
   pure function update_starts(self, kept) result(start)
     class(front_layout), intent(in) :: self
-    logical, intent(in) :: kept
+    logical, intent(in) :: kept   !! all update matrices are kept
     integer(i8) :: start(size(self%first))
     integer(i8) :: last
     integer :: p

@@ -1,8 +1,9 @@
-!> Symmetric positive definite matrices in panels of columns, each with its own height: blocked variable-band Cholesky.
+!> Symmetric positive definite matrices in panels of columns, each with its own height: blocked variable-band
+!> Cholesky.
 !>
-!> The lower triangle is stored panel by panel: panel p has the columns first(p) to first(p+1)-1, and for all of them the
-!> rows from first(p) to last(p), column by column from entries(start(p)) on. The last rows never go back where panels
-!> overlap, so the factor fills what is stored and nothing else:
+!> The lower triangle is stored panel by panel: panel p has the columns first(p) to first(p+1)-1, and for all
+!> of them the rows from first(p) to last(p), column by column from entries(start(p)) on. The last rows never
+!> go back where panels overlap, so the factor fills what is stored and nothing else:
 !>
 !>     x .        x: stored, .: stored but above the diagonal, never read
 !>     x x

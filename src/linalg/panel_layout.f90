@@ -1,4 +1,5 @@
-!> Panels of a variable-band matrix: where each begins and how high it is, the memory they take and the operations.
+!> Panels of a variable-band matrix: where each begins and how high it is, the memory they take and the
+!> operations.
 module epcont_linalg_panel_layout
   use epcont_base_kinds, only: i8, wp
   implicit none
@@ -20,7 +21,8 @@ module epcont_linalg_panel_layout
 
 contains
 
-  !> The panels of a matrix. Their last rows never go back where they overlap, so that the factor fills what is stored.
+  !> The panels of a matrix. Their last rows never go back where they overlap, so that the factor fills what
+  !! is stored.
   pure function new_panel_layout(profile) result(layout)
     integer, intent(in) :: profile(:)      !! the last row that each column is coupled with [order]
     type(panel_layout) :: layout

@@ -1,4 +1,5 @@
-!> The fronts of epcont_linalg_front with their entries in single precision: half of the memory and of the time to factor them.
+!> The fronts of epcont_linalg_front with their entries in single precision: half of the memory and of the
+!> time to factor them.
 module epcont_linalg_single_front
   use epcont_base_kinds, only: i8, rp => sp, wp
   use epcont_linalg_assembled, only: add_seen_through, assembled_matrix, probes, sparse_rows

@@ -1,4 +1,5 @@
-!> The panels of epcont_linalg_panel with their entries in single precision: half of the memory and of the time to factor them.
+!> The panels of epcont_linalg_panel with their entries in single precision: half of the memory and of the
+!> time to factor them.
 module epcont_linalg_single_panel
   use epcont_base_kinds, only: i8, rp => sp, wp
   use epcont_base_sorting, only: sorted_order

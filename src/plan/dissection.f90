@@ -1,8 +1,10 @@
-!> Nested dissection: an order of a body's nodes in which elimination fills little, and the fronts it falls into.
+!> Nested dissection: an order of a body's nodes in which elimination fills little, and the fronts it falls
+!> into.
 !>
-!> A set of nodes is halved at the median of the coordinate across which the fewest elements lie. The nodes of one half that
-!> elements join to the other are its separator: with them out of the way the halves know nothing of each other, so each is
-!> eliminated by itself, and in the same manner, before the separator (George, SIAM J. Numer. Anal. 10 (1973) 345).
+!> A set of nodes is halved at the median of the coordinate across which the fewest elements lie. The nodes of
+!> one half that elements join to the other are its separator: with them out of the way the halves know
+!> nothing of each other, so each is eliminated by itself, and in the same manner, before the separator
+!> (George, SIAM J. Numer. Anal. 10 (1973) 345).
 module epcont_plan_dissection
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: halve
@@ -16,18 +18,20 @@ module epcont_plan_dissection
     integer, allocatable :: first(:)   !! the first of each front in it, and one behind the last [fronts + 1]
   end type dissection
 
-  !> Sets of so few nodes are not halved. From 12 to 24 it matters little: fewer operations against more and smaller matrices.
+  !> Sets of so few nodes are not halved. From 12 to 24 it matters little: fewer operations against more and
+  !! smaller matrices.
   integer, parameter :: few = 16
-  !> Sets of more are halved where the fewest elements are cut, others along the coordinate of the plane that spreads most:
-  !! which elements are cut takes longer to find, and is soon repaid only where separators are long.
+  !> Sets of more are halved where the fewest elements are cut, others along the coordinate of the plane that
+  !! spreads most: which elements are cut takes longer to find, and is soon repaid only where separators are
+  !! long.
   integer, parameter :: many = 100
   !> A half may not have more of its set than this.
   real(wp), parameter :: largest_half = 0.6_wp
   !> Coordinates along which sets may be halved, and nodes of a set whose median serves for that of all.
   integer, parameter :: axes = 3, sample = 128
 
-  !> Where a node is, seen from the set that is being halved. At the edge of their half are nodes that have neighbours across;
-  !! of these, those of the separator then belong to neither half.
+  !> Where a node is, seen from the set that is being halved. At the edge of their half are nodes that have
+  !! neighbours across; of these, those of the separator then belong to neither half.
   integer, parameter :: outside = 0, left = 1, right = 2, both = 3, edge = 4
   !> The neighbours that a node has in a half, where it is not one.
   integer, parameter :: none = 0, several = -1
@@ -38,7 +42,8 @@ module epcont_plan_dissection
   end type node_set
 
   type :: workspace
-    real(wp), allocatable :: coordinate(:, :)     !! x, y and one more, along which nodes are parted [3, all nodes]
+    !> X, y and one more, along which nodes are parted [3, all nodes]
+    real(wp), allocatable :: coordinate(:, :)
     integer, allocatable :: node(:), element(:)   !! those of a set stand together
     integer, allocatable :: side(:)               !! one of its kind above, and for none [0:all nodes]
     integer :: nodes(left:right) = 0              !! in each half of the set that is being halved
@@ -48,7 +53,8 @@ module epcont_plan_dissection
 
 contains
 
-  !> Dissect a body along x, y and one more coordinate. The nodes that are wanted last are a front of their own, the last.
+  !> Dissect a body along x, y and one more coordinate. The nodes that are wanted last are a front of their
+  !! own, the last.
   pure function dissect(model, further, elements, nodes, wanted_last) result(found)
     type(model_type), intent(in) :: model      !! its nodes, connectivity, and elements around nodes are used
     real(wp), intent(in) :: further(:)         !! the one more coordinate [all nodes]
@@ -95,8 +101,8 @@ contains
     call add_front(separator, work)
   end subroutine dissect_set
 
-  !> Halve a set where the fewest elements lie across: at the median of one of the coordinates. Where many nodes have the same
-  !! coordinate, it may part the set too unevenly, and none is taken.
+  !> Halve a set where the fewest elements lie across: at the median of one of the coordinates. Where many
+  !! nodes have the same coordinate, it may part the set too unevenly, and none is taken.
   pure subroutine cut_least(model, work, set)
     type(model_type), intent(in) :: model
     type(workspace), intent(inout) :: work         !! its sides have two bits for each coordinate on the way
@@ -171,7 +177,8 @@ contains
     variance = sum((coordinate - sum(coordinate)/size(coordinate))**2)/size(coordinate)
   end function spread_along
 
-  !> Mark the separator: the shorter of the edges that the halves have where elements join them, moved to where it is shorter.
+  !> Mark the separator: the shorter of the edges that the halves have where elements join them, moved to
+  !! where it is shorter.
   pure subroutine find_separator(model, work, set)
     type(model_type), intent(in) :: model
     type(workspace), intent(inout) :: work
@@ -206,8 +213,9 @@ contains
     call shift_separator(model, work, pack(at_edge(:n), work%side(at_edge(:n)) == edge))
   end subroutine find_separator
 
-  !> Let nodes of the separator go to a half: if they have no neighbours in the other, or only one, which takes their place, and
-  !! the halves become more alike. (Liu, ACM Trans. Math. Softw. 15 (1989) 198, moves several at once.)
+  !> Let nodes of the separator go to a half: if they have no neighbours in the other, or only one, which
+  !! takes their place, and the halves become more alike. (Liu, ACM Trans. Math. Softw. 15 (1989) 198, moves
+  !! several at once.)
   pure subroutine shift_separator(model, work, separator)
     type(model_type), intent(in) :: model
     type(workspace), intent(inout) :: work
@@ -223,7 +231,8 @@ contains
       beside = neighbours(model, list(i), work%side)
       half = merge(left, right, work%nodes(left) < work%nodes(right))
       other = both - half
-      if (beside(other) /= none .and. beside(half) == none .and. work%nodes(other) < largest_half*sum(work%nodes)) then
+      if (beside(other) /= none .and. beside(half) == none .and. &
+          work%nodes(other) < largest_half*sum(work%nodes)) then
         half = other
         other = both - half
       end if
@@ -277,7 +286,8 @@ contains
     end associate
   end function sides_of
 
-  !> Put the elements of the left half before those of the right. What has nodes of the separator alone is done with.
+  !> Put the elements of the left half before those of the right. What has nodes of the separator alone is
+  !! done with.
   pure subroutine part_elements(model, work, set, half)
     type(model_type), intent(in) :: model
     type(workspace), intent(inout) :: work

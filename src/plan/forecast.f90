@@ -22,16 +22,19 @@ module epcont_plan_forecast
   real(wp), parameter :: giga = 1.0e9_wp
   integer(i8), parameter :: real_bytes = 8
 
-  !> What a run holds besides its matrices, as measured [bytes]: program and libraries; a node, an integration point, each node of
-  !! its element at a point, and a point that can yield. Within 0.8 to 1.3 in all (`tests/plan`).
-  integer(i8), parameter :: of_process = 7700000, of_node = 980, of_point = 250, of_node_of_point = 50, of_yielding_point = 400
-  !> Matrices over all pairs that are there at once while the contact is solved: F of the bodies that cannot yield, F, its scaled
-  !! copy, and factors of those that touch, here half of them to all.
+  !> What a run holds besides its matrices, as measured [bytes]: program and libraries; a node, an integration
+  !! point, each node of its element at a point, and a point that can yield. Within 0.8 to 1.3 in all
+  !! (`tests/plan`).
+  integer(i8), parameter :: of_process = 7700000, of_node = 980, of_point = 250, of_node_of_point = 50, &
+      of_yielding_point = 400
+  !> Matrices over all pairs that are there at once while the contact is solved: F of the bodies that cannot
+  !! yield, F, its scaled copy, and factors of those that touch, here half of them to all.
   real(wp), parameter :: pair_matrices = 4.2_wp
   !> And over pairs and free motions.
   integer(i8), parameter :: motion_matrices = 8
-  !> Unit loads along free motions whose strains are there at once when the figures are assessed: of a stack of many bodies those of
-  !! all would take more memory than the factors. And what each takes of a node and of a point [bytes].
+  !> Unit loads along free motions whose strains are there at once when the figures are assessed: of a stack
+  !! of many bodies those of all would take more memory than the factors. And what each takes of a node and of
+  !! a point [bytes].
   integer, parameter, public :: loads_at_once = 15
   integer(i8), parameter :: load_of_node = 32, load_of_point = 64
 
@@ -41,10 +44,11 @@ contains
   subroutine check_memory(bytes, limit, error)
     integer(i8), intent(in) :: bytes      !! as forecast
     real(wp), intent(in) :: limit         !! [GB]
-    type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable, intent(out) :: error   !! not enough of it
 
     if (real(bytes, wp) > giga*limit) then
-      call raise(error, status_usage, 'the scene needs about '//gigabytes(real(bytes, wp))//' of memory, and --memory allows '// &
+      call raise(error, status_usage, &
+                 'the scene needs about '//gigabytes(real(bytes, wp))//' of memory, and --memory allows '// &
                  gigabytes(giga*limit))
     else if (.not. has_memory(most_memory(bytes))) then
       call raise(error, status_usage, 'the scene needs up to '//gigabytes(real(most_memory(bytes), wp))// &
@@ -52,7 +56,8 @@ contains
     end if
   end subroutine check_memory
 
-  !> What a run takes of addresses, at most: of what is forecast not all is touched, and the heap has its gaps [bytes].
+  !> What a run takes of addresses, at most: of what is forecast not all is touched, and the heap has its gaps
+  !! [bytes].
   pure integer(i8) function most_memory(bytes)
     integer(i8), intent(in) :: bytes   !! as forecast
 
@@ -66,11 +71,12 @@ contains
     text = short_real(bytes/giga)//' GB'
   end function gigabytes
 
+  !> What a scene will take.
   pure function forecast(model, motions, numbering, plan) result(expected)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(numbering_type), intent(in) :: numbering
-    type(iteration_plan), intent(in) :: plan
+    type(model_type), intent(in) :: model   !! the scene
+    type(free_motions), intent(in) :: motions   !! free ones
+    type(numbering_type), intent(in) :: numbering   !! of its equations
+    type(iteration_plan), intent(in) :: plan   !! of its iteration
     type(forecast_type) :: expected
     integer, allocatable :: own_pairs(:)
     integer(i8) :: entries, factor, flexibility, saved
@@ -115,8 +121,8 @@ contains
     end if
   end function factor_entries
 
-  !> Entries wanted while a body's part of the flexibility is found: the trailing block of the inverse, or the window that
-  !! right-hand sides go through; and that part.
+  !> Entries wanted while a body's part of the flexibility is found: the trailing block of the inverse, or the
+  !! window that right-hand sides go through; and that part.
   pure integer(i8) function flexibility_entries(body, pairs) result(entries)
     type(body_numbering), intent(in) :: body
     integer(i8), intent(in) :: pairs   !! of this body

@@ -1,11 +1,11 @@
 !> Rigid motions that supports leave free, and the SUPORT freedoms that measure them.
 !>
-!> Found before anything is factored, since a Cholesky factorization calls many singular matrices definite. The
-!> free motions of a body are the null space of one matrix: three columns a rigid part, a row for each hinge, tie
-!> and support.
+!> Found before anything is factored, since a Cholesky factorization calls many singular matrices definite.
+!> The free motions of a body are the null space of one matrix: three columns a rigid part, a row for each
+!> hinge, tie and support.
 module epcont_plan_free_motion
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_base_sorting, only: sorted_order
   use epcont_linalg_dense, only: lu_solve, null_space
   use epcont_model_model, only: model_type
   use epcont_plan_rigid_parts, only: find_rigid_parts, rigid_parts
@@ -21,6 +21,9 @@ module epcont_plan_free_motion
   !> A part of a body that moves by less than this part of what moves most does not move.
   real(wp), parameter :: moves = 1.0e-6_wp
 
+  !> Freedoms that move by this part of the largest motion may take its place.
+  real(wp), parameter :: nearly = 0.999_wp
+
   !> What can be wrong with the SUPORT freedoms of a body.
   integer, parameter, public :: motion_not_held = 1, motion_too_many = 2, motion_too_close = 3
 
@@ -32,7 +35,7 @@ module epcont_plan_free_motion
     integer :: motions = 0, references = 0    !! free motions, SUPORT freedoms
     integer, allocatable :: freedom(:, :)     !! node, component that would hold each motion not held [2, any]
     real(wp), allocatable :: direction(:, :)  !! motion of that node [2, any]
-    real(wp), allocatable :: turn(:)          !! how differently the nodes of its part move; 0: it shifts [any]
+    real(wp), allocatable :: turn(:)   !! how differently the nodes of its part move; 0: it shifts [any]
   end type motion_fault
 
   !> The free motions of all bodies.
@@ -40,7 +43,8 @@ module epcont_plan_free_motion
     integer :: count = 0
     integer, allocatable :: body(:), node(:), component(:)  !! of each motion: body, SUPORT freedom [count]
     type(rigid_parts) :: parts
-    real(wp), allocatable :: coefficient(:, :, :)  !! of x, y, turn of each part in each motion [3, parts, count]
+    !> Of x, y, turn of each part in each motion [3, parts, count]
+    real(wp), allocatable :: coefficient(:, :, :)
   contains
     procedure :: displacement
   end type free_motions
@@ -50,8 +54,8 @@ contains
   !> Displacement of a node in unit motion k.
   pure function displacement(self, model, node, k) result(u)
     class(free_motions), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node, k
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: node, k   !! the node, and the number of the motion
     real(wp) :: u(2)
 
     u = 0.0_wp
@@ -63,38 +67,22 @@ contains
 
   !> Find the free motions of all bodies; a body whose SUPORT freedoms do not fit gives a fault.
   subroutine find_free_motions(model, motions, faults)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(out) :: motions
-    type(motion_fault), allocatable, intent(out) :: faults(:)
-    integer, allocatable :: order(:), part_order(:)
-    integer :: b, first, last, part_first, part_last
+    type(model_type), intent(in) :: model   !! the scene
+    type(free_motions), intent(out) :: motions   !! of all bodies without a fault
+    type(motion_fault), allocatable, intent(out) :: faults(:)   !! one of each body that has one
+    type(incidence) :: nodes, parts   !! of each body
+    integer :: b
 
     allocate (faults(0), motions%body(0), motions%node(0), motions%component(0))
     motions%parts = find_rigid_parts(model)
     allocate (motions%coefficient(3, motions%parts%count, 0))
-    order = sorted_order(model%body)
-    part_order = sorted_order(motions%parts%body)
-    first = 1
-    part_first = 1
+    nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
+    parts = new_incidence(reshape(motions%parts%body, [1, motions%parts%count]), model%bodies)
     do b = 1, model%bodies
-      last = run_end(model%body, order, first)
-      part_last = run_end(motions%parts%body, part_order, part_first)
-      call examine_body(model, order(first:last), part_order(part_first:part_last), motions, faults)
-      first = last + 1
-      part_first = part_last + 1
+      call examine_body(model, nodes%group(nodes%start(b):nodes%start(b + 1) - 1), &
+                        parts%group(parts%start(b):parts%start(b + 1) - 1), motions, faults)
     end do
   end subroutine find_free_motions
-
-  !> Last place of the run of equal keys that begins at `first`.
-  pure integer function run_end(key, order, first) result(last)
-    integer, intent(in) :: key(:), order(:), first
-
-    last = first
-    do while (last < size(order))
-      if (key(order(last + 1)) /= key(order(first))) return
-      last = last + 1
-    end do
-  end function run_end
 
   !> Free motions of one body.
   subroutine examine_body(model, nodes, part_list, motions, faults)
@@ -102,20 +90,17 @@ contains
     integer, intent(in) :: nodes(:), part_list(:)  !! of the body
     type(free_motions), intent(inout) :: motions
     type(motion_fault), allocatable, intent(inout) :: faults(:)
-    real(wp), allocatable :: held(:, :), measured(:, :), basis(:, :), loose(:, :), square(:, :), unit(:, :)
+    real(wp), allocatable :: basis(:, :), held(:, :), loose(:, :), measured(:, :), square(:, :), unit(:, :)
     integer, allocatable :: column(:), freedom(:, :)
     type(motion_fault) :: fault
-    integer :: i, info, m, old
+    integer :: i, m
 
     allocate (column(motions%parts%count), source=0)
     column(part_list) = [(3*i - 3, i=1, size(part_list))]
-    call constraint_rows(model, motions%parts, nodes, column, 3*size(part_list), held, measured, freedom)
+    call collect_rows(model, motions%parts, nodes, column, held, measured, freedom)
     basis = null_space(held, free_tolerance)
     m = size(basis, 2)
-    fault%body = model%body(nodes(1))
-    fault%node = nodes(1)
-    fault%motions = m
-    fault%references = size(measured, 1)
+    fault = motion_fault(body=model%body(nodes(1)), node=nodes(1), motions=m, references=size(measured, 1))
     square = matmul(measured, basis)
     loose = matmul(basis, null_space(square, free_tolerance))
     if (size(loose, 2) > 0) then
@@ -123,26 +108,34 @@ contains
       call suggest(model, motions%parts, nodes, column, loose, fault)
     else if (fault%references > m) then
       fault%kind = motion_too_many
-    else if (m > 0) then
-      allocate (unit(m, m), source=0.0_wp)
-      do i = 1, m
-        unit(i, i) = 1.0_wp
-      end do
-      call lu_solve(square, unit, info)
-      if (norm2(unit)*norm2(matmul(measured, basis)) > largest_condition) fault%kind = motion_too_close
+    else
+      unit = inverse(square)
+      if (norm2(unit)*norm2(square) > largest_condition) fault%kind = motion_too_close
     end if
     if (fault%kind > 0) then
       faults = [faults, fault]
-      return
+    else if (m > 0) then
+      motions%count = motions%count + m
+      motions%body = [motions%body, spread(fault%body, 1, m)]
+      motions%node = [motions%node, freedom(1, :)]
+      motions%component = [motions%component, freedom(2, :)]
+      call append(motions, part_list, reshape(matmul(basis, unit), [3, size(part_list), m]))
     end if
-    if (m == 0) return
-    old = motions%count
-    motions%count = old + m
-    motions%body = [motions%body, spread(fault%body, 1, m)]
-    motions%node = [motions%node, freedom(1, :)]
-    motions%component = [motions%component, freedom(2, :)]
-    call append(motions, part_list, reshape(matmul(basis, unit), [3, size(part_list), m]))
   end subroutine examine_body
+
+  pure function inverse(matrix)
+    real(wp), intent(in) :: matrix(:, :)
+    real(wp) :: inverse(size(matrix, 1), size(matrix, 1))
+    real(wp) :: factors(size(matrix, 1), size(matrix, 1))
+    integer :: i, info
+
+    inverse = 0.0_wp
+    do i = 1, size(matrix, 1)
+      inverse(i, i) = 1.0_wp
+    end do
+    factors = matrix
+    call lu_solve(factors, inverse, info)
+  end function inverse
 
   !> Add motions of some parts.
   pure subroutine append(motions, part_list, coefficient)
@@ -159,25 +152,59 @@ contains
     call move_alloc(grown, motions%coefficient)
   end subroutine append
 
-  !> Rows of the motions that hinges, ties and supports hold, and rows of the SUPORT freedoms.
-  pure subroutine constraint_rows(model, parts, nodes, column, columns, held, measured, freedom)
+  !> Rows of the motions of a body that hinges, ties and supports hold, and rows of its SUPORT freedoms.
+  pure subroutine collect_rows(model, parts, nodes, column, held, measured, freedom)
     type(model_type), intent(in) :: model
     type(rigid_parts), intent(in) :: parts
-    integer, intent(in) :: nodes(:), column(:), columns
+    integer, intent(in) :: nodes(:), column(:)
     real(wp), allocatable, intent(out) :: held(:, :), measured(:, :)
     integer, allocatable, intent(out) :: freedom(:, :)  !! node, component of each measured row [2, any]
-    integer :: c, h, i, leader, p, rows, references
+    integer :: c, columns, i, references, rows
 
+    columns = maxval(column) + 3
     rows = 2*count(column(parts%hinge(2, :)) + column(parts%hinge(3, :)) > 0) + columns &
-           + count(model%held(:, nodes)) + count(model%leader(:, nodes) /= spread(nodes, 1, 2))
-    references = count(model%reference(:, nodes))
-    allocate (held(rows, columns), measured(references, columns), source=0.0_wp)
-    allocate (freedom(2, references))
-    rows = 0
+           + count(model%held(:, nodes) .or. model%leader(:, nodes) /= spread(nodes, 1, 2))
+    allocate (held(rows, columns), measured(count(model%reference(:, nodes)), columns), source=0.0_wp)
+    allocate (freedom(2, size(measured, 1)))
+    call hold_parts(model, parts, model%body(nodes(1)), column, held, rows)
     references = 0
+    do i = 1, size(nodes)
+      associate (node => nodes(i), at => column(parts%of_node(nodes(i))))
+        do c = 1, 2
+          associate (leader => model%leader(c, node), &
+                     at_leader => column(parts%of_node(model%leader(c, node))))
+            if (leader /= node .or. model%held(c, node)) then
+              rows = rows + 1
+              held(rows, at + 1:at + 3) = parts%row(model, node, c)
+              associate (others => held(rows, at_leader + 1:at_leader + 3))
+                if (leader /= node) others = others - parts%row(model, leader, c)
+              end associate
+            end if
+          end associate
+          if (.not. model%reference(c, node)) cycle
+          references = references + 1
+          measured(references, at + 1:at + 3) = parts%row(model, node, c)
+          freedom(:, references) = [node, c]
+        end do
+      end associate
+    end do
+    held = held(:rows, :)
+  end subroutine collect_rows
+
+  !> Rows of hinges, and of what parts cannot do: rings do not move along x nor turn, and what has no elements
+  !! does not turn.
+  pure subroutine hold_parts(model, parts, body, column, held, rows)
+    type(model_type), intent(in) :: model
+    type(rigid_parts), intent(in) :: parts
+    integer, intent(in) :: body, column(:)
+    real(wp), intent(inout) :: held(:, :)
+    integer, intent(out) :: rows               !! that are filled
+    integer :: c, h, p
+
+    rows = 0
     do h = 1, size(parts%hinge, 2)
       associate (node => parts%hinge(1, h), a => column(parts%hinge(2, h)), b => column(parts%hinge(3, h)))
-        if (model%body(node) /= model%body(nodes(1))) cycle
+        if (model%body(node) /= body) cycle
         do c = 1, 2
           rows = rows + 1
           held(rows, a + 1:a + 3) = parts%row(model, node, c)
@@ -186,74 +213,51 @@ contains
       end associate
     end do
     do p = 1, parts%count
-      if (parts%body(p) /= model%body(nodes(1))) cycle
-      if (parts%ring(p)) then
+      if (parts%body(p) /= body) cycle
+      do c = 1, 3, 2   ! along x, turn
+        if (.not. (parts%ring(p) .or. (c == 3 .and. .not. parts%turns(p)))) cycle
         rows = rows + 1
-        held(rows, column(p) + 1) = 1.0_wp
-      end if
-      if (parts%turns(p) .and. .not. parts%ring(p)) cycle
-      rows = rows + 1
-      held(rows, column(p) + 3) = 1.0_wp
+        held(rows, column(p) + c) = 1.0_wp
+      end do
     end do
-    do i = 1, size(nodes)
-      associate (node => nodes(i), at => column(parts%of_node(nodes(i))))
-        do c = 1, 2
-          leader = model%leader(c, node)
-          if (leader /= node) then
-            rows = rows + 1
-            held(rows, at + 1:at + 3) = parts%row(model, node, c)
-            p = column(parts%of_node(leader))
-            held(rows, p + 1:p + 3) = held(rows, p + 1:p + 3) - parts%row(model, leader, c)
-          else if (model%held(c, node)) then
-            rows = rows + 1
-            held(rows, at + 1:at + 3) = parts%row(model, node, c)
-          end if
-          if (model%reference(c, node)) then
-            references = references + 1
-            measured(references, at + 1:at + 3) = parts%row(model, node, c)
-            freedom(:, references) = [node, c]
-          end if
-        end do
-      end associate
-    end do
-    held = held(:rows, :)
-  end subroutine constraint_rows
+  end subroutine hold_parts
 
-  !> Freedoms that would hold the loose motions: those that move most, one after the other, each motion taken out
-  !! of the others at the freedom chosen for it.
+  !> Freedoms that would hold the loose motions: those that move most, one after the other, each motion taken
+  !! out of the others at the freedom chosen for it.
   subroutine suggest(model, parts, nodes, column, loose, fault)
     type(model_type), intent(in) :: model
     type(rigid_parts), intent(in) :: parts
     integer, intent(in) :: nodes(:), column(:)
     real(wp), intent(in) :: loose(:, :)
     type(motion_fault), intent(inout) :: fault
-    real(wp), allocatable :: motion(:, :), size_of(:, :)
-    real(wp) :: best
-    logical, allocatable :: same_part(:)
-    integer :: at(2), i, j, k, m, node
+    real(wp) :: motion(2*size(nodes), size(loose, 2)), size_of(2*size(nodes), size(loose, 2))
+    integer :: at(2), i, j, k, m
 
     m = size(loose, 2)
-    allocate (motion(2*size(nodes), m), fault%freedom(2, m), fault%direction(2, m), fault%turn(m))
+    allocate (fault%freedom(2, m), fault%direction(2, m), fault%turn(m))
     do i = 1, size(nodes)
       k = column(parts%of_node(nodes(i)))
       motion(2*i - 1, :) = matmul(parts%row(model, nodes(i), 1), loose(k + 1:k + 3, :))
       motion(2*i, :) = matmul(parts%row(model, nodes(i), 2), loose(k + 1:k + 3, :))
-      if (fault%moving == 0 .and. any(abs(loose(k + 1:k + 3, :)) > moves*maxval(abs(loose)))) fault%moving = nodes(i)
+      if (fault%moving == 0 .and. any(abs(loose(k + 1:k + 3, :)) > moves*maxval(abs(loose)))) then
+        fault%moving = nodes(i)
+      end if
     end do
     do k = 1, m
       ! The first of those that move nearly as much as the largest, so that rounding does not choose.
-      size_of = abs(motion(:, k:))
-      best = 0.999_wp*maxval(size_of)
-      at = findloc(size_of >= best, .true.)
+      size_of(:, k:) = abs(motion(:, k:))
+      at = findloc(size_of(:, k:) >= nearly*maxval(size_of(:, k:)), .true.)
       i = at(1)
       j = k + at(2) - 1
       motion(:, [k, j]) = motion(:, [j, k])
       motion(:, k) = motion(:, k)/motion(i, k)
-      node = (i + 1)/2
-      fault%freedom(:, k) = [nodes(node), 2 - mod(i, 2)]
-      fault%direction(:, k) = motion(2*node - 1:2*node, k)/norm2(motion(2*node - 1:2*node, k))
-      same_part = column(parts%of_node(nodes)) == column(parts%of_node(nodes(node)))
-      fault%turn(k) = spread_of(pack(motion(1::2, k), same_part)) + spread_of(pack(motion(2::2, k), same_part))
+      associate (node => (i + 1)/2, u => reshape(motion(:, k), [2, size(nodes)]))
+        fault%freedom(:, k) = [nodes(node), 2 - mod(i, 2)]
+        fault%direction(:, k) = u(:, node)/norm2(u(:, node))
+        associate (same_part => column(parts%of_node(nodes)) == column(parts%of_node(nodes(node))))
+          fault%turn(k) = spread_of(pack(u(1, :), same_part)) + spread_of(pack(u(2, :), same_part))
+        end associate
+      end associate
       do j = 1, m
         if (j /= k) motion(:, j) = motion(:, j) - motion(i, j)*motion(:, k)
       end do

@@ -3,6 +3,7 @@ module epcont_plan_numbering
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
+  use epcont_element_element_kind, only: most_nodes
   use epcont_linalg_front_layout, only: front_layout, new_front_layout
   use epcont_linalg_panel_layout, only: new_panel_layout, panel_layout
   use epcont_model_controls, only: solver_auto, solver_band, solver_frontal
@@ -12,8 +13,8 @@ module epcont_plan_numbering
   private
   public :: body_numbering, numbering_type, number_equations
 
-  !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact bodies (7 000 nodes
-  !! of two cylinders) and on long ones, on elastic ones and on those that yield.
+  !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact
+  !! bodies (7 000 nodes of two cylinders) and on long ones, on elastic ones and on those that yield.
   real(wp), parameter, public :: many_operations = 2.0e8_wp
 
   !> One body's system of equations.
@@ -38,6 +39,8 @@ module epcont_plan_numbering
     integer, allocatable :: equation(:, :)
     logical, allocatable :: at_contact(:)  !! the node is one of a pair [nodes]
     type(body_numbering), allocatable :: body(:)
+  contains
+    procedure :: of_element
   end type numbering_type
 
   !> Nodes in levels: each level has the neighbours of the one before.
@@ -50,7 +53,7 @@ contains
 
   !> Number all bodies, each for the solver that the deck asks for, or that which is faster.
   pure function number_equations(model) result(numbering)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(numbering_type) :: numbering
     type(incidence) :: elements, nodes
     integer :: b
@@ -78,9 +81,9 @@ contains
     end do
   end function number_equations
 
-  !> Number a body for nested fronts, the contact nodes in the last of them. It is parted along x, along y and along the
-  !! distance from the contact, in elements: there they are the smallest, mostly, and what lies around it has the shortest
-  !! edge.
+  !> Number a body for nested fronts, the contact nodes in the last of them. It is parted along x, along y and
+  !! along the distance from the contact, in elements: there they are the smallest, mostly, and what lies
+  !! around it has the shortest edge.
   pure subroutine number_fronts(model, numbering, b)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(inout) :: numbering
@@ -110,7 +113,8 @@ contains
       allocate (first(size(found%first)), source=1)
       do p = 1, size(first) - 1
         associate (node => found%node(found%first(p):found%first(p + 1) - 1))
-          first(p + 1) = first(p) + count(numbering%equation(:, node) > 0 .and. model%leader(:, node) == spread(node, 1, 2))
+          first(p + 1) = first(p) + count(numbering%equation(:, node) > 0 .and. &
+                                          model%leader(:, node) == spread(node, 1, 2))
         end associate
       end do
       body%fronts = new_front_layout(pack(first, [first(2:) > first(:size(first) - 1), .true.]), &
@@ -121,28 +125,41 @@ contains
     end associate
   end subroutine number_fronts
 
-  !> Equations of the elements of a body, x and y of their nodes in turn, zeros behind [any, elements].
+  !> Equations of an element, x and y of its nodes in turn, zeros behind.
+  pure function of_element(self, model, element) result(number)
+    class(numbering_type), intent(in) :: self
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: element             !! its number
+    integer :: number(2*most_nodes)
+    integer :: i
+
+    number = 0
+    do i = 1, model%order(element)
+      number(2*i - 1:2*i) = self%equation(:, model%connectivity(i, element))
+    end do
+  end function of_element
+
+  !> The same of all elements of a body [any, elements].
   pure function element_numbers(model, numbering, b) result(numbers)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b
     integer, allocatable :: numbers(:, :)
-    integer :: e, i
+    integer :: e, number(2*most_nodes)
 
     associate (element => numbering%body(b)%element)
-      allocate (numbers(2*maxval([model%order(element), 0]), size(element)), source=0)
+      allocate (numbers(2*maxval(model%order(element)), size(element)))
       do e = 1, size(element)
-        do i = 1, model%order(element(e))
-          numbers(2*i - 1:2*i, e) = numbering%equation(:, model%connectivity(i, element(e)))
-        end do
+        number = numbering%of_element(model, element(e))
+        numbers(:, e) = number(:size(numbers, 1))
       end do
     end associate
   end function element_numbers
 
-  !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come last: then the
-  !! trailing block of the factor alone gives the flexibility. Or, where that widens the band by more than forward
-  !! substitution of all pairs costs, they are rooted at the body's far end. Where even that band is a wide one, fronts are
-  !! taken.
+  !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come
+  !! last: then the trailing block of the factor alone gives the flexibility. Or, where that widens the band
+  !! by more than forward substitution of all pairs costs, they are rooted at the body's far end. Where even
+  !! that band is a wide one, fronts are taken.
   pure subroutine number_band(model, numbering, b)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(inout) :: numbering
@@ -159,8 +176,11 @@ contains
     end if
     order = sweep(model, order%node(size(nodes):), nodes)
     order = sweep(model, order%node(size(nodes):), nodes)
-    ! The contact comes late in the reversed order, and with it what yields: what stands before is factored once.
-    if (mean_place(order%node, numbering%at_contact) > 0.5_wp) order = sweep(model, order%node(size(nodes):), nodes)
+    ! The contact comes late in the reversed order, and with it what yields: what stands before is factored
+    ! once.
+    if (mean_place(order%node, numbering%at_contact) > 0.5_wp) then
+      order = sweep(model, order%node(size(nodes):), nodes)
+    end if
     call number_nodes(model, order%node(size(nodes):1:-1), numbering, b)
     call find_panels(model, numbering, b)
     associate (body => numbering%body(b))
@@ -202,7 +222,9 @@ contains
     logical, intent(in) :: marked(:)
     integer :: i
 
-    mean_place = sum(pack([(real(i, wp), i=1, size(order))], marked(order)))/(max(1, count(marked(order)))*real(size(order), wp))
+    associate (places => pack([(real(i, wp), i=1, size(order))], marked(order)))
+      mean_place = sum(places)/(max(1, size(places))*real(size(order), wp))
+    end associate
   end function mean_place
 
   !> Breadth-first order from `roots`, at each node its new neighbours by their number of elements. Nodes that
@@ -240,7 +262,9 @@ contains
       end do
       if (filled > first) then
         found = order%node(first:filled)
-        order%node(first:filled) = found(sorted_order(model%around%start(found + 1) - model%around%start(found)))
+        associate (elements => model%around%start(found + 1) - model%around%start(found))
+          order%node(first:filled) = found(sorted_order(elements))
+        end associate
       end if
     end do
   end function sweep
@@ -317,16 +341,16 @@ contains
     type(model_type), intent(in) :: model
     type(numbering_type), intent(inout) :: numbering
     integer, intent(in) :: b
-    integer, allocatable :: number(:, :), profile(:)
-    integer :: e, i
+    integer, allocatable :: profile(:)
+    integer :: e, i, number(2*most_nodes)
 
     associate (body => numbering%body(b))
       profile = [(i, i=1, body%equations)]
-      number = element_numbers(model, numbering, b)
-      do e = 1, size(number, 2)
-        associate (highest => maxval(number(:, e)))
-          do i = 1, size(number, 1)
-            if (number(i, e) > 0) profile(number(i, e)) = max(profile(number(i, e)), highest)
+      do e = 1, size(body%element)
+        number = numbering%of_element(model, body%element(e))
+        associate (highest => maxval(number))
+          do i = 1, size(number)
+            if (number(i) > 0) profile(number(i)) = max(profile(number(i)), highest)
           end do
         end associate
       end do

@@ -28,8 +28,9 @@ module epcont_plan_rigid_parts
 
 contains
 
+  !> The rigid parts of all bodies, with their hinges.
   pure function find_rigid_parts(model) result(parts)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(rigid_parts) :: parts
     integer, allocatable :: of_element(:)
     integer :: e, hinges, i, k
@@ -76,7 +77,8 @@ contains
     integer, allocatable, intent(out) :: of_element(:)
     integer, intent(out) :: count
     type(partition) :: sets
-    integer, allocatable :: met_by(:)   !! the last element with which each was found to share a node [elements]
+    !> The last element with which each was found to share a node [elements]
+    integer, allocatable :: met_by(:)
     integer :: e, j, k, neighbour
 
     sets = new_partition(model%elements)
@@ -114,12 +116,12 @@ contains
     where (parts%extent <= 0.0_wp) parts%extent = 1.0_wp
   end subroutine measure
 
-  !> Displacement of component c at a place of a body by unit motions of the part it belongs to: along x, along
-  !! y, and a turn that moves the body's extent by one.
+  !> Displacement of component c at a place of a body by unit motions of the part it belongs to: along x,
+  !! along y, and a turn that moves the body's extent by one.
   pure function row(self, model, node, c)
     class(rigid_parts), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node, c
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: node, c   !! the place, and component
     real(wp) :: row(3)
 
     associate (turned => self%turn(model, node))
@@ -130,8 +132,8 @@ contains
   !> Displacement of a place of a body by the turn that moves the body's extent by one.
   pure function turn(self, model, node)
     class(rigid_parts), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: node   !! the place
     real(wp) :: turn(2)
 
     associate (b => model%body(node))

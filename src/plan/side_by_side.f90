@@ -1,5 +1,5 @@
-!> How many threads work on bodies side by side. Bodies touch only through contact: each is assembled, factored and asked for its
-!> flexibility by itself.
+!> How many threads work on bodies side by side. Bodies touch only through contact: each is assembled,
+!> factored and asked for its flexibility by itself.
 module epcont_plan_side_by_side
   use epcont_base_kinds, only: i8, wp
   use epcont_base_sorting, only: sorted_order
@@ -17,9 +17,9 @@ contains
 
   !> Threads for a scene: one where there is no memory for more.
   integer function plan_threads(numbering, bytes, granted) result(threads)
-    type(numbering_type), intent(in) :: numbering
+    type(numbering_type), intent(in) :: numbering   !! of its equations
     integer(i8), intent(in) :: bytes      !! that the run will hold on one thread
-    integer, intent(in) :: granted
+    integer, intent(in) :: granted   !! threads, by OMP_NUM_THREADS
     real(wp), allocatable :: operations(:)
 
     operations = numbering%body%operations
@@ -28,11 +28,11 @@ contains
     if (.not. has_memory(most_memory(bytes) + (threads - 1)*memory_of_thread)) threads = 1
   end function plan_threads
 
-  !> Threads for some bodies: no more than granted, nor than are over before the largest body alone; one where a second would have
-  !! little to do.
+  !> Threads for some bodies: no more than granted, nor than are over before the largest body alone; one where
+  !! a second would have little to do.
   pure integer function threads_for(operations, granted) result(threads)
     real(wp), intent(in) :: operations(:)   !! of each body
-    integer, intent(in) :: granted
+    integer, intent(in) :: granted   !! threads
     real(wp) :: all, largest
 
     threads = 1
@@ -42,9 +42,10 @@ contains
     if (all - largest >= least_beside) threads = min(granted, ceiling(all/largest))
   end function threads_for
 
-  !> The order in which threads take bodies up: the heaviest first, to a factor of two, so that none of them is left for the end.
+  !> The order in which threads take bodies up: the heaviest first, to a factor of two, so that none of them
+  !! is left for the end.
   pure function heaviest_first(operations) result(order)
-    real(wp), intent(in) :: operations(:)
+    real(wp), intent(in) :: operations(:)   !! of each body
     integer, allocatable :: order(:)
 
     order = sorted_order(-exponent(operations))

@@ -5,10 +5,9 @@ module epcont_report_plan_text
   use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, precision_double, &
                                    precision_name, precision_open, solver_auto, solver_band, solver_frontal, solver_name
   use epcont_model_model, only: model_type
-  use epcont_plan_contact_plan, only: contact_plan, many_pairs
   use epcont_plan_forecast, only: forecast_type
   use epcont_plan_free_motion, only: free_motions
-  use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_iteration_plan, only: contact_plan, iteration_plan, many_pairs
   use epcont_plan_numbering, only: body_numbering, many_operations, numbering_type
   use epcont_report_layout, only: newline, right
   use epcont_report_line_plan, only: lines_text

@@ -25,7 +25,7 @@ import scipy.sparse as sparse
 
 from process import ONE_THREAD
 
-MANY_PAIRS = 100  # from here on AUTO is BLOCK: src/plan/contact_plan.f90
+MANY_PAIRS = 100  # from here on AUTO is BLOCK: src/plan/iteration_plan.f90
 MODULUS, TOLERANCE = 20400.0 / (2 * (1 - 0.29 ** 2)), 1e-9
 
 

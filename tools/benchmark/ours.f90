@@ -25,8 +25,8 @@ program bench_ours
   use epcont_model_controls, only: solver_frontal
   use epcont_model_model, only: model_type
   use epcont_element_element_kind, only: most_nodes
-  use epcont_plan_contact_plan, only: contact_plan, plan_contact
   use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_plan_iteration_plan, only: contact_plan, plan_contact
   use epcont_plan_numbering, only: number_equations, numbering_type
   use statistics, only: median
   implicit none
@@ -138,9 +138,9 @@ contains
         alone = lap()
         spent(assembly) = spent(assembly) + alone
         spent(factor) = spent(factor) - alone
-        call assemble_body(model, operator, law, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
+        call assemble_body(model, operator, law, all_changed, numbering, b, bodies%body(b))
       else
-        call assemble_body(model, operator, law, all_changed, numbering%equation, numbering%body(b), bodies%body(b))
+        call assemble_body(model, operator, law, all_changed, numbering, b, bodies%body(b))
         spent(assembly) = spent(assembly) + lap()
       end if
       call bodies%body(b)%factor()
