@@ -11,9 +11,8 @@ module epcont_contact_geometry_boundary
 contains
 
   !> All sides, numbered as those of the outlines.
-  pure function find_boundary(model, angle) result(line)
+  pure function find_boundary(model) result(line)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: angle            !! of PARAM CORNER [degree]; 0: not given
     type(boundary_line) :: line
     integer :: i, k
 
@@ -28,7 +27,7 @@ contains
         end do
       end do
       call find_normals(line, reshape([(held_directions(model, line%segment(:2, i)), i=1, outline%sides)], [2, outline%sides]), &
-                        angle)
+                        model%controls%corner)
     end associate
   end function find_boundary
 

@@ -9,13 +9,23 @@
 module epcont_contact_geometry_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
+  use epcont_contact_geometry_faces, only: faces_type
   use epcont_geometry_boundary_line, only: beyond
   use epcont_geometry_boxed_line, only: boxed_line
   use epcont_geometry_facing, only: facing_type, find_nearest, looking_point, rise_of
   use epcont_model_model, only: line_contact
   implicit none
   private
-  public :: mortar_rows
+  public :: find_mortar_rows, mortar_rows
+
+  !> Nodes and weights of rows: row k has the entries start(k) to start(k + 1) - 1. The weights of a row sum to 1.
+  type :: mortar_rows
+    integer, allocatable :: start(:)      !! [rows + 1]
+    integer, allocatable :: node(:)       !! [entries]
+    real(wp), allocatable :: weight(:)    !! [entries]
+  contains
+    procedure :: append
+  end type mortar_rows
 
   !> Gauss points of each piece of a side: exact for the product of two quadratics on a straight one.
   integer, parameter :: gauss_points = 3
@@ -35,12 +45,17 @@ module epcont_contact_geometry_mortar
   !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not need one.
   real(wp), parameter :: no_area = 1.0e-3_wp
 
-  !> Weights gathered in any order: of a node in a row.
+  !> A part of the weight of a node in a row.
+  type :: weight_part
+    integer :: row = 0, node = 0
+    real(wp) :: weight = 0.0_wp
+  end type weight_part
+
+  !> Parts of weights, gathered in any order.
   type :: weight_list
     integer :: count = 0
-    integer, allocatable :: row(:), node(:)
-    real(wp), allocatable :: weight(:)
-    real(wp), allocatable :: area(:)      !! integral of N_i so far [rows]
+    type(weight_part), allocatable :: part(:)   !! [count or more]
+    real(wp), allocatable :: area(:)            !! integral of N_i so far [rows]
   contains
     procedure :: add
     procedure :: add_own_place
@@ -58,43 +73,52 @@ module epcont_contact_geometry_mortar
 
 contains
 
-  !> Rows of master nodes and weights, one for each slave node that has a pair; the weights of a row sum to 1. Row k is the
-  !! entries start(k) to start(k+1)-1. Rows of no side count at their own places.
-  pure subroutine mortar_rows(contact, obstacles, row_of, facing, ring, start, node, weight, covered)
+  !> Add a row behind the others.
+  pure subroutine append(self, node, weight)
+    class(mortar_rows), intent(inout) :: self
+    integer, intent(in) :: node(:)          !! its nodes
+    real(wp), intent(in) :: weight(:)       !! and their weights
+
+    self%node = [self%node, node]
+    self%weight = [self%weight, weight]
+    self%start = [self%start, size(self%node) + 1]
+  end subroutine append
+
+  !> Rows of master nodes and weights, one for each slave node that has a pair. Rows of no side count at their own places.
+  pure subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
     type(line_contact), intent(in) :: contact
     type(boxed_line), intent(in) :: obstacles      !! the outlines of all bodies
-    integer, intent(in) :: row_of(:, :)            !! of each side's nodes; 0: they face nothing [3, sides]
-    type(facing_type), intent(in) :: facing(:)     !! what the nodes face [rows]
+    type(faces_type), intent(in) :: faces          !! what the slave's nodes face
     logical, intent(in) :: ring                    !! x is a radius
-    integer, allocatable, intent(out) :: start(:), node(:)
-    real(wp), allocatable, intent(out) :: weight(:)
+    type(mortar_rows), intent(out) :: rows
     logical, intent(out) :: covered(:)             !! sides that face the master all along [sides]
     type(weight_list) :: list
     type(side_points) :: points
     integer :: k, row, s
 
-    allocate (list%row(0), list%node(0), list%weight(0))
-    allocate (list%area(size(facing)), source=0.0_wp)
-    associate (slave => contact%slave, master => contact%master)
+    allocate (list%part(64))
+    allocate (list%area(faces%slave%count), source=0.0_wp)
+    associate (slave => contact%slave, master => contact%master, facing => faces%slave%facing)
       do s = 1, size(slave%element)
-        call cut_side(contact, obstacles, s, reach_of(contact, s, row_of(:, s), facing), ring, points)
-        covered(s) = is_covered(points, facing, row_of(:, s), slave%segment(:, s), slave%chord_length(s))
-        if (covered(s)) then
-          call add_dual(master, points, row_of(:, s), list)
-          cycle
-        end if
-        do k = 1, 3
-          row = row_of(k, s)
-          if (row > 0) call list%add_own_place(row, master, facing(row), sum(points%weight(:points%count)* &
-                                                                           points%share(k, :points%count)))
-        end do
+        associate (row_of => faces%row_of(:, s))
+          call cut_side(contact, obstacles, s, reach_of(contact, s, row_of, facing), ring, points)
+          covered(s) = is_covered(points, facing, row_of, slave%segment(:, s), slave%chord_length(s))
+          if (covered(s)) then
+            call add_dual(master, points, row_of, list)
+            cycle
+          end if
+          do k = 1, 3
+            if (row_of(k) > 0) call list%add_own_place(row_of(k), master, facing(row_of(k)), &
+                                     sum(points%weight(:points%count)*points%share(k, :points%count)))
+          end do
+        end associate
       end do
-      do row = 1, size(facing)
+      do row = 1, faces%slave%count
         if (.not. list%area(row) > 0.0_wp) call list%add_own_place(row, master, facing(row), 1.0_wp)
       end do
     end associate
-    call collect(list, start, node, weight)
-  end subroutine mortar_rows
+    call collect(list, rows)
+  end subroutine find_mortar_rows
 
   !> Do all nodes and integration points of a side face the other line, and one face of it, without a step or a corner?
   pure logical function is_covered(points, facing, row, segment, length)
@@ -292,20 +316,13 @@ contains
     class(weight_list), intent(inout) :: self
     integer, intent(in) :: row, node(3)
     real(wp), intent(in) :: weight(3)
-    integer :: k, room
+    integer :: k
 
     do k = 1, 3
       if (node(k) == 0 .or. weight(k) == 0.0_wp) cycle
-      if (self%count == size(self%row)) then
-        room = max(64, self%count)
-        self%row = [self%row, spread(0, 1, room)]
-        self%node = [self%node, spread(0, 1, room)]
-        self%weight = [self%weight, spread(0.0_wp, 1, room)]
-      end if
+      if (self%count == size(self%part)) self%part = [self%part, self%part]   ! room for twice as many
       self%count = self%count + 1
-      self%row(self%count) = row
-      self%node(self%count) = node(k)
-      self%weight(self%count) = weight(k)
+      self%part(self%count) = weight_part(row, node(k), weight(k))
     end do
   end subroutine add
 
@@ -322,39 +339,42 @@ contains
   end subroutine add_own_place
 
   !> The rows: weights of one node added up, over the row's area, without rounding.
-  pure subroutine collect(list, start, node, weight)
+  pure subroutine collect(list, rows)
     type(weight_list), intent(in) :: list
-    integer, allocatable, intent(out) :: start(:), node(:)
-    real(wp), allocatable, intent(out) :: weight(:)
+    type(mortar_rows), intent(out) :: rows
     integer, allocatable :: order(:)
     integer :: first, i, k, n, row
 
-    order = sorted_order(list%row(:list%count))
-    allocate (start(size(list%area) + 1), node(list%count), weight(list%count))
+    order = sorted_order(list%part(:list%count)%row)
+    allocate (rows%start(size(list%area) + 1), rows%node(list%count), rows%weight(list%count))
     n = 0
     i = 1
-    do row = 1, size(list%area)
-      start(row) = n + 1
-      first = n + 1
-      do while (i <= list%count)
-        if (list%row(order(i)) /= row) exit
-        k = first - 1 + findloc(node(first:n), list%node(order(i)), dim=1)
-        if (k < first) then
-          n = n + 1
-          k = n
-          node(n) = list%node(order(i))
-          weight(n) = 0.0_wp
-        end if
-        weight(k) = weight(k) + list%weight(order(i))/list%area(row)
-        i = i + 1
+    associate (node => rows%node, weight => rows%weight)
+      do row = 1, size(list%area)
+        first = n + 1
+        rows%start(row) = first
+        do while (i <= list%count)
+          associate (part => list%part(order(i)))
+            if (part%row /= row) exit
+            k = first - 1 + findloc(node(first:n), part%node, dim=1)
+            if (k < first) then
+              n = n + 1
+              k = n
+              node(n) = part%node
+              weight(n) = 0.0_wp
+            end if
+            weight(k) = weight(k) + part%weight/list%area(row)
+          end associate
+          i = i + 1
+        end do
+        k = n
+        n = first - 1 + count(abs(weight(first:k)) > rounding)
+        node(first:n) = pack(node(first:k), abs(weight(first:k)) > rounding)
+        weight(first:n) = pack(weight(first:k), abs(weight(first:k)) > rounding)
       end do
-      k = first - 1 + count(abs(weight(first:n)) > rounding)
-      node(first:k) = pack(node(first:n), abs(weight(first:n)) > rounding)
-      weight(first:k) = pack(weight(first:n), abs(weight(first:n)) > rounding)
-      n = k
-    end do
-    start(size(start)) = n + 1
-    node = node(:n)
-    weight = weight(:n)
+    end associate
+    rows%start(size(rows%start)) = n + 1
+    rows%node = rows%node(:n)
+    rows%weight = rows%weight(:n)
   end subroutine collect
 end module epcont_contact_geometry_mortar

@@ -40,6 +40,7 @@ module epcont_geometry_facing
     real(wp) :: rise = 0.0_wp         !! how far its own curve may be from the sides there [length]
     integer :: node = 0               !! sides that end at this node do not count; 0: it is none
     logical :: at_tip = .false.       !! a convex corner of its own boundary
+    real(wp) :: search = 0.0_wp       !! how far it looks: what is asked of this module says so [length]
   end type looking_point
 
   type :: facing_type
@@ -80,35 +81,36 @@ contains
   !> The same, and a second face that is farther by less than the point's own side is long.
   pure subroutine find_facing(line, obstacles, from, search, best, second)
     type(boxed_line), intent(in) :: line
-    type(boxed_line), intent(in) :: obstacles
+    type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
-    type(facing_type), intent(out) :: best, second
+    real(wp), intent(in) :: search              !! [length]
+    type(facing_type), intent(out) :: best      !! the nearest
+    type(facing_type), intent(out) :: second    !! the nearest of those that look another way
+    type(looking_point) :: who
     real(wp) :: more, within
     integer :: round
 
+    who = from
+    who%search = search
     more = min(search, 2.0_wp*norm2(from%along))
     do round = rounds, 0, -1
       within = search/widening**round
-      call look_at(line, line%near(from%x, within), obstacles, from, search, best, second)
+      call look_at(line, line%near(from%x, within), obstacles, who, best, second)
       ! Sides that were left out are farther than `within`.
       if (best%place%found .and. abs(best%place%gap) + more < within - 2.0_wp*equal*search) exit
     end do
-    if (second%place%found) then
-      if (abs(second%place%gap) > abs(best%place%gap) + more) second = facing_type()
-    end if
+    if (second%place%found .and. abs(second%place%gap) > abs(best%place%gap) + more) second = facing_type()
     if (abs(best%place%gap) <= roundings*maxval(abs(from%x))) best%place%gap = 0.0_wp
     if (abs(second%place%gap) <= roundings*maxval(abs(from%x))) second%place%gap = 0.0_wp
     best%same_way = best%same_way .and. .not. best%place%found
   end subroutine find_facing
 
   !> The same among a few sides of the line.
-  pure subroutine look_at(line, sides, obstacles, from, search, best, second)
+  pure subroutine look_at(line, sides, obstacles, from, best, second)
     type(boxed_line), intent(in) :: line
     integer, intent(in) :: sides(:)
     type(boxed_line), intent(in) :: obstacles
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_type), intent(out) :: best, second
     type(facing_type), allocatable :: faces(:)
     integer :: k, n
@@ -123,20 +125,20 @@ contains
       associate (found => faces(n + 1))
         found%segment = sides(k)
         found%place = line%face(sides(k), from%x)
-        if (.not. found%place%found .or. abs(found%place%gap) > search*(1.0_wp + equal)) cycle
+        if (.not. found%place%found .or. abs(found%place%gap) > from%search*(1.0_wp + equal)) cycle
         if (dot_product(found%place%normal, from%outward) >= against) then
           same_way = same_way .or. dot_product(found%place%normal, from%outward) > -against
           cycle
         end if
         if (found%place%at_corner .and. .not. from%at_tip) call press_corner(from, found%place)
-        if (found%place%gap < -max(equal*search, roundings*maxval(abs(from%x)))) then
-          if (.not. goes_on(line, sides(k), from, search)) cycle
+        if (found%place%gap < -max(equal*from%search, roundings*maxval(abs(from%x)))) then
+          if (.not. goes_on(line, sides(k), from)) cycle
         end if
         if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) cycle
       end associate
       n = n + 1
     end do
-    call rank(line, from, search, faces(:n), best, second)
+    call rank(line, from, faces(:n), best, second)
     best%same_way = same_way
   end subroutine look_at
 
@@ -152,10 +154,9 @@ contains
   end subroutine press_corner
 
   !> The best face, and the nearest of those that look another way.
-  pure subroutine rank(line, from, search, faces, best, second)
+  pure subroutine rank(line, from, faces, best, second)
     type(boxed_line), intent(in) :: line
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_type), intent(in) :: faces(:)
     type(facing_type), intent(inout) :: best, second
     logical :: taken(size(faces))   ! in the best one
@@ -164,10 +165,10 @@ contains
     do k = 1, size(faces)
       if (.not. best%place%found) then
         taken = .false.
-      else if (is_better(line, from, search, faces(k), best)) then
+      else if (is_better(line, from, faces(k), best)) then
         taken = .false.
       else
-        taken(k) = from%at_tip .and. are_equal(from, search, faces(k), best)
+        taken(k) = from%at_tip .and. are_equal(from, faces(k), best)
         if (taken(k)) call take_mean(faces(k)%place, best%place)
         cycle
       end if
@@ -186,16 +187,15 @@ contains
 
   !> Is a face better than another? It is nearer; or as near, and looks more against the point's own boundary; or lies more
   !! before the middle of the point's own side.
-  pure logical function is_better(line, from, search, one, other)
+  pure logical function is_better(line, from, one, other)
     type(boxed_line), intent(in) :: line
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_type), intent(in) :: one, other
     real(wp) :: by
 
     by = abs(other%place%gap) - abs(one%place%gap)
     is_better = by > 0.0_wp
-    if (abs(by) > equal*search) return
+    if (abs(by) > equal*from%search) return
     by = dot_product(other%place%normal, from%outward) - dot_product(one%place%normal, from%outward)
     is_better = by > 0.0_wp
     if (abs(by) > equal) return
@@ -211,12 +211,11 @@ contains
   end function is_better
 
   !> Are two faces as near, and look as much against the point's own boundary?
-  pure logical function are_equal(from, search, one, other)
+  pure logical function are_equal(from, one, other)
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_type), intent(in) :: one, other
 
-    are_equal = abs(abs(one%place%gap) - abs(other%place%gap)) <= equal*search .and. &
+    are_equal = abs(abs(one%place%gap) - abs(other%place%gap)) <= equal*from%search .and. &
                 abs(dot_product(one%place%normal - other%place%normal, from%outward)) <= equal
   end function are_equal
 
@@ -242,11 +241,10 @@ contains
 
   !> Does an overlap go on along the point's own side? (The corner of a block that stands on another is no overlap with the
   !> other's flank, however far it lies behind that.)
-  pure logical function goes_on(line, side, from, search)
+  pure logical function goes_on(line, side, from)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_place) :: place
     integer :: end
 
@@ -255,7 +253,7 @@ contains
     do end = 1, 2
       if (goes_on .or. line%neighbour(end, side) == 0) cycle
       place = line%face(line%neighbour(end, side), from%x + aside*from%along)
-      goes_on = place%found .and. place%gap < search .and. &
+      goes_on = place%found .and. place%gap < from%search .and. &
                 dot_product(place%normal, line%own_normal(side, 0.5_wp)) > same_face
     end do
   end function goes_on

@@ -34,6 +34,8 @@ module epcont_model_controls
     real(wp) :: tolerance = 0.0_wp     !! PARAM TOL; 0: that of the method
     integer :: most_iterations = 100   !! of a load step
     integer :: load_steps = 1
+    real(wp) :: search = 0.0_wp        !! PARAM SEARCH, how far lines look for each other [length]; 0: by their sides
+    real(wp) :: corner = 0.0_wp        !! PARAM CORNER, turns above it are corners [degree]; 0: by how boundaries turn
     logical :: paper_ratio = .false.   !! PARAM MUP PAPER: Poisson's ratio (2-4) in the equivalent strain
   end type controls_type
 

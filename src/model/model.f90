@@ -5,26 +5,35 @@
 module epcont_model_model
   use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
   use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: axisymmetric
   use epcont_geometry_boxed_line, only: boxed_line
   use epcont_geometry_outline, only: outline_type
   use epcont_model_controls, only: controls_type, uniaxial_curve
+  use epcont_model_finding, only: of_couple, of_element, of_line, of_node, of_pair, of_paper_ratio, of_section
   implicit none
   private
-  public :: line_contact, model_type, named_line
-
+  public :: line_contact, line_couple, model_type, named_line
 
   !> A boundary line (BLSEG).
   type :: named_line
     integer :: id = 0
+    integer, allocatable :: node(:)      !! in their order along the boundary, in either sense; none: they were not sound
     integer, allocatable :: side(:)      !! of the outline, with the body to the left
     real(wp) :: box(2, 2) = 0.0_wp       !! least and largest coordinates of their ends [length] [2, 2]
   end type named_line
 
+  !> Two lines that may touch (BCONP).
+  type :: line_couple
+    integer :: id = 0
+    integer :: line(2) = 0               !! slave and master, by their positions
+  end type line_couple
+
   !> Contact of boundary lines, and the pairs that came of it. Lines that go on in each other, of one BCONP or of several, are
   !! one contact: all their sides on the one hand are slaves, on the other masters.
   type :: line_contact
+    integer, allocatable :: couple(:)     !! by their positions
     integer, allocatable :: bconp(:), slave_id(:), master_id(:)   !! ids of the cards
     type(boxed_line) :: slave, master
     real(wp) :: search = 0.0_wp           !! how far away a side may be [length]
@@ -78,6 +87,7 @@ module epcont_model_model
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
     type(boxed_line) :: boundary                !! sides of the bodies' outlines, by the same numbers, with normals; where lines are
     type(named_line), allocatable :: line(:)
+    type(line_couple), allocatable :: couple(:)
     type(line_contact), allocatable :: line_contact(:)
     integer, allocatable :: body(:)             !! of each node [nodes]
     type(outline_type) :: body_outline          !! of all bodies
@@ -85,6 +95,7 @@ module epcont_model_model
     procedure :: coordinates
     procedure :: corners
     procedure :: edge
+    procedure :: side_between
     procedure :: edge_coordinates
     procedure :: depth
     procedure :: has_rings
@@ -93,6 +104,8 @@ module epcont_model_model
     procedure :: can_yield
     procedure :: has_flat_curve
     procedure :: opening
+    procedure :: single_pairs
+    procedure :: name_of
   end type model_type
 
 contains
@@ -125,6 +138,19 @@ contains
       if (self%order(element) > n) edge(3) = node(n + side)
     end associate
   end function edge
+
+  !> The side of an element that ends at two corners, in either order; 0: it has none.
+  pure integer function side_between(self, element, a, b) result(side)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: element
+    integer, intent(in) :: a, b      !! the corners
+    integer :: ends(3)
+
+    do side = self%corners(element), 1, -1
+      ends = self%edge(element, side)
+      if (all(ends(:2) == [a, b]) .or. all(ends(:2) == [b, a])) return
+    end do
+  end function side_between
 
   !> Coordinates of the nodes of a side [length] [2, 2 or 3].
   pure function edge_coordinates(self, edge) result(x)
@@ -214,4 +240,54 @@ contains
     end do
     opening = dot_product(self%normal(:, pair), apart)
   end function opening
+
+  !> How many pairs are given one by one (CGAP); those of lines come behind them.
+  pure integer function single_pairs(self)
+    class(model_type), intent(in) :: self
+
+    single_pairs = self%pairs
+    if (.not. allocated(self%line_contact)) return
+    if (size(self%line_contact) > 0) single_pairs = self%line_contact(1)%first - 1
+  end function single_pairs
+
+  !> What messages call a part of the scene: `GRID 17`, `CTRIA3 5`.
+  pure function name_of(self, kind, which) result(name)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: kind    !! of_node, of_element, of_section, of_pair, of_line or of_couple
+    integer, intent(in) :: which   !! of these, by its position
+    character(len=:), allocatable :: name
+
+    select case (kind)
+    case (of_node)
+      name = 'GRID '//text_of(self%node_id(which))
+    case (of_element)
+      name = element_name(self, which)
+    case (of_section)
+      name = trim(merge('PSOLID', 'PSHELL', self%kinematics(which) == axisymmetric))//' '//text_of(self%property_id(which))
+    case (of_pair)
+      name = 'CGAP '//text_of(self%pair_id(which))
+    case (of_line)
+      name = 'BLSEG '//text_of(self%line(which)%id)
+    case (of_couple)
+      name = 'BCONP '//text_of(self%couple(which)%id)
+    case (of_paper_ratio)
+      name = 'PARAM MUP'
+    case default
+      name = ''
+    end select
+  end function name_of
+
+  !> The card and the id of an element.
+  pure function element_name(self, e) result(name)
+    type(model_type), intent(in) :: self
+    integer, intent(in) :: e
+    character(len=:), allocatable :: name
+    logical :: ring
+
+    ring = .false.
+    if (self%section(e) > 0) ring = self%kinematics(self%section(e)) == axisymmetric
+    associate (kind => self%kinds(self%kind(e)))
+      name = trim(merge(kind%ring_card, kind%plane_card, ring))//' '//text_of(self%element_id(e))
+    end associate
+  end function element_name
 end module epcont_model_model

@@ -1,13 +1,10 @@
 !> Bodies that lie against each other as drawn, with nodes at one place, though neither a pair nor RBE2 joins these: a contact, or
 !> a common node, that was forgotten.
-module epcont_build_lying_together
+module epcont_contact_geometry_lying_together
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
   use epcont_contact_geometry_mates, only: find_mates, is_mate
-  use epcont_deck_card_kinds, only: card_grid
-  use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostics
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
+  use epcont_model_finding, only: and_more, findings, of_node
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -25,10 +22,9 @@ module epcont_build_lying_together
 contains
 
   !> One warning for each two bodies.
-  subroutine warn_of_lying_together(deck, model, faults)
-    type(deck_type), intent(in) :: deck
+  subroutine warn_of_lying_together(model, found)
     type(model_type), intent(in) :: model
-    type(diagnostics), intent(inout) :: faults
+    type(findings), intent(inout) :: found
     type(twin_type), allocatable :: twin(:)
     integer, allocatable :: first(:)   ! of an earlier body, with each other one
     integer :: i
@@ -46,24 +42,14 @@ contains
           twin(k)%count = twin(k)%count + 1
         end associate
       end do
-      do i = 1, size(twin)
-        if (twin(i)%count > 0) call warn(twin(i))
-      end do
     end associate
-
-  contains
-
-    subroutine warn(twin)
-      type(twin_type), intent(in) :: twin
-      character(len=:), allocatable :: others
-
-      others = ''
-      if (twin%count > 1) others = '; so do '//text_of(twin%count - 1)//' more of these two bodies'
-      call faults%add_warning(deck%place(card_grid, twin%node, 1), deck%identity(card_grid, twin%node)// &
-                              ': lies where GRID '//text_of(model%node_id(twin%other))// &
-                              ' of another body does, and no pair joins the two'//others, &
-                              'a CGAP, lines with a BCONP between them, or one GRID for both')
-    end subroutine warn
+    do i = 1, size(twin)
+      if (twin(i)%count > 0) &
+        call found%add_warning(of_node, twin(i)%node, 1, ': lies where '//model%name_of(of_node, twin(i)%other)// &
+                               ' of another body does, and no pair joins the two'// &
+                               and_more(twin(i)%count, '; so do ', ' more of these two bodies'), &
+                               'a CGAP, lines with a BCONP between them, or one GRID for both')
+    end do
   end subroutine warn_of_lying_together
 
   !> Nodes of outlines with one of another body at their place, that nothing joins: those of sides that lie against each other
@@ -147,4 +133,4 @@ contains
       end associate
     end function loose_twin
   end function twin_of
-end module epcont_build_lying_together
+end module epcont_contact_geometry_lying_together
