@@ -9,13 +9,12 @@ module epcont_build_build
   use epcont_build_mesh, only: build_elements, build_nodes, build_sections, element_cards
   use epcont_build_reference, only: card_index, check_unique, index_of
   use epcont_build_supports, only: build_references, build_supports, build_ties
-  use epcont_contact_geometry_complete, only: find_contacts, finish_model
+  use epcont_contact_geometry_complete, only: check_controls, find_contacts, finish_model
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_grid, card_param, card_rbe2, card_spc, &
                                     card_spc1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_entry, only: least_cause
-  use epcont_model_control_checks, only: check_controls
   use epcont_model_element_shapes, only: check_axis
   use epcont_model_finding, only: finding, findings, found_error, found_warning, of_couple, of_element, of_line, of_node, &
                                   of_pair, of_paper_ratio, of_scene
@@ -28,9 +27,9 @@ contains
 
   !> Build the scene; whatever is wrong with it is added to `faults`, and the model serves only without errors.
   subroutine build_model(deck, model, faults)
-    type(deck_type), intent(in) :: deck
-    type(model_type), intent(out) :: model
-    type(diagnostics), intent(inout) :: faults
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(model_type), intent(out) :: model   !! the scene
+    type(diagnostics), intent(inout) :: faults   !! of the deck; they are added to
     type(findings) :: found
     integer :: i
 

@@ -13,7 +13,7 @@ contains
 
   !> The choices; where nothing is said of one, its default.
   pure type(controls_type) function read_controls(deck) result(controls)
-    type(deck_type), intent(in) :: deck
+    type(deck_type), intent(in) :: deck   !! its cards
 
     controls%method = choice(deck, 'METHOD', method_name, controls%method, lbound(method_name, 1))
     controls%rule = choice(deck, 'RULE', rule_name, controls%rule, lbound(rule_name, 1))
@@ -41,8 +41,8 @@ contains
 
   !> Each PARAM stands once: of two, one would be ignored.
   pure subroutine check_once(deck, found)
-    type(deck_type), intent(in) :: deck
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: row
 
     associate (param => deck%card(card_param))

@@ -21,10 +21,10 @@ contains
 
   !> CGAP. A pair whose system cannot be found has any normal, and one without a system none, until its nodes give it.
   pure subroutine build_pairs(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck
-    type(card_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, dimension(deck%card(card_cgap)%count) :: property, system
     integer :: node(2, size(system))
     real(wp) :: gap(size(system)), normal(2, size(system))
@@ -86,10 +86,10 @@ contains
 
   !> BLSEG, ranges and steps written out, and BCONP.
   pure subroutine build_lines(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck
-    type(card_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: i, k
 
     call check_unique(deck, [card_blseg], found)

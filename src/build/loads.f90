@@ -18,10 +18,10 @@ contains
 
   !> Sum the loads of the chosen set at the nodes.
   pure subroutine build_loads(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck
-    type(card_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: set
 
     call chosen_set(deck, [card_force, card_ploadx1], deck%load, 'LOAD', found, set)

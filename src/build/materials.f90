@@ -27,9 +27,9 @@ contains
 
   !> One material a MAT1, with its curve.
   pure subroutine read_materials(deck, material, found)
-    type(deck_type), intent(in) :: deck
+    type(deck_type), intent(in) :: deck   !! its cards
     type(material_card), allocatable, intent(out) :: material(:)   !! [MAT1]
-    type(findings), intent(inout) :: found
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: m(:), table(:)   ! the MAT1, the TABLES1 of each MATS1; 0: none
     integer :: i
 

@@ -24,9 +24,9 @@ contains
 
   !> GRID.
   subroutine build_nodes(deck, model, found)
-    type(deck_type), intent(in) :: deck
-    type(model_type), intent(out) :: model
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(model_type), intent(out) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: i, z
 
     call check_unique(deck, [card_grid], found)
@@ -44,9 +44,9 @@ contains
 
   !> PSHELL, then PSOLID, with their materials.
   subroutine build_sections(deck, model, found)
-    type(deck_type), intent(in) :: deck
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     type(material_card), allocatable :: card(:)
     type(material_card) :: material(deck%card(card_pshell)%count + deck%card(card_psolid)%count)
     type(card_index) :: materials
@@ -100,10 +100,10 @@ contains
 
   !> All elements, card by card.
   subroutine build_elements(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck
-    type(card_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: node(:, :), section(:)
     integer :: c, k
 

@@ -17,7 +17,7 @@ contains
 
   !> The ids in the first fields of all cards of a table.
   pure type(card_index) function index_of(deck, card) result(index)
-    type(deck_type), intent(in) :: deck
+    type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: card  !! which table
 
     index%id_index = new_id_index(int(deck%card(card)%value(1, :)))
@@ -26,9 +26,9 @@ contains
 
   !> Each id stands once in the first fields of these tables, which share one id space.
   pure subroutine check_unique(deck, cards, found)
-    type(deck_type), intent(in) :: deck
+    type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: cards(:)             !! which tables
-    type(findings), intent(inout) :: found
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: id(:), order(:), row(:), table(:)
     integer :: c, i, k, earlier
 
@@ -54,11 +54,11 @@ contains
   !> Positions of what a field of each card names; 0 where there is no such thing, or where nothing is named. The former is a fault,
   !! but for the id 0, the basic system.
   pure subroutine resolve(deck, card, column, index, found, position)
-    type(deck_type), intent(in) :: deck
+    type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: card               !! which table
     integer, intent(in) :: column             !! the field that holds the id
     type(card_index), intent(in) :: index     !! of what may be meant
-    type(findings), intent(inout) :: found
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, intent(out) :: position(:)       !! [cards]
     character(len=:), allocatable :: noun
     integer :: i, id
@@ -80,11 +80,11 @@ contains
 
   !> Positions of the nodes that an item of a card's list names: one, or some of a range; it is a fault if there are none.
   pure subroutine resolve_list(deck, card, i, item, nodes, found, position)
-    type(deck_type), intent(in) :: deck
+    type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: card, i                      !! which table, which card of it
     integer, intent(in) :: item                         !! of all lists of the table
-    type(card_index), intent(in) :: nodes
-    type(findings), intent(inout) :: found
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable, intent(out) :: position(:)    !! ascending by id [any]
     character(len=:), allocatable :: ids
 
@@ -99,12 +99,12 @@ contains
 
   !> The set that SPC = or LOAD = names; without it the only set there is. 0 where there is none.
   pure subroutine chosen_set(deck, cards, choice, word, found, set)
-    type(deck_type), intent(in) :: deck
+    type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: cards(:)              !! tables whose first field is the set
     integer, intent(in) :: choice                !! 0: none
     character(len=*), intent(in) :: word         !! SPC or LOAD
-    type(findings), intent(inout) :: found
-    integer, intent(out) :: set
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer, intent(out) :: set   !! 0: there is none
     logical :: used
     integer :: c, i, id
 

@@ -16,10 +16,10 @@ contains
 
   !> GRID PS, SPC and SPC1 of the chosen set.
   pure subroutine build_supports(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck
-    type(card_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: i, item, k, ps, set
     integer, allocatable :: node(:)
 
@@ -84,10 +84,10 @@ contains
 
   !> RBE2: freedoms that follow a leader. Chains are followed to their end.
   pure subroutine build_ties(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck
-    type(card_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: node(:)
     integer :: c, i, item, k
     integer :: leader(deck%card(card_rbe2)%count)
@@ -112,10 +112,10 @@ contains
 
   !> SUPORT.
   pure subroutine build_references(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck
-    type(card_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: c, i, k
     integer :: node(deck%card(card_suport)%count)
 

@@ -12,7 +12,7 @@ contains
 
   !> All sides, numbered as those of the outlines.
   pure function find_boundary(model) result(line)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(boundary_line) :: line
     integer :: i, k
 

@@ -12,9 +12,10 @@ module epcont_contact_geometry_complete
   use epcont_contact_geometry_lying_together, only: warn_of_lying_together
   use epcont_contact_geometry_pair_checks, only: check_pairs
   use epcont_contact_geometry_pairs_twice, only: refuse_pairs_twice
-  use epcont_model_control_checks, only: check_controls
+  use epcont_element_kinematics, only: plane_strain
+  use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
-  use epcont_model_finding, only: findings, found_error, of_node
+  use epcont_model_finding, only: findings, found_error, of_node, of_paper_ratio, of_section
   use epcont_model_given, only: check_given
   use epcont_model_model, only: model_type
   use epcont_model_single_pairs, only: complete_pairs
@@ -22,7 +23,7 @@ module epcont_contact_geometry_complete
   use epcont_model_travel, only: find_travels
   implicit none
   private
-  public :: complete_model, find_contacts, finish_model
+  public :: complete_model, check_controls, find_contacts, finish_model
 
 contains
 
@@ -88,8 +89,8 @@ contains
 
   !> Bodies, their outlines, and the contacts of lines: after elements, supports, ties and single pairs.
   pure subroutine find_contacts(model, found)
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
 
     ! Lines are sides of the outlines, and only sound elements have outlines.
     if (found%errors == 0) then
@@ -100,9 +101,9 @@ contains
   end subroutine find_contacts
 
   !> What a scene without errors must still be refused or warned of, and its travels.
-  subroutine finish_model(model, found)
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+  pure subroutine finish_model(model, found)
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
 
     call refuse_pairs_twice(model, found)
     call warn_of_elements_twice(model, found)
@@ -111,4 +112,22 @@ contains
     call warn_of_hanging_nodes(model, found)
     call warn_of_lying_together(model, found)
   end subroutine finish_model
+
+  !> MUP PAPER is of the secant stiffness, and of plane strain.
+  pure subroutine check_controls(model, found)
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer :: s
+
+    if (.not. model%controls%paper_ratio) return
+    if (model%controls%method == method_newton) &
+      call found%add_error(of_paper_ratio, 0, 2, ': PAPER does not go with METHOD NEWTON', &
+                           'METHOD SECANT, MODSEC or INISTR, or MUP EXACT')
+    do s = 1, size(model%curve)
+      if (model%kinematics(s) == plane_strain .or. .not. allocated(model%curve(s)%strain)) cycle
+      call found%add_error(of_paper_ratio, 0, 2, ': PAPER is for plane strain, and '//model%name_of(of_section, s)// &
+                           ' is not', 'MUP EXACT')
+      return
+    end do
+  end subroutine check_controls
 end module epcont_contact_geometry_complete

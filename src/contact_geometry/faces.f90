@@ -36,8 +36,8 @@ contains
   !> Add a node and its face.
   pure subroutine append(self, node, facing)
     class(face_list), intent(inout) :: self
-    integer, intent(in) :: node
-    type(facing_type), intent(in) :: facing
+    integer, intent(in) :: node   !! its node
+    type(facing_type), intent(in) :: facing   !! what it faces
 
     if (.not. allocated(self%node)) allocate (self%node(first_room), self%facing(first_room))
     if (self%count == size(self%node)) then   ! room for twice as many
@@ -52,7 +52,7 @@ contains
   !> Is a node in the list?
   pure logical function has_node(self, node)
     class(face_list), intent(in) :: self
-    integer, intent(in) :: node
+    integer, intent(in) :: node   !! its node
 
     has_node = .false.
     if (self%count > 0) has_node = any(self%node(:self%count) == node)
@@ -61,8 +61,8 @@ contains
   !> Has a node a face like this one, that looks the same way?
   pure logical function has_face(self, node, facing)
     class(face_list), intent(in) :: self
-    integer, intent(in) :: node
-    type(facing_type), intent(in) :: facing
+    integer, intent(in) :: node   !! its node
+    type(facing_type), intent(in) :: facing   !! what it faces
     integer :: k
 
     has_face = .true.
@@ -76,9 +76,9 @@ contains
   !> What the nodes of the slave face of the master, in their order along its sides; then second faces, but where the node has one
   !! like them: its other side faces the same.
   pure subroutine find_faces(contact, obstacles, faces)
-    type(line_contact), intent(in) :: contact
+    type(line_contact), intent(in) :: contact   !! the contact of lines
     type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
-    type(faces_type), intent(out) :: faces
+    type(faces_type), intent(out) :: faces   !! what they face
     type(face_list) :: seconds
     integer, parameter :: in_turn(3) = [1, 3, 2]   ! start, middle, end
     integer :: k, s

@@ -22,7 +22,7 @@ contains
 
   !> The outlines of a scene.
   pure function find_outline(model) result(outline)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(outline_type) :: outline
     type(found_type) :: found
     integer, allocatable :: before(:), after(:), order(:), place(:)

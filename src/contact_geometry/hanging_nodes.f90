@@ -17,8 +17,8 @@ contains
 
   !> One warning, at the first of them.
   pure subroutine warn_of_hanging_nodes(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: edge(3, model%nodes)      ! where each node hangs: the ends of the side and its element; 0: nowhere
     integer :: first
 

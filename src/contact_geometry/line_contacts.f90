@@ -25,8 +25,8 @@ contains
   !> Add the pairs of all contacts of lines behind those that are given one by one. Lines and couples are known by their nodes and
   !! lines; where there were errors before, there is no boundary to look at, and these alone are checked.
   pure subroutine find_line_contacts(model, found)
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: c
     logical :: sound
 

@@ -71,7 +71,7 @@ contains
 
   !> Forget the pairs of all contacts of lines.
   pure subroutine forget_pairs(model)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     integer :: n
 
     n = model%line_contact(1)%first - 1
@@ -88,8 +88,8 @@ contains
   !> Append pairs, with their rows of N. The node that stands on a side is B, the nodes of that side are A.
   pure subroutine add_pairs(faces, model, contact)
     type(faces_type), intent(inout) :: faces          !! what nodes of the slave face; those of the master are found here
-    type(model_type), intent(inout) :: model
-    type(line_contact), intent(inout) :: contact
+    type(model_type), intent(inout) :: model   !! the scene
+    type(line_contact), intent(inout) :: contact   !! the contact of lines
     logical :: covered(size(contact%slave%element))
     type(mortar_rows) :: rows
     type(face_list) :: on   ! what all nodes B face

@@ -21,9 +21,9 @@ contains
   !> The sides of all lines; one that is not sound has none. Where the elements are not `sound` there are no outlines, and nodes
   !! alone are looked at.
   pure subroutine find_line_sides(model, sound, found)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     logical, intent(in) :: sound              !! the elements are, and the outlines known
-    type(findings), intent(inout) :: found
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     type(between_type), allocatable :: way(:)
     integer, allocatable :: starting(:)       ! the last side of the outline that starts at each node
     integer :: i, passed

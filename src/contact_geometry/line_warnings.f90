@@ -25,8 +25,8 @@ contains
   !> A node that is slave in one contact and master in another, on the same face: neither knows of the sides that the other has
   !! beside it, whose pressures are shared by chance.
   pure subroutine warn_of_both_ways(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: contact(:), slave(:)   !! of each pair, 0: given alone; the pair of each node as slave, 0: none
     integer :: c, i, pair
     logical :: told(size(model%line_contact))
@@ -68,10 +68,10 @@ contains
   !> Pressures are carried by the slave's nodes. Where these are closer than the nodes of the master, whose sides bend
   !! at nodes alone, they show its facets.
   pure subroutine warn_of_finer_slave(model, contact, faces, found)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
+    type(model_type), intent(in) :: model   !! the scene
+    type(line_contact), intent(in) :: contact   !! the contact of lines
     type(faces_type), intent(in) :: faces         !! what the slave's nodes face
-    type(findings), intent(inout) :: found
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     character(len=:), allocatable :: advice, text
     real(wp) :: sides(2)
 
@@ -122,9 +122,9 @@ contains
 
   !> Pressures are forces by the area of the slave, which a thinner master does not cover.
   pure subroutine warn_of_thicker_slave(model, contact, found)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    type(findings), intent(inout) :: found
+    type(model_type), intent(in) :: model   !! the scene
+    type(line_contact), intent(in) :: contact   !! the contact of lines
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     real(wp) :: thickness(2)
 
     if (model%has_rings()) return
@@ -139,9 +139,9 @@ contains
 
   !> One warning for all overlaps: shrink fits have many. What curves over chords, and cards of eight columns, leave is none.
   pure subroutine warn_of_overlap(model, contact, found)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    type(findings), intent(inout) :: found
+    type(model_type), intent(in) :: model   !! the scene
+    type(line_contact), intent(in) :: contact   !! the contact of lines
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     character(len=:), allocatable :: others
     integer :: deepest, overlaps
     real(wp) :: least

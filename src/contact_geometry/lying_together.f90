@@ -22,9 +22,9 @@ module epcont_contact_geometry_lying_together
 contains
 
   !> One warning for each two bodies.
-  subroutine warn_of_lying_together(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
+  pure subroutine warn_of_lying_together(model, found)
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     type(twin_type), allocatable :: twin(:)
     integer, allocatable :: first(:)   ! of an earlier body, with each other one
     integer :: i
@@ -54,12 +54,12 @@ contains
 
   !> Nodes of outlines with one of another body at their place, that nothing joins: those of sides that lie against each other
   !! from end to end, and single ones that are in no pair at all. Of two twins the one of the earlier body is named.
-  function find_twins(model) result(twin)
+  pure function find_twins(model) result(twin)
     type(model_type), intent(in) :: model
     type(twin_type), allocatable :: twin(:)
     type(outline_shape) :: drawn
     integer, allocatable :: mate(:), near(:)
-    integer :: found, i, n, other, part, side
+    integer :: found, i, n, other, side
     real(wp) :: within
 
     allocate (twin(16), near(16))
@@ -68,12 +68,11 @@ contains
       drawn = new_outline_shape(model%body_outline, model%x)
       mate = find_mates(model)
       do side = 1, model%body_outline%sides
-        part = model%body_outline%part(side)
         within = coincident*norm2(drawn%chord(side))
         call drawn%part_tree%meeting(drawn%low(:, side) - within, drawn%high(:, side) + within, near, n)
         do i = 1, n
-          if (near(i) <= part) cycle
-          other = twin_of(model, drawn, mate, side, near(i))
+          if (near(i) <= model%body_outline%part(side)) cycle
+          other = twin_that_counts(model, drawn, mate, side, near(i))
           if (other == 0) cycle
           if (found == size(twin)) twin = [twin, twin]
           found = found + 1
@@ -84,53 +83,55 @@ contains
     twin = twin(:found)
   end function find_twins
 
-  !> The twin, in another part, of the node where a side begins; 0: none that counts.
-  integer function twin_of(model, drawn, mate, side, part) result(other)
+  !> The twin, in another part, of the node where a side begins: neither is in a pair, or the side that begins or the one that ends
+  !! there lies against that part, its other end a twin too. 0: none.
+  pure integer function twin_that_counts(model, drawn, mate, side, part) result(other)
     type(model_type), intent(in) :: model
     type(outline_shape), intent(in) :: drawn
     integer, intent(in) :: mate(:), side, part
 
     associate (outline => model%body_outline)
-      other = loose_twin(outline%node(1, side), side)
+      other = loose_twin(model, drawn, mate, [outline%node(1, side), side], part)
       if (other == 0) return
       if (mate(outline%node(1, side)) == 0 .and. mate(other) == 0) return
-      if (lies_against(side)) return
-      if (lies_against(outline%before(side))) return
+      associate (before => outline%before(side))
+        if (loose_twin(model, drawn, mate, [outline%node(2, side), side], part) > 0 .and. lies_against(drawn, side, part)) return
+        if (loose_twin(model, drawn, mate, [outline%node(1, before), before], part) > 0 .and. &
+            lies_against(drawn, before, part)) return
+      end associate
     end associate
     other = 0
+  end function twin_that_counts
 
-  contains
+  !> Goes the outline of a part the other way along a side?
+  pure logical function lies_against(drawn, side, part)
+    type(outline_shape), intent(in) :: drawn
+    integer, intent(in) :: side, part
+    type(near_place) :: place
 
-    !> Is the other end of a side a twin too, and goes the other outline the other way between the two?
-    logical function lies_against(which)
-      integer, intent(in) :: which
-      type(near_place) :: place
-      integer :: k
+    place = drawn%nearest_place(part, drawn%at(side, 0.5_wp))
+    lies_against = place%distance <= coincident*norm2(drawn%chord(side)) .and. &
+                   dot_product(drawn%tangent(place%side, place%s), drawn%tangent(side, 0.5_wp)) < 0.0_wp
+  end function lies_against
 
-      associate (node => model%body_outline%node(:, which))
-        k = merge(node(1), node(2), which /= side)
-        lies_against = loose_twin(k, which) > 0
-        if (.not. lies_against) return
-        place = drawn%nearest_place(part, drawn%at(which, 0.5_wp))
-        lies_against = place%distance <= coincident*norm2(drawn%chord(which)) .and. &
-                       dot_product(drawn%tangent(place%side, place%s), drawn%tangent(which, 0.5_wp)) < 0.0_wp
-      end associate
-    end function lies_against
+  !> The node of a part at the place of one at the end of a side, if nothing joins the two; 0: there is none.
+  pure integer function loose_twin(model, drawn, mate, end, part) result(twin)
+    type(model_type), intent(in) :: model
+    type(outline_shape), intent(in) :: drawn
+    integer, intent(in) :: mate(:)
+    integer, intent(in) :: end(2)      !! the node and the side
+    integer, intent(in) :: part
+    type(near_place) :: place
+    logical :: joined
 
-    !> The node of the other part at the place of one at the end of a side, if nothing joins the two.
-    integer function loose_twin(node, which) result(found)
-      integer, intent(in) :: node, which
-      type(near_place) :: place
-
-      place = drawn%nearest_place(part, model%x(:, node))
-      found = 0
-      associate (within => coincident*norm2(drawn%chord(which)), ends => model%body_outline%node(:2, place%side))
-        if (place%distance > within) return
-        found = merge(ends(1), ends(2), place%s < 0.5_wp)
-        if (norm2(model%x(:, found) - model%x(:, node)) > within .or. any(model%leader(:, found) == model%leader(:, node)) .or. &
-            is_mate(mate, [node], part) .or. is_mate(mate, [found], model%body_outline%part_of(node)) .or. &
-            (all(model%held(:, node)) .and. all(model%held(:, found)))) found = 0
-      end associate
-    end function loose_twin
-  end function twin_of
+    place = drawn%nearest_place(part, model%x(:, end(1)))
+    associate (within => coincident*norm2(drawn%chord(end(2))), node => end(1), ends => model%body_outline%node(:2, place%side))
+      twin = 0
+      if (place%distance > within) return
+      twin = merge(ends(1), ends(2), place%s < 0.5_wp)
+      joined = any(model%leader(:, twin) == model%leader(:, node)) .or. is_mate(mate, [node], part) .or. &
+               is_mate(mate, [twin], model%body_outline%part_of(node)) .or. all(model%held(:, [node, twin]))
+      if (joined .or. norm2(model%x(:, twin) - model%x(:, node)) > within) twin = 0
+    end associate
+  end function loose_twin
 end module epcont_contact_geometry_lying_together

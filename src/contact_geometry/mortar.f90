@@ -86,11 +86,11 @@ contains
 
   !> Rows of master nodes and weights, one for each slave node that has a pair. Rows of no side count at their own places.
   pure subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
-    type(line_contact), intent(in) :: contact
+    type(line_contact), intent(in) :: contact   !! the contact of lines
     type(boxed_line), intent(in) :: obstacles      !! the outlines of all bodies
     type(faces_type), intent(in) :: faces          !! what the slave's nodes face
     logical, intent(in) :: ring                    !! x is a radius
-    type(mortar_rows), intent(out) :: rows
+    type(mortar_rows), intent(out) :: rows   !! one for each of these nodes
     logical, intent(out) :: covered(:)             !! sides that face the master all along [sides]
     type(weight_list) :: list
     type(side_points) :: points
@@ -126,22 +126,19 @@ contains
     type(facing_type), intent(in) :: facing(:)
     integer, intent(in) :: row(3), segment(3)
     real(wp), intent(in) :: length             !! of the side
-    real(wp) :: before, behind, cut
+    real(wp) :: before, behind, cut, normal(2, points%count)
     integer :: k, p
 
     is_covered = points%covered .and. all(row > 0 .or. segment == 0)
     if (.not. is_covered) return
-    do p = 1, points%count
-      do k = 1, 3
-        if (row(k) == 0) cycle
-        is_covered = dot_product(points%facing(p)%place%normal, facing(row(k))%place%normal) > one_curve
-        if (.not. is_covered) return
-      end do
+    normal = reshape([(points%facing(p)%place%normal, p=1, points%count)], [2, points%count])
+    do k = 1, 3
+      if (row(k) > 0) is_covered = is_covered .and. all(matmul(facing(row(k))%place%normal, normal) > one_curve)
     end do
     do p = gauss_points, points%count - 1, gauss_points
-      is_covered = dot_product(points%facing(p)%place%normal, points%facing(p + 1)%place%normal) > smooth
-      if (.not. is_covered) return
+      is_covered = is_covered .and. dot_product(normal(:, p), normal(:, p + 1)) > smooth
     end do
+    if (.not. is_covered) return
     before = facing(row(1))%place%gap
     do p = gauss_points, points%count, gauss_points   ! piece by piece
       associate (gap => points%facing(p - gauss_points + 1:p)%place%gap, s => points%along(p - gauss_points + 1:p))
@@ -314,8 +311,8 @@ contains
   !> Note the weights of a side's nodes in a row; node 0 is none.
   pure subroutine add(self, row, node, weight)
     class(weight_list), intent(inout) :: self
-    integer, intent(in) :: row, node(3)
-    real(wp), intent(in) :: weight(3)
+    integer, intent(in) :: row, node(3)   !! the row; start, end and middle of the side
+    real(wp), intent(in) :: weight(3)   !! of these
     integer :: k
 
     do k = 1, 3
@@ -329,9 +326,9 @@ contains
   !> Note what a node faces at its own place.
   pure subroutine add_own_place(self, row, master, facing, integral)
     class(weight_list), intent(inout) :: self
-    integer, intent(in) :: row
-    type(boxed_line), intent(in) :: master
-    type(facing_type), intent(in) :: facing
+    integer, intent(in) :: row   !! the row
+    type(boxed_line), intent(in) :: master   !! whose side is faced
+    type(facing_type), intent(in) :: facing   !! what it faces
     real(wp), intent(in) :: integral   !! of the node's shape function, as far as this counts for
 
     call self%add(row, master%segment(:, facing%segment), integral*facing%place%share)

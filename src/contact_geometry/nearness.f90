@@ -40,10 +40,10 @@ contains
   !> Give pairs to the nodes that came near; `entered`: there are some, and the scene wants to be solved again. Without
   !! displacements (what moves was held by nothing) all that may be faced, however far, has its pair.
   subroutine enter_nodes_that_came_near(model, displacement, touching, entered)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     real(wp), allocatable, intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     logical, allocatable, intent(in) :: touching(:)           !! [pairs]
-    logical, intent(out) :: entered
+    logical, intent(out) :: entered   !! are there nodes that got pairs?
     type(moved_scene) :: moved
     type(faces_type) :: faces
     integer :: before, c, k

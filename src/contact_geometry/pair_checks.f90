@@ -22,8 +22,8 @@ contains
   !> Warn of pairs that point the wrong way, that do not lie opposite each other, that can neither open nor close, and of
   !! six-node sides with half of them.
   pure subroutine check_pairs(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: c
 
     if (model%pairs == 0) return

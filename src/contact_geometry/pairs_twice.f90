@@ -20,8 +20,8 @@ contains
 
   !> Of pairs given one by one (CGAP) at the place of another of these, and at the place of one of lines.
   pure subroutine refuse_pairs_twice(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     type(incidence) :: around, lines   !! CGAPs at each node; pairs of lines in which a node stands on sides
     integer, dimension(model%single_pairs()) :: cgap, line   ! like each pair; 0: none
     integer :: cgaps, k

@@ -54,7 +54,7 @@ contains
   !> Some of the sides, in the order given; what lies beyond the ends is forgotten, but for the normals.
   pure function pick(self, sides) result(part)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: sides(:)
+    integer, intent(in) :: sides(:)   !! their numbers
     type(boundary_line) :: part
     integer :: k, number(0:size(self%element))
 
@@ -74,8 +74,8 @@ contains
   !> Outward normal of a side itself, at a place from 0 to 1.
   pure function own_normal(self, segment, s) result(normal)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: s
+    integer, intent(in) :: segment   !! which side
+    real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: normal(2), tangent(2)
 
     tangent = matmul(local(self, segment), slopes(self%segment(3, segment) > 0, s))
@@ -85,7 +85,7 @@ contains
   !> Length of a side, from end to end [length].
   pure real(wp) function chord_length(self, segment)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
+    integer, intent(in) :: segment   !! which side
 
     chord_length = norm2(self%x(:, 2, segment) - self%x(:, 1, segment))
   end function chord_length
@@ -104,7 +104,7 @@ contains
   !> Outward normal at a node of a side: 1 its start, 2 its end, 3 its middle; at a corner the side's own.
   pure function outward(self, segment, which) result(normal)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment, which
+    integer, intent(in) :: segment, which   !! side; 1 its start, 2 its end, 3 its middle
     real(wp) :: normal(2)
 
     if (which == 3) then
@@ -117,7 +117,7 @@ contains
   !> Where a point faces a side: the place whose normal leads to it.
   pure function face(self, segment, point) result(place)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
+    integer, intent(in) :: segment   !! which side
     real(wp), intent(in) :: point(2)    !! [length]
     type(facing_place) :: place
     real(wp) :: s
@@ -156,10 +156,10 @@ contains
   !> The place of a side, from 0 to 1, that a point within a distance of it faces.
   pure subroutine foot(self, segment, point, distance, s, found)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: point(2), distance
-    real(wp), intent(out) :: s
-    logical, intent(out) :: found
+    integer, intent(in) :: segment   !! which side
+    real(wp), intent(in) :: point(2), distance   !! [length]
+    real(wp), intent(out) :: s   !! from 0 to 1
+    logical, intent(out) :: found   !! there is one
 
     real(wp) :: share(3), tangent(2), x(2)
 
@@ -179,9 +179,9 @@ contains
   !> Shape functions, place on the smooth curve and tangent at a place of a side.
   pure subroutine at(self, segment, s, share, x, tangent)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: s
-    real(wp), intent(out) :: share(3), x(2), tangent(2)
+    integer, intent(in) :: segment   !! which side
+    real(wp), intent(in) :: s   !! from 0 to 1
+    real(wp), intent(out) :: share(3), x(2), tangent(2)   !! shape functions; [length]; [length]
     logical :: curved
 
     curved = self%segment(3, segment) > 0
@@ -289,7 +289,7 @@ contains
 
   !> Zero of zero: a side without length, which its element is refused for.
   pure function unit(vector)
-    real(wp), intent(in) :: vector(2)
+    real(wp), intent(in) :: vector(2)   !! any length
     real(wp) :: unit(2)
 
     unit = vector/max(norm2(vector), tiny(1.0_wp))

@@ -93,7 +93,7 @@ contains
   !> Square of the distance of a point from the box of a node; 0 in it [length**2].
   pure real(wp) function away(self, node, point)
     class(box_tree), intent(in) :: self
-    integer, intent(in) :: node
+    integer, intent(in) :: node   !! its node
     real(wp), intent(in) :: point(2)   !! [length]
 
     away = sum(max(self%low(:, node) - point, 0.0_wp, point - self%high(:, node))**2)

@@ -27,7 +27,7 @@ contains
 
   !> Normals at the ends of the sides, corners and lines of symmetry. A side's neighbours are known.
   pure subroutine find_normals(line, held, angle)
-    type(boundary_line), intent(inout) :: line
+    type(boundary_line), intent(inout) :: line   !! its sides, whose normals are set
     integer, intent(in) :: held(:, :)     !! the direction in which its start, its end is held: 0 none, 3 both [2, sides]
     real(wp), intent(in) :: angle         !! turns above it are corners, others are not [degree]; 0: decided here
     real(wp) :: turn(2, size(line%element))

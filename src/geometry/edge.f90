@@ -45,7 +45,7 @@ contains
   !> Along an edge at a part of it from 0 to 1, as long as it would be if it were straight on from there [length].
   pure function edge_tangent(x, s) result(along)
     real(wp), intent(in) :: x(:, :)   !! its beginning and end, and its middle node where it has one [length] [2, 2 or 3]
-    real(wp), intent(in) :: s
+    real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: along(2)
 
     along = x(:, 2) - x(:, 1)

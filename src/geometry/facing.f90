@@ -53,8 +53,8 @@ contains
 
   !> A node of a side: 1 its start, 2 its end, 3 its middle.
   pure function node_of(line, side, which) result(from)
-    class(boundary_line), intent(in) :: line
-    integer, intent(in) :: side, which
+    class(boundary_line), intent(in) :: line   !! its sides
+    integer, intent(in) :: side, which   !! side; 1 its start, 2 its end, 3 its middle
     type(looking_point) :: from
 
     from%x = line%x(:, which, side)
@@ -68,9 +68,9 @@ contains
 
   !> The side of a line that a point faces nearest by, not farther than `search`.
   pure function find_nearest(line, obstacles, from, search) result(best)
-    type(boxed_line), intent(in) :: line
+    type(boxed_line), intent(in) :: line   !! that is looked at
     type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
-    type(looking_point), intent(in) :: from
+    type(looking_point), intent(in) :: from   !! who looks
     real(wp), intent(in) :: search              !! [length]
     type(facing_type) :: best
     type(facing_type) :: second
@@ -80,9 +80,9 @@ contains
 
   !> The same, and a second face that is farther by less than the point's own side is long.
   pure subroutine find_facing(line, obstacles, from, search, best, second)
-    type(boxed_line), intent(in) :: line
+    type(boxed_line), intent(in) :: line   !! that is looked at
     type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
-    type(looking_point), intent(in) :: from
+    type(looking_point), intent(in) :: from   !! who looks
     real(wp), intent(in) :: search              !! [length]
     type(facing_type), intent(out) :: best      !! the nearest
     type(facing_type), intent(out) :: second    !! the nearest of those that look another way
@@ -233,8 +233,8 @@ contains
 
   !> How far the curve that a side means may be from it [length].
   pure real(wp) function rise_of(line, side)
-    class(boundary_line), intent(in) :: line
-    integer, intent(in) :: side
+    class(boundary_line), intent(in) :: line   !! its sides
+    integer, intent(in) :: side   !! which side
 
     rise_of = rise*line%chord_length(side)*norm2(line%normal(:, 2, side) - line%normal(:, 1, side))
   end function rise_of

@@ -47,7 +47,7 @@ contains
 
   !> The outlines with the nodes at `x`.
   pure function new_outline_shape(outline, x) result(shape)
-    type(outline_type), intent(in) :: outline
+    type(outline_type), intent(in) :: outline   !! of all bodies
     real(wp), intent(in) :: x(:, :)   !! [length] [2, nodes]
     type(outline_shape) :: shape
     real(wp) :: control(2)
@@ -80,7 +80,7 @@ contains
   !> A place of a side.
   pure function at(self, side, s) result(x)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side
+    integer, intent(in) :: side   !! which side
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: x(2)
 
@@ -93,8 +93,8 @@ contains
   !> Along a side, as long as it would be if it were straight on from there [length].
   pure function tangent(self, side, s) result(along)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s
+    integer, intent(in) :: side   !! which side
+    real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: along(2)
 
     along = edge_tangent(self%x(:, :merge(3, 2, self%outline%node(3, side) > 0), side), s)
@@ -103,7 +103,7 @@ contains
   !> From where a side begins to where it ends [length].
   pure function chord(self, side)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side
+    integer, intent(in) :: side   !! which side
     real(wp) :: chord(2)
 
     chord = self%x(:, 2, side) - self%x(:, 1, side)
@@ -112,9 +112,9 @@ contains
   !> The place of a part that is nearest to a point: branch and bound in its tree. `guess` is a side that may be near.
   pure function nearest_place(self, part, point, guess) result(best)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: part
+    integer, intent(in) :: part   !! which part
     real(wp), intent(in) :: point(2)   !! [length]
-    integer, intent(in), optional :: guess
+    integer, intent(in), optional :: guess   !! a side that may be near
     type(near_place) :: best
     type(near_place) :: place
     real(wp) :: away(2), bound(most_waiting)
@@ -159,7 +159,7 @@ contains
   !> The place of a side that is nearest to a point; whether the point is inside is not looked at.
   pure function near_side(self, side, point) result(place)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side
+    integer, intent(in) :: side   !! which side
     real(wp), intent(in) :: point(2)   !! [length]
     type(near_place) :: place
     real(wp) :: along(2)
@@ -180,7 +180,7 @@ contains
   !> Is a point in the body, as seen from the place of the outline that is nearest to it? At a node both sides say so.
   pure logical function is_inside(self, place, point)
     class(outline_shape), intent(in) :: self
-    type(near_place), intent(in) :: place
+    type(near_place), intent(in) :: place   !! of the outline, nearest to the point
     real(wp), intent(in) :: point(2)   !! [length]
     real(wp) :: outward(2)
 

@@ -20,8 +20,8 @@ contains
 
   !> From kind, nodes and section of each element. Node 0 is one that could not be found, and section 0 one of these.
   pure subroutine complete_elements(model, found)
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: e
 
     model%order = model%kinds(model%kind)%nodes
@@ -95,13 +95,10 @@ contains
     integer :: k, n
 
     n = model%corners(e)
-    associate (id => model%node_id(model%connectivity(:n, e)))
-      ids = text_of(id(1))
-      do k = 2, n - 1
-        ids = ids//', '//text_of(id(k))
-      end do
-      ids = ids//' and '//text_of(id(n))
-    end associate
+    ids = text_of(model%node_id(model%connectivity(1, e)))
+    do k = 2, n
+      ids = ids//trim(merge(' and', ',   ', k == n))//' '//text_of(model%node_id(model%connectivity(k, e)))
+    end do
   end function corner_ids
 
   !> The same nodes the other way round.
@@ -159,8 +156,8 @@ contains
 
   !> Rings lie at x >= 0, and their nodes on the axis cannot leave it. Supports and ties are known.
   pure subroutine check_axis(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     logical :: in_ring(model%nodes), loose(model%nodes)
     integer :: e, i
 
@@ -183,8 +180,8 @@ contains
 
   !> Two elements on the same corners are as stiff as both: meant for laminae, and else a mesh read twice.
   pure subroutine warn_of_elements_twice(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: count, e, first
 
     count = 0

@@ -44,7 +44,7 @@ contains
     integer, intent(in) :: which            !! of these
     integer, intent(in) :: item             !! of its data
     character(len=*), intent(in) :: what    !! behind its name
-    character(len=*), intent(in) :: remedy
+    character(len=*), intent(in) :: remedy   !! what would be right
 
     self%errors = self%errors + 1
     call add(self, finding(found_error, of, which, item, what, remedy))

@@ -34,7 +34,7 @@ contains
 
   !> What elements are made of; of thickness 1, and nothing yields: that may be changed.
   pure subroutine set_sections(model, young, poisson, kinematics)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     real(wp), intent(in) :: young(:)          !! [stress] [sections]
     real(wp), intent(in) :: poisson(:)        !! [sections]
     integer, intent(in) :: kinematics(:)      !! plane_strain, plane_stress or axisymmetric [sections]
@@ -52,7 +52,7 @@ contains
 
   !> Elements of one kind, behind those that the model has; their ids go on.
   pure subroutine add_elements(model, name, node, section)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     character(len=*), intent(in) :: name       !! of their card: CTRIA3, CTRIA6, CQUAD4, CTRAX3, CTRAX6
     integer, intent(in) :: node(:, :)          !! corners in either turning sense, then middles of sides [nodes, elements]
     integer, intent(in) :: section(:)          !! of each [elements]
@@ -73,7 +73,7 @@ contains
 
   !> Pairs of nodes that may touch, numbered from 1 on.
   pure subroutine set_pairs(model, node, normal, gap)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     integer, intent(in) :: node(:, :)         !! A and B [2, pairs]
     real(wp), intent(in) :: normal(:, :)      !! unit, along which B is pushed; zero: from A to B [2, pairs]
     real(wp), intent(in) :: gap(:)            !! initial [length] [pairs]
@@ -88,8 +88,8 @@ contains
 
   !> Sizes, sections, numbers of nodes, sections and lines. What a deck's reader has looked at by itself is not looked at again.
   pure subroutine check_given(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: i, s
 
     call check_sizes(model, found)

@@ -113,7 +113,7 @@ contains
   !> Coordinates of the nodes of an element [length] [2, order].
   pure function coordinates(self, element) result(x)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
+    integer, intent(in) :: element   !! which element
     real(wp) :: x(2, self%order(element))
 
     x = self%x(:, self%connectivity(:self%order(element), element))
@@ -122,7 +122,7 @@ contains
   !> Corners, and sides, of an element.
   pure integer function corners(self, element)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
+    integer, intent(in) :: element   !! which element
 
     corners = self%kinds(self%kind(element))%corners
   end function corners
@@ -130,7 +130,7 @@ contains
   !> Nodes of a side of an element: where it begins and ends, counter-clockwise, and its middle, 0 where it has none.
   pure function edge(self, element, side)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element, side
+    integer, intent(in) :: element, side   !! which element, which side of it
     integer :: edge(3)
 
     associate (node => self%connectivity(:, element), n => self%corners(element))
@@ -142,7 +142,7 @@ contains
   !> The side of an element that ends at two corners, in either order; 0: it has none.
   pure integer function side_between(self, element, a, b) result(side)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
+    integer, intent(in) :: element   !! which element
     integer, intent(in) :: a, b      !! the corners
     integer :: ends(3)
 
@@ -155,7 +155,7 @@ contains
   !> Coordinates of the nodes of a side [length] [2, 2 or 3].
   pure function edge_coordinates(self, edge) result(x)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: edge(3)
+    integer, intent(in) :: edge(3)   !! nodes of the side, see `edge`
     real(wp) :: x(2, merge(3, 2, edge(3) > 0))
 
     x = self%x(:, edge(:size(x, 2)))
@@ -164,7 +164,7 @@ contains
   !> What belongs to a length in the plane at a radius: the thickness of an element, or the way round its ring [length].
   pure real(wp) function depth(self, element, radius)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
+    integer, intent(in) :: element   !! which element
     real(wp), intent(in) :: radius   !! x [length]
 
     associate (section => self%section(element))
@@ -183,7 +183,7 @@ contains
   !> Does RBE2 say where one of these nodes goes?
   pure logical function is_tied(self, node)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: node(:)
+    integer, intent(in) :: node(:)   !! these nodes [any]
 
     is_tied = any(self%leader(1, node) /= node) .or. any(self%leader(2, node) /= node)
   end function is_tied
@@ -191,7 +191,7 @@ contains
   !> Do supports and RBE2 keep the shape between these nodes? In each direction they are all held, or all tied to one.
   pure logical function is_rigid(self, node)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: node(:)
+    integer, intent(in) :: node(:)   !! these nodes [any]
     integer :: c
 
     is_rigid = .true.
@@ -205,7 +205,7 @@ contains
   !> Can an element yield?
   elemental function can_yield(self, element)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
+    integer, intent(in) :: element   !! which element
     logical :: can_yield
 
     can_yield = allocated(self%curve(self%section(element))%strain)
@@ -228,7 +228,7 @@ contains
   !> How far displacements open the gap of a pair.
   pure function opening(self, pair, displacement)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: pair
+    integer, intent(in) :: pair   !! which pair
     real(wp), intent(in) :: displacement(:, :)  !! of the nodes of its row [2, entries of the row]
     real(wp) :: opening, apart(2)
     integer :: k

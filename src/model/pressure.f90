@@ -13,7 +13,7 @@ contains
   !> Add the nodal forces of a pressure that varies linearly along a side, from one node to the other: positive into the
   !! element, turned counter-clockwise by theta.
   pure subroutine add_pressure(model, element, side, from, pressure, theta)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     integer, intent(in) :: element, side   !! the side, by its number in the element
     integer, intent(in) :: from            !! the node of the first pressure
     real(wp), intent(in) :: pressure(2)    !! at the two nodes [stress]
@@ -37,7 +37,7 @@ contains
 
   !> The element on the other side of an element's side; 0: it is of the boundary.
   pure integer function element_behind(model, element, side) result(other)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: element, side   !! the side, by its number in the element
     integer :: ends(3), i, k, there(3)
 

@@ -15,9 +15,9 @@ contains
 
   !> From nodes, normals and gaps of each pair. Node 0 is one that could not be found; a normal of zero is one from A to B.
   pure subroutine complete_pairs(model, by_geometry, found)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     logical, intent(in) :: by_geometry       !! how far the nodes are apart along the normal counts in the gap
-    type(findings), intent(inout) :: found
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     real(wp), allocatable :: edge(:)         ! the shortest at each node, found when a pair first needs it
     real(wp) :: between(2)
     integer :: i

@@ -12,11 +12,11 @@ contains
 
   !> Have a freedom follow that of another node, if that can be.
   pure subroutine tie(model, c, node, leader, card, found)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     integer, intent(in) :: c, node             !! direction and node of the freedom
     integer, intent(in) :: leader              !! the node that it follows
     integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
-    type(findings), intent(inout) :: found
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
     character(len=:), allocatable :: remedy, why
     integer :: at
 
@@ -56,10 +56,10 @@ contains
 
   !> Make a freedom one of reference: it must be free to move.
   pure subroutine set_reference(model, c, node, card, found)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     integer, intent(in) :: c, node             !! direction and node of the freedom
     integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
-    type(findings), intent(inout) :: found
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
 
     if (model%held(c, model%leader(c, node)) .or. model%leader(c, node) /= node) &
       call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)// &
@@ -77,15 +77,15 @@ contains
 
   !> Bodies: nodes joined by elements or ties.
   pure subroutine find_bodies(model)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
 
     call join_nodes(model, .true., model%body, model%bodies)
   end subroutine find_bodies
 
   !> Sets of nodes that elements join, and ties if these are to count.
   pure subroutine join_nodes(model, by_ties, set, sets)
-    type(model_type), intent(in) :: model
-    logical, intent(in) :: by_ties
+    type(model_type), intent(in) :: model   !! the scene
+    logical, intent(in) :: by_ties   !! RBE2 joins too
     integer, allocatable, intent(out) :: set(:)   !! number of each node's [nodes]
     integer, intent(out) :: sets                  !! how many there are
     type(partition) :: joined

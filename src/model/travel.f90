@@ -18,7 +18,7 @@ contains
 
   !> Set the travel of each node, and what supports prescribe beyond it.
   pure subroutine find_travels(model)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     logical :: moved(model%bodies)
     integer :: b, i
 
