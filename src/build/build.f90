@@ -10,14 +10,14 @@ module epcont_build_build
   use epcont_build_reference, only: card_index, check_unique, index_of
   use epcont_build_supports, only: build_references, build_supports, build_ties
   use epcont_contact_geometry_complete, only: check_controls, find_contacts, finish_model
-  use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_grid, card_param, card_rbe2, card_spc, &
-                                    card_spc1
+  use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_grid, card_param, card_rbe2, &
+                                    card_spc, card_spc1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_entry, only: least_cause
   use epcont_model_element_shapes, only: check_axis
-  use epcont_model_finding, only: finding, findings, found_error, found_warning, of_couple, of_element, of_line, of_node, &
-                                  of_pair, of_paper_ratio, of_scene
+  use epcont_model_finding, only: finding, findings, found_error, found_warning, of_couple, of_element, &
+                                  of_line, of_node, of_pair, of_paper_ratio, of_scene
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -25,7 +25,8 @@ module epcont_build_build
 
 contains
 
-  !> Build the scene; whatever is wrong with it is added to `faults`, and the model serves only without errors.
+  !> Build the scene; whatever is wrong with it is added to `faults`, and the model serves only without
+  !! errors.
   subroutine build_model(deck, model, faults)
     type(deck_type), intent(in) :: deck   !! its cards
     type(model_type), intent(out) :: model   !! the scene
@@ -61,7 +62,8 @@ contains
     call check_axis(model, found)
     call build_references(deck, nodes, model, found)
     call build_loads(deck, nodes, model, found)
-    ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load the scene.
+    ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load
+    ! the scene.
     where (abs(model%x) < least_cause) model%x = 0.0_wp
     call build_pairs(deck, nodes, model, found)
     call build_lines(deck, nodes, model, found)
@@ -81,7 +83,8 @@ contains
 
     what = found%what
     remedy = found%remedy
-    if (allocated(found%node)) remedy = remedy//': '//holding_cards(deck, nint(deck%card(card_grid)%value(1, found%node)))
+    if (allocated(found%node)) remedy = remedy//': '// &
+                                        holding_cards(deck, nint(deck%card(card_grid)%value(1, found%node)))
     card = card_of(deck, found)
     if (found%of /= of_scene) then
       place = place_of(deck, card)

@@ -28,7 +28,8 @@ contains
     controls%paper_ratio = deck%parameter_word('MUP', 'EXACT') == 'PAPER'
   end function read_controls
 
-  !> The number of the word that a PARAM says among the names of its choices; `default` where it says none of these.
+  !> The number of the word that a PARAM says among the names of its choices; `default` where it says none of
+  !! these.
   pure integer function choice(deck, parameter, names, default, first)
     type(deck_type), intent(in) :: deck
     character(len=*), intent(in) :: parameter, names(:)

@@ -19,7 +19,8 @@ module epcont_build_contacts
 
 contains
 
-  !> CGAP. A pair whose system cannot be found has any normal, and one without a system none, until its nodes give it.
+  !> CGAP. A pair whose system cannot be found has any normal, and one without a system none, until its nodes
+  !! give it.
   pure subroutine build_pairs(deck, nodes, model, found)
     type(deck_type), intent(in) :: deck   !! its cards
     type(card_index), intent(in) :: nodes   !! ids of GRID
@@ -76,7 +77,8 @@ contains
           call found%add_error(card_cord2r, i, 1, ': points A, B and C lie on one line: no x-axis', &
                                'three points that span a plane')
         else if (abs(x(3)) > flat*norm2(x)) then
-          call found%add_error(card_cord2r, i, 1, ': its x-axis points off the x-y plane', 'point C in the plane, B - A along z')
+          call found%add_error(card_cord2r, i, 1, ': its x-axis points off the x-y plane', &
+                               'point C in the plane, B - A along z')
         else
           axis(:, i) = x(:2)/norm2(x(:2))
         end if

@@ -47,10 +47,13 @@ contains
         if (node(i) == 0 .or. nint(force%value(1, i)) /= set) cycle
         direction = force%value(n3 - 2:n3 - 1, i)
         if (force%value(n3, i) /= 0.0_wp) &
-          call found%add_error(card_force, i, n3, ': field 8 (N3) points off the plane', '0.0: scenes lie in the x-y plane')
+          call found%add_error(card_force, i, n3, ': field 8 (N3) points off the plane', &
+                               '0.0: scenes lie in the x-y plane')
         if (out_of_reach(force%value(f, i), direction)) &
-          call found%add_error(card_force, i, f, ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
-                               'other units: forces from '//short_real(least_cause)//' to '//short_real(farthest)//', or 0.0')
+          call found%add_error(card_force, i, f, &
+                               ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
+                               'other units: forces from '//short_real(least_cause)//' to '// &
+                               short_real(farthest)//', or 0.0')
         model%load(:, node(i)) = model%load(:, node(i)) + force%value(f, i)*along_axes(direction)
       end do
     end associate
@@ -63,7 +66,8 @@ contains
     real(wp) :: largest
 
     largest = abs(factor)*maxval(abs(direction))
-    out_of_reach = factor /= 0.0_wp .and. any(direction /= 0.0_wp) .and. (largest < least_cause .or. largest > farthest)
+    out_of_reach = factor /= 0.0_wp .and. any(direction /= 0.0_wp) .and. &
+                   (largest < least_cause .or. largest > farthest)
   end function out_of_reach
 
   !> A direction without what rounding has left of a right angle, such as the cosine of 90 degrees.
@@ -99,9 +103,11 @@ contains
         side = model%side_between(element(i), a(i), b(i))
         if (side == 0) then
           call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &
-                               model%name_of(of_element, element(i)), 'two neighbouring corners of the element')
+                               model%name_of(of_element, element(i)), &
+                               'two neighbouring corners of the element')
         else if (model%section(element(i)) > 0) then
-          call add_pressure(model, element(i), side, a(i), pressure%value(3:4, i), pressure%value(pressure%column('THETA'), i))
+          call add_pressure(model, element(i), side, a(i), pressure%value(3:4, i), &
+                            pressure%value(pressure%column('THETA'), i))
           behind(i) = element_behind(model, element(i), side)
         end if
       end do
@@ -109,7 +115,9 @@ contains
     if (all(behind == 0)) return
     first = findloc(behind > 0, .true., dim=1)
     call found%add_warning(card_ploadx1, first, ga, ': presses inside a body, between '// &
-                           model%name_of(of_element, element(first))//' and '//model%name_of(of_element, behind(first))// &
-                           and_more(count(behind > 0), '; so do ', ' more'), 'a side that one element alone has')
+                           model%name_of(of_element, element(first))//' and '// &
+                           model%name_of(of_element, behind(first))// &
+                           and_more(count(behind > 0), '; so do ', ' more'), &
+                           'a side that one element alone has')
   end subroutine add_pressures
 end module epcont_build_loads

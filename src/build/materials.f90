@@ -98,12 +98,14 @@ contains
         if (card%given(limit, i)) then
           material%curve = bilinear_curve(material%young, card%value(limit, i), card%value(h, i))
         else
-          call found%add_error(card_mats1, i, limit, ': neither a table nor a yield stress', 'TID, or LIMIT1 and H')
+          call found%add_error(card_mats1, i, limit, ': neither a table nor a yield stress', &
+                               'TID, or LIMIT1 and H')
         end if
         return
       end if
       if (card%given(h, i)) &
-        call found%add_error(card_mats1, i, h, ': field 5 (H) is given beside a table', 'a blank H, or a blank TID')
+        call found%add_error(card_mats1, i, h, ': field 5 (H) is given beside a table', &
+                             'a blank H, or a blank TID')
       if (.not. card%given(limit, i) .and. card%word(card%column('TYPE'), i) == 'PLASTIC') &
         call found%add_error(card_mats1, i, limit, ': field 8 (LIMIT1) is blank', &
                              'the yield stress: the second stress of the table')
@@ -112,8 +114,8 @@ contains
     if (deck%card(card_tables1)%sound(table)) call read_table(deck, i, table, material, found)
   end subroutine read_yielding
 
-  !> TABLES1. Its yield stress is kept and its yield strain replaced by that over E, so that the elastic part is
-  !! MAT1's.
+  !> TABLES1. Its yield stress is kept and its yield strain replaced by that over E, so that the elastic part
+  !! is MAT1's.
   pure subroutine read_table(deck, i, table, material, found)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: i, table           !! the MATS1, the TABLES1
@@ -127,13 +129,16 @@ contains
         associate (strain => tables1%list(first:last)%point(1), stress => tables1%list(first:last)%point(2))
           call check_curve(strain, stress, material%young, wrong, what, remedy)
           if (wrong > 0) then
-            call found%add_error(card_tables1, table, merge(-(first + wrong - 1), 0, wrong <= size(strain)), ': '//what, remedy)
+            call found%add_error(card_tables1, table, merge(-(first + wrong - 1), 0, wrong <= size(strain)), &
+                                 ': '//what, remedy)
             return
           end if
           limit = mats1%column('LIMIT1')
           if (mats1%given(limit, i) .and. abs(mats1%value(limit, i) - stress(2)) > same_stress*stress(2)) &
-            call found%add_error(card_mats1, i, limit, ': field 8 (LIMIT1) is '//short_real(mats1%value(limit, i))// &
-                                 ', the second stress of '//deck%identity(card_tables1, table)//' '//short_real(stress(2)), &
+            call found%add_error(card_mats1, i, limit, ': field 8 (LIMIT1) is '// &
+                                 short_real(mats1%value(limit, i))// &
+                                 ', the second stress of '//deck%identity(card_tables1, table)//' '// &
+                                 short_real(stress(2)), &
                                  'the same stress in both')
           material%curve%strain = [0.0_wp, stress(2)/material%young, strain(3:)]
           material%curve%stress = stress

@@ -4,8 +4,8 @@ module epcont_build_mesh
   use epcont_base_text, only: short_real
   use epcont_build_materials, only: material_card, read_materials
   use epcont_build_reference, only: card_index, check_unique, index_of, resolve
-  use epcont_deck_card_kinds, only: card_cquad4, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_grid, card_mat1, &
-                                    card_param, card_pshell, card_psolid
+  use epcont_deck_card_kinds, only: card_cquad4, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, &
+                                    card_grid, card_mat1, card_param, card_pshell, card_psolid
   use epcont_deck_deck, only: deck_type
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
   use epcont_model_element_shapes, only: complete_elements
@@ -17,7 +17,8 @@ module epcont_build_mesh
   public :: build_nodes, build_sections, build_elements
 
   !> The cards of elements, in the order in which they are read.
-  integer, parameter, public :: element_cards(5) = [card_ctria3, card_ctria6, card_cquad4, card_ctrax3, card_ctrax6]
+  integer, parameter, public :: element_cards(5) = [card_ctria3, card_ctria6, card_cquad4, card_ctrax3, &
+                                                    card_ctrax6]
   logical, parameter :: is_ring(5) = [.false., .false., .false., .true., .true.]
 
 contains
@@ -36,7 +37,8 @@ contains
       z = grid%column('X3')
       do i = 1, grid%count
         if (grid%value(z, i) /= 0.0_wp) &
-          call found%add_error(card_grid, i, z, ': field 6 (X3) is '//short_real(grid%value(z, i))//', off the plane', &
+          call found%add_error(card_grid, i, z, ': field 6 (X3) is '//short_real(grid%value(z, i))// &
+                               ', off the plane', &
                                '0.0: scenes lie in the x-y plane')
       end do
     end associate
@@ -89,7 +91,8 @@ contains
       if (.not. shell%sound(i)) return
       mid2 = shell%column('MID2')
       if (shell%given(mid2, i) .and. kinematics == plane_stress) then
-        call found%add_error(card_pshell, i, mid2, ': field 5 (MID2) says plane strain, PARAM PLANE says STRESS', &
+        call found%add_error(card_pshell, i, mid2, &
+                             ': field 5 (MID2) says plane strain, PARAM PLANE says STRESS', &
                              'one of the two only')
       else if (.not. shell%given(mid2, i) .and. plane == 0) then
         call found%add_error(card_pshell, i, mid2, ': neither plane strain nor plane stress is chosen', &
@@ -109,8 +112,10 @@ contains
 
     do c = 1, size(element_cards)
       associate (card => deck%card(element_cards(c)))
-        allocate (node(size(card%entry%field) - 2, card%count), section(card%count))   ! without id and section
-        call resolve(deck, element_cards(c), 2, index_of(deck, merge(card_psolid, card_pshell, is_ring(c))), found, section)
+        ! Without id and section
+        allocate (node(size(card%entry%field) - 2, card%count), section(card%count))
+        call resolve(deck, element_cards(c), 2, index_of(deck, merge(card_psolid, card_pshell, is_ring(c))), &
+                     found, section)
         if (is_ring(c)) where (section > 0) section = section + deck%card(card_pshell)%count
         do k = 1, size(node, 1)
           call resolve(deck, element_cards(c), 2 + k, nodes, found, node(k, :))

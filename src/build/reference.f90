@@ -1,4 +1,5 @@
-!> Ids of cards: unique in their space, found where other cards name them; and which set of supports or loads is used.
+!> Ids of cards: unique in their space, found where other cards name them; and which set of supports or loads
+!> is used.
 module epcont_build_reference
   use epcont_base_sorting, only: id_index, new_id_index, sorted_order
   use epcont_base_text, only: text_of
@@ -46,13 +47,14 @@ contains
       earlier = order(k - 1)
       if (id(i) /= id(earlier)) cycle
       if (deck%card(table(i))%given(1, row(i))) &
-        call found%add_error(table(i), row(i), 1, ': the id is taken by '//deck%identity(table(earlier), row(earlier)), &
+        call found%add_error(table(i), row(i), 1, ': the id is taken by '// &
+                             deck%identity(table(earlier), row(earlier)), &
                              'an id of its own')
     end do
   end subroutine check_unique
 
-  !> Positions of what a field of each card names; 0 where there is no such thing, or where nothing is named. The former is a fault,
-  !! but for the id 0, the basic system.
+  !> Positions of what a field of each card names; 0 where there is no such thing, or where nothing is named.
+  !! The former is a fault, but for the id 0, the basic system.
   pure subroutine resolve(deck, card, column, index, found, position)
     type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: card               !! which table
@@ -78,7 +80,8 @@ contains
     end associate
   end subroutine resolve
 
-  !> Positions of the nodes that an item of a card's list names: one, or some of a range; it is a fault if there are none.
+  !> Positions of the nodes that an item of a card's list names: one, or some of a range; it is a fault if
+  !! there are none.
   pure subroutine resolve_list(deck, card, i, item, nodes, found, position)
     type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: card, i                      !! which table, which card of it
@@ -118,7 +121,8 @@ contains
         used = used .or. id == set
         if (id == set) cycle
         if (choice == 0) then
-          call found%add_error(cards(c), i, 1, ': the deck has several sets, '//text_of(set)//' and '//text_of(id)// &
+          call found%add_error(cards(c), i, 1, ': the deck has several sets, '//text_of(set)//' and '// &
+                               text_of(id)// &
                                ', and chooses none', word//' = '//text_of(set)//' before BEGIN BULK')
           return
         end if
@@ -126,7 +130,8 @@ contains
       end do
     end do
     if (choice > 0 .and. .not. used) &
-      call found%add_error(of_scene, cards(1), 0, word//' = '//text_of(choice)//': the deck has no such set', &
+      call found%add_error(of_scene, cards(1), 0, word//' = '//text_of(choice)// &
+                           ': the deck has no such set', &
                            'the set of the cards in the deck')
   end subroutine chosen_set
 end module epcont_build_reference

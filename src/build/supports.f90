@@ -49,7 +49,8 @@ contains
     end associate
   end subroutine build_supports
 
-  !> Hold the freedoms of a node that `digits` names; of freedoms that are held at another displacement already one is told.
+  !> Hold the freedoms of a node that `digits` names; of freedoms that are held at another displacement
+  !! already one is told.
   pure subroutine hold(model, node, digits, displacement, card, found)
     type(model_type), intent(inout) :: model
     integer, intent(in) :: node, digits
@@ -66,7 +67,8 @@ contains
       model%prescribed(c, node) = displacement
     end do
     if (conflict > 0) &
-      call found%add_error(card(1), card(2), card(3), ': direction '//text_of(conflict)//' of '//model%name_of(of_node, node)// &
+      call found%add_error(card(1), card(2), card(3), ': direction '//text_of(conflict)//' of '// &
+                           model%name_of(of_node, node)// &
                            ' is held at another displacement already', 'one displacement for each freedom')
   end subroutine hold
 

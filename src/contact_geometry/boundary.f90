@@ -26,7 +26,8 @@ contains
           if (line%segment(k, i) > 0) line%x(:, k, i) = model%x(:, line%segment(k, i))
         end do
       end do
-      call find_normals(line, reshape([(held_directions(model, line%segment(:2, i)), i=1, outline%sides)], [2, outline%sides]), &
+      call find_normals(line, reshape([(held_directions(model, line%segment(:2, i)), i=1, outline%sides)], &
+                                      [2, outline%sides]), &
                         model%controls%corner)
     end associate
   end function find_boundary

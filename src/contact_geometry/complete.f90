@@ -1,9 +1,11 @@
-!> The scene made complete: from what is given of it, by a deck or by arrays, to a model that is checked and can be solved.
+!> The scene made complete: from what is given of it, by a deck or by arrays, to a model that is checked and
+!> can be solved.
 !>
-!> From arrays: `new_scene` of the nodes, `set_sections`, `add_elements`, `set_pairs` (epcont_model_given); in the components of the
-!> model, where there are any, supports (held, prescribed), ties (leader), reference freedoms, loads, curves, lines of nodes (line)
-!> and which of these may touch (couple), and what a deck says by PARAM (controls). Nodes are known by their columns.
-!> `complete_model` checks it all and finds the rest. Pressures come last (add_pressure).
+!> From arrays: `new_scene` of the nodes, `set_sections`, `add_elements`, `set_pairs` (epcont_model_given); in
+!> the components of the model, where there are any, supports (held, prescribed), ties (leader), reference
+!> freedoms, loads, curves, lines of nodes (line) and which of these may touch (couple), and what a deck says
+!> by PARAM (controls). Nodes are known by their columns. `complete_model` checks it all and finds the rest.
+!> Pressures come last (add_pressure).
 module epcont_contact_geometry_complete
   use epcont_base_error, only: error_type, raise, status_deck
   use epcont_contact_geometry_free_sides, only: find_outline
@@ -31,7 +33,8 @@ contains
   subroutine complete_model(model, found, error)
     type(model_type), intent(inout) :: model   !! what is given; read-only from then on
     type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
-    type(error_type), allocatable, intent(out) :: error   !! the first thing that is wrong: the model does not serve
+    !> The first thing that is wrong: the model does not serve
+    type(error_type), allocatable, intent(out) :: error
     integer :: i
 
     call check_given(model, found)
@@ -125,7 +128,8 @@ contains
                            'METHOD SECANT, MODSEC or INISTR, or MUP EXACT')
     do s = 1, size(model%curve)
       if (model%kinematics(s) == plane_strain .or. .not. allocated(model%curve(s)%strain)) cycle
-      call found%add_error(of_paper_ratio, 0, 2, ': PAPER is for plane strain, and '//model%name_of(of_section, s)// &
+      call found%add_error(of_paper_ratio, 0, 2, ': PAPER is for plane strain, and '// &
+                           model%name_of(of_section, s)// &
                            ' is not', 'MUP EXACT')
       return
     end do

@@ -1,5 +1,5 @@
-!> What the nodes of lines in contact face, by geometry alone: each node of the slave's sides against the master, and in concave
-!> corners a second face of it.
+!> What the nodes of lines in contact face, by geometry alone: each node of the slave's sides against the
+!> master, and in concave corners a second face of it.
 module epcont_contact_geometry_faces
   use epcont_geometry_boxed_line, only: boxed_line
   use epcont_geometry_facing, only: facing_type, find_facing, node_of, same_face
@@ -22,11 +22,14 @@ module epcont_contact_geometry_faces
   !> What nodes face.
   type :: faces_type
     type(face_list) :: slave                       !! nodes of the slave, each of them a row
-    integer, allocatable :: row_of(:, :)           !! of the nodes of each side; 0: they face nothing [3, sides]
-    integer :: same_way = 0                        !! nodes of the slave near sides that look the same way only
+    !> Of the nodes of each side; 0: they face nothing [3, sides]
+    integer, allocatable :: row_of(:, :)
+    !> Nodes of the slave near sides that look the same way only
+    integer :: same_way = 0
     integer :: left = 0                            !! nodes of sides that face nothing
     integer, allocatable :: left_out(:, :)         !! these: which side, which node of it [2, left or more]
-    type(face_list) :: master                      !! nodes of the master, and where they stand on sides of the slave
+    !> Nodes of the master, and where they stand on sides of the slave
+    type(face_list) :: master
   end type faces_type
 
   integer, parameter :: first_room = 16   !! entries that a list holds before it first grows
@@ -73,8 +76,8 @@ contains
     has_face = .false.
   end function has_face
 
-  !> What the nodes of the slave face of the master, in their order along its sides; then second faces, but where the node has one
-  !! like them: its other side faces the same.
+  !> What the nodes of the slave face of the master, in their order along its sides; then second faces, but
+  !! where the node has one like them: its other side faces the same.
   pure subroutine find_faces(contact, obstacles, faces)
     type(line_contact), intent(in) :: contact   !! the contact of lines
     type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
@@ -87,7 +90,8 @@ contains
       allocate (faces%row_of(3, size(slave%element)), faces%left_out(2, 3*size(slave%element)), source=0)
       do s = 1, size(slave%element)
         do k = 1, 3
-          if (slave%segment(in_turn(k), s) > 0) call look_from_node(contact, obstacles, s, in_turn(k), faces, seconds)
+          if (slave%segment(in_turn(k), s) > 0) &
+            call look_from_node(contact, obstacles, s, in_turn(k), faces, seconds)
         end do
       end do
     end associate
@@ -114,7 +118,8 @@ contains
       if (neighbour > 0) beside = faces%row_of(3 - which, neighbour)
       row = beside
       if (beside > 0) then   ! where boundary and face are smooth, as looked at from there
-        if (any(slave%normal(:, which, side) /= slave%normal(:, 3 - which, neighbour)) .or. seconds%has_node(node)) row = 0
+        if (any(slave%normal(:, which, side) /= slave%normal(:, 3 - which, neighbour)) .or. &
+            seconds%has_node(node)) row = 0
       end if
       if (row == 0) then
         call find_facing(contact%master, obstacles, node_of(slave, side, which), contact%search, face, second)
@@ -126,7 +131,8 @@ contains
           return
         end if
         ! Sides that meet in a hinge are not neighbours.
-        if (which < 3 .and. neighbour == 0 .and. faces%slave%has_node(node)) beside = findloc(faces%slave%node, node, dim=1)
+        if (which < 3 .and. neighbour == 0 .and. faces%slave%has_node(node)) &
+          beside = findloc(faces%slave%node, node, dim=1)
         row = row_like(faces%slave, beside, face)
         if (row == 0) then
           call faces%slave%append(node, face)

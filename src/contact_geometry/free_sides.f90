@@ -31,7 +31,8 @@ contains
     call find_free_sides(model, found)
     call find_parts(model, outline)
     before = [(found%number(found%from(1, k), found%from(2, k)), k=1, found%count)]
-    ! Only where elements lie on each other, and share a side the same way round, is there none: it begins anew.
+    ! Only where elements lie on each other, and share a side the same way round, is there none: it begins
+    ! anew.
     after = [(k, k=1, found%count)]
     where (before == 0) before = after
     do k = 1, found%count
@@ -48,8 +49,8 @@ contains
     outline%after = place(after(order))
   end function find_outline
 
-  !> All sides that one element alone has. Around a node the elements' sides to the next and from the former corner are
-  !! compared: a side is shared where it is met both ways.
+  !> All sides that one element alone has. Around a node the elements' sides to the next and from the former
+  !! corner are compared: a side is shared where it is met both ways.
   pure subroutine find_free_sides(model, found)
     type(model_type), intent(in) :: model
     type(found_type), intent(out) :: found
@@ -98,7 +99,8 @@ contains
     end do
   end function place_of
 
-  !> From the element whose side to the next corner is free, round the node to the one whose side from the former is.
+  !> From the element whose side to the next corner is free, round the node to the one whose side from the
+  !! former is.
   pure integer function fan_end(from, to, first) result(last)
     integer, intent(in) :: from(:), to(:)
     integer, intent(in) :: first

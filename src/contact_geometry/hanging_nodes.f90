@@ -1,5 +1,6 @@
-!> Nodes that lie on a side of an element of their own body and are no nodes of it, though elements share the side's ends: meshes of
-!> unlike fineness, or six-node elements beside others, put together. Nothing keeps such a node on that side.
+!> Nodes that lie on a side of an element of their own body and are no nodes of it, though elements share the
+!> side's ends: meshes of unlike fineness, or six-node elements beside others, put together. Nothing keeps
+!> such a node on that side.
 module epcont_contact_geometry_hanging_nodes
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -19,7 +20,8 @@ contains
   pure subroutine warn_of_hanging_nodes(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer :: edge(3, model%nodes)      ! where each node hangs: the ends of the side and its element; 0: nowhere
+    ! Where each node hangs: the ends of the side and its element; 0: nowhere
+    integer :: edge(3, model%nodes)
     integer :: first
 
     edge = 0
@@ -27,14 +29,17 @@ contains
     call find_chains(model, edge)
     if (all(edge(3, :) == 0)) return
     first = findloc(edge(3, :) > 0, .true., dim=1)
-    call found%add_warning(of_node, first, 1, ': lies on side '//model%name_of(of_node, edge(1, first))//' to '// &
-                           text_of(model%node_id(edge(2, first)))//' of '//model%name_of(of_element, edge(3, first))// &
+    call found%add_warning(of_node, first, 1, ': lies on side '//model%name_of(of_node, edge(1, first))// &
+                           ' to '// &
+                           text_of(model%node_id(edge(2, first)))//' of '// &
+                           model%name_of(of_element, edge(3, first))// &
                            ' and is no node of it: the body may open there'// &
                            and_more(count(edge(3, :) > 0), '; so do ', ' more nodes'), &
                            'elements that share all nodes of their common sides')
   end subroutine warn_of_hanging_nodes
 
-  !> Middles of sides that an element with another middle, or none, has too. A middle of two elements hangs nowhere.
+  !> Middles of sides that an element with another middle, or none, has too. A middle of two elements hangs
+  !! nowhere.
   pure subroutine find_middles(model, edge)
     type(model_type), intent(in) :: model
     integer, intent(inout) :: edge(:, :)
@@ -121,7 +126,8 @@ contains
       do while (outline%node(2, last) /= outline%node(1, side))
         associate (node => outline%node(2, last))
           place = drawn%near_side(side, model%x(:, node))
-          if (place%distance > coincident*norm2(drawn%chord(side)) .or. place%s <= 0.0_wp .or. place%s >= 1.0_wp) return
+          if (place%distance > coincident*norm2(drawn%chord(side)) .or. place%s <= 0.0_wp .or. &
+              place%s >= 1.0_wp) return
         end associate
         last = outline%after(last)
         if (last == from) return

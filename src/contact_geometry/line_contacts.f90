@@ -15,15 +15,18 @@ module epcont_contact_geometry_line_contacts
   private
   public :: find_line_contacts
 
-  !> Where nothing is said of it, a side is looked for within this many times the longest side of the two lines.
+  !> Where nothing is said of it, a side is looked for within this many times the longest side of the two
+  !! lines.
   real(wp), parameter :: default_search = 2.0_wp
-  !> If nothing is found, within this many times as much, again and again, until more than the scene is looked through.
+  !> If nothing is found, within this many times as much, again and again, until more than the scene is looked
+  !! through.
   real(wp), parameter :: widening = 4.0_wp
 
 contains
 
-  !> Add the pairs of all contacts of lines behind those that are given one by one. Lines and couples are known by their nodes and
-  !! lines; where there were errors before, there is no boundary to look at, and these alone are checked.
+  !> Add the pairs of all contacts of lines behind those that are given one by one. Lines and couples are
+  !! known by their nodes and lines; where there were errors before, there is no boundary to look at, and
+  !! these alone are checked.
   pure subroutine find_line_contacts(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
@@ -64,7 +67,8 @@ contains
     end do
   end subroutine check_couples
 
-  !> A line does not touch itself, and two lines touch once: of two contacts each would bear a part of the forces.
+  !> A line does not touch itself, and two lines touch once: of two contacts each would bear a part of the
+  !! forces.
   pure subroutine check_couple(model, i, found)
     type(model_type), intent(in) :: model
     integer, intent(in) :: i
@@ -76,7 +80,8 @@ contains
         call found%add_error(of_couple, i, 3, ': SLAVE and MASTER are one line', 'another BLSEG')
         return
       else if (overlap(model, slave, master)) then
-        call found%add_error(of_couple, i, 3, ': SLAVE and MASTER share sides of elements', 'lines without a side in common')
+        call found%add_error(of_couple, i, 3, ': SLAVE and MASTER share sides of elements', &
+                             'lines without a side in common')
         return
       end if
       do k = 1, i - 1
@@ -86,7 +91,8 @@ contains
               any(line /= [slave, master])) cycle
         end associate
         call found%add_error(of_couple, i, 2, ': its lines are those of '//model%name_of(of_couple, k)// &
-                             ': forces would be shared between the two', 'one BCONP for two lines: contact is exact either way')
+                             ': forces would be shared between the two', &
+                             'one BCONP for two lines: contact is exact either way')
         return
       end do
     end associate
@@ -134,7 +140,8 @@ contains
     end associate
   end function are_apart
 
-  !> Couples whose lines go on in each other are one contact: of one slave against several masters, or where both meet.
+  !> Couples whose lines go on in each other are one contact: of one slave against several masters, or where
+  !! both meet.
   pure subroutine join_couples(model)
     type(model_type), intent(inout) :: model
     type(partition) :: sets
@@ -173,7 +180,8 @@ contains
     contact%slave = new_boxed_line(model%boundary%pick(sides_of(model, slave)))
     contact%master = new_boxed_line(model%boundary%pick(sides_of(model, master)))
     contact%search = model%controls%search
-    if (contact%search == 0.0_wp) contact%search = default_search*max(contact%slave%longest(), contact%master%longest())
+    if (contact%search == 0.0_wp) contact%search = default_search*max(contact%slave%longest(), &
+                                                                      contact%master%longest())
     allocate (contact%came_near(0))
   end subroutine set_lines
 
@@ -235,7 +243,8 @@ contains
     type(findings), intent(inout) :: found
     character(len=:), allocatable :: remedy, what
 
-    what = ': no node of BLSEG '//text_of(contact%slave_id(1))//' faces a side of BLSEG '//text_of(contact%master_id(1))
+    what = ': no node of BLSEG '//text_of(contact%slave_id(1))//' faces a side of BLSEG '// &
+           text_of(contact%master_id(1))
     remedy = 'lines that face each other'
     if (same_way > 0) then
       what = what//'; '//text_of(same_way)//' of them near sides that look the same way'

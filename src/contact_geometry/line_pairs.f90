@@ -1,6 +1,7 @@
-!> Pairs of a contact of lines, by geometry alone: each node of the slave's sides against what it faces of the master's, and
-!> each corner of the master that stands on a side of the slave, between its nodes. Gap and normal are those at the node; what
-!> the master's nodes share in it comes from epcont_contact_geometry_mortar.
+!> Pairs of a contact of lines, by geometry alone: each node of the slave's sides against what it faces of the
+!> master's, and each corner of the master that stands on a side of the slave, between its nodes. Gap and
+!> normal are those at the node; what the master's nodes share in it comes from
+!> epcont_contact_geometry_mortar.
 module epcont_contact_geometry_line_pairs
   use epcont_base_kinds, only: wp
   use epcont_contact_geometry_faces, only: face_list, faces_type
@@ -13,12 +14,14 @@ module epcont_contact_geometry_line_pairs
   private
   public :: forget_pairs, add_pairs
 
-  !> A node's normals on the two lines differ by less (cosine) where it has a pair there: 35 degrees, of coarse curves.
+  !> A node's normals on the two lines differ by less (cosine) where it has a pair there: 35 degrees, of
+  !! coarse curves.
   real(wp), parameter :: opposite = 0.816_wp
 
 contains
 
-  !> Corners of the master that stand on a side of the slave which does not face the master all along (where two masters
+  !> Corners of the master that stand on a side of the slave which does not face the master all along (where
+  !! two masters
   !> lie flush, the side's own nodes hold both), and nodes that came near.
   pure subroutine find_tips(contact, obstacles, covered, faces)
     type(line_contact), intent(in) :: contact
@@ -39,7 +42,8 @@ contains
               if (which == 3) cycle
               if (.not. master%tip(which, side)) cycle
             end if
-            call find_facing(contact%slave, obstacles, node_of(master, side, which), contact%search, on(1), on(2))
+            call find_facing(contact%slave, obstacles, node_of(master, side, which), contact%search, on(1), &
+                             on(2))
             do k = 1, 2
               if (.not. on(k)%place%found .or. (covered(max(on(k)%segment, 1)) .and. .not. near)) cycle
               if (stands_at_node(contact, faces%slave, on(k)) .or. faces%master%has_face(node, on(k))) cycle
@@ -51,8 +55,8 @@ contains
     end associate
   end subroutine find_tips
 
-  !> Does a place on the slave lie at a node that has a pair there, of whichever of its sides? (At a corner rounding tells which
-  !! of them is faced.)
+  !> Does a place on the slave lie at a node that has a pair there, of whichever of its sides? (At a corner
+  !! rounding tells which of them is faced.)
   pure logical function stands_at_node(contact, rows, on)
     type(line_contact), intent(in) :: contact
     type(face_list), intent(in) :: rows     !! of the slave's nodes
@@ -87,7 +91,8 @@ contains
 
   !> Append pairs, with their rows of N. The node that stands on a side is B, the nodes of that side are A.
   pure subroutine add_pairs(faces, model, contact)
-    type(faces_type), intent(inout) :: faces          !! what nodes of the slave face; those of the master are found here
+    !> What nodes of the slave face; those of the master are found here
+    type(faces_type), intent(inout) :: faces
     type(model_type), intent(inout) :: model   !! the scene
     type(line_contact), intent(inout) :: contact   !! the contact of lines
     logical :: covered(size(contact%slave%element))
@@ -102,7 +107,8 @@ contains
     do k = 1, faces%master%count
       associate (facing => faces%master%facing(k))
         associate (share => facing%place%share)
-          call rows%append(pack(contact%slave%segment(:, facing%segment), share /= 0.0_wp), pack(share, share /= 0.0_wp))
+          call rows%append(pack(contact%slave%segment(:, facing%segment), share /= 0.0_wp), &
+                           pack(share, share /= 0.0_wp))
         end associate
         call on%append(faces%master%node(k), facing)
       end associate
@@ -117,8 +123,8 @@ contains
     if (on%count > 0) call append_pairs(rows, on%node(:on%count), on%facing(:on%count), model)
   end subroutine add_pairs
 
-  !> Pairs behind those that there are. In their rows of N node B has weight 1, the others have theirs, less than zero; of these the
-  !! largest is A.
+  !> Pairs behind those that there are. In their rows of N node B has weight 1, the others have theirs, less
+  !! than zero; of these the largest is A.
   pure subroutine append_pairs(rows, b, facing, model)
     type(mortar_rows), intent(in) :: rows
     integer, intent(in) :: b(:)                       !! [rows]

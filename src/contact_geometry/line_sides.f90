@@ -18,8 +18,8 @@ module epcont_contact_geometry_line_sides
 
 contains
 
-  !> The sides of all lines; one that is not sound has none. Where the elements are not `sound` there are no outlines, and nodes
-  !! alone are looked at.
+  !> The sides of all lines; one that is not sound has none. Where the elements are not `sound` there are no
+  !! outlines, and nodes alone are looked at.
   pure subroutine find_line_sides(model, sound, found)
     type(model_type), intent(inout) :: model   !! the scene
     logical, intent(in) :: sound              !! the elements are, and the outlines known
@@ -113,7 +113,8 @@ contains
       call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
                            'nodes in the order of the boundary')
     else
-      call found%add_error(of_line, i, -k - 1, ': the side between '//ends//' lies inside a body, between '// &
+      call found%add_error(of_line, i, -k - 1, ': the side between '//ends// &
+                           ' lies inside a body, between '// &
                            model%name_of(of_element, there%element(1))//' and '// &
                            model%name_of(of_element, there%element(2)), 'sides that one element has')
     end if
@@ -150,7 +151,8 @@ contains
 
     do s = 1, size(way)
       k = starting(way(s)%node(1))
-      do while (model%boundary%element(k) /= way(s)%element(1) .or. any(model%boundary%segment(:, k) /= way(s)%node))
+      do while (model%boundary%element(k) /= way(s)%element(1) .or. &
+                any(model%boundary%segment(:, k) /= way(s)%node))
         k = k - 1   ! the only one, but where boundaries meet in a node
       end do
       side(s) = k

@@ -1,4 +1,5 @@
-!> What is not as it seems of contacts of lines: overlaps, slaves finer than their masters, nodes with a part in two contacts.
+!> What is not as it seems of contacts of lines: overlaps, slaves finer than their masters, nodes with a part
+!> in two contacts.
 module epcont_contact_geometry_line_warnings
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
@@ -10,24 +11,29 @@ module epcont_contact_geometry_line_warnings
   private
   public :: warn_of_both_ways, warn_of_finer_slave, warn_of_overlap, warn_of_thicker_slave
 
-  !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off by 3 % and more.
+  !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off by
+  !! 3 % and more.
   real(wp), parameter :: finer = 1.3_wp
-  !> Sides so many times longer than those of the slave cannot follow it: where little of them touches, approaches are off as well.
+  !> Sides so many times longer than those of the slave cannot follow it: where little of them touches,
+  !! approaches are off as well.
   real(wp), parameter :: far_coarser = 4.0_wp
-  !> Gaps of curves over sides that are chords are exact to this part of how high the curves rise above them; and coordinates
+  !> Gaps of curves over sides that are chords are exact to this part of how high the curves rise above them;
+  !! and coordinates
   !> have so many digits where a card has eight columns.
   real(wp), parameter :: curve_error = 0.01_wp, digits = 1.0e-7_wp
-  !> Normals of two contacts at a node are of one face within 45 degrees; less than so much of a row says nothing of a node.
+  !> Normals of two contacts at a node are of one face within 45 degrees; less than so much of a row says
+  !! nothing of a node.
   real(wp), parameter :: one_face = sqrt(0.5_wp), least_weight = 1.0e-3_wp
 
 contains
 
-  !> A node that is slave in one contact and master in another, on the same face: neither knows of the sides that the other has
-  !! beside it, whose pressures are shared by chance.
+  !> A node that is slave in one contact and master in another, on the same face: neither knows of the sides
+  !! that the other has beside it, whose pressures are shared by chance.
   pure subroutine warn_of_both_ways(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer, allocatable :: contact(:), slave(:)   !! of each pair, 0: given alone; the pair of each node as slave, 0: none
+    !> Of each pair, 0: given alone; the pair of each node as slave, 0: none
+    integer, allocatable :: contact(:), slave(:)
     integer :: c, i, pair
     logical :: told(size(model%line_contact))
 
@@ -48,8 +54,10 @@ contains
           if (contact(other) == contact(pair) .or. told(contact(pair))) cycle
           if (dot_product(model%normal(:, pair), model%normal(:, other)) > -one_face) cycle
           told([contact(pair), contact(other)]) = .true.
-          call found%add_warning(of_couple, first_couple(contact(pair)), 3, ': '//model%name_of(of_node, model%row_node(i))// &
-            ' is of its MASTER, and of the SLAVE of '//model%name_of(of_couple, first_couple(contact(other)))// &
+          call found%add_warning(of_couple, first_couple(contact(pair)), 3, ': '// &
+                                 model%name_of(of_node, model%row_node(i))// &
+            ' is of its MASTER, and of the SLAVE of '// &
+            model%name_of(of_couple, first_couple(contact(other)))// &
             ': pressures beside it are off, by a quarter where both touch', &
             'SLAVE and MASTER of one of the two exchanged: lines that go on in each other are one contact')
         end associate
@@ -65,8 +73,8 @@ contains
     end function first_couple
   end subroutine warn_of_both_ways
 
-  !> Pressures are carried by the slave's nodes. Where these are closer than the nodes of the master, whose sides bend
-  !! at nodes alone, they show its facets.
+  !> Pressures are carried by the slave's nodes. Where these are closer than the nodes of the master, whose
+  !! sides bend at nodes alone, they show its facets.
   pure subroutine warn_of_finer_slave(model, contact, faces, found)
     type(model_type), intent(in) :: model   !! the scene
     type(line_contact), intent(in) :: contact   !! the contact of lines
@@ -84,12 +92,14 @@ contains
       text = 'pressures will show these as facets'
       advice = 'SLAVE and MASTER exchanged, or lines of about the same fineness'
     end if
-    call found%add_warning(of_couple, contact%couple(1), 2, ': sides of the slave line are '//short_real(sides(2)/sides(1))// &
+    call found%add_warning(of_couple, contact%couple(1), 2, ': sides of the slave line are '// &
+                           short_real(sides(2)/sides(1))// &
                            ' times shorter than those that they face: '//text, advice)
   end subroutine warn_of_finer_slave
 
-  !> Lengths, from node to node, of the slave's sides and of those that they face, summed up where the lines are nearest to each
-  !! other. A side whose ends are held, or move as one, does not bend at all, and does not count.
+  !> Lengths, from node to node, of the slave's sides and of those that they face, summed up where the lines
+  !! are nearest to each other. A side whose ends are held, or move as one, does not bend at all, and does not
+  !! count.
   pure function facing_sides(model, contact, faces) result(length)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
@@ -133,11 +143,13 @@ contains
     if (thickness(1)*(1.0_wp - digits) > thickness(2)) &
       call found%add_warning(of_couple, contact%couple(1), 2, ': the slave is '//short_real(thickness(1))// &
                              ' thick, the master '//short_real(thickness(2))// &
-                             ': pressures are forces by the slave''s area, of which the master covers a part', &
+                             ': pressures are forces by the slave''s area, of which the master covers '// &
+                             'a part', &
                              'SLAVE and MASTER exchanged')
   end subroutine warn_of_thicker_slave
 
-  !> One warning for all overlaps: shrink fits have many. What curves over chords, and cards of eight columns, leave is none.
+  !> One warning for all overlaps: shrink fits have many. What curves over chords, and cards of eight columns,
+  !! leave is none.
   pure subroutine warn_of_overlap(model, contact, found)
     type(model_type), intent(in) :: model   !! the scene
     type(line_contact), intent(in) :: contact   !! the contact of lines
@@ -146,7 +158,8 @@ contains
     integer :: deepest, overlaps
     real(wp) :: least
 
-    least = digits*maxval(abs(contact%slave%x)) + curve_error*(largest_rise(contact%slave) + largest_rise(contact%master))
+    least = digits*maxval(abs(contact%slave%x)) + &
+            curve_error*(largest_rise(contact%slave) + largest_rise(contact%master))
     associate (gap => model%initial_gap(contact%first:contact%last))
       overlaps = count(gap < -least)
       if (overlaps == 0) return
@@ -154,7 +167,8 @@ contains
     end associate
     others = ''
     if (overlaps > 1) others = '; '//text_of(overlaps)//' nodes overlap'
-    call found%add_warning(of_couple, contact%couple(1), 1, ': the initial gap at GRID '//text_of(model%pair_id(deepest))// &
+    call found%add_warning(of_couple, contact%couple(1), 1, ': the initial gap at GRID '// &
+                           text_of(model%pair_id(deepest))// &
                            ' is '//short_real(model%initial_gap(deepest))//others, &
                            'gaps of 0.0 or more, unless a fit is meant')
   end subroutine warn_of_overlap

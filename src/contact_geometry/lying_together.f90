@@ -1,5 +1,5 @@
-!> Bodies that lie against each other as drawn, with nodes at one place, though neither a pair nor RBE2 joins these: a contact, or
-!> a common node, that was forgotten.
+!> Bodies that lie against each other as drawn, with nodes at one place, though neither a pair nor RBE2 joins
+!> these: a contact, or a common node, that was forgotten.
 module epcont_contact_geometry_lying_together
   use epcont_base_kinds, only: wp
   use epcont_contact_geometry_mates, only: find_mates, is_mate
@@ -45,15 +45,17 @@ contains
     end associate
     do i = 1, size(twin)
       if (twin(i)%count > 0) &
-        call found%add_warning(of_node, twin(i)%node, 1, ': lies where '//model%name_of(of_node, twin(i)%other)// &
+        call found%add_warning(of_node, twin(i)%node, 1, ': lies where '// &
+                               model%name_of(of_node, twin(i)%other)// &
                                ' of another body does, and no pair joins the two'// &
                                and_more(twin(i)%count, '; so do ', ' more of these two bodies'), &
                                'a CGAP, lines with a BCONP between them, or one GRID for both')
     end do
   end subroutine warn_of_lying_together
 
-  !> Nodes of outlines with one of another body at their place, that nothing joins: those of sides that lie against each other
-  !! from end to end, and single ones that are in no pair at all. Of two twins the one of the earlier body is named.
+  !> Nodes of outlines with one of another body at their place, that nothing joins: those of sides that lie
+  !! against each other from end to end, and single ones that are in no pair at all. Of two twins the one of
+  !! the earlier body is named.
   pure function find_twins(model) result(twin)
     type(model_type), intent(in) :: model
     type(twin_type), allocatable :: twin(:)
@@ -83,8 +85,8 @@ contains
     twin = twin(:found)
   end function find_twins
 
-  !> The twin, in another part, of the node where a side begins: neither is in a pair, or the side that begins or the one that ends
-  !! there lies against that part, its other end a twin too. 0: none.
+  !> The twin, in another part, of the node where a side begins: neither is in a pair, or the side that begins
+  !! or the one that ends there lies against that part, its other end a twin too. 0: none.
   pure integer function twin_that_counts(model, drawn, mate, side, part) result(other)
     type(model_type), intent(in) :: model
     type(outline_shape), intent(in) :: drawn
@@ -95,7 +97,8 @@ contains
       if (other == 0) return
       if (mate(outline%node(1, side)) == 0 .and. mate(other) == 0) return
       associate (before => outline%before(side))
-        if (loose_twin(model, drawn, mate, [outline%node(2, side), side], part) > 0 .and. lies_against(drawn, side, part)) return
+        if (loose_twin(model, drawn, mate, [outline%node(2, side), side], part) > 0 .and. &
+            lies_against(drawn, side, part)) return
         if (loose_twin(model, drawn, mate, [outline%node(1, before), before], part) > 0 .and. &
             lies_against(drawn, before, part)) return
       end associate
@@ -125,7 +128,8 @@ contains
     logical :: joined
 
     place = drawn%nearest_place(part, model%x(:, end(1)))
-    associate (within => coincident*norm2(drawn%chord(end(2))), node => end(1), ends => model%body_outline%node(:2, place%side))
+    associate (within => coincident*norm2(drawn%chord(end(2))), node => end(1), &
+               ends => model%body_outline%node(:2, place%side))
       twin = 0
       if (place%distance > within) return
       twin = merge(ends(1), ends(2), place%s < 0.5_wp)

@@ -1,11 +1,12 @@
 !> How the nodes of a master line share in the gaps of the slave nodes: a dual mortar.
 !>
-!> The pressure of slave node i is spread by the dual function psi_i of its shape functions N, which gives nothing to the
-!> other slave nodes: integral of psi_i N_j = d_ij integral of N_i. Its gap is then that of the node, less the master line's
-!> displacement averaged with psi_i: weights (integral of psi_i N_master)/(integral of N_i). A uniform pressure passes
-!> exactly between lines that do not match, and where they do match each node is against its twin alone. (Wohlmuth, A mortar
-!> finite element method using dual spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000.) A side whose slave
-!> nodes do not all face the other line, or not all along, counts at its nodes' own places.
+!> The pressure of slave node i is spread by the dual function psi_i of its shape functions N, which gives
+!> nothing to the other slave nodes: integral of psi_i N_j = d_ij integral of N_i. Its gap is then that of the
+!> node, less the master line's displacement averaged with psi_i: weights (integral of psi_i
+!> N_master)/(integral of N_i). A uniform pressure passes exactly between lines that do not match, and where
+!> they do match each node is against its twin alone. (Wohlmuth, A mortar finite element method using dual
+!> spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000.) A side whose slave nodes do not all
+!> face the other line, or not all along, counts at its nodes' own places.
 module epcont_contact_geometry_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
@@ -18,7 +19,8 @@ module epcont_contact_geometry_mortar
   private
   public :: find_mortar_rows, mortar_rows
 
-  !> Nodes and weights of rows: row k has the entries start(k) to start(k + 1) - 1. The weights of a row sum to 1.
+  !> Nodes and weights of rows: row k has the entries start(k) to start(k + 1) - 1. The weights of a row sum
+  !! to 1.
   type :: mortar_rows
     integer, allocatable :: start(:)      !! [rows + 1]
     integer, allocatable :: node(:)       !! [entries]
@@ -42,7 +44,8 @@ module epcont_contact_geometry_mortar
   real(wp), parameter :: parallel = 0.94_wp
   !> Normals whose cosine is less, on either side of a node, meet at a corner there: more than 9 degrees.
   real(wp), parameter :: smooth = 0.988_wp
-  !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not need one.
+  !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not
+  !! need one.
   real(wp), parameter :: no_area = 1.0e-3_wp
 
   !> A part of the weight of a node in a row.
@@ -84,7 +87,8 @@ contains
     self%start = [self%start, size(self%node) + 1]
   end subroutine append
 
-  !> Rows of master nodes and weights, one for each slave node that has a pair. Rows of no side count at their own places.
+  !> Rows of master nodes and weights, one for each slave node that has a pair. Rows of no side count at their
+  !! own places.
   pure subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
     type(line_contact), intent(in) :: contact   !! the contact of lines
     type(boxed_line), intent(in) :: obstacles      !! the outlines of all bodies
@@ -120,7 +124,8 @@ contains
     call collect(list, rows)
   end subroutine find_mortar_rows
 
-  !> Do all nodes and integration points of a side face the other line, and one face of it, without a step or a corner?
+  !> Do all nodes and integration points of a side face the other line, and one face of it, without a step or
+  !! a corner?
   pure logical function is_covered(points, facing, row, segment, length)
     type(side_points), intent(in) :: points
     type(facing_type), intent(in) :: facing(:)
@@ -133,7 +138,8 @@ contains
     if (.not. is_covered) return
     normal = reshape([(points%facing(p)%place%normal, p=1, points%count)], [2, points%count])
     do k = 1, 3
-      if (row(k) > 0) is_covered = is_covered .and. all(matmul(facing(row(k))%place%normal, normal) > one_curve)
+      if (row(k) > 0) is_covered = is_covered .and. &
+                                   all(matmul(facing(row(k))%place%normal, normal) > one_curve)
     end do
     do p = gauss_points, points%count - 1, gauss_points
       is_covered = is_covered .and. dot_product(normal(:, p), normal(:, p + 1)) > smooth
@@ -141,7 +147,8 @@ contains
     if (.not. is_covered) return
     before = facing(row(1))%place%gap
     do p = gauss_points, points%count, gauss_points   ! piece by piece
-      associate (gap => points%facing(p - gauss_points + 1:p)%place%gap, s => points%along(p - gauss_points + 1:p))
+      associate (gap => points%facing(p - gauss_points + 1:p)%place%gap, &
+                 s => points%along(p - gauss_points + 1:p))
         cut = s(1) - (s(gauss_points) - s(1))*gauss_place(1)/(gauss_place(gauss_points) - gauss_place(1))
         is_covered = abs(continued(s, gap, cut) - before) <= step*length
         cut = s(gauss_points) + (s(1) - cut)
@@ -162,7 +169,8 @@ contains
                 value(3)*(s - at(1))*(s - at(2))/((at(3) - at(1))*(at(3) - at(2)))
   end function continued
 
-  !> How far from a side the part of the other line lies that it faces, at most: twice as far as its ends say, or its length.
+  !> How far from a side the part of the other line lies that it faces, at most: twice as far as its ends say,
+  !! or its length.
   pure real(wp) function reach_of(contact, side, row, facing)
     type(line_contact), intent(in) :: contact
     integer, intent(in) :: side
@@ -171,7 +179,8 @@ contains
 
     reach_of = contact%search
     if (any(row == 0 .and. contact%slave%segment(:, side) > 0)) return
-    reach_of = min(reach_of, 2.0_wp*max(contact%slave%chord_length(side), maxval(abs(facing(row(:2))%place%gap))))
+    reach_of = min(reach_of, 2.0_wp*max(contact%slave%chord_length(side), &
+                                        maxval(abs(facing(row(:2))%place%gap))))
   end function reach_of
 
   !> Integration points of a side, cut where nodes of the other line face it.
@@ -238,8 +247,8 @@ contains
     cut = cut(n:1:-1)
   end function cuts_of
 
-  !> Insert a number from 0 to 1 into some in falling order, the last of them 0: lines that face each other are walked in
-  !! opposite directions, so that most come to stand near the end.
+  !> Insert a number from 0 to 1 into some in falling order, the last of them 0: lines that face each other
+  !! are walked in opposite directions, so that most come to stand near the end.
   pure subroutine insert(s, n, falling)
     real(wp), intent(in) :: s
     integer, intent(inout) :: n

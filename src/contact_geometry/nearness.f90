@@ -1,6 +1,8 @@
-!> Nodes of lines in contact that have no pair, but came so near as loads moved them that they pass through the other line.
+!> Nodes of lines in contact that have no pair, but came so near as loads moved them that they pass through
+!> the other line.
 !>
-!> Gaps are those of the undeformed shape, opened by displacements, as those of pairs are: small displacements.
+!> Gaps are those of the undeformed shape, opened by displacements, as those of pairs are: small
+!> displacements.
 module epcont_contact_geometry_nearness
   use epcont_base_kinds, only: wp
   use epcont_contact_geometry_faces, only: faces_type, find_faces
@@ -16,13 +18,15 @@ module epcont_contact_geometry_nearness
 
   !> A gap below this part of the scene is none.
   real(wp), parameter :: least = 1.0e-8_wp
-  !> A node between those of the other line that stand on its own may pass through by so many times what chords of curves and
+  !> A node between those of the other line that stand on its own may pass through by so many times what
+  !! chords of curves and
   !> of bent sides make.
   real(wp), parameter :: allowance = 3.0_wp
-  !> But not by more than this part of the largest displacement: that is no end of contact, but contact missed.
+  !> But not by more than this part of the largest displacement: that is no end of contact, but contact
+  !! missed.
   real(wp), parameter :: most = 0.5_wp
-  !> The two lines, not quite parallel, tell gaps by normals of their own: what these make of nodes that slide, and of gaps that
-  !! close, differs by this much at most.
+  !> The two lines, not quite parallel, tell gaps by normals of their own: what these make of nodes that
+  !! slide, and of gaps that close, differs by this much at most.
   real(wp), parameter :: askew = 1.5_wp
   !> Search beyond what came near.
   real(wp), parameter :: further = 1.5_wp
@@ -37,8 +41,9 @@ module epcont_contact_geometry_nearness
 
 contains
 
-  !> Give pairs to the nodes that came near; `entered`: there are some, and the scene wants to be solved again. Without
-  !! displacements (what moves was held by nothing) all that may be faced, however far, has its pair.
+  !> Give pairs to the nodes that came near; `entered`: there are some, and the scene wants to be solved
+  !! again. Without displacements (what moves was held by nothing) all that may be faced, however far, has its
+  !! pair.
   subroutine enter_nodes_that_came_near(model, displacement, touching, entered)
     type(model_type), intent(inout) :: model   !! the scene
     real(wp), allocatable, intent(in) :: displacement(:, :)   !! [length] [2, nodes]
@@ -71,7 +76,8 @@ contains
     entered = model%pairs > before
   end subroutine enter_nodes_that_came_near
 
-  !> What a contact's nodes want: a wider search for those of the slave, or to be entered, as nodes of the master.
+  !> What a contact's nodes want: a wider search for those of the slave, or to be entered, as nodes of the
+  !! master.
   pure subroutine look_at_contact(contact, obstacles, moved, entered)
     type(line_contact), intent(inout) :: contact
     type(boxed_line), intent(in) :: obstacles    !! the outlines of all bodies
@@ -99,8 +105,8 @@ contains
     end if
   end subroutine look_at_contact
 
-  !> How far to search where nodes of the slave, left out so far, pass through the master, or stand beside one that touches: what
-  !! the nodes of a side share is known only where all of them have pairs [length].
+  !> How far to search where nodes of the slave, left out so far, pass through the master, or stand beside one
+  !! that touches: what the nodes of a side share is known only where all of them have pairs [length].
   pure real(wp) function wanted_search(contact, obstacles, moved) result(search)
     type(line_contact), intent(in) :: contact
     type(boxed_line), intent(in) :: obstacles
@@ -121,7 +127,8 @@ contains
     end do
   end function wanted_search
 
-  !> Enter a node of the master that passes through a side of the slave by more than is left open between the slave's nodes.
+  !> Enter a node of the master that passes through a side of the slave by more than is left open between the
+  !! slave's nodes.
   pure subroutine look_from_master(contact, obstacles, moved, side, which, entered)
     type(line_contact), intent(inout) :: contact
     type(boxed_line), intent(in) :: obstacles
@@ -134,10 +141,12 @@ contains
 
     associate (node => contact%master%segment(which, side))
       if (node == 0 .or. any(contact%came_near == node)) return
-      call find_facing(contact%slave, obstacles, node_of(contact%master, side, which), moved%size, face(1), face(2))
+      call find_facing(contact%slave, obstacles, node_of(contact%master, side, which), moved%size, face(1), &
+                       face(2))
       do k = 1, 2
         if (.not. face(k)%place%found) cycle
-        if (contact%master%tip(min(which, 2), side) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) cycle
+        if (contact%master%tip(min(which, 2), side) .and. which < 3 .and. &
+            abs(face(k)%place%gap) <= contact%search) cycle
         call find_gap(node, contact%slave, face(k), moved%displacement, gap, slip)
         if (gap >= -left_open(contact, moved, side, which, face(k), slip)) cycle
         contact%came_near = [contact%came_near, node]
@@ -161,13 +170,15 @@ contains
     left_open = least*moved%size
     associate (slave => contact%slave, master => contact%master, displacement => moved%displacement)
       smooth = which == 3 .or. .not. master%corner(min(which, 2), side)
-      if (smooth .and. all(moved%holds(slave%segment(:, face%segment)) .or. slave%segment(:, face%segment) == 0)) then
+      if (smooth .and. all(moved%holds(slave%segment(:, face%segment)) .or. &
+                           slave%segment(:, face%segment) == 0)) then
         ! It is where the mesh has it; a pair of its own would be one too many.
         left_open = most*moved%travel
       else if (is_held_off(slave, face%segment, moved%holds)) then
         ! Over a side of the slave gaps are closed in the mean, however short the master's are.
         left_open = left_open + allowance*(openness(slave, face%segment, displacement, 0.0_wp) + &
-                                           openness_at(master, side, which, displacement, slave%chord_length(face%segment)))
+                                           openness_at(master, side, which, displacement, &
+                                                       slave%chord_length(face%segment)))
       else
         left_open = left_open + bend(slave, face%segment, displacement, 0.0_wp)
       end if
@@ -179,7 +190,8 @@ contains
     left_open = min(left_open, most*moved%travel)
   end function left_open
 
-  !> Does a node of a side, or of those beside it, stand on the other line? Then contact ends near by, between nodes.
+  !> Does a node of a side, or of those beside it, stand on the other line? Then contact ends near by, between
+  !! nodes.
   pure logical function is_held_off(line, side, holds)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
@@ -210,14 +222,17 @@ contains
     slip = abs(cross_product(face%place%normal, apart))
   end subroutine find_gap
 
-  !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as it bends [length].
+  !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as
+  !! it bends [length].
   pure real(wp) function openness(line, side, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
     real(wp), intent(in) :: displacement(:, :), over
 
-    openness = line%chord_length(side)/4.0_wp*max(norm2(line%normal(:, 1, side) - line%own_normal(side, 0.0_wp)), &
-                                                  norm2(line%normal(:, 2, side) - line%own_normal(side, 1.0_wp))) + &
+    openness = line%chord_length(side)/4.0_wp*max(norm2(line%normal(:, 1, side) - &
+                                                        line%own_normal(side, 0.0_wp)), &
+                                                  norm2(line%normal(:, 2, side) - &
+                                                        line%own_normal(side, 1.0_wp))) + &
                bend(line, side, displacement, over)
   end function openness
 
@@ -234,8 +249,8 @@ contains
     end associate
   end function openness_at
 
-  !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which the boundary bends
-  !! from that side on [length].
+  !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which the
+  !! boundary bends from that side on [length].
   pure real(wp) function bend(line, side, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side

@@ -19,8 +19,8 @@ module epcont_contact_geometry_pair_checks
 
 contains
 
-  !> Warn of pairs that point the wrong way, that do not lie opposite each other, that can neither open nor close, and of
-  !! six-node sides with half of them.
+  !> Warn of pairs that point the wrong way, that do not lie opposite each other, that can neither open nor
+  !! close, and of six-node sides with half of them.
   pure subroutine check_pairs(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
@@ -38,7 +38,8 @@ contains
     call warn_of_half_sides(model, found)
   end subroutine check_pairs
 
-  !> Normals that go into the body of node A, or out of that of node B; but not where the other node says that they are right.
+  !> Normals that go into the body of node A, or out of that of node B; but not where the other node says that
+  !! they are right.
   pure subroutine warn_of_wrong_ways(model, found)
     type(model_type), intent(in) :: model
     type(findings), intent(inout) :: found
@@ -52,12 +53,14 @@ contains
       along_b = dot_product(outward(:, model%pair_node(2, k)), model%normal(:, k))
       if (along_a >= same_way .or. along_b <= -same_way) cycle
       if (along_a <= -same_way .or. along_b >= same_way) &
-        call found%add_warning(of_pair, k, 1, ': its normal points the wrong way: into the body of GA, or out of that of GB', &
+        call found%add_warning(of_pair, k, 1, &
+                             ': its normal points the wrong way: into the body of GA, or out of that of GB', &
                                'GA and GB exchanged, or the x-axis of CID turned round')
     end do
   end subroutine warn_of_wrong_ways
 
-  !> One warning for all CGAPs whose two nodes, both of bodies, lie farther apart across the normal than a side there is long.
+  !> One warning for all CGAPs whose two nodes, both of bodies, lie farther apart across the normal than a
+  !! side there is long.
   pure subroutine warn_of_sideways(model, found)
     type(model_type), intent(in) :: model
     type(findings), intent(inout) :: found
@@ -87,8 +90,9 @@ contains
                            'nodes that lie opposite each other, or BLSEG lines with a BCONP between them')
   end subroutine warn_of_sideways
 
-  !> A six-node side presses by its middle, with two thirds of the force, and its ends: where some of these have no pair, the side
-  !! passes through what the others touch. A middle alone may be a point of support; two beside each other are none.
+  !> A six-node side presses by its middle, with two thirds of the force, and its ends: where some of these
+  !! have no pair, the side passes through what the others touch. A middle alone may be a point of support;
+  !! two beside each other are none.
   pure subroutine warn_of_half_sides(model, found)
     type(model_type), intent(in) :: model
     type(findings), intent(inout) :: found
@@ -145,8 +149,10 @@ contains
       else
         what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
       end if
-      call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, ': a side of '// &
-                             model%name_of(of_element, model%body_outline%element(side))//' has CGAPs'//what// &
+      call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, &
+                             ': a side of '// &
+                             model%name_of(of_element, model%body_outline%element(side))//' has CGAPs'// &
+                             what// &
                              ': it will pass through what it touches, and the pressures are wrong'// &
                              and_more(half, '; so it is with ', ' more'), &
                              'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
@@ -198,8 +204,8 @@ contains
     end do
   end function boundary_normals
 
-  !> One warning for all pairs of a range whose nodes are held along the normal. A held overlap is no warning: the run will end
-  !! with it.
+  !> One warning for all pairs of a range whose nodes are held along the normal. A held overlap is no warning:
+  !! the run will end with it.
   pure subroutine warn_of_held(model, first, last, couple, found)
     type(model_type), intent(in) :: model
     integer, intent(in) :: first, last       !! the range
@@ -213,8 +219,10 @@ contains
     if (size(held) == 0) return
     which = and_more(size(held), ', and ', ' more')
     if (couple > 0) which = ': GRID '//text_of(model%pair_id(held(1)))//which
-    call found%add_warning(merge(of_couple, of_pair, couple > 0), merge(couple, held(1), couple > 0), 1, which// &
-                           ': can neither open nor close: the nodes on both sides are held along the normal', &
+    call found%add_warning(merge(of_couple, of_pair, couple > 0), merge(couple, held(1), couple > 0), 1, &
+                           which// &
+                           ': can neither open nor close: the nodes on both sides are held along '// &
+                           'the normal', &
                            'a free node on one side, or no pair')
   end subroutine warn_of_held
 

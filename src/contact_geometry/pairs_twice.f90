@@ -1,4 +1,5 @@
-!> Pairs at one place: they are refused, since of two of them each bears a part of the force, and the pressure is that of a part.
+!> Pairs at one place: they are refused, since of two of them each bears a part of the force, and the pressure
+!> is that of a part.
 module epcont_contact_geometry_pairs_twice
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -8,7 +9,8 @@ module epcont_contact_geometry_pairs_twice
   private
   public :: refuse_pairs_twice
 
-  !> Normals of two CGAPs are one within 2.5 degrees: in a groove, whose walls stand at a larger angle, each has its force.
+  !> Normals of two CGAPs are one within 2.5 degrees: in a groove, whose walls stand at a larger angle, each
+  !! has its force.
   real(wp), parameter :: parallel = 0.999_wp
   !> The normal of a CGAP is that of a line, which bends from node to node, within 45 degrees.
   real(wp), parameter :: one_face = sqrt(0.5_wp)
@@ -29,16 +31,20 @@ contains
     cgaps = model%single_pairs()
     if (cgaps == 0) return
     around = new_incidence(model%pair_node(:, :cgaps), model%nodes)
-    lines = new_incidence(reshape(model%row_node(model%row_start(cgaps + 1:model%pairs)), [1, model%pairs - cgaps]), model%nodes)
+    lines = new_incidence(reshape(model%row_node(model%row_start(cgaps + 1:model%pairs)), &
+                                  [1, model%pairs - cgaps]), model%nodes)
     do k = 1, cgaps
       cgap(k) = cgap_like(model, around, k)
       line(k) = line_pair_like(model, lines, cgaps, k)
     end do
     k = findloc(cgap > 0, .true., dim=1)
-    if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '//model%name_of(of_pair, cgap(k))// &
-      ' along the same normal, with the same gap'//shared//like_this(count(cgap > 0)), 'one CGAP for two nodes and a normal')
+    if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
+                                    model%name_of(of_pair, cgap(k))// &
+      ' along the same normal, with the same gap'//shared//like_this(count(cgap > 0)), &
+      'one CGAP for two nodes and a normal')
     k = findloc(line > 0, .true., dim=1)
-    if (k > 0) call found%add_error(of_pair, k, 1, ': joins nodes that '//model%name_of(of_couple, couple_of(model, line(k)))// &
+    if (k > 0) call found%add_error(of_pair, k, 1, ': joins nodes that '// &
+                                    model%name_of(of_couple, couple_of(model, line(k)))// &
       ' joins along the same normal'//shared//like_this(count(line > 0)), 'either CGAPs or a BCONP')
   end subroutine refuse_pairs_twice
 
@@ -95,7 +101,8 @@ contains
         do i = lines%start(node), lines%start(node + 1) - 1
           pair = cgaps + lines%group(i)
           if (all(model%row_node(model%row_start(pair) + 1:model%row_start(pair + 1) - 1) /= other)) cycle
-          if (dot_product(model%normal(:, pair), model%normal(:, k))*merge(1, -1, which == 2) >= one_face) return
+          if (dot_product(model%normal(:, pair), model%normal(:, k))*merge(1, -1, which == 2) >= one_face) &
+            return
         end do
       end associate
     end do

@@ -1,10 +1,11 @@
 !> Sides of elements along the boundary of a body, and where a point faces them.
 !>
-!> Sides are walked with the body to the left, so that outward is to the right. Normals at the nodes come from the two
-!> sides that meet there, exact on a circle (epcont_geometry_corners); along a side they turn from one to the other, so that none
-!> is met twice and none left out. Where sides are chords, the boundary that is meant is the smooth curve through their ends:
-!> the gap is measured to it (an arc over each chord) and not to the chord, whose facets would show in the pressures. Force
-!> and counterforce still lie on one line, through the chord.
+!> Sides are walked with the body to the left, so that outward is to the right. Normals at the nodes come from
+!> the two sides that meet there, exact on a circle (epcont_geometry_corners); along a side they turn from one
+!> to the other, so that none is met twice and none left out. Where sides are chords, the boundary that is
+!> meant is the smooth curve through their ends: the gap is measured to it (an arc over each chord) and not to
+!> the chord, whose facets would show in the pressures. Force and counterforce still lie on one line, through
+!> the chord.
 module epcont_geometry_boundary_line
   use epcont_base_kinds, only: wp
   use epcont_geometry_plane, only: cross_product
@@ -12,7 +13,8 @@ module epcont_geometry_boundary_line
   private
   public :: boundary_line, facing_place, unit
 
-  !> Part of a side by which a point may stand beyond its end, more than the rounding of coordinates in eight columns.
+  !> Part of a side by which a point may stand beyond its end, more than the rounding of coordinates in eight
+  !! columns.
   real(wp), parameter, public :: beyond = 1.0e-5_wp
   !> Steps of Newton's method, which needs five, and the change that ends it.
   integer, parameter :: most_steps = 30
@@ -26,7 +28,8 @@ module epcont_geometry_boundary_line
     real(wp), allocatable :: normal(:, :, :)   !! outward, at start and end of each side [2, 2, sides]
     logical, allocatable :: corner(:, :)       !! its start, its end is a corner of the boundary [2, sides]
     logical, allocatable :: tip(:, :)          !! and a convex one [2, sides]
-    !> Its start, its end lies on a line of symmetry, and the normal there: within that line, though it be a corner.
+    !> Its start, its end lies on a line of symmetry, and the normal there: within that line, though it be a
+    !! corner.
     logical, allocatable :: mirrored(:, :)     !! [2, sides]
     real(wp), allocatable :: end_normal(:, :, :)   !! [2, 2, sides]
   contains
@@ -134,7 +137,8 @@ contains
     else
       place%share = values(curved, s)
       place%normal = unit(scaled_normal(self, segment, s))
-      place%gap = dot_product(place%normal, point - self%x(:, 1, segment) - matmul(local(self, segment), place%share))
+      place%gap = dot_product(place%normal, point - self%x(:, 1, segment) - &
+                              matmul(local(self, segment), place%share))
       if (.not. curved) place%gap = place%gap - rise(self, segment, s)
     end if
   end function face
@@ -235,7 +239,8 @@ contains
     if (line%segment(3, segment) == 0) x(:, 3) = 0.0_wp
   end function local
 
-  !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is linear between them.)
+  !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is
+  !! linear between them.)
   pure function scaled_normal(line, segment, s) result(normal)
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: segment
@@ -250,8 +255,8 @@ contains
     normal = (1.0_wp - s)*length(1)*line%normal(:, 1, segment) + s*length(2)*line%normal(:, 2, segment)
   end function scaled_normal
 
-  !> How far along its normal the smooth curve rises above the chord: exactly where the normals at the ends are those of an arc
-  !! [length].
+  !> How far along its normal the smooth curve rises above the chord: exactly where the normals at the ends
+  !! are those of an arc [length].
   pure real(wp) function rise(line, segment, s)
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: segment
@@ -260,8 +265,10 @@ contains
 
     across = line%own_normal(segment, s)
     along = [-across(2), across(1)]
-    ! An arc of radius r leans by asin(chord/(2 r)) at its ends, and is r - sqrt(r**2 - chord**2 s (1 - s)) above.
-    lean = s*dot_product(line%normal(:, 2, segment), along) - (1.0_wp - s)*dot_product(line%normal(:, 1, segment), along)
+    ! An arc of radius r leans by asin(chord/(2 r)) at its ends, and is r - sqrt(r**2 - chord**2 s (1 - s))
+    ! above.
+    lean = s*dot_product(line%normal(:, 2, segment), along) - &
+           (1.0_wp - s)*dot_product(line%normal(:, 1, segment), along)
     associate (w => s*(1.0_wp - s))
       rise = 2.0_wp*chord_length(line, segment)*w*lean/(1.0_wp + sqrt(max(0.0_wp, 1.0_wp - 4.0_wp*w*lean**2)))
     end associate

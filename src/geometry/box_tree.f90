@@ -1,7 +1,8 @@
 !> Which of many boxes meet a given one, without looking at all of them.
 !>
-!> The boxes are halved by their middles, across the longer way of their extent, again and again; node i of the tree has the
-!> children 2i and 2i + 1, and each node has the box round all that lies below it. A leaf is one box.
+!> The boxes are halved by their middles, across the longer way of their extent, again and again; node i of
+!> the tree has the children 2i and 2i + 1, and each node has the box round all that lies below it. A leaf is
+!> one box.
 module epcont_geometry_box_tree
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: halve

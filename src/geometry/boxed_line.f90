@@ -18,7 +18,8 @@ module epcont_geometry_boxed_line
 
 contains
 
-  !> The boxes of a line. Each reaches beyond its side by half of the side's length, as the curve over it may do.
+  !> The boxes of a line. Each reaches beyond its side by half of the side's length, as the curve over it may
+  !! do.
   pure function new_boxed_line(line) result(boxed)
     type(boundary_line), intent(in) :: line   !! its sides
     type(boxed_line) :: boxed

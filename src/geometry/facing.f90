@@ -1,7 +1,8 @@
 !> What a point of one boundary faces of another.
 !>
-!> A side is faced where its normal leads to the point, the two boundaries look against each other, and no body stands
-!> between. The nearest counts; in a concave corner, where a second face is about as near, that one too.
+!> A side is faced where its normal leads to the point, the two boundaries look against each other, and no
+!> body stands between. The nearest counts; in a concave corner, where a second face is about as near, that
+!> one too.
 module epcont_geometry_facing
   use epcont_base_kinds, only: wp
   use epcont_geometry_boundary_line, only: boundary_line, facing_place
@@ -11,7 +12,8 @@ module epcont_geometry_facing
   private
   public :: facing_type, looking_point, node_of, rise_of, find_nearest, find_facing
 
-  !> Boundaries face each other whose normals' cosine is below this: a wall at a right angle to a floor does not face it,
+  !> Boundaries face each other whose normals' cosine is below this: a wall at a right angle to a floor does
+  !! not face it,
   !> however rounding has turned the scene. (93 degrees: no angle that people draw.)
   real(wp), parameter :: against = -0.05_wp
   !> Normals that differ by less (cosine) are those of one face: 10 degrees.
@@ -25,10 +27,12 @@ module epcont_geometry_facing
   integer, parameter :: rounds = 3
   !> Bodies are not thinner than this part of their sides: where the gap is smaller nothing stands between.
   real(wp), parameter :: thin = 1.0e-3_wp
-  !> Curves rise above the chords of their sides by an eighth of chord times turn; nearer to a side than this much of it, and
+  !> Curves rise above the chords of their sides by an eighth of chord times turn; nearer to a side than this
+  !! much of it, and
   !> than this part of the way, is the side itself.
   real(wp), parameter :: rise = 0.2_wp, at_end = 0.01_wp
-  !> What stands between is looked for this part of the side away from a node, towards the middle of its side: flush faces
+  !> What stands between is looked for this part of the side away from a node, towards the middle of its side:
+  !! flush faces
   !> do not count.
   real(wp), parameter :: aside = 1.0e-3_wp
 
@@ -134,7 +138,8 @@ contains
         if (found%place%gap < -max(equal*from%search, roundings*maxval(abs(from%x)))) then
           if (.not. goes_on(line, sides(k), from)) cycle
         end if
-        if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) cycle
+        if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) &
+          cycle
       end associate
       n = n + 1
     end do
@@ -185,8 +190,8 @@ contains
     end do
   end subroutine rank
 
-  !> Is a face better than another? It is nearer; or as near, and looks more against the point's own boundary; or lies more
-  !! before the middle of the point's own side.
+  !> Is a face better than another? It is nearer; or as near, and looks more against the point's own boundary;
+  !! or lies more before the middle of the point's own side.
   pure logical function is_better(line, from, one, other)
     type(boxed_line), intent(in) :: line
     type(looking_point), intent(in) :: from
@@ -219,7 +224,8 @@ contains
                 abs(dot_product(one%place%normal - other%place%normal, from%outward)) <= equal
   end function are_equal
 
-  !> Of two sides that a corner faces equally well at their corner none is the better one: between their normals.
+  !> Of two sides that a corner faces equally well at their corner none is the better one: between their
+  !! normals.
   pure subroutine take_mean(other, place)
     type(facing_place), intent(in) :: other
     type(facing_place), intent(inout) :: place
@@ -239,7 +245,8 @@ contains
     rise_of = rise*line%chord_length(side)*norm2(line%normal(:, 2, side) - line%normal(:, 1, side))
   end function rise_of
 
-  !> Does an overlap go on along the point's own side? (The corner of a block that stands on another is no overlap with the
+  !> Does an overlap go on along the point's own side? (The corner of a block that stands on another is no
+  !! overlap with the
   !> other's flank, however far it lies behind that.)
   pure logical function goes_on(line, side, from)
     class(boundary_line), intent(in) :: line
@@ -263,7 +270,8 @@ contains
     type(boxed_line), intent(in) :: obstacles
     type(looking_point), intent(in) :: from
     type(facing_place), intent(in) :: place
-    real(wp), intent(in) :: side, side_rise    !! length of the side that is faced, how far its curve may be from it
+    !> Length of the side that is faced, how far its curve may be from it
+    real(wp), intent(in) :: side, side_rise
     real(wp) :: a(2), b(2), near(2)
     integer, allocatable :: sides(:)
     integer :: k

@@ -1,5 +1,5 @@
-!> The outlines of the bodies in one state, as drawn or displaced: what a point is near to, and whether a body has it inside.
-!> Sides of six-node elements are the parabolas that they are.
+!> The outlines of the bodies in one state, as drawn or displaced: what a point is near to, and whether a body
+!> has it inside. Sides of six-node elements are the parabolas that they are.
 module epcont_geometry_outline_shape
   use epcont_base_kinds, only: wp
   use epcont_geometry_box_tree, only: box_tree, most_waiting, new_box_tree
@@ -21,7 +21,8 @@ module epcont_geometry_outline_shape
 
   type :: outline_shape
     type(outline_type) :: outline
-    real(wp), allocatable :: x(:, :, :)          !! of where each side begins and ends, and of its middle [length] [2, 3, sides]
+    !> Of where each side begins and ends, and of its middle [length] [2, 3, sides]
+    real(wp), allocatable :: x(:, :, :)
     real(wp), allocatable :: low(:, :), high(:, :)  !! box of each side [length] [2, sides]
     type(box_tree), allocatable :: side_tree(:)  !! of each part; the sides are counted from its first
     type(box_tree) :: part_tree                  !! of the parts' boxes
@@ -86,7 +87,8 @@ contains
 
     associate (own => self%x(:, :, side))
       x = own(:, 1) + s*(own(:, 2) - own(:, 1))
-      if (self%outline%node(3, side) > 0) x = x + 4.0_wp*s*(1.0_wp - s)*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
+      if (self%outline%node(3, side) > 0) &
+        x = x + 4.0_wp*s*(1.0_wp - s)*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
     end associate
   end function at
 
@@ -109,7 +111,8 @@ contains
     chord = self%x(:, 2, side) - self%x(:, 1, side)
   end function chord
 
-  !> The place of a part that is nearest to a point: branch and bound in its tree. `guess` is a side that may be near.
+  !> The place of a part that is nearest to a point: branch and bound in its tree. `guess` is a side that may
+  !! be near.
   pure function nearest_place(self, part, point, guess) result(best)
     class(outline_shape), intent(in) :: self
     integer, intent(in) :: part   !! which part
@@ -177,14 +180,16 @@ contains
     place%distance = norm2(point - place%x)
   end function near_side
 
-  !> Is a point in the body, as seen from the place of the outline that is nearest to it? At a node both sides say so.
+  !> Is a point in the body, as seen from the place of the outline that is nearest to it? At a node both sides
+  !! say so.
   pure logical function is_inside(self, place, point)
     class(outline_shape), intent(in) :: self
     type(near_place), intent(in) :: place   !! of the outline, nearest to the point
     real(wp), intent(in) :: point(2)   !! [length]
     real(wp) :: outward(2)
 
-    associate (side => place%side, before => self%outline%before(place%side), after => self%outline%after(place%side))
+    associate (side => place%side, before => self%outline%before(place%side), &
+               after => self%outline%after(place%side))
       if (place%s <= 0.0_wp) then
         outward = normal(self%tangent(before, 1.0_wp)) + normal(self%tangent(side, 0.0_wp))
       else if (place%s >= 1.0_wp) then

@@ -18,7 +18,8 @@ module epcont_model_element_shapes
 
 contains
 
-  !> From kind, nodes and section of each element. Node 0 is one that could not be found, and section 0 one of these.
+  !> From kind, nodes and section of each element. Node 0 is one that could not be found, and section 0 one of
+  !! these.
   pure subroutine complete_elements(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
@@ -59,20 +60,23 @@ contains
     end do
     area = polygon_area(x)
     if (extent > 0.0_wp .and. extent < shortest_side) then
-      call found%add_error(of_element, e, 3, ': its sides are shorter than '//short_real(shortest_side), 'other units')
+      call found%add_error(of_element, e, 3, ': its sides are shorter than '//short_real(shortest_side), &
+                           'other units')
     else if (n == 3 .and. abs(area) <= sliver*longest) then
       call found%add_error(of_element, e, 4, ': its corners '//corner_ids(model, e)//' lie on one line', &
                            'corners that span an area')
     else if (n == 4 .and. .not. bends_one_way(x, sign(1.0_wp, area), sliver*longest)) then
       call found%add_error(of_element, e, 3, ': its corners '//corner_ids(model, e)// &
-                           ' cross over, bend inwards or lie on one line', 'four corners in turn, each bending the same way')
+                           ' cross over, bend inwards or lie on one line', &
+                           'four corners in turn, each bending the same way')
     else
       if (area < 0.0_wp) call turn(model%connectivity(:n, e), model%connectivity(n + 1:model%order(e), e))
       if (model%order(e) > n) call check_middles(e, n, model%coordinates(e), found)
     end if
   end subroutine check_shape
 
-  !> Does a boundary bend by more than `least` at each corner, to the left where `way` is 1, else to the right?
+  !> Does a boundary bend by more than `least` at each corner, to the left where `way` is 1, else to the
+  !! right?
   pure logical function bends_one_way(x, way, least)
     real(wp), intent(in) :: x(:, :)   !! corners [2, any]
     real(wp), intent(in) :: way       !! 1 or -1
@@ -82,7 +86,8 @@ contains
     n = size(x, 2)
     bends_one_way = .false.
     do k = 1, n
-      if (way*cross_product(x(:, k) - x(:, mod(k + n - 2, n) + 1), x(:, mod(k, n) + 1) - x(:, k)) <= least) return
+      if (way*cross_product(x(:, k) - x(:, mod(k + n - 2, n) + 1), x(:, mod(k, n) + 1) - x(:, k)) <= least) &
+        return
     end do
     bends_one_way = .true.
   end function bends_one_way
@@ -109,8 +114,8 @@ contains
     middle = middle(size(middle):1:-1)
   end subroutine turn
 
-  !> A side's middle node may leave the middle as long as the element does not fold over at a corner; a side that bulges more
-  !! than half a circle does is hardly meant.
+  !> A side's middle node may leave the middle as long as the element does not fold over at a corner; a side
+  !! that bulges more than half a circle does is hardly meant.
   pure subroutine check_middles(e, corners, x, found)
     integer, intent(in) :: e, corners
     real(wp), intent(in) :: x(:, :)   !! [2, nodes]
@@ -126,15 +131,19 @@ contains
       before = mod(k + corners - 2, corners) + 1
       ! Tangents of the two sides at the corner.
       folds = folds .or. .not. cross_product(4.0_wp*x(:, corners + k) - 3.0_wp*x(:, k) - x(:, after), &
-                                             4.0_wp*x(:, corners + before) - 3.0_wp*x(:, k) - x(:, before)) > 0.0_wp
-      bulges = bulges .or. norm2(2.0_wp*x(:, corners + k) - x(:, k) - x(:, after)) > norm2(x(:, after) - x(:, k))
+                                             4.0_wp*x(:, corners + before) - 3.0_wp*x(:, k) - &
+                                             x(:, before)) > 0.0_wp
+      bulges = bulges .or. norm2(2.0_wp*x(:, corners + k) - x(:, k) - x(:, after)) > &
+               norm2(x(:, after) - x(:, k))
     end do
     if (folds) then
       call found%add_error(of_element, e, 3, &
-                           ': a middle node is so far from the middle of its side that the element folds over', remedy)
+                           ': a middle node is so far from the middle of its side that the element folds over', &
+                           remedy)
     else if (bulges) then
       call found%add_warning(of_element, e, 3, &
-                             ': a middle node is farther from the middle of its side than half of that side is long', remedy)
+                             ': a middle node is farther from the middle of its side than half of that side is '// &
+                             'long', remedy)
     end if
   end subroutine check_middles
 
@@ -150,7 +159,8 @@ contains
       kind = merge(2, 1, model%kinematics(model%section(e)) == axisymmetric)
       first(kind) = e
     end do
-    if (all(first > 0)) call found%add_error(of_element, first(2), 0, ': a ring in a deck of plane elements ('// &
+    if (all(first > 0)) call found%add_error(of_element, first(2), 0, &
+                                             ': a ring in a deck of plane elements ('// &
                           model%name_of(of_element, first(1))//')', 'plane elements only, or rings only')
   end subroutine check_kinds
 
@@ -164,7 +174,8 @@ contains
     in_ring = .false.
     do e = 1, model%elements
       if (model%section(e) == 0 .or. any(model%connectivity(:model%order(e), e) == 0)) cycle
-      if (model%kinematics(model%section(e)) == axisymmetric) in_ring(model%connectivity(:model%order(e), e)) = .true.
+      if (model%kinematics(model%section(e)) == axisymmetric) &
+        in_ring(model%connectivity(:model%order(e), e)) = .true.
     end do
     do i = 1, model%nodes
       if (in_ring(i) .and. model%x(1, i) < 0.0_wp) &
@@ -173,7 +184,8 @@ contains
       loose(i) = in_ring(i) .and. model%x(1, i) == 0.0_wp .and. .not. model%held(1, model%leader(1, i))
     end do
     if (.not. any(loose)) return
-    call found%add_error(of_node, findloc(loose, .true., dim=1), 3, ': lies on the axis of rings and could leave it'// &
+    call found%add_error(of_node, findloc(loose, .true., dim=1), 3, &
+                         ': lies on the axis of rings and could leave it'// &
                          and_more(count(loose), '; so could ', ' more'), 'direction 1 held')
     found%list(found%count)%node = pack([(i, i=1, model%nodes)], loose)
   end subroutine check_axis

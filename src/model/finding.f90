@@ -1,14 +1,16 @@
-!> What is wrong with a scene, or looks so: collected, so that one look finds all of it. Of a scene made from arrays the first error
-!> is told in a sentence; of one made from a deck everything has its place among the cards.
+!> What is wrong with a scene, or looks so: collected, so that one look finds all of it. Of a scene made from
+!> arrays the first error is told in a sentence; of one made from a deck everything has its place among the
+!> cards.
 module epcont_model_finding
   use epcont_base_text, only: text_of
   implicit none
   private
   public :: finding, findings, and_more
 
-  !> What a finding is of, by its position in the model; above zero are cards of a deck. PARAM MUP is one of its own.
-  integer, parameter, public :: of_scene = 0, of_node = -1, of_element = -2, of_section = -3, of_pair = -4, of_line = -5, &
-                                of_couple = -6, of_paper_ratio = -7
+  !> What a finding is of, by its position in the model; above zero are cards of a deck. PARAM MUP is one of
+  !! its own.
+  integer, parameter, public :: of_scene = 0, of_node = -1, of_element = -2, of_section = -3, of_pair = -4, &
+    of_line = -5, of_couple = -6, of_paper_ratio = -7
 
   !> How grave it is.
   integer, parameter, public :: found_error = 1, found_warning = 2, found_note = 3
@@ -18,7 +20,8 @@ module epcont_model_finding
     integer :: severity = found_error
     integer :: of = of_scene
     integer :: which = 0                     !! of these
-    integer :: item = 0                      !! of its data, as the fields of its card: 0 all, 1 the id; -k: the k-th of its list
+    !> Of its data, as the fields of its card: 0 all, 1 the id; -k: the k-th of its list
+    integer :: item = 0
     character(len=:), allocatable :: what    !! goes on behind its name: `: lies on the axis`
     character(len=:), allocatable :: remedy  !! what would be right
     integer, allocatable :: node(:)          !! all the nodes that it is about, if these matter [any]

@@ -4,7 +4,8 @@ module epcont_model_given
   use epcont_base_text, only: text_of
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, plane_strain
-  use epcont_model_finding, only: findings, of_couple, of_element, of_line, of_node, of_pair, of_scene, of_section
+  use epcont_model_finding, only: findings, of_couple, of_element, of_line, of_node, of_pair, of_scene, &
+                                  of_section
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: check_curve
   implicit none
@@ -54,7 +55,8 @@ contains
   pure subroutine add_elements(model, name, node, section)
     type(model_type), intent(inout) :: model   !! the scene
     character(len=*), intent(in) :: name       !! of their card: CTRIA3, CTRIA6, CQUAD4, CTRAX3, CTRAX6
-    integer, intent(in) :: node(:, :)          !! corners in either turning sense, then middles of sides [nodes, elements]
+    !> Corners in either turning sense, then middles of sides [nodes, elements]
+    integer, intent(in) :: node(:, :)
     integer, intent(in) :: section(:)          !! of each [elements]
     integer, allocatable :: before(:, :)
     integer :: e, kind
@@ -86,7 +88,8 @@ contains
     model%initial_gap = gap
   end subroutine set_pairs
 
-  !> Sizes, sections, numbers of nodes, sections and lines. What a deck's reader has looked at by itself is not looked at again.
+  !> Sizes, sections, numbers of nodes, sections and lines. What a deck's reader has looked at by itself is
+  !! not looked at again.
   pure subroutine check_given(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
@@ -100,7 +103,8 @@ contains
       call check_numbers(model%leader(:, i), model%nodes, of_node, i, 'node', found)
     end do
     do i = 1, model%elements
-      call check_numbers(model%connectivity(:model%kinds(model%kind(i))%nodes, i), model%nodes, of_element, i, 'node', found)
+      call check_numbers(model%connectivity(:model%kinds(model%kind(i))%nodes, i), model%nodes, of_element, &
+                         i, 'node', found)
       call check_numbers([model%section(i)], size(model%young), of_element, i, 'section', found)
     end do
     do i = 1, model%pairs
@@ -126,9 +130,11 @@ contains
     if (any(model%kind == 0)) &
       call found%add_error(of_scene, 0, 0, 'elements are of a kind that there is not', 'CTRIA3, say')
     if (any([size(model%kinematics), size(model%poisson), size(model%thickness)] /= size(model%young))) &
-      call found%add_error(of_scene, 0, 0, 'the sections have arrays of different lengths', 'one number for each section')
+      call found%add_error(of_scene, 0, 0, 'the sections have arrays of different lengths', &
+                           'one number for each section')
     if (any([size(model%pair_node, 2), size(model%normal, 2)] /= model%pairs)) &
-      call found%add_error(of_scene, 0, 0, 'the pairs have arrays of different lengths', 'one column for each pair')
+      call found%add_error(of_scene, 0, 0, 'the pairs have arrays of different lengths', &
+                           'one column for each pair')
   end subroutine check_sizes
 
   !> Numbers of things lie within how many of these there are.
@@ -141,7 +147,8 @@ contains
 
     do k = 1, size(number)
       if (number(k) < 1 .or. number(k) > most) &
-        call found%add_error(of, which, 0, ': there is no '//noun//' '//text_of(number(k)), 'numbers from 1 to '//text_of(most))
+        call found%add_error(of, which, 0, ': there is no '//noun//' '//text_of(number(k)), &
+                             'numbers from 1 to '//text_of(most))
     end do
   end subroutine check_numbers
 
@@ -156,11 +163,13 @@ contains
     if (.not. (model%young(s) > 0.0_wp .and. model%young(s) <= huge(1.0_wp))) &
       call found%add_error(of_section, s, 0, ': Young''s modulus is not above zero', 'a stiffness')
     if (.not. (model%poisson(s) >= 0.0_wp .and. model%poisson(s) < 0.5_wp)) &
-      call found%add_error(of_section, s, 0, ': Poisson''s ratio is out of range', '0 or more, and less than 0.5')
+      call found%add_error(of_section, s, 0, ': Poisson''s ratio is out of range', &
+                           '0 or more, and less than 0.5')
     if (.not. (model%thickness(s) > 0.0_wp .and. model%thickness(s) <= huge(1.0_wp))) &
       call found%add_error(of_section, s, 0, ': the thickness is not above zero', 'a length')
     if (model%kinematics(s) < plane_strain .or. model%kinematics(s) > axisymmetric) &
-      call found%add_error(of_section, s, 0, ': of no known kinematics', 'plane_strain, plane_stress or axisymmetric')
+      call found%add_error(of_section, s, 0, ': of no known kinematics', &
+                           'plane_strain, plane_stress or axisymmetric')
     if (found%errors > 0 .or. .not. allocated(model%curve(s)%strain)) return
     call check_curve(model%curve(s)%strain, model%curve(s)%stress, model%young(s), wrong, what, remedy)
     if (wrong > 0) call found%add_error(of_section, s, 0, ': '//what, remedy)

@@ -19,7 +19,8 @@ module epcont_model_model
   !> A boundary line (BLSEG).
   type :: named_line
     integer :: id = 0
-    integer, allocatable :: node(:)      !! in their order along the boundary, in either sense; none: they were not sound
+    !> In their order along the boundary, in either sense; none: they were not sound
+    integer, allocatable :: node(:)
     integer, allocatable :: side(:)      !! of the outline, with the body to the left
     real(wp) :: box(2, 2) = 0.0_wp       !! least and largest coordinates of their ends [length] [2, 2]
   end type named_line
@@ -30,8 +31,8 @@ module epcont_model_model
     integer :: line(2) = 0               !! slave and master, by their positions
   end type line_couple
 
-  !> Contact of boundary lines, and the pairs that came of it. Lines that go on in each other, of one BCONP or of several, are
-  !! one contact: all their sides on the one hand are slaves, on the other masters.
+  !> Contact of boundary lines, and the pairs that came of it. Lines that go on in each other, of one BCONP or
+  !! of several, are one contact: all their sides on the one hand are slaves, on the other masters.
   type :: line_contact
     integer, allocatable :: couple(:)     !! by their positions
     integer, allocatable :: bconp(:), slave_id(:), master_id(:)   !! ids of the cards
@@ -40,9 +41,11 @@ module epcont_model_model
     integer :: first = 1, last = 0        !! its pairs: of the slave's nodes, and from the next one on
     integer :: first_of_master = 1        !! those of the master's nodes, most of them corners
     integer, allocatable :: stands_on(:)  !! the side of the slave at each of the latter [pairs of the master]
-    integer, allocatable :: left_out(:, :)    !! sides of the slave that face nothing at a node: which, which node [2, any]
+    !> Sides of the slave that face nothing at a node: which, which node [2, any]
+    integer, allocatable :: left_out(:, :)
     integer :: nodes_left_out = 0             !! nodes of the slave without a pair
-    integer, allocatable :: came_near(:)      !! nodes of the master that have a pair since they came near as loads moved them
+    !> Nodes of the master that have a pair since they came near as loads moved them
+    integer, allocatable :: came_near(:)
     logical :: is_wider = .false.             !! `search` has grown since nodes came near
   end type line_contact
 
@@ -54,12 +57,13 @@ module epcont_model_model
     type(element_kind), allocatable :: kinds(:) !! the table of elements [any]
     integer, allocatable :: kind(:)             !! of each element: its row there [elements]
     integer, allocatable :: order(:)            !! nodes of each element [elements]
-    !> The nodes of each element: its corners counter-clockwise, then the middles of its sides, the first behind the
-    !! first corner; 0 where it has no more. [most of all, elements]
+    !> The nodes of each element: its corners counter-clockwise, then the middles of its sides, the first
+    !! behind the first corner; 0 where it has no more. [most of all, elements]
     integer, allocatable :: connectivity(:, :)
     type(incidence) :: around                   !! the elements around each node
     integer :: points = 0                       !! integration points of all elements
-    integer, allocatable :: first_point(:)      !! of each element; those of element e end before that of e + 1 [elements + 1]
+    !> Of each element; those of element e end before that of e + 1 [elements + 1]
+    integer, allocatable :: first_point(:)
     integer, allocatable :: point_element(:)    !! [points]
     integer, allocatable :: section(:)          !! section of each element [elements]
     integer, allocatable :: property_id(:)      !! PSHELL or PSOLID [sections]
@@ -72,20 +76,23 @@ module epcont_model_model
     type(controls_type) :: controls             !! of the plastic iteration
     logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
     real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
-    !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it [length] [2, nodes].
+    !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it
+    !! [length] [2, nodes].
     real(wp), allocatable :: travel(:, :), beyond_travel(:, :)
-    integer, allocatable :: leader(:, :)        !! node whose displacement the freedom shares: itself if not tied [2, nodes]
+    !> Node whose displacement the freedom shares: itself if not tied [2, nodes]
+    integer, allocatable :: leader(:, :)
     logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
     real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]
     integer, allocatable :: pair_id(:)          !! [pairs]
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
     real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
-    !> Row k of N: along its normal the nodes row_node(row_start(k):row_start(k+1)-1) open the gap by row_weight. The
-    !! weights of a row sum to 0. [pairs + 1], [entries], [entries]
+    !> Row k of N: along its normal the nodes row_node(row_start(k):row_start(k+1)-1) open the gap by
+    !! row_weight. The weights of a row sum to 0. [pairs + 1], [entries], [entries]
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
-    type(boxed_line) :: boundary                !! sides of the bodies' outlines, by the same numbers, with normals; where lines are
+    !> Sides of the bodies' outlines, by the same numbers, with normals; where lines are
+    type(boxed_line) :: boundary
     type(named_line), allocatable :: line(:)
     type(line_couple), allocatable :: couple(:)
     type(line_contact), allocatable :: line_contact(:)
@@ -127,7 +134,8 @@ contains
     corners = self%kinds(self%kind(element))%corners
   end function corners
 
-  !> Nodes of a side of an element: where it begins and ends, counter-clockwise, and its middle, 0 where it has none.
+  !> Nodes of a side of an element: where it begins and ends, counter-clockwise, and its middle, 0 where it
+  !! has none.
   pure function edge(self, element, side)
     class(model_type), intent(in) :: self
     integer, intent(in) :: element, side   !! which element, which side of it
@@ -161,7 +169,8 @@ contains
     x = self%x(:, edge(:size(x, 2)))
   end function edge_coordinates
 
-  !> What belongs to a length in the plane at a radius: the thickness of an element, or the way round its ring [length].
+  !> What belongs to a length in the plane at a radius: the thickness of an element, or the way round its ring
+  !! [length].
   pure real(wp) function depth(self, element, radius)
     class(model_type), intent(in) :: self
     integer, intent(in) :: element   !! which element
@@ -188,7 +197,8 @@ contains
     is_tied = any(self%leader(1, node) /= node) .or. any(self%leader(2, node) /= node)
   end function is_tied
 
-  !> Do supports and RBE2 keep the shape between these nodes? In each direction they are all held, or all tied to one.
+  !> Do supports and RBE2 keep the shape between these nodes? In each direction they are all held, or all tied
+  !! to one.
   pure logical function is_rigid(self, node)
     class(model_type), intent(in) :: self
     integer, intent(in) :: node(:)   !! these nodes [any]
@@ -263,7 +273,8 @@ contains
     case (of_element)
       name = element_name(self, which)
     case (of_section)
-      name = trim(merge('PSOLID', 'PSHELL', self%kinematics(which) == axisymmetric))//' '//text_of(self%property_id(which))
+      name = trim(merge('PSOLID', 'PSHELL', self%kinematics(which) == axisymmetric))//' '// &
+             text_of(self%property_id(which))
     case (of_pair)
       name = 'CGAP '//text_of(self%pair_id(which))
     case (of_line)

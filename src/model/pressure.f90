@@ -10,8 +10,8 @@ module epcont_model_pressure
 
 contains
 
-  !> Add the nodal forces of a pressure that varies linearly along a side, from one node to the other: positive into the
-  !! element, turned counter-clockwise by theta.
+  !> Add the nodal forces of a pressure that varies linearly along a side, from one node to the other:
+  !! positive into the element, turned counter-clockwise by theta.
   pure subroutine add_pressure(model, element, side, from, pressure, theta)
     type(model_type), intent(inout) :: model   !! the scene
     integer, intent(in) :: element, side   !! the side, by its number in the element
@@ -26,11 +26,13 @@ contains
     at_ends = merge(pressure, pressure([2, 1]), ends(1) == from)
     point = edge_points(model%edge_coordinates(ends))
     do p = 1, edge_point_count
-      direction = turned([-point(p)%tangent(2), point(p)%tangent(1)], theta)   ! from inward: the element lies to the left
+      ! From inward: the element lies to the left
+      direction = turned([-point(p)%tangent(2), point(p)%tangent(1)], theta)
       depth = model%depth(element, point(p)%x(1))
       value = at_ends(1) + (at_ends(2) - at_ends(1))*point(p)%along
       do k = 1, size(ends)
-        if (ends(k) > 0) model%load(:, ends(k)) = model%load(:, ends(k)) + value*depth*point(p)%values(k)*direction
+        if (ends(k) > 0) model%load(:, ends(k)) = model%load(:, ends(k)) + &
+                                                  value*depth*point(p)%values(k)*direction
       end do
     end do
   end subroutine add_pressure

@@ -13,7 +13,8 @@ module epcont_model_single_pairs
 
 contains
 
-  !> From nodes, normals and gaps of each pair. Node 0 is one that could not be found; a normal of zero is one from A to B.
+  !> From nodes, normals and gaps of each pair. Node 0 is one that could not be found; a normal of zero is one
+  !! from A to B.
   pure subroutine complete_pairs(model, by_geometry, found)
     type(model_type), intent(inout) :: model   !! the scene
     logical, intent(in) :: by_geometry       !! how far the nodes are apart along the normal counts in the gap
@@ -26,7 +27,8 @@ contains
       associate (a => model%pair_node(1, i), b => model%pair_node(2, i), normal => model%normal(:, i))
         if (a == b .or. a == 0 .or. b == 0) then
           if (a == b .and. a > 0) &
-            call found%add_error(of_pair, i, 4, ': GA and GB are the same GRID', 'a node on each side of the gap')
+            call found%add_error(of_pair, i, 4, ': GA and GB are the same GRID', &
+                                 'a node on each side of the gap')
           model%initial_gap(i) = 0.0_wp
           cycle
         end if
@@ -36,7 +38,8 @@ contains
           if (norm2(between) > coincident*min(edge(a), edge(b))) then
             normal = between/norm2(between)
           else
-            call found%add_error(of_pair, i, 8, ': GA and GB are at one place and field 9 (CID) is blank: no direction', &
+            call found%add_error(of_pair, i, 8, &
+                                 ': GA and GB are at one place and field 9 (CID) is blank: no direction', &
                                  'the id of a CORD2R whose x-axis is the normal')
           end if
         end if
@@ -60,8 +63,10 @@ contains
     if (overlaps == 0) return
     first = findloc(model%initial_gap < 0.0_wp, .true., dim=1)
     others = ''
-    if (overlaps > 1) others = '; '//text_of(overlaps)//' pairs overlap, by up to '//short_real(-minval(model%initial_gap))
-    call found%add_warning(of_pair, first, 1, ': the initial gap is '//short_real(model%initial_gap(first))//others, &
+    if (overlaps > 1) others = '; '//text_of(overlaps)//' pairs overlap, by up to '// &
+                               short_real(-minval(model%initial_gap))
+    call found%add_warning(of_pair, first, 1, ': the initial gap is '// &
+                           short_real(model%initial_gap(first))//others, &
                            'a gap of 0.0 or more, unless a fit is meant')
   end subroutine warn_of_overlap
 

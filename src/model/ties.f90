@@ -1,4 +1,5 @@
-!> Freedoms that follow others (RBE2), those of reference (SUPORT), and the bodies that elements and ties make of nodes.
+!> Freedoms that follow others (RBE2), those of reference (SUPORT), and the bodies that elements and ties make
+!> of nodes.
 module epcont_model_ties
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_text, only: text_of

@@ -25,7 +25,8 @@ contains
     curve%stress = [0.0_wp, yield_stress, yield_stress + slope*yield_strain]
   end function bilinear_curve
 
-  !> The first point of a curve that cannot be, and why; 0 where all can. A number beyond the last point: one is missing.
+  !> The first point of a curve that cannot be, and why; 0 where all can. A number beyond the last point: one
+  !! is missing.
   pure subroutine check_curve(strain, stress, young, wrong, what, remedy)
     real(wp), intent(in) :: strain(:)      !! total [points]
     real(wp), intent(in) :: stress(:)      !! [stress] [points]
@@ -41,7 +42,8 @@ contains
       wrong = 1
       what = 'the first point is not 0.0, 0.0'
       remedy = 'a curve from the origin'
-    else if (stress(2) <= 0.0_wp .or. abs(strain(2) - stress(2)/young) > same_strain*abs(stress(2)/young)) then
+    else if (stress(2) <= 0.0_wp .or. abs(strain(2) - stress(2)/young) > &
+             same_strain*abs(stress(2)/young)) then
       wrong = 2
       what = 'the yield point (the second one) is not on the elastic line of the MAT1'
       remedy = 'strain = stress/E within 1 %'
