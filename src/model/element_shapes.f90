@@ -138,12 +138,13 @@ contains
     end do
     if (folds) then
       call found%add_error(of_element, e, 3, &
-                           ': a middle node is so far from the middle of its side that the element folds over', &
+                           ': a middle node is so far from the middle of its side that '// &
+                           'the element folds over', &
                            remedy)
     else if (bulges) then
       call found%add_warning(of_element, e, 3, &
-                             ': a middle node is farther from the middle of its side than half of that side is '// &
-                             'long', remedy)
+                             ': a middle node is farther from the middle of its side than '// &
+                             'half of that side is long', remedy)
     end if
   end subroutine check_middles
 
