@@ -1,74 +1,137 @@
-!> Ids of cards: unique in their space, and found where other cards name them.
+!> Ids of cards: unique in their space, found where other cards name them; and which set of supports or loads
+!> is used.
 module epcont_build_reference
   use epcont_base_sorting, only: id_index, new_id_index, sorted_order
   use epcont_base_text, only: text_of
   use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_finding, only: findings, of_scene
   implicit none
   private
-  public :: index_of_ids, check_unique, resolve
+  public :: card_index, index_of, check_unique, resolve, resolve_list, chosen_set
+
+  !> The ids that fields may name, and what they are of.
+  type, extends(id_index) :: card_index
+    character(len=8) :: noun = ''    !! GRID, or `element`
+  end type card_index
 
 contains
 
-  !> Index of the ids in the first field of all cards of a table.
-  pure function index_of_ids(deck, card) result(index)
-    type(deck_type), intent(in) :: deck
+  !> The ids in the first fields of all cards of a table.
+  pure type(card_index) function index_of(deck, card) result(index)
+    type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: card  !! which table
-    type(id_index) :: index
 
-    index = new_id_index(int(deck%card(card)%value(1, :)))
-  end function index_of_ids
+    index%id_index = new_id_index(int(deck%card(card)%value(1, :)))
+    index%noun = deck%card(card)%entry%name
+  end function index_of
 
   !> Each id stands once in the first fields of these tables, which share one id space.
-  subroutine check_unique(deck, cards, faults)
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: cards(:)
-    type(diagnostics), intent(inout) :: faults
-    integer, allocatable :: id(:), table(:), row(:), order(:)
+  pure subroutine check_unique(deck, cards, found)
+    type(deck_type), intent(in) :: deck   !! its cards
+    integer, intent(in) :: cards(:)             !! which tables
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer, allocatable :: id(:), order(:), row(:), table(:)
     integer :: c, i, k, earlier
 
-    k = sum(deck%card(cards)%count)
-    allocate (id(k), table(k), row(k))
-    k = 0
+    allocate (id(0), table(0), row(0))
     do c = 1, size(cards)
-      do i = 1, deck%card(cards(c))%count
-        k = k + 1
-        id(k) = int(deck%card(cards(c))%value(1, i))
-        table(k) = cards(c)
-        row(k) = i
-      end do
+      associate (card => deck%card(cards(c)))
+        id = [id, int(card%value(1, :))]
+        table = [table, spread(cards(c), 1, card%count)]
+        row = [row, (i, i=1, card%count)]
+      end associate
     end do
     order = sorted_order(id)
     do k = 2, size(id)
       i = order(k)
       earlier = order(k - 1)
       if (id(i) /= id(earlier)) cycle
-      if (.not. deck%card(table(i))%given(1, row(i))) cycle
-      call faults%add_error(deck%place(table(i), row(i), 1), deck%identity(table(i), row(i))// &
-                            ': the id is taken by '//deck%identity(table(earlier), row(earlier)), 'an id of its own')
+      if (deck%card(table(i))%given(1, row(i))) &
+        call found%add_error(table(i), row(i), 1, ': the id is taken by '// &
+                             deck%identity(table(earlier), row(earlier)), &
+                             'an id of its own')
     end do
   end subroutine check_unique
 
-  !> Position of the card that a field names; 0, and a fault, where there is none.
-  subroutine resolve(deck, card, i, column, index, wanted, faults, position)
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: card, i            !! which table, which card of it
+  !> Positions of what a field of each card names; 0 where there is no such thing, or where nothing is named.
+  !! The former is a fault, but for the id 0, the basic system.
+  pure subroutine resolve(deck, card, column, index, found, position)
+    type(deck_type), intent(in) :: deck   !! its cards
+    integer, intent(in) :: card               !! which table
     integer, intent(in) :: column             !! the field that holds the id
-    type(id_index), intent(in) :: index       !! of the cards that may be meant
-    character(len=*), intent(in) :: wanted    !! their name
-    type(diagnostics), intent(inout) :: faults
-    integer, intent(out) :: position
-    character(len=:), allocatable :: article
+    type(card_index), intent(in) :: index     !! of what may be meant
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer, intent(out) :: position(:)       !! [cards]
+    character(len=:), allocatable :: noun
+    integer :: i, id
 
-    position = 0
-    if (.not. deck%card(card)%given(column, i)) return  ! the reader has said so
-    position = index%find(int(deck%card(card)%value(column, i)))
-    if (position > 0 .or. .not. deck%card(card)%sound(i)) return
-    article = 'the id of a '
-    if (wanted == 'element') article = 'the id of an '
-    call faults%add_error(deck%place(card, i, column), deck%identity(card, i)//': '// &
-                          deck%card(card)%entry%field_text(column)// &
-                          ': there is no '//wanted//' '// &
-                          text_of(nint(deck%card(card)%value(column, i))), article//wanted)
+    noun = trim(index%noun)
+    associate (table => deck%card(card))
+      do i = 1, table%count
+        position(i) = 0
+        if (.not. table%given(column, i)) cycle   ! the reader has said so where it must be
+        id = int(table%value(column, i))
+        position(i) = index%find(id)
+        if (position(i) > 0 .or. id == 0 .or. .not. table%sound(i)) cycle
+        call found%add_error(card, i, column, ': '//table%entry%field_text(column)// &
+                             ': there is no '//noun//' '//text_of(id), &
+                             'the id of '//trim(merge('an', 'a ', noun == 'element'))//' '//noun)
+      end do
+    end associate
   end subroutine resolve
+
+  !> Positions of the nodes that an item of a card's list names: one, or some of a range; it is a fault if
+  !! there are none.
+  pure subroutine resolve_list(deck, card, i, item, nodes, found, position)
+    type(deck_type), intent(in) :: deck   !! its cards
+    integer, intent(in) :: card, i                      !! which table, which card of it
+    integer, intent(in) :: item                         !! of all lists of the table
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer, allocatable, intent(out) :: position(:)    !! ascending by id [any]
+    character(len=:), allocatable :: ids
+
+    associate (from => deck%card(card)%list(item)%from, to => deck%card(card)%list(item)%to)
+      position = nodes%within(from, to)
+      if (size(position) > 0) return
+      ids = text_of(from)
+      if (to > from) ids = ids//' to '//text_of(to)
+    end associate
+    call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
+  end subroutine resolve_list
+
+  !> The set that SPC = or LOAD = names; without it the only set there is. 0 where there is none.
+  pure subroutine chosen_set(deck, cards, choice, word, found, set)
+    type(deck_type), intent(in) :: deck   !! its cards
+    integer, intent(in) :: cards(:)              !! tables whose first field is the set
+    integer, intent(in) :: choice                !! 0: none
+    character(len=*), intent(in) :: word         !! SPC or LOAD
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer, intent(out) :: set   !! 0: there is none
+    logical :: used
+    integer :: c, i, id
+
+    set = choice
+    used = .false.
+    do c = 1, size(cards)
+      do i = 1, deck%card(cards(c))%count
+        if (.not. deck%card(cards(c))%given(1, i)) cycle
+        id = nint(deck%card(cards(c))%value(1, i))
+        if (set == 0) set = id
+        used = used .or. id == set
+        if (id == set) cycle
+        if (choice == 0) then
+          call found%add_error(cards(c), i, 1, ': the deck has several sets, '//text_of(set)//' and '// &
+                               text_of(id)// &
+                               ', and chooses none', word//' = '//text_of(set)//' before BEGIN BULK')
+          return
+        end if
+        call found%add_note(cards(c), i, 1, ': set not used')
+      end do
+    end do
+    if (choice > 0 .and. .not. used) &
+      call found%add_error(of_scene, cards(1), 0, word//' = '//text_of(choice)// &
+                           ': the deck has no such set', &
+                           'the set of the cards in the deck')
+  end subroutine chosen_set
 end module epcont_build_reference

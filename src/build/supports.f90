@@ -1,83 +1,63 @@
 !> Supports, ties and reference freedoms from GRID PS, SPC, SPC1, RBE2 and SUPORT.
 module epcont_build_supports
   use epcont_base_kinds, only: wp
-  use epcont_base_sorting, only: id_index
   use epcont_base_text, only: text_of
-  use epcont_build_reference, only: resolve
-  use epcont_build_sets, only: chosen_set
+  use epcont_build_reference, only: card_index, chosen_set, resolve, resolve_list
   use epcont_deck_card_kinds, only: card_grid, card_rbe2, card_spc, card_spc1, card_suport
   use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_model_finding, only: findings, of_node
   use epcont_model_model, only: model_type
+  use epcont_model_ties, only: follow_to_the_end, set_reference, tie
   implicit none
   private
   public :: build_supports, build_ties, build_references
 
-  character(len=*), parameter :: one_displacement = 'one displacement for each freedom'
-
 contains
 
   !> GRID PS, SPC and SPC1 of the chosen set.
-  subroutine build_supports(deck, nodes, model, faults)
-    type(deck_type), intent(in) :: deck
-    type(id_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(diagnostics), intent(inout) :: faults
-    integer :: conflict, i, k, node, ps, set
-    integer, allocatable :: found(:)
+  pure subroutine build_supports(deck, nodes, model, found)
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer :: i, item, k, ps, set
+    integer, allocatable :: node(:)
 
-    allocate (model%held(2, model%nodes), source=.false.)
-    allocate (model%prescribed(2, model%nodes), source=0.0_wp)
     associate (grid => deck%card(card_grid), spc => deck%card(card_spc), spc1 => deck%card(card_spc1))
       ps = grid%column('PS')
       do i = 1, grid%count
-        if (grid%given(ps, i)) call hold(i, nint(grid%value(ps, i)), 0.0_wp, model, conflict)
+        if (grid%given(ps, i)) call hold(model, i, nint(grid%value(ps, i)), 0.0_wp, [card_grid, i, ps], found)
       end do
-      call chosen_set(deck, [card_spc, card_spc1], deck%spc, deck%spc_place, 'SPC', faults, set)
-      do i = 1, spc%count
-        do k = 2, 5, 3
-          if (.not. spc%given(k, i)) cycle
-          call resolve(deck, card_spc, i, k, nodes, 'GRID', faults, node)
-          if (node == 0 .or. nint(spc%value(1, i)) /= set) cycle
-          call hold(node, nint(spc%value(k + 1, i)), spc%value(k + 2, i), model, conflict)
-          if (conflict > 0) call faults%add_error(deck%place(card_spc, i, k), &
-                                 deck%identity(card_spc, i)//conflict_text(model, node, conflict), one_displacement)
+      call chosen_set(deck, [card_spc, card_spc1], deck%spc, 'SPC', found, set)
+      allocate (node(spc%count))
+      do k = 2, 5, 3
+        call resolve(deck, card_spc, k, nodes, found, node)
+        do i = 1, spc%count
+          if (node(i) > 0 .and. nint(spc%value(1, i)) == set) &
+            call hold(model, node(i), nint(spc%value(k + 1, i)), spc%value(k + 2, i), [card_spc, i, k], found)
         end do
       end do
       do i = 1, spc1%count
-        do k = spc1%list_start(i), spc1%list_start(i + 1) - 1
-          found = nodes%within(spc1%list(k)%from, spc1%list(k)%to)
-          if (size(found) == 0) then
-            call faults%add_error(deck%list_place(card_spc1, k), deck%identity(card_spc1, i)//': there is no GRID '// &
-                                  range_text(spc1%list(k)%from, spc1%list(k)%to), 'the id of a GRID')
-          end if
+        do item = spc1%list_start(i), spc1%list_start(i + 1) - 1
+          call resolve_list(deck, card_spc1, i, item, nodes, found, node)
           if (nint(spc1%value(1, i)) /= set) cycle
-          do node = 1, size(found)
-            call hold(found(node), nint(spc1%value(2, i)), 0.0_wp, model, conflict)
-            if (conflict > 0) call faults%add_error(deck%list_place(card_spc1, k), &
-                                   deck%identity(card_spc1, i)//conflict_text(model, found(node), conflict), one_displacement)
+          do k = 1, size(node)
+            call hold(model, node(k), nint(spc1%value(2, i)), 0.0_wp, [card_spc1, i, -item], found)
           end do
         end do
       end do
     end associate
   end subroutine build_supports
 
-  pure function range_text(first, last) result(text)
-    integer, intent(in) :: first, last
-    character(len=:), allocatable :: text
-
-    text = text_of(first)
-    if (last > first) text = text//' to '//text_of(last)
-  end function range_text
-
-  !> Hold the freedoms of a node that `digits` names. `conflict` is a direction that is held at another
-  !! displacement already, 0 where there is none.
-  pure subroutine hold(node, digits, displacement, model, conflict)
-    integer, intent(in) :: node, digits
-    real(wp), intent(in) :: displacement
+  !> Hold the freedoms of a node that `digits` names; of freedoms that are held at another displacement
+  !! already one is told.
+  pure subroutine hold(model, node, digits, displacement, card, found)
     type(model_type), intent(inout) :: model
-    integer, intent(out) :: conflict
-    integer :: c
+    integer, intent(in) :: node, digits
+    real(wp), intent(in) :: displacement   !! [length]
+    integer, intent(in) :: card(3)         !! table, card and field that say so
+    type(findings), intent(inout) :: found
+    integer :: c, conflict
 
     conflict = 0
     do c = 1, 2
@@ -86,15 +66,11 @@ contains
       model%held(c, node) = .true.
       model%prescribed(c, node) = displacement
     end do
+    if (conflict > 0) &
+      call found%add_error(card(1), card(2), card(3), ': direction '//text_of(conflict)//' of '// &
+                           model%name_of(of_node, node)// &
+                           ' is held at another displacement already', 'one displacement for each freedom')
   end subroutine hold
-
-  pure function conflict_text(model, node, c) result(text)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node, c
-    character(len=:), allocatable :: text
-
-    text = ': direction '//text_of(c)//' of GRID '//text_of(model%node_id(node))//' is held at another displacement already'
-  end function conflict_text
 
   !> Whether the digits (12, 2, 123456) name component c.
   pure logical function has_component(digits, c)
@@ -109,97 +85,50 @@ contains
   end function has_component
 
   !> RBE2: freedoms that follow a leader. Chains are followed to their end.
-  subroutine build_ties(deck, nodes, model, faults)
-    type(deck_type), intent(in) :: deck
-    type(id_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: objection, remedy
-    integer :: c, i, k, leader, node, steps
+  pure subroutine build_ties(deck, nodes, model, found)
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer, allocatable :: node(:)
+    integer :: c, i, item, k
+    integer :: leader(deck%card(card_rbe2)%count)
 
-    model%leader = spread([(i, i=1, model%nodes)], 1, 2)
+    call resolve(deck, card_rbe2, 2, nodes, found, leader)
     associate (rbe2 => deck%card(card_rbe2))
       do i = 1, rbe2%count
-        call resolve(deck, card_rbe2, i, 2, nodes, 'GRID', faults, leader)
-        do k = rbe2%list_start(i), rbe2%list_start(i + 1) - 1
-          node = nodes%find(rbe2%list(k)%from)
-          if (node == 0) then
-            call faults%add_error(deck%list_place(card_rbe2, k), deck%identity(card_rbe2, i)//': there is no GRID '// &
-                                  text_of(rbe2%list(k)%from), 'the id of a GRID')
-          else if (leader > 0) then
+        do item = rbe2%list_start(i), rbe2%list_start(i + 1) - 1
+          call resolve_list(deck, card_rbe2, i, item, nodes, found, node)
+          if (leader(i) == 0) cycle
+          do k = 1, size(node)
             do c = 1, 2
-              objection = ''
               if (has_component(nint(rbe2%value(3, i)), c)) &
-                call tie(c, node, leader, model, objection, remedy)
-              if (len(objection) > 0) call faults%add_error(deck%list_place(card_rbe2, k), deck%identity(card_rbe2, i)// &
-                                           ': direction '//text_of(c)//' of GRID '//text_of(model%node_id(node))//objection, &
-                                           remedy)
+                call tie(model, c, node(k), leader(i), [card_rbe2, i, -item], found)
             end do
-          end if
+          end do
         end do
       end do
     end associate
-    do node = 1, model%nodes
-      do c = 1, 2
-        do steps = 1, model%nodes
-          leader = model%leader(c, model%leader(c, node))
-          if (leader == model%leader(c, node)) exit
-          model%leader(c, node) = leader
-        end do
-      end do
-    end do
+    call follow_to_the_end(model%leader)
   end subroutine build_ties
 
-  !> Tie component c of a node to its leader; `objection` says why that cannot be, or is empty.
-  pure subroutine tie(c, node, leader, model, objection, remedy)
-    integer, intent(in) :: c, node, leader
-    type(model_type), intent(inout) :: model
-    character(len=:), allocatable, intent(out) :: objection, remedy
-    integer :: at
-
-    at = leader
-    do while (model%leader(c, at) /= at .and. at /= node)
-      at = model%leader(c, at)
-    end do
-    objection = ''
-    remedy = ''
-    if (at == node) then
-      objection = ' would follow itself'
-      remedy = 'nodes that follow GN, without GN'
-    else if (model%leader(c, node) /= node) then
-      objection = ' follows another RBE2 already'
-      remedy = 'one leader for each freedom'
-    else if (model%held(c, node)) then
-      objection = ' is held by a support too'
-      remedy = 'the support at GN '//text_of(model%node_id(leader))//' instead'
-    else
-      model%leader(c, node) = leader
-    end if
-  end subroutine tie
-
   !> SUPORT.
-  subroutine build_references(deck, nodes, model, faults)
-    type(deck_type), intent(in) :: deck
-    type(id_index), intent(in) :: nodes
-    type(model_type), intent(inout) :: model
-    type(diagnostics), intent(inout) :: faults
-    integer :: c, i, k, node
+  pure subroutine build_references(deck, nodes, model, found)
+    type(deck_type), intent(in) :: deck   !! its cards
+    type(card_index), intent(in) :: nodes   !! ids of GRID
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer :: c, i, k
+    integer :: node(deck%card(card_suport)%count)
 
-    allocate (model%reference(2, model%nodes), source=.false.)
     associate (suport => deck%card(card_suport))
-      do i = 1, suport%count
-        do k = 1, 7, 2
-          if (.not. suport%given(k, i)) cycle
-          call resolve(deck, card_suport, i, k, nodes, 'GRID', faults, node)
-          if (node == 0) cycle
+      do k = 1, 7, 2
+        call resolve(deck, card_suport, k, nodes, found, node)
+        do i = 1, suport%count
+          if (node(i) == 0) cycle
           do c = 1, 2
-            if (.not. has_component(nint(suport%value(k + 1, i)), c)) cycle
-            if (model%held(c, model%leader(c, node)) .or. model%leader(c, node) /= node) then
-              call faults%add_error(deck%place(card_suport, i, k), deck%identity(card_suport, i)//': direction '// &
-                                    text_of(c)//' of GRID '//text_of(model%node_id(node))// &
-                                    ' is held by a support or follows an RBE2', 'a freedom that is free to move')
-            end if
-            model%reference(c, node) = .true.
+            if (has_component(nint(suport%value(k + 1, i)), c)) &
+              call set_reference(model, c, node(i), [card_suport, i, k], found)
           end do
         end do
       end do

@@ -11,9 +11,8 @@ module epcont_contact_geometry_boundary
 contains
 
   !> All sides, numbered as those of the outlines.
-  pure function find_boundary(model, angle) result(line)
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: angle            !! of PARAM CORNER [degree]; 0: not given
+  pure function find_boundary(model) result(line)
+    type(model_type), intent(in) :: model   !! the scene
     type(boundary_line) :: line
     integer :: i, k
 
@@ -27,8 +26,9 @@ contains
           if (line%segment(k, i) > 0) line%x(:, k, i) = model%x(:, line%segment(k, i))
         end do
       end do
-      call find_normals(line, reshape([(held_directions(model, line%segment(:2, i)), i=1, outline%sides)], [2, outline%sides]), &
-                        angle)
+      call find_normals(line, reshape([(held_directions(model, line%segment(:2, i)), i=1, outline%sides)], &
+                                      [2, outline%sides]), &
+                        model%controls%corner)
     end associate
   end function find_boundary
 

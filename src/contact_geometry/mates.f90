@@ -11,7 +11,7 @@ contains
 
   !> The part of the outline with which pairs join each node; 0: none [nodes].
   pure function find_mates(model) result(mate)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     integer, allocatable :: mate(:)
     integer :: i, k, other
 
@@ -32,7 +32,7 @@ contains
 
   !> Is one of these nodes joined with a part?
   pure logical function is_mate(mate, node, part)
-    integer, intent(in) :: mate(:), node(:), part
+    integer, intent(in) :: mate(:), node(:), part   !! mates of all nodes; these nodes, 0 is none; the part
     integer :: k
 
     is_mate = .false.

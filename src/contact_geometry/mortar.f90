@@ -1,21 +1,33 @@
 !> How the nodes of a master line share in the gaps of the slave nodes: a dual mortar.
 !>
-!> The pressure of slave node i is spread by the dual function psi_i of its shape functions N, which gives nothing to the
-!> other slave nodes: integral of psi_i N_j = d_ij integral of N_i. Its gap is then that of the node, less the master line's
-!> displacement averaged with psi_i: weights (integral of psi_i N_master)/(integral of N_i). A uniform pressure passes
-!> exactly between lines that do not match, and where they do match each node is against its twin alone. (Wohlmuth, A mortar
-!> finite element method using dual spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000.) A side whose slave
-!> nodes do not all face the other line, or not all along, counts at its nodes' own places.
+!> The pressure of slave node i is spread by the dual function psi_i of its shape functions N, which gives
+!> nothing to the other slave nodes: integral of psi_i N_j = d_ij integral of N_i. Its gap is then that of the
+!> node, less the master line's displacement averaged with psi_i: weights (integral of psi_i
+!> N_master)/(integral of N_i). A uniform pressure passes exactly between lines that do not match, and where
+!> they do match each node is against its twin alone. (Wohlmuth, A mortar finite element method using dual
+!> spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000.) A side whose slave nodes do not all
+!> face the other line, or not all along, counts at its nodes' own places.
 module epcont_contact_geometry_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
+  use epcont_contact_geometry_faces, only: faces_type
   use epcont_geometry_boundary_line, only: beyond
   use epcont_geometry_boxed_line, only: boxed_line
   use epcont_geometry_facing, only: facing_type, find_nearest, looking_point, rise_of
   use epcont_model_model, only: line_contact
   implicit none
   private
-  public :: mortar_rows
+  public :: find_mortar_rows, mortar_rows
+
+  !> Nodes and weights of rows: row k has the entries start(k) to start(k + 1) - 1. The weights of a row sum
+  !! to 1.
+  type :: mortar_rows
+    integer, allocatable :: start(:)      !! [rows + 1]
+    integer, allocatable :: node(:)       !! [entries]
+    real(wp), allocatable :: weight(:)    !! [entries]
+  contains
+    procedure :: append
+  end type mortar_rows
 
   !> Gauss points of each piece of a side: exact for the product of two quadratics on a straight one.
   integer, parameter :: gauss_points = 3
@@ -32,15 +44,21 @@ module epcont_contact_geometry_mortar
   real(wp), parameter :: parallel = 0.94_wp
   !> Normals whose cosine is less, on either side of a node, meet at a corner there: more than 9 degrees.
   real(wp), parameter :: smooth = 0.988_wp
-  !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not need one.
+  !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not
+  !! need one.
   real(wp), parameter :: no_area = 1.0e-3_wp
 
-  !> Weights gathered in any order: of a node in a row.
+  !> A part of the weight of a node in a row.
+  type :: weight_part
+    integer :: row = 0, node = 0
+    real(wp) :: weight = 0.0_wp
+  end type weight_part
+
+  !> Parts of weights, gathered in any order.
   type :: weight_list
     integer :: count = 0
-    integer, allocatable :: row(:), node(:)
-    real(wp), allocatable :: weight(:)
-    real(wp), allocatable :: area(:)      !! integral of N_i so far [rows]
+    type(weight_part), allocatable :: part(:)   !! [count or more]
+    real(wp), allocatable :: area(:)            !! integral of N_i so far [rows]
   contains
     procedure :: add
     procedure :: add_own_place
@@ -58,69 +76,79 @@ module epcont_contact_geometry_mortar
 
 contains
 
-  !> Rows of master nodes and weights, one for each slave node that has a pair; the weights of a row sum to 1. Row k is the
-  !! entries start(k) to start(k+1)-1. Rows of no side count at their own places.
-  pure subroutine mortar_rows(contact, obstacles, row_of, facing, ring, start, node, weight, covered)
-    type(line_contact), intent(in) :: contact
+  !> Add a row behind the others.
+  pure subroutine append(self, node, weight)
+    class(mortar_rows), intent(inout) :: self
+    integer, intent(in) :: node(:)          !! its nodes
+    real(wp), intent(in) :: weight(:)       !! and their weights
+
+    self%node = [self%node, node]
+    self%weight = [self%weight, weight]
+    self%start = [self%start, size(self%node) + 1]
+  end subroutine append
+
+  !> Rows of master nodes and weights, one for each slave node that has a pair. Rows of no side count at their
+  !! own places.
+  pure subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
+    type(line_contact), intent(in) :: contact   !! the contact of lines
     type(boxed_line), intent(in) :: obstacles      !! the outlines of all bodies
-    integer, intent(in) :: row_of(:, :)            !! of each side's nodes; 0: they face nothing [3, sides]
-    type(facing_type), intent(in) :: facing(:)     !! what the nodes face [rows]
+    type(faces_type), intent(in) :: faces          !! what the slave's nodes face
     logical, intent(in) :: ring                    !! x is a radius
-    integer, allocatable, intent(out) :: start(:), node(:)
-    real(wp), allocatable, intent(out) :: weight(:)
+    type(mortar_rows), intent(out) :: rows   !! one for each of these nodes
     logical, intent(out) :: covered(:)             !! sides that face the master all along [sides]
     type(weight_list) :: list
     type(side_points) :: points
     integer :: k, row, s
 
-    allocate (list%row(0), list%node(0), list%weight(0))
-    allocate (list%area(size(facing)), source=0.0_wp)
-    associate (slave => contact%slave, master => contact%master)
+    allocate (list%part(64))
+    allocate (list%area(faces%slave%count), source=0.0_wp)
+    associate (slave => contact%slave, master => contact%master, facing => faces%slave%facing)
       do s = 1, size(slave%element)
-        call cut_side(contact, obstacles, s, reach_of(contact, s, row_of(:, s), facing), ring, points)
-        covered(s) = is_covered(points, facing, row_of(:, s), slave%segment(:, s), slave%chord_length(s))
-        if (covered(s)) then
-          call add_dual(master, points, row_of(:, s), list)
-          cycle
-        end if
-        do k = 1, 3
-          row = row_of(k, s)
-          if (row > 0) call list%add_own_place(row, master, facing(row), sum(points%weight(:points%count)* &
-                                                                           points%share(k, :points%count)))
-        end do
+        associate (row_of => faces%row_of(:, s))
+          call cut_side(contact, obstacles, s, reach_of(contact, s, row_of, facing), ring, points)
+          covered(s) = is_covered(points, facing, row_of, slave%segment(:, s), slave%chord_length(s))
+          if (covered(s)) then
+            call add_dual(master, points, row_of, list)
+            cycle
+          end if
+          do k = 1, 3
+            if (row_of(k) > 0) call list%add_own_place(row_of(k), master, facing(row_of(k)), &
+                                     sum(points%weight(:points%count)*points%share(k, :points%count)))
+          end do
+        end associate
       end do
-      do row = 1, size(facing)
+      do row = 1, faces%slave%count
         if (.not. list%area(row) > 0.0_wp) call list%add_own_place(row, master, facing(row), 1.0_wp)
       end do
     end associate
-    call collect(list, start, node, weight)
-  end subroutine mortar_rows
+    call collect(list, rows)
+  end subroutine find_mortar_rows
 
-  !> Do all nodes and integration points of a side face the other line, and one face of it, without a step or a corner?
+  !> Do all nodes and integration points of a side face the other line, and one face of it, without a step or
+  !! a corner?
   pure logical function is_covered(points, facing, row, segment, length)
     type(side_points), intent(in) :: points
     type(facing_type), intent(in) :: facing(:)
     integer, intent(in) :: row(3), segment(3)
     real(wp), intent(in) :: length             !! of the side
-    real(wp) :: before, behind, cut
+    real(wp) :: before, behind, cut, normal(2, points%count)
     integer :: k, p
 
     is_covered = points%covered .and. all(row > 0 .or. segment == 0)
     if (.not. is_covered) return
-    do p = 1, points%count
-      do k = 1, 3
-        if (row(k) == 0) cycle
-        is_covered = dot_product(points%facing(p)%place%normal, facing(row(k))%place%normal) > one_curve
-        if (.not. is_covered) return
-      end do
+    normal = reshape([(points%facing(p)%place%normal, p=1, points%count)], [2, points%count])
+    do k = 1, 3
+      if (row(k) > 0) is_covered = is_covered .and. &
+                                   all(matmul(facing(row(k))%place%normal, normal) > one_curve)
     end do
     do p = gauss_points, points%count - 1, gauss_points
-      is_covered = dot_product(points%facing(p)%place%normal, points%facing(p + 1)%place%normal) > smooth
-      if (.not. is_covered) return
+      is_covered = is_covered .and. dot_product(normal(:, p), normal(:, p + 1)) > smooth
     end do
+    if (.not. is_covered) return
     before = facing(row(1))%place%gap
     do p = gauss_points, points%count, gauss_points   ! piece by piece
-      associate (gap => points%facing(p - gauss_points + 1:p)%place%gap, s => points%along(p - gauss_points + 1:p))
+      associate (gap => points%facing(p - gauss_points + 1:p)%place%gap, &
+                 s => points%along(p - gauss_points + 1:p))
         cut = s(1) - (s(gauss_points) - s(1))*gauss_place(1)/(gauss_place(gauss_points) - gauss_place(1))
         is_covered = abs(continued(s, gap, cut) - before) <= step*length
         cut = s(gauss_points) + (s(1) - cut)
@@ -141,7 +169,8 @@ contains
                 value(3)*(s - at(1))*(s - at(2))/((at(3) - at(1))*(at(3) - at(2)))
   end function continued
 
-  !> How far from a side the part of the other line lies that it faces, at most: twice as far as its ends say, or its length.
+  !> How far from a side the part of the other line lies that it faces, at most: twice as far as its ends say,
+  !! or its length.
   pure real(wp) function reach_of(contact, side, row, facing)
     type(line_contact), intent(in) :: contact
     integer, intent(in) :: side
@@ -150,7 +179,8 @@ contains
 
     reach_of = contact%search
     if (any(row == 0 .and. contact%slave%segment(:, side) > 0)) return
-    reach_of = min(reach_of, 2.0_wp*max(contact%slave%chord_length(side), maxval(abs(facing(row(:2))%place%gap))))
+    reach_of = min(reach_of, 2.0_wp*max(contact%slave%chord_length(side), &
+                                        maxval(abs(facing(row(:2))%place%gap))))
   end function reach_of
 
   !> Integration points of a side, cut where nodes of the other line face it.
@@ -217,8 +247,8 @@ contains
     cut = cut(n:1:-1)
   end function cuts_of
 
-  !> Insert a number from 0 to 1 into some in falling order, the last of them 0: lines that face each other are walked in
-  !! opposite directions, so that most come to stand near the end.
+  !> Insert a number from 0 to 1 into some in falling order, the last of them 0: lines that face each other
+  !! are walked in opposite directions, so that most come to stand near the end.
   pure subroutine insert(s, n, falling)
     real(wp), intent(in) :: s
     integer, intent(inout) :: n
@@ -290,31 +320,24 @@ contains
   !> Note the weights of a side's nodes in a row; node 0 is none.
   pure subroutine add(self, row, node, weight)
     class(weight_list), intent(inout) :: self
-    integer, intent(in) :: row, node(3)
-    real(wp), intent(in) :: weight(3)
-    integer :: k, room
+    integer, intent(in) :: row, node(3)   !! the row; start, end and middle of the side
+    real(wp), intent(in) :: weight(3)   !! of these
+    integer :: k
 
     do k = 1, 3
       if (node(k) == 0 .or. weight(k) == 0.0_wp) cycle
-      if (self%count == size(self%row)) then
-        room = max(64, self%count)
-        self%row = [self%row, spread(0, 1, room)]
-        self%node = [self%node, spread(0, 1, room)]
-        self%weight = [self%weight, spread(0.0_wp, 1, room)]
-      end if
+      if (self%count == size(self%part)) self%part = [self%part, self%part]   ! room for twice as many
       self%count = self%count + 1
-      self%row(self%count) = row
-      self%node(self%count) = node(k)
-      self%weight(self%count) = weight(k)
+      self%part(self%count) = weight_part(row, node(k), weight(k))
     end do
   end subroutine add
 
   !> Note what a node faces at its own place.
   pure subroutine add_own_place(self, row, master, facing, integral)
     class(weight_list), intent(inout) :: self
-    integer, intent(in) :: row
-    type(boxed_line), intent(in) :: master
-    type(facing_type), intent(in) :: facing
+    integer, intent(in) :: row   !! the row
+    type(boxed_line), intent(in) :: master   !! whose side is faced
+    type(facing_type), intent(in) :: facing   !! what it faces
     real(wp), intent(in) :: integral   !! of the node's shape function, as far as this counts for
 
     call self%add(row, master%segment(:, facing%segment), integral*facing%place%share)
@@ -322,39 +345,42 @@ contains
   end subroutine add_own_place
 
   !> The rows: weights of one node added up, over the row's area, without rounding.
-  pure subroutine collect(list, start, node, weight)
+  pure subroutine collect(list, rows)
     type(weight_list), intent(in) :: list
-    integer, allocatable, intent(out) :: start(:), node(:)
-    real(wp), allocatable, intent(out) :: weight(:)
+    type(mortar_rows), intent(out) :: rows
     integer, allocatable :: order(:)
     integer :: first, i, k, n, row
 
-    order = sorted_order(list%row(:list%count))
-    allocate (start(size(list%area) + 1), node(list%count), weight(list%count))
+    order = sorted_order(list%part(:list%count)%row)
+    allocate (rows%start(size(list%area) + 1), rows%node(list%count), rows%weight(list%count))
     n = 0
     i = 1
-    do row = 1, size(list%area)
-      start(row) = n + 1
-      first = n + 1
-      do while (i <= list%count)
-        if (list%row(order(i)) /= row) exit
-        k = first - 1 + findloc(node(first:n), list%node(order(i)), dim=1)
-        if (k < first) then
-          n = n + 1
-          k = n
-          node(n) = list%node(order(i))
-          weight(n) = 0.0_wp
-        end if
-        weight(k) = weight(k) + list%weight(order(i))/list%area(row)
-        i = i + 1
+    associate (node => rows%node, weight => rows%weight)
+      do row = 1, size(list%area)
+        first = n + 1
+        rows%start(row) = first
+        do while (i <= list%count)
+          associate (part => list%part(order(i)))
+            if (part%row /= row) exit
+            k = first - 1 + findloc(node(first:n), part%node, dim=1)
+            if (k < first) then
+              n = n + 1
+              k = n
+              node(n) = part%node
+              weight(n) = 0.0_wp
+            end if
+            weight(k) = weight(k) + part%weight/list%area(row)
+          end associate
+          i = i + 1
+        end do
+        k = n
+        n = first - 1 + count(abs(weight(first:k)) > rounding)
+        node(first:n) = pack(node(first:k), abs(weight(first:k)) > rounding)
+        weight(first:n) = pack(weight(first:k), abs(weight(first:k)) > rounding)
       end do
-      k = first - 1 + count(abs(weight(first:n)) > rounding)
-      node(first:k) = pack(node(first:n), abs(weight(first:n)) > rounding)
-      weight(first:k) = pack(weight(first:n), abs(weight(first:n)) > rounding)
-      n = k
-    end do
-    start(size(start)) = n + 1
-    node = node(:n)
-    weight = weight(:n)
+    end associate
+    rows%start(size(rows%start)) = n + 1
+    rows%node = rows%node(:n)
+    rows%weight = rows%weight(:n)
   end subroutine collect
 end module epcont_contact_geometry_mortar

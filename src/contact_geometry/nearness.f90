@@ -1,9 +1,12 @@
-!> Nodes of lines in contact that have no pair, but came so near as loads moved them that they pass through the other line.
+!> Nodes of lines in contact that have no pair, but came so near as loads moved them that they pass through
+!> the other line.
 !>
-!> Gaps are those of the undeformed shape, opened by displacements, as those of pairs are: small displacements.
+!> Gaps are those of the undeformed shape, opened by displacements, as those of pairs are: small
+!> displacements.
 module epcont_contact_geometry_nearness
   use epcont_base_kinds, only: wp
-  use epcont_contact_geometry_line_pairs, only: add_pairs, faces_type, find_faces, forget_pairs
+  use epcont_contact_geometry_faces, only: faces_type, find_faces
+  use epcont_contact_geometry_line_pairs, only: add_pairs, forget_pairs
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_boxed_line, only: boxed_line
   use epcont_geometry_facing, only: facing_type, find_facing, find_nearest, node_of
@@ -15,51 +18,53 @@ module epcont_contact_geometry_nearness
 
   !> A gap below this part of the scene is none.
   real(wp), parameter :: least = 1.0e-8_wp
-  !> A node between those of the other line that stand on its own may pass through by so many times what chords of curves and
+  !> A node between those of the other line that stand on its own may pass through by so many times what
+  !! chords of curves and
   !> of bent sides make.
   real(wp), parameter :: allowance = 3.0_wp
-  !> But not by more than this part of the largest displacement: that is no end of contact, but contact missed.
+  !> But not by more than this part of the largest displacement: that is no end of contact, but contact
+  !! missed.
   real(wp), parameter :: most = 0.5_wp
-  !> The two lines, not quite parallel, tell gaps by normals of their own: what these make of nodes that slide, and of gaps that
-  !! close, differs by this much at most.
+  !> The two lines, not quite parallel, tell gaps by normals of their own: what these make of nodes that
+  !! slide, and of gaps that close, differs by this much at most.
   real(wp), parameter :: askew = 1.5_wp
   !> Search beyond what came near.
   real(wp), parameter :: further = 1.5_wp
 
+  !> What the solve has made of the scene.
+  type :: moved_scene
+    real(wp) :: size = 0.0_wp                     !! of the scene, as drawn [length]
+    real(wp) :: travel = 0.0_wp                   !! the largest displacement [length]
+    real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
+    logical, allocatable :: holds(:)              !! nodes that stand on the other line; 0 is none [0:nodes]
+  end type moved_scene
+
 contains
 
-  !> Give pairs to the nodes that came near; `entered`: there are some, and the scene wants to be solved again. Without
-  !! displacements (what moves was held by nothing) all that may be faced, however far, has its pair.
+  !> Give pairs to the nodes that came near; `entered`: there are some, and the scene wants to be solved
+  !! again. Without displacements (what moves was held by nothing) all that may be faced, however far, has its
+  !! pair.
   subroutine enter_nodes_that_came_near(model, displacement, touching, entered)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     real(wp), allocatable, intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     logical, allocatable, intent(in) :: touching(:)           !! [pairs]
-    logical, intent(out) :: entered
-    real(wp) :: size_of_scene
-    integer :: before, c, k
+    logical, intent(out) :: entered   !! are there nodes that got pairs?
+    type(moved_scene) :: moved
     type(faces_type) :: faces
-    logical, allocatable :: holds(:)   !! nodes that stand on the other line [nodes]
-    logical :: wider
+    integer :: before, c, k
 
     entered = .false.
     if (.not. allocated(model%line_contact)) return
     if (size(model%line_contact) == 0) return
-    size_of_scene = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
-    allocate (holds(model%nodes), source=.false.)
-    if (allocated(displacement)) holds(model%pair_node(2, pack([(k, k=1, model%pairs)], touching))) = .true.
+    moved%size = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
+    if (allocated(displacement)) then
+      moved%displacement = displacement
+      moved%travel = maxval(norm2(displacement, dim=1))
+      allocate (moved%holds(0:model%nodes), source=.false.)
+      moved%holds(model%pair_node(2, pack([(k, k=1, model%pairs)], touching))) = .true.
+    end if
     do c = 1, size(model%line_contact)
-      associate (contact => model%line_contact(c))
-        if (allocated(displacement)) then
-          call widen(contact, model%boundary, displacement, holds, size_of_scene, wider)
-          ! What the slave's nodes will hold off is not the master's.
-          if (.not. wider) call look_from_master(contact, model%boundary, displacement, holds, size_of_scene, entered)
-          entered = entered .or. wider
-        else if (size(contact%left_out) > 0 .and. contact%search < size_of_scene) then
-          contact%search = size_of_scene
-          contact%is_wider = .true.
-          entered = .true.
-        end if
-      end associate
+      call look_at_contact(model%line_contact(c), model%boundary, moved, entered)
     end do
     if (.not. entered) return
     before = model%pairs
@@ -71,142 +76,140 @@ contains
     entered = model%pairs > before
   end subroutine enter_nodes_that_came_near
 
-  !> Search farther where nodes of the slave, left out so far, pass through the master, or stand beside one that touches: what the
-  !! nodes of a side share is known only where all of them have pairs.
-  subroutine widen(contact, obstacles, displacement, holds, size_of_scene, wider)
+  !> What a contact's nodes want: a wider search for those of the slave, or to be entered, as nodes of the
+  !! master.
+  pure subroutine look_at_contact(contact, obstacles, moved, entered)
     type(line_contact), intent(inout) :: contact
-    type(boxed_line), intent(in) :: obstacles
-    real(wp), intent(in) :: displacement(:, :), size_of_scene
-    logical, intent(in) :: holds(:)
-    logical, intent(out) :: wider
-    type(facing_type) :: face
+    type(boxed_line), intent(in) :: obstacles    !! the outlines of all bodies
+    type(moved_scene), intent(in) :: moved
+    logical, intent(inout) :: entered
     real(wp) :: search
+    integer :: i, which
+
+    search = contact%search
+    if (allocated(moved%displacement)) then
+      search = wanted_search(contact, obstacles, moved)
+    else if (size(contact%left_out) > 0) then
+      search = max(search, moved%size)
+    end if
+    if (search > contact%search) then
+      contact%search = search
+      contact%is_wider = .true.
+      entered = .true.
+    else if (allocated(moved%displacement)) then   ! what the slave's nodes will hold off is not the master's
+      do i = 1, size(contact%master%element)
+        do which = 1, 3
+          call look_from_master(contact, obstacles, moved, i, which, entered)
+        end do
+      end do
+    end if
+  end subroutine look_at_contact
+
+  !> How far to search where nodes of the slave, left out so far, pass through the master, or stand beside one
+  !! that touches: what the nodes of a side share is known only where all of them have pairs [length].
+  pure real(wp) function wanted_search(contact, obstacles, moved) result(search)
+    type(line_contact), intent(in) :: contact
+    type(boxed_line), intent(in) :: obstacles
+    type(moved_scene), intent(in) :: moved
+    type(facing_type) :: face
+    real(wp) :: gap, slip
     integer :: i
 
     search = contact%search
     do i = 1, size(contact%left_out, 2)
       associate (side => contact%left_out(1, i), which => contact%left_out(2, i))
-        face = find_nearest(contact%master, obstacles, node_of(contact%slave, side, which), size_of_scene)
+        face = find_nearest(contact%master, obstacles, node_of(contact%slave, side, which), moved%size)
         if (.not. face%place%found) cycle
-        if (gap_of(contact%slave%segment(which, side), contact%master, face, displacement) >= -least*size_of_scene .and. &
-            .not. any(holds(pack(contact%slave%segment(:, side), contact%slave%segment(:, side) > 0)))) cycle
-        search = max(search, further*abs(face%place%gap))
+        call find_gap(contact%slave%segment(which, side), contact%master, face, moved%displacement, gap, slip)
+        if (gap < -least*moved%size .or. any(moved%holds(contact%slave%segment(:, side)))) &
+          search = max(search, further*abs(face%place%gap))
       end associate
     end do
-    wider = search > contact%search
-    if (.not. wider) return
-    contact%search = search
-    contact%is_wider = .true.
-  end subroutine widen
+  end function wanted_search
 
-  !> Nodes of the master that pass through sides of the slave by more than what these leave open between their nodes.
-  subroutine look_from_master(contact, obstacles, displacement, holds, size_of_scene, entered)
+  !> Enter a node of the master that passes through a side of the slave by more than is left open between the
+  !! slave's nodes.
+  pure subroutine look_from_master(contact, obstacles, moved, side, which, entered)
     type(line_contact), intent(inout) :: contact
     type(boxed_line), intent(in) :: obstacles
-    real(wp), intent(in) :: displacement(:, :), size_of_scene
-    logical, intent(in) :: holds(:)
+    type(moved_scene), intent(in) :: moved
+    integer, intent(in) :: side, which
     logical, intent(inout) :: entered
     type(facing_type) :: face(2)
-    logical :: smooth
-    real(wp) :: allowed, angle
-    integer :: i, k, which
-    real(wp) :: travel   !! the largest displacement [length]
+    real(wp) :: gap, slip
+    integer :: k
 
-    travel = maxval(norm2(displacement, dim=1))
-    associate (slave => contact%slave, master => contact%master)
-      do i = 1, size(master%element)
-        do which = 1, 3
-          associate (node => master%segment(which, i))
-            if (node == 0) cycle
-            if (any(contact%came_near == node)) cycle
-            smooth = .not. master%corner(min(which, 2), i) .or. which == 3
-            call find_facing(slave, obstacles, node_of(master, i, which), size_of_scene, face(1), face(2))
-            do k = 1, 2
-              if (.not. face(k)%place%found) cycle
-              allowed = least*size_of_scene
-              if (master%tip(min(which, 2), i) .and. which < 3 .and. abs(face(k)%place%gap) <= contact%search) then
-                cycle   ! it has a pair
-              else if (smooth .and. all_hold(slave%segment(:, face(k)%segment), holds)) then
-                ! It is where the mesh has it; a pair of its own would be one too many.
-                allowed = most*travel
-              else if (is_held_off(slave, face(k)%segment, holds)) then
-                ! Over a side of the slave gaps are closed in the mean, however short the master's are.
-                allowed = allowed + allowance*(openness(slave, face(k)%segment, displacement, 0.0_wp) + &
-                                               openness_at(master, i, which, displacement, slave%chord_length(face(k)%segment)))
-              else
-                allowed = allowed + bend(slave, face(k)%segment, displacement, 0.0_wp)
-              end if
-              if (smooth) then
-                angle = norm2(face(k)%place%normal + master%outward(i, which))
-                allowed = allowed + askew*angle*(slip_of(node, slave, face(k), displacement) + 0.5_wp*angle*abs(face(k)%place%gap))
-              end if
-              allowed = min(allowed, most*travel)
-              if (gap_of(node, slave, face(k), displacement) >= -allowed) cycle
-              contact%came_near = [contact%came_near, node]
-              contact%search = max(contact%search, further*abs(face(k)%place%gap))
-              entered = .true.
-              exit
-            end do
-          end associate
-        end do
+    associate (node => contact%master%segment(which, side))
+      if (node == 0 .or. any(contact%came_near == node)) return
+      call find_facing(contact%slave, obstacles, node_of(contact%master, side, which), moved%size, face(1), &
+                       face(2))
+      do k = 1, 2
+        if (.not. face(k)%place%found) cycle
+        if (contact%master%tip(min(which, 2), side) .and. which < 3 .and. &
+            abs(face(k)%place%gap) <= contact%search) cycle
+        call find_gap(node, contact%slave, face(k), moved%displacement, gap, slip)
+        if (gap >= -left_open(contact, moved, side, which, face(k), slip)) cycle
+        contact%came_near = [contact%came_near, node]
+        contact%search = max(contact%search, further*abs(face(k)%place%gap))
+        entered = .true.
+        return
       end do
     end associate
   end subroutine look_from_master
 
-  !> Do all nodes of a side stand on the other line?
-  pure logical function all_hold(nodes, holds)
-    integer, intent(in) :: nodes(3)
-    logical, intent(in) :: holds(:)   !! [nodes]
+  !> How far a node of the master may pass through a side of the slave [length].
+  pure real(wp) function left_open(contact, moved, side, which, face, slip)
+    type(line_contact), intent(in) :: contact
+    type(moved_scene), intent(in) :: moved
+    integer, intent(in) :: side, which       !! the node of the master
+    type(facing_type), intent(in) :: face    !! and what it faces
+    real(wp), intent(in) :: slip             !! how far it has slid there [length]
+    logical :: smooth
+    real(wp) :: angle
 
-    all_hold = all(holds(pack(nodes, nodes > 0)))
-  end function all_hold
+    left_open = least*moved%size
+    associate (slave => contact%slave, master => contact%master, displacement => moved%displacement)
+      smooth = which == 3 .or. .not. master%corner(min(which, 2), side)
+      if (smooth .and. all(moved%holds(slave%segment(:, face%segment)) .or. &
+                           slave%segment(:, face%segment) == 0)) then
+        ! It is where the mesh has it; a pair of its own would be one too many.
+        left_open = most*moved%travel
+      else if (is_held_off(slave, face%segment, moved%holds)) then
+        ! Over a side of the slave gaps are closed in the mean, however short the master's are.
+        left_open = left_open + allowance*(openness(slave, face%segment, displacement, 0.0_wp) + &
+                                           openness_at(master, side, which, displacement, &
+                                                       slave%chord_length(face%segment)))
+      else
+        left_open = left_open + bend(slave, face%segment, displacement, 0.0_wp)
+      end if
+      if (smooth) then
+        angle = norm2(face%place%normal + master%outward(side, which))
+        left_open = left_open + askew*angle*(slip + 0.5_wp*angle*abs(face%place%gap))
+      end if
+    end associate
+    left_open = min(left_open, most*moved%travel)
+  end function left_open
 
-  !> Does a node of a side, or of those beside it, stand on the other line? Then contact ends near by, between nodes.
+  !> Does a node of a side, or of those beside it, stand on the other line? Then contact ends near by, between
+  !! nodes.
   pure logical function is_held_off(line, side, holds)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
-    logical, intent(in) :: holds(:)   !! [nodes]
-    integer :: i, k, near(3)
+    logical, intent(in) :: holds(0:)   !! [0:nodes]
 
-    is_held_off = .false.
-    near = [side, line%neighbour(:, side)]
-    do i = 1, 3
-      if (near(i) == 0) cycle
-      do k = 1, 3
-        associate (node => line%segment(k, near(i)))
-          if (node == 0) cycle
-          is_held_off = is_held_off .or. holds(node)
-        end associate
-      end do
-    end do
+    associate (near => pack([side, line%neighbour(:, side)], [.true., line%neighbour(:, side) > 0]))
+      is_held_off = any(holds([line%segment(:, near)]))
+    end associate
   end function is_held_off
 
-  !> Gap of a node against what it faces of a line, as displacements have opened it [length].
-  pure real(wp) function gap_of(node, line, face, displacement)
+  !> Where a node is against what it faces of a line, as displacements have moved both.
+  pure subroutine find_gap(node, line, face, displacement, gap, slip)
     integer, intent(in) :: node
     class(boundary_line), intent(in) :: line
     type(facing_type), intent(in) :: face
     real(wp), intent(in) :: displacement(:, :)
-
-    gap_of = face%place%gap + dot_product(face%place%normal, apart_of(node, line, face, displacement))
-  end function gap_of
-
-  !> How far the node has slid along it [length].
-  pure real(wp) function slip_of(node, line, face, displacement)
-    integer, intent(in) :: node
-    class(boundary_line), intent(in) :: line
-    type(facing_type), intent(in) :: face
-    real(wp), intent(in) :: displacement(:, :)
-
-    slip_of = abs(cross_product(face%place%normal, apart_of(node, line, face, displacement)))
-  end function slip_of
-
-  !> Displacement of the node against that of what it faces [length].
-  pure function apart_of(node, line, face, displacement) result(apart)
-    integer, intent(in) :: node
-    class(boundary_line), intent(in) :: line
-    type(facing_type), intent(in) :: face
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(out) :: gap     !! [length]
+    real(wp), intent(out) :: slip    !! how far it has slid along the line [length]
     real(wp) :: apart(2)
     integer :: k
 
@@ -215,16 +218,21 @@ contains
       if (face%place%share(k) /= 0.0_wp) &
         apart = apart - face%place%share(k)*displacement(:, line%segment(k, face%segment))
     end do
-  end function apart_of
+    gap = face%place%gap + dot_product(face%place%normal, apart)
+    slip = abs(cross_product(face%place%normal, apart))
+  end subroutine find_gap
 
-  !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as it bends [length].
+  !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as
+  !! it bends [length].
   pure real(wp) function openness(line, side, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
     real(wp), intent(in) :: displacement(:, :), over
 
-    openness = line%chord_length(side)/4.0_wp*max(norm2(line%normal(:, 1, side) - line%own_normal(side, 0.0_wp)), &
-                                                  norm2(line%normal(:, 2, side) - line%own_normal(side, 1.0_wp))) + &
+    openness = line%chord_length(side)/4.0_wp*max(norm2(line%normal(:, 1, side) - &
+                                                        line%own_normal(side, 0.0_wp)), &
+                                                  norm2(line%normal(:, 2, side) - &
+                                                        line%own_normal(side, 1.0_wp))) + &
                bend(line, side, displacement, over)
   end function openness
 
@@ -241,8 +249,8 @@ contains
     end associate
   end function openness_at
 
-  !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which the boundary bends
-  !! from that side on [length].
+  !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which the
+  !! boundary bends from that side on [length].
   pure real(wp) function bend(line, side, displacement, over)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side

@@ -1,10 +1,11 @@
 !> Sides of elements along the boundary of a body, and where a point faces them.
 !>
-!> Sides are walked with the body to the left, so that outward is to the right. Normals at the nodes come from the two
-!> sides that meet there, exact on a circle (epcont_geometry_corners); along a side they turn from one to the other, so that none
-!> is met twice and none left out. Where sides are chords, the boundary that is meant is the smooth curve through their ends:
-!> the gap is measured to it (an arc over each chord) and not to the chord, whose facets would show in the pressures. Force
-!> and counterforce still lie on one line, through the chord.
+!> Sides are walked with the body to the left, so that outward is to the right. Normals at the nodes come from
+!> the two sides that meet there, exact on a circle (epcont_geometry_corners); along a side they turn from one
+!> to the other, so that none is met twice and none left out. Where sides are chords, the boundary that is
+!> meant is the smooth curve through their ends: the gap is measured to it (an arc over each chord) and not to
+!> the chord, whose facets would show in the pressures. Force and counterforce still lie on one line, through
+!> the chord.
 module epcont_geometry_boundary_line
   use epcont_base_kinds, only: wp
   use epcont_geometry_plane, only: cross_product
@@ -12,7 +13,8 @@ module epcont_geometry_boundary_line
   private
   public :: boundary_line, facing_place, unit
 
-  !> Part of a side by which a point may stand beyond its end, more than the rounding of coordinates in eight columns.
+  !> Part of a side by which a point may stand beyond its end, more than the rounding of coordinates in eight
+  !! columns.
   real(wp), parameter, public :: beyond = 1.0e-5_wp
   !> Steps of Newton's method, which needs five, and the change that ends it.
   integer, parameter :: most_steps = 30
@@ -26,7 +28,8 @@ module epcont_geometry_boundary_line
     real(wp), allocatable :: normal(:, :, :)   !! outward, at start and end of each side [2, 2, sides]
     logical, allocatable :: corner(:, :)       !! its start, its end is a corner of the boundary [2, sides]
     logical, allocatable :: tip(:, :)          !! and a convex one [2, sides]
-    !> Its start, its end lies on a line of symmetry, and the normal there: within that line, though it be a corner.
+    !> Its start, its end lies on a line of symmetry, and the normal there: within that line, though it be a
+    !! corner.
     logical, allocatable :: mirrored(:, :)     !! [2, sides]
     real(wp), allocatable :: end_normal(:, :, :)   !! [2, 2, sides]
   contains
@@ -54,7 +57,7 @@ contains
   !> Some of the sides, in the order given; what lies beyond the ends is forgotten, but for the normals.
   pure function pick(self, sides) result(part)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: sides(:)
+    integer, intent(in) :: sides(:)   !! their numbers
     type(boundary_line) :: part
     integer :: k, number(0:size(self%element))
 
@@ -74,8 +77,8 @@ contains
   !> Outward normal of a side itself, at a place from 0 to 1.
   pure function own_normal(self, segment, s) result(normal)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: s
+    integer, intent(in) :: segment   !! which side
+    real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: normal(2), tangent(2)
 
     tangent = matmul(local(self, segment), slopes(self%segment(3, segment) > 0, s))
@@ -85,7 +88,7 @@ contains
   !> Length of a side, from end to end [length].
   pure real(wp) function chord_length(self, segment)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
+    integer, intent(in) :: segment   !! which side
 
     chord_length = norm2(self%x(:, 2, segment) - self%x(:, 1, segment))
   end function chord_length
@@ -104,7 +107,7 @@ contains
   !> Outward normal at a node of a side: 1 its start, 2 its end, 3 its middle; at a corner the side's own.
   pure function outward(self, segment, which) result(normal)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment, which
+    integer, intent(in) :: segment, which   !! side; 1 its start, 2 its end, 3 its middle
     real(wp) :: normal(2)
 
     if (which == 3) then
@@ -117,7 +120,7 @@ contains
   !> Where a point faces a side: the place whose normal leads to it.
   pure function face(self, segment, point) result(place)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
+    integer, intent(in) :: segment   !! which side
     real(wp), intent(in) :: point(2)    !! [length]
     type(facing_place) :: place
     real(wp) :: s
@@ -134,7 +137,8 @@ contains
     else
       place%share = values(curved, s)
       place%normal = unit(scaled_normal(self, segment, s))
-      place%gap = dot_product(place%normal, point - self%x(:, 1, segment) - matmul(local(self, segment), place%share))
+      place%gap = dot_product(place%normal, point - self%x(:, 1, segment) - &
+                              matmul(local(self, segment), place%share))
       if (.not. curved) place%gap = place%gap - rise(self, segment, s)
     end if
   end function face
@@ -156,10 +160,10 @@ contains
   !> The place of a side, from 0 to 1, that a point within a distance of it faces.
   pure subroutine foot(self, segment, point, distance, s, found)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: point(2), distance
-    real(wp), intent(out) :: s
-    logical, intent(out) :: found
+    integer, intent(in) :: segment   !! which side
+    real(wp), intent(in) :: point(2), distance   !! [length]
+    real(wp), intent(out) :: s   !! from 0 to 1
+    logical, intent(out) :: found   !! there is one
 
     real(wp) :: share(3), tangent(2), x(2)
 
@@ -179,9 +183,9 @@ contains
   !> Shape functions, place on the smooth curve and tangent at a place of a side.
   pure subroutine at(self, segment, s, share, x, tangent)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: s
-    real(wp), intent(out) :: share(3), x(2), tangent(2)
+    integer, intent(in) :: segment   !! which side
+    real(wp), intent(in) :: s   !! from 0 to 1
+    real(wp), intent(out) :: share(3), x(2), tangent(2)   !! shape functions; [length]; [length]
     logical :: curved
 
     curved = self%segment(3, segment) > 0
@@ -235,7 +239,8 @@ contains
     if (line%segment(3, segment) == 0) x(:, 3) = 0.0_wp
   end function local
 
-  !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is linear between them.)
+  !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is
+  !! linear between them.)
   pure function scaled_normal(line, segment, s) result(normal)
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: segment
@@ -250,8 +255,8 @@ contains
     normal = (1.0_wp - s)*length(1)*line%normal(:, 1, segment) + s*length(2)*line%normal(:, 2, segment)
   end function scaled_normal
 
-  !> How far along its normal the smooth curve rises above the chord: exactly where the normals at the ends are those of an arc
-  !! [length].
+  !> How far along its normal the smooth curve rises above the chord: exactly where the normals at the ends
+  !! are those of an arc [length].
   pure real(wp) function rise(line, segment, s)
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: segment
@@ -260,8 +265,10 @@ contains
 
     across = line%own_normal(segment, s)
     along = [-across(2), across(1)]
-    ! An arc of radius r leans by asin(chord/(2 r)) at its ends, and is r - sqrt(r**2 - chord**2 s (1 - s)) above.
-    lean = s*dot_product(line%normal(:, 2, segment), along) - (1.0_wp - s)*dot_product(line%normal(:, 1, segment), along)
+    ! An arc of radius r leans by asin(chord/(2 r)) at its ends, and is r - sqrt(r**2 - chord**2 s (1 - s))
+    ! above.
+    lean = s*dot_product(line%normal(:, 2, segment), along) - &
+           (1.0_wp - s)*dot_product(line%normal(:, 1, segment), along)
     associate (w => s*(1.0_wp - s))
       rise = 2.0_wp*chord_length(line, segment)*w*lean/(1.0_wp + sqrt(max(0.0_wp, 1.0_wp - 4.0_wp*w*lean**2)))
     end associate
@@ -289,7 +296,7 @@ contains
 
   !> Zero of zero: a side without length, which its element is refused for.
   pure function unit(vector)
-    real(wp), intent(in) :: vector(2)
+    real(wp), intent(in) :: vector(2)   !! any length
     real(wp) :: unit(2)
 
     unit = vector/max(norm2(vector), tiny(1.0_wp))

@@ -1,7 +1,8 @@
 !> Which of many boxes meet a given one, without looking at all of them.
 !>
-!> The boxes are halved by their middles, across the longer way of their extent, again and again; node i of the tree has the
-!> children 2i and 2i + 1, and each node has the box round all that lies below it. A leaf is one box.
+!> The boxes are halved by their middles, across the longer way of their extent, again and again; node i of
+!> the tree has the children 2i and 2i + 1, and each node has the box round all that lies below it. A leaf is
+!> one box.
 module epcont_geometry_box_tree
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: halve
@@ -93,7 +94,7 @@ contains
   !> Square of the distance of a point from the box of a node; 0 in it [length**2].
   pure real(wp) function away(self, node, point)
     class(box_tree), intent(in) :: self
-    integer, intent(in) :: node
+    integer, intent(in) :: node   !! its node
     real(wp), intent(in) :: point(2)   !! [length]
 
     away = sum(max(self%low(:, node) - point, 0.0_wp, point - self%high(:, node))**2)

@@ -18,9 +18,10 @@ module epcont_geometry_boxed_line
 
 contains
 
-  !> The boxes of a line. Each reaches beyond its side by half of the side's length, as the curve over it may do.
+  !> The boxes of a line. Each reaches beyond its side by half of the side's length, as the curve over it may
+  !! do.
   pure function new_boxed_line(line) result(boxed)
-    type(boundary_line), intent(in) :: line
+    type(boundary_line), intent(in) :: line   !! its sides
     type(boxed_line) :: boxed
     real(wp), dimension(2, size(line%element)) :: low, high
     real(wp) :: middle(2)
@@ -38,7 +39,7 @@ contains
   !> The sides whose boxes are not farther from a point than `distance` in either direction, in their order.
   pure function near(self, point, distance) result(sides)
     class(boxed_line), intent(in) :: self
-    real(wp), intent(in) :: point(2), distance
+    real(wp), intent(in) :: point(2), distance   !! [length]
     integer, allocatable :: sides(:)
 
     sides = self%in_box(point - distance, point + distance)

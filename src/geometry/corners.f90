@@ -1,9 +1,11 @@
 !> Corners of a boundary, and its normals: what is a corner is decided by how the boundary turns around it.
 !>
-!> Where sides are chords of a curve, neighbouring nodes turn alike; at a chamfer one node turns and those beside it do not.
+!> Where sides are chords of a curve, neighbouring nodes turn alike; at a chamfer one node turns and those
+!> beside it do not.
 !>
 !>     turns  30 30 30 30   a circle of twelve sides: smooth      0 30 0   a chamfer: a corner
-!>            0 15 30 15 0  an arc of two sides: smooth           0 30 30 0   one side across a corner: two corners
+!>            0 15 30 15 0  an arc of two sides: smooth           0 30 30 0   one side across a corner: two
+!> corners
 module epcont_geometry_corners
   use epcont_base_kinds, only: wp
   use epcont_geometry_boundary_line, only: boundary_line, unit
@@ -13,8 +15,8 @@ module epcont_geometry_corners
   public :: find_normals
 
   real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
-  !> A turn below the first is smooth, one above the second a corner, whatever lies beside them. Neither is an angle that
-  !! people draw: rounding must not decide.
+  !> A turn below the first is smooth, one above the second a corner, whatever lies beside them. Neither is an
+  !! angle that people draw: rounding must not decide.
   real(wp), parameter :: always_smooth = 4.7_wp*degree, always_corner = 35.3_wp*degree
   !> Turns that differ by less than this factor are those of one curve, its sides graded.
   real(wp), parameter :: alike = 1.0_wp/0.39_wp
@@ -27,9 +29,11 @@ contains
 
   !> Normals at the ends of the sides, corners and lines of symmetry. A side's neighbours are known.
   pure subroutine find_normals(line, held, angle)
-    type(boundary_line), intent(inout) :: line
-    integer, intent(in) :: held(:, :)     !! the direction in which its start, its end is held: 0 none, 3 both [2, sides]
-    real(wp), intent(in) :: angle         !! turns above it are corners, others are not [degree]; 0: decided here
+    type(boundary_line), intent(inout) :: line   !! its sides, whose normals are set
+    !> The direction in which its start, its end is held: 0 none, 3 both [2, sides]
+    integer, intent(in) :: held(:, :)
+    !> Turns above it are corners, others are not [degree]; 0: decided here
+    real(wp), intent(in) :: angle
     real(wp) :: turn(2, size(line%element))
     logical :: inner(2, size(line%element))
     integer :: n
@@ -81,7 +85,8 @@ contains
     angle_between = atan2(cross_product(a, b), dot_product(a, b))
   end function angle_between
 
-  !> Where a side meets a line of symmetry, along which the body is cut, it goes on as it would be mirrored there.
+  !> Where a side meets a line of symmetry, along which the body is cut, it goes on as it would be mirrored
+  !! there.
   pure subroutine reflect(line, held, turn)
     type(boundary_line), intent(inout) :: line
     integer, intent(in) :: held(:, :)
@@ -108,8 +113,8 @@ contains
     end do
   end subroutine reflect
 
-  !> Does the body end there along a line across the direction in which that end of a side is held? A node held by itself, to keep
-  !! a body from drifting, is no cut. If nothing is known of what lies beyond, yes.
+  !> Does the body end there along a line across the direction in which that end of a side is held? A node
+  !! held by itself, to keep a body from drifting, is no cut. If nothing is known of what lies beyond, yes.
   pure logical function is_cut(line, held, side, end)
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: held(:, :), side, end
@@ -169,9 +174,11 @@ contains
     do i = 1, size(line%element)
       do end = 1, 2
         within = [inner(3 - end, i), .false.]
-        if (line%neighbour(end, i) > 0 .and. .not. line%mirrored(end, i)) within(2) = inner(end, line%neighbour(end, i))
+        if (line%neighbour(end, i) > 0 .and. .not. line%mirrored(end, i)) &
+          within(2) = inner(end, line%neighbour(end, i))
         turns = beside(line, turn, end, i)*sign(1.0_wp, turn(end, i))
-        found(end, i) = abs(turn(end, i)) < always_corner .and. any(within .and. alike*turns > abs(turn(end, i)))
+        found(end, i) = abs(turn(end, i)) < always_corner .and. &
+                        any(within .and. alike*turns > abs(turn(end, i)))
       end do
     end do
   end function is_beside
@@ -190,7 +197,8 @@ contains
         line%normal(:, 1, next) = line%normal(:, 2, i)
       end if
       do end = 1, 2
-        if (line%mirrored(end, i) .and. .not. line%corner(end, i)) line%normal(:, end, i) = line%end_normal(:, end, i)
+        if (line%mirrored(end, i) .and. .not. line%corner(end, i)) &
+          line%normal(:, end, i) = line%end_normal(:, end, i)
       end do
     end do
     do i = 1, size(line%element)

@@ -5,7 +5,8 @@ module epcont_geometry_edge
   private
   public :: edge_point, edge_points, edge_tangent
 
-  !> Gauss points along an edge: exact for a linear pressure on a straight one, and for a uniform one on any, rings too.
+  !> Gauss points along an edge: exact for a linear pressure on a straight one, and for a uniform one on any,
+  !! rings too.
   integer, parameter, public :: edge_point_count = 3
   real(wp), parameter :: place(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
   real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
@@ -13,7 +14,8 @@ module epcont_geometry_edge
   type :: edge_point
     real(wp) :: values(3) = 0.0_wp   !! shape functions of its beginning, its end and its middle node
     real(wp) :: x(2) = 0.0_wp        !! [length]
-    real(wp) :: tangent(2) = 0.0_wp  !! along the edge, as long as the part of it that belongs to the point [length]
+    !> Along the edge, as long as the part of it that belongs to the point [length]
+    real(wp) :: tangent(2) = 0.0_wp
     real(wp) :: along = 0.0_wp       !! from 0 at its beginning to 1 at its end
   end type edge_point
 
@@ -34,7 +36,8 @@ contains
         point(p)%values = [0.5_wp*(1.0_wp - s), 0.5_wp*(1.0_wp + s), 0.0_wp]
       end if
       point(p)%x = matmul(x, point(p)%values(:size(x, 2)))
-      ! From differences: along an axis no rounding is left across it, which would push what is free to move there.
+      ! From differences: along an axis no rounding is left across it, which would push what is free to move
+      ! there.
       point(p)%tangent = 0.5_wp*(x(:, 2) - x(:, 1))
       if (size(x, 2) == 3) point(p)%tangent = point(p)%tangent + s*((x(:, 1) - x(:, 3)) + (x(:, 2) - x(:, 3)))
       point(p)%tangent = weight(p)*point(p)%tangent
@@ -42,10 +45,12 @@ contains
     end do
   end function edge_points
 
-  !> Along an edge at a part of it from 0 to 1, as long as it would be if it were straight on from there [length].
+  !> Along an edge at a part of it from 0 to 1, as long as it would be if it were straight on from there
+  !! [length].
   pure function edge_tangent(x, s) result(along)
-    real(wp), intent(in) :: x(:, :)   !! its beginning and end, and its middle node where it has one [length] [2, 2 or 3]
-    real(wp), intent(in) :: s
+    !> Its beginning and end, and its middle node where it has one [length] [2, 2 or 3]
+    real(wp), intent(in) :: x(:, :)
+    real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: along(2)
 
     along = x(:, 2) - x(:, 1)

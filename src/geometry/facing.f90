@@ -1,7 +1,8 @@
 !> What a point of one boundary faces of another.
 !>
-!> A side is faced where its normal leads to the point, the two boundaries look against each other, and no body stands
-!> between. The nearest counts; in a concave corner, where a second face is about as near, that one too.
+!> A side is faced where its normal leads to the point, the two boundaries look against each other, and no
+!> body stands between. The nearest counts; in a concave corner, where a second face is about as near, that
+!> one too.
 module epcont_geometry_facing
   use epcont_base_kinds, only: wp
   use epcont_geometry_boundary_line, only: boundary_line, facing_place
@@ -11,7 +12,8 @@ module epcont_geometry_facing
   private
   public :: facing_type, looking_point, node_of, rise_of, find_nearest, find_facing
 
-  !> Boundaries face each other whose normals' cosine is below this: a wall at a right angle to a floor does not face it,
+  !> Boundaries face each other whose normals' cosine is below this: a wall at a right angle to a floor does
+  !! not face it,
   !> however rounding has turned the scene. (93 degrees: no angle that people draw.)
   real(wp), parameter :: against = -0.05_wp
   !> Normals that differ by less (cosine) are those of one face: 10 degrees.
@@ -25,10 +27,12 @@ module epcont_geometry_facing
   integer, parameter :: rounds = 3
   !> Bodies are not thinner than this part of their sides: where the gap is smaller nothing stands between.
   real(wp), parameter :: thin = 1.0e-3_wp
-  !> Curves rise above the chords of their sides by an eighth of chord times turn; nearer to a side than this much of it, and
+  !> Curves rise above the chords of their sides by an eighth of chord times turn; nearer to a side than this
+  !! much of it, and
   !> than this part of the way, is the side itself.
   real(wp), parameter :: rise = 0.2_wp, at_end = 0.01_wp
-  !> What stands between is looked for this part of the side away from a node, towards the middle of its side: flush faces
+  !> What stands between is looked for this part of the side away from a node, towards the middle of its side:
+  !! flush faces
   !> do not count.
   real(wp), parameter :: aside = 1.0e-3_wp
 
@@ -40,6 +44,7 @@ module epcont_geometry_facing
     real(wp) :: rise = 0.0_wp         !! how far its own curve may be from the sides there [length]
     integer :: node = 0               !! sides that end at this node do not count; 0: it is none
     logical :: at_tip = .false.       !! a convex corner of its own boundary
+    real(wp) :: search = 0.0_wp       !! how far it looks: what is asked of this module says so [length]
   end type looking_point
 
   type :: facing_type
@@ -52,8 +57,8 @@ contains
 
   !> A node of a side: 1 its start, 2 its end, 3 its middle.
   pure function node_of(line, side, which) result(from)
-    class(boundary_line), intent(in) :: line
-    integer, intent(in) :: side, which
+    class(boundary_line), intent(in) :: line   !! its sides
+    integer, intent(in) :: side, which   !! side; 1 its start, 2 its end, 3 its middle
     type(looking_point) :: from
 
     from%x = line%x(:, which, side)
@@ -67,9 +72,9 @@ contains
 
   !> The side of a line that a point faces nearest by, not farther than `search`.
   pure function find_nearest(line, obstacles, from, search) result(best)
-    type(boxed_line), intent(in) :: line
+    type(boxed_line), intent(in) :: line   !! that is looked at
     type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
-    type(looking_point), intent(in) :: from
+    type(looking_point), intent(in) :: from   !! who looks
     real(wp), intent(in) :: search              !! [length]
     type(facing_type) :: best
     type(facing_type) :: second
@@ -79,36 +84,37 @@ contains
 
   !> The same, and a second face that is farther by less than the point's own side is long.
   pure subroutine find_facing(line, obstacles, from, search, best, second)
-    type(boxed_line), intent(in) :: line
-    type(boxed_line), intent(in) :: obstacles
-    type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
-    type(facing_type), intent(out) :: best, second
+    type(boxed_line), intent(in) :: line   !! that is looked at
+    type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
+    type(looking_point), intent(in) :: from   !! who looks
+    real(wp), intent(in) :: search              !! [length]
+    type(facing_type), intent(out) :: best      !! the nearest
+    type(facing_type), intent(out) :: second    !! the nearest of those that look another way
+    type(looking_point) :: who
     real(wp) :: more, within
     integer :: round
 
+    who = from
+    who%search = search
     more = min(search, 2.0_wp*norm2(from%along))
     do round = rounds, 0, -1
       within = search/widening**round
-      call look_at(line, line%near(from%x, within), obstacles, from, search, best, second)
+      call look_at(line, line%near(from%x, within), obstacles, who, best, second)
       ! Sides that were left out are farther than `within`.
       if (best%place%found .and. abs(best%place%gap) + more < within - 2.0_wp*equal*search) exit
     end do
-    if (second%place%found) then
-      if (abs(second%place%gap) > abs(best%place%gap) + more) second = facing_type()
-    end if
+    if (second%place%found .and. abs(second%place%gap) > abs(best%place%gap) + more) second = facing_type()
     if (abs(best%place%gap) <= roundings*maxval(abs(from%x))) best%place%gap = 0.0_wp
     if (abs(second%place%gap) <= roundings*maxval(abs(from%x))) second%place%gap = 0.0_wp
     best%same_way = best%same_way .and. .not. best%place%found
   end subroutine find_facing
 
   !> The same among a few sides of the line.
-  pure subroutine look_at(line, sides, obstacles, from, search, best, second)
+  pure subroutine look_at(line, sides, obstacles, from, best, second)
     type(boxed_line), intent(in) :: line
     integer, intent(in) :: sides(:)
     type(boxed_line), intent(in) :: obstacles
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_type), intent(out) :: best, second
     type(facing_type), allocatable :: faces(:)
     integer :: k, n
@@ -123,20 +129,21 @@ contains
       associate (found => faces(n + 1))
         found%segment = sides(k)
         found%place = line%face(sides(k), from%x)
-        if (.not. found%place%found .or. abs(found%place%gap) > search*(1.0_wp + equal)) cycle
+        if (.not. found%place%found .or. abs(found%place%gap) > from%search*(1.0_wp + equal)) cycle
         if (dot_product(found%place%normal, from%outward) >= against) then
           same_way = same_way .or. dot_product(found%place%normal, from%outward) > -against
           cycle
         end if
         if (found%place%at_corner .and. .not. from%at_tip) call press_corner(from, found%place)
-        if (found%place%gap < -max(equal*search, roundings*maxval(abs(from%x)))) then
-          if (.not. goes_on(line, sides(k), from, search)) cycle
+        if (found%place%gap < -max(equal*from%search, roundings*maxval(abs(from%x)))) then
+          if (.not. goes_on(line, sides(k), from)) cycle
         end if
-        if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) cycle
+        if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) &
+          cycle
       end associate
       n = n + 1
     end do
-    call rank(line, from, search, faces(:n), best, second)
+    call rank(line, from, faces(:n), best, second)
     best%same_way = same_way
   end subroutine look_at
 
@@ -152,10 +159,9 @@ contains
   end subroutine press_corner
 
   !> The best face, and the nearest of those that look another way.
-  pure subroutine rank(line, from, search, faces, best, second)
+  pure subroutine rank(line, from, faces, best, second)
     type(boxed_line), intent(in) :: line
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_type), intent(in) :: faces(:)
     type(facing_type), intent(inout) :: best, second
     logical :: taken(size(faces))   ! in the best one
@@ -164,10 +170,10 @@ contains
     do k = 1, size(faces)
       if (.not. best%place%found) then
         taken = .false.
-      else if (is_better(line, from, search, faces(k), best)) then
+      else if (is_better(line, from, faces(k), best)) then
         taken = .false.
       else
-        taken(k) = from%at_tip .and. are_equal(from, search, faces(k), best)
+        taken(k) = from%at_tip .and. are_equal(from, faces(k), best)
         if (taken(k)) call take_mean(faces(k)%place, best%place)
         cycle
       end if
@@ -184,18 +190,17 @@ contains
     end do
   end subroutine rank
 
-  !> Is a face better than another? It is nearer; or as near, and looks more against the point's own boundary; or lies more
-  !! before the middle of the point's own side.
-  pure logical function is_better(line, from, search, one, other)
+  !> Is a face better than another? It is nearer; or as near, and looks more against the point's own boundary;
+  !! or lies more before the middle of the point's own side.
+  pure logical function is_better(line, from, one, other)
     type(boxed_line), intent(in) :: line
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_type), intent(in) :: one, other
     real(wp) :: by
 
     by = abs(other%place%gap) - abs(one%place%gap)
     is_better = by > 0.0_wp
-    if (abs(by) > equal*search) return
+    if (abs(by) > equal*from%search) return
     by = dot_product(other%place%normal, from%outward) - dot_product(one%place%normal, from%outward)
     is_better = by > 0.0_wp
     if (abs(by) > equal) return
@@ -211,16 +216,16 @@ contains
   end function is_better
 
   !> Are two faces as near, and look as much against the point's own boundary?
-  pure logical function are_equal(from, search, one, other)
+  pure logical function are_equal(from, one, other)
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_type), intent(in) :: one, other
 
-    are_equal = abs(abs(one%place%gap) - abs(other%place%gap)) <= equal*search .and. &
+    are_equal = abs(abs(one%place%gap) - abs(other%place%gap)) <= equal*from%search .and. &
                 abs(dot_product(one%place%normal - other%place%normal, from%outward)) <= equal
   end function are_equal
 
-  !> Of two sides that a corner faces equally well at their corner none is the better one: between their normals.
+  !> Of two sides that a corner faces equally well at their corner none is the better one: between their
+  !! normals.
   pure subroutine take_mean(other, place)
     type(facing_place), intent(in) :: other
     type(facing_place), intent(inout) :: place
@@ -234,19 +239,19 @@ contains
 
   !> How far the curve that a side means may be from it [length].
   pure real(wp) function rise_of(line, side)
-    class(boundary_line), intent(in) :: line
-    integer, intent(in) :: side
+    class(boundary_line), intent(in) :: line   !! its sides
+    integer, intent(in) :: side   !! which side
 
     rise_of = rise*line%chord_length(side)*norm2(line%normal(:, 2, side) - line%normal(:, 1, side))
   end function rise_of
 
-  !> Does an overlap go on along the point's own side? (The corner of a block that stands on another is no overlap with the
+  !> Does an overlap go on along the point's own side? (The corner of a block that stands on another is no
+  !! overlap with the
   !> other's flank, however far it lies behind that.)
-  pure logical function goes_on(line, side, from, search)
+  pure logical function goes_on(line, side, from)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: side
     type(looking_point), intent(in) :: from
-    real(wp), intent(in) :: search
     type(facing_place) :: place
     integer :: end
 
@@ -255,7 +260,7 @@ contains
     do end = 1, 2
       if (goes_on .or. line%neighbour(end, side) == 0) cycle
       place = line%face(line%neighbour(end, side), from%x + aside*from%along)
-      goes_on = place%found .and. place%gap < search .and. &
+      goes_on = place%found .and. place%gap < from%search .and. &
                 dot_product(place%normal, line%own_normal(side, 0.5_wp)) > same_face
     end do
   end function goes_on
@@ -265,7 +270,8 @@ contains
     type(boxed_line), intent(in) :: obstacles
     type(looking_point), intent(in) :: from
     type(facing_place), intent(in) :: place
-    real(wp), intent(in) :: side, side_rise    !! length of the side that is faced, how far its curve may be from it
+    !> Length of the side that is faced, how far its curve may be from it
+    real(wp), intent(in) :: side, side_rise
     real(wp) :: a(2), b(2), near(2)
     integer, allocatable :: sides(:)
     integer :: k

@@ -1,5 +1,5 @@
-!> The outlines of all bodies: the sides that one element alone has. Each is walked with the body to the left, and so are the
-!> edges of holes. Nodes without elements have none.
+!> The outlines of all bodies: the sides that one element alone has. Each is walked with the body to the left,
+!> and so are the edges of holes. Nodes without elements have none.
 module epcont_geometry_outline
   implicit none
   private

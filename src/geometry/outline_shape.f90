@@ -1,5 +1,5 @@
-!> The outlines of the bodies in one state, as drawn or displaced: what a point is near to, and whether a body has it inside.
-!> Sides of six-node elements are the parabolas that they are.
+!> The outlines of the bodies in one state, as drawn or displaced: what a point is near to, and whether a body
+!> has it inside. Sides of six-node elements are the parabolas that they are.
 module epcont_geometry_outline_shape
   use epcont_base_kinds, only: wp
   use epcont_geometry_box_tree, only: box_tree, most_waiting, new_box_tree
@@ -21,7 +21,8 @@ module epcont_geometry_outline_shape
 
   type :: outline_shape
     type(outline_type) :: outline
-    real(wp), allocatable :: x(:, :, :)          !! of where each side begins and ends, and of its middle [length] [2, 3, sides]
+    !> Of where each side begins and ends, and of its middle [length] [2, 3, sides]
+    real(wp), allocatable :: x(:, :, :)
     real(wp), allocatable :: low(:, :), high(:, :)  !! box of each side [length] [2, sides]
     type(box_tree), allocatable :: side_tree(:)  !! of each part; the sides are counted from its first
     type(box_tree) :: part_tree                  !! of the parts' boxes
@@ -47,7 +48,7 @@ contains
 
   !> The outlines with the nodes at `x`.
   pure function new_outline_shape(outline, x) result(shape)
-    type(outline_type), intent(in) :: outline
+    type(outline_type), intent(in) :: outline   !! of all bodies
     real(wp), intent(in) :: x(:, :)   !! [length] [2, nodes]
     type(outline_shape) :: shape
     real(wp) :: control(2)
@@ -80,21 +81,22 @@ contains
   !> A place of a side.
   pure function at(self, side, s) result(x)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side
+    integer, intent(in) :: side   !! which side
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: x(2)
 
     associate (own => self%x(:, :, side))
       x = own(:, 1) + s*(own(:, 2) - own(:, 1))
-      if (self%outline%node(3, side) > 0) x = x + 4.0_wp*s*(1.0_wp - s)*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
+      if (self%outline%node(3, side) > 0) &
+        x = x + 4.0_wp*s*(1.0_wp - s)*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
     end associate
   end function at
 
   !> Along a side, as long as it would be if it were straight on from there [length].
   pure function tangent(self, side, s) result(along)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s
+    integer, intent(in) :: side   !! which side
+    real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: along(2)
 
     along = edge_tangent(self%x(:, :merge(3, 2, self%outline%node(3, side) > 0), side), s)
@@ -103,18 +105,19 @@ contains
   !> From where a side begins to where it ends [length].
   pure function chord(self, side)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side
+    integer, intent(in) :: side   !! which side
     real(wp) :: chord(2)
 
     chord = self%x(:, 2, side) - self%x(:, 1, side)
   end function chord
 
-  !> The place of a part that is nearest to a point: branch and bound in its tree. `guess` is a side that may be near.
+  !> The place of a part that is nearest to a point: branch and bound in its tree. `guess` is a side that may
+  !! be near.
   pure function nearest_place(self, part, point, guess) result(best)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: part
+    integer, intent(in) :: part   !! which part
     real(wp), intent(in) :: point(2)   !! [length]
-    integer, intent(in), optional :: guess
+    integer, intent(in), optional :: guess   !! a side that may be near
     type(near_place) :: best
     type(near_place) :: place
     real(wp) :: away(2), bound(most_waiting)
@@ -159,7 +162,7 @@ contains
   !> The place of a side that is nearest to a point; whether the point is inside is not looked at.
   pure function near_side(self, side, point) result(place)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side
+    integer, intent(in) :: side   !! which side
     real(wp), intent(in) :: point(2)   !! [length]
     type(near_place) :: place
     real(wp) :: along(2)
@@ -177,14 +180,16 @@ contains
     place%distance = norm2(point - place%x)
   end function near_side
 
-  !> Is a point in the body, as seen from the place of the outline that is nearest to it? At a node both sides say so.
+  !> Is a point in the body, as seen from the place of the outline that is nearest to it? At a node both sides
+  !! say so.
   pure logical function is_inside(self, place, point)
     class(outline_shape), intent(in) :: self
-    type(near_place), intent(in) :: place
+    type(near_place), intent(in) :: place   !! of the outline, nearest to the point
     real(wp), intent(in) :: point(2)   !! [length]
     real(wp) :: outward(2)
 
-    associate (side => place%side, before => self%outline%before(place%side), after => self%outline%after(place%side))
+    associate (side => place%side, before => self%outline%before(place%side), &
+               after => self%outline%after(place%side))
       if (place%s <= 0.0_wp) then
         outward = normal(self%tangent(before, 1.0_wp)) + normal(self%tangent(side, 0.0_wp))
       else if (place%s >= 1.0_wp) then

@@ -21,14 +21,14 @@ contains
 
   !> The part of a x b across the plane: positive where b lies to the left of a.
   pure real(wp) function cross_product(a, b)
-    real(wp), intent(in) :: a(2), b(2)
+    real(wp), intent(in) :: a(2), b(2)   !! any unit
 
     cross_product = a(1)*b(2) - a(2)*b(1)
   end function cross_product
 
   !> A vector turned counter-clockwise: exactly by quarter turns, and as well after any number of full ones.
   pure function turned(vector, angle)
-    real(wp), intent(in) :: vector(2)
+    real(wp), intent(in) :: vector(2)   !! any length
     real(wp), intent(in) :: angle       !! [degree]
     real(wp) :: turned(2)
     real(wp), parameter :: quarter = 90.0_wp, degree = acos(-1.0_wp)/180.0_wp

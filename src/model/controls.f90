@@ -6,7 +6,8 @@ module epcont_model_controls
   public :: controls_type, uniaxial_curve
 
   !> PARAM METHOD.
-  integer, parameter, public :: method_auto = 0, method_secant = 1, method_modsec = 2, method_inistr = 3, method_newton = 4
+  integer, parameter, public :: method_auto = 0, method_secant = 1, method_modsec = 2, method_inistr = 3, &
+    method_newton = 4
   !> Their names in a deck, from method_auto on.
   character(len=*), parameter, public :: method_name(0:4) = ['AUTO  ', 'SECANT', 'MODSEC', 'INISTR', 'NEWTON']
 
@@ -21,7 +22,8 @@ module epcont_model_controls
   character(len=*), parameter, public :: solver_name(0:2) = ['AUTO   ', 'BAND   ', 'FRONTAL']
 
   !> PARAM PRECIS: of the factors and the flexibility.
-  integer, parameter, public :: precision_open = 0, precision_double = 1, precision_mixed = 2, precision_single = 3
+  integer, parameter, public :: precision_open = 0, precision_double = 1, precision_mixed = 2, &
+    precision_single = 3
   !> Their names in a deck; it may leave the choice open.
   character(len=*), parameter, public :: precision_name(1:3) = ['DOUBLE', 'MIXED ', 'SINGLE']
 
@@ -34,11 +36,15 @@ module epcont_model_controls
     real(wp) :: tolerance = 0.0_wp     !! PARAM TOL; 0: that of the method
     integer :: most_iterations = 100   !! of a load step
     integer :: load_steps = 1
+    !> PARAM SEARCH, how far lines look for each other [length]; 0: by their sides
+    real(wp) :: search = 0.0_wp
+    !> PARAM CORNER, turns above it are corners [degree]; 0: by how boundaries turn
+    real(wp) :: corner = 0.0_wp
     logical :: paper_ratio = .false.   !! PARAM MUP PAPER: Poisson's ratio (2-4) in the equivalent strain
   end type controls_type
 
-  !> Uniaxial curve of a material that yields: total strain and stress, from (0, 0) over the yield point on. Beyond
-  !! the last point its last slope goes on. Not allocated: the material does not yield.
+  !> Uniaxial curve of a material that yields: total strain and stress, from (0, 0) over the yield point on.
+  !! Beyond the last point its last slope goes on. Not allocated: the material does not yield.
   type :: uniaxial_curve
     real(wp), allocatable :: strain(:)   !! [points]
     real(wp), allocatable :: stress(:)   !! [stress] [points]

@@ -5,35 +5,47 @@
 module epcont_model_model
   use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
   use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: axisymmetric
   use epcont_geometry_boxed_line, only: boxed_line
   use epcont_geometry_outline, only: outline_type
   use epcont_model_controls, only: controls_type, uniaxial_curve
+  use epcont_model_finding, only: of_couple, of_element, of_line, of_node, of_pair, of_paper_ratio, of_section
   implicit none
   private
-  public :: line_contact, model_type, named_line
-
+  public :: line_contact, line_couple, model_type, named_line
 
   !> A boundary line (BLSEG).
   type :: named_line
     integer :: id = 0
+    !> In their order along the boundary, in either sense; none: they were not sound
+    integer, allocatable :: node(:)
     integer, allocatable :: side(:)      !! of the outline, with the body to the left
     real(wp) :: box(2, 2) = 0.0_wp       !! least and largest coordinates of their ends [length] [2, 2]
   end type named_line
 
-  !> Contact of boundary lines, and the pairs that came of it. Lines that go on in each other, of one BCONP or of several, are
-  !! one contact: all their sides on the one hand are slaves, on the other masters.
+  !> Two lines that may touch (BCONP).
+  type :: line_couple
+    integer :: id = 0
+    integer :: line(2) = 0               !! slave and master, by their positions
+  end type line_couple
+
+  !> Contact of boundary lines, and the pairs that came of it. Lines that go on in each other, of one BCONP or
+  !! of several, are one contact: all their sides on the one hand are slaves, on the other masters.
   type :: line_contact
+    integer, allocatable :: couple(:)     !! by their positions
     integer, allocatable :: bconp(:), slave_id(:), master_id(:)   !! ids of the cards
     type(boxed_line) :: slave, master
     real(wp) :: search = 0.0_wp           !! how far away a side may be [length]
     integer :: first = 1, last = 0        !! its pairs: of the slave's nodes, and from the next one on
     integer :: first_of_master = 1        !! those of the master's nodes, most of them corners
     integer, allocatable :: stands_on(:)  !! the side of the slave at each of the latter [pairs of the master]
-    integer, allocatable :: left_out(:, :)    !! sides of the slave that face nothing at a node: which, which node [2, any]
+    !> Sides of the slave that face nothing at a node: which, which node [2, any]
+    integer, allocatable :: left_out(:, :)
     integer :: nodes_left_out = 0             !! nodes of the slave without a pair
-    integer, allocatable :: came_near(:)      !! nodes of the master that have a pair since they came near as loads moved them
+    !> Nodes of the master that have a pair since they came near as loads moved them
+    integer, allocatable :: came_near(:)
     logical :: is_wider = .false.             !! `search` has grown since nodes came near
   end type line_contact
 
@@ -45,12 +57,13 @@ module epcont_model_model
     type(element_kind), allocatable :: kinds(:) !! the table of elements [any]
     integer, allocatable :: kind(:)             !! of each element: its row there [elements]
     integer, allocatable :: order(:)            !! nodes of each element [elements]
-    !> The nodes of each element: its corners counter-clockwise, then the middles of its sides, the first behind the
-    !! first corner; 0 where it has no more. [most of all, elements]
+    !> The nodes of each element: its corners counter-clockwise, then the middles of its sides, the first
+    !! behind the first corner; 0 where it has no more. [most of all, elements]
     integer, allocatable :: connectivity(:, :)
     type(incidence) :: around                   !! the elements around each node
     integer :: points = 0                       !! integration points of all elements
-    integer, allocatable :: first_point(:)      !! of each element; those of element e end before that of e + 1 [elements + 1]
+    !> Of each element; those of element e end before that of e + 1 [elements + 1]
+    integer, allocatable :: first_point(:)
     integer, allocatable :: point_element(:)    !! [points]
     integer, allocatable :: section(:)          !! section of each element [elements]
     integer, allocatable :: property_id(:)      !! PSHELL or PSOLID [sections]
@@ -63,21 +76,25 @@ module epcont_model_model
     type(controls_type) :: controls             !! of the plastic iteration
     logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
     real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
-    !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it [length] [2, nodes].
+    !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it
+    !! [length] [2, nodes].
     real(wp), allocatable :: travel(:, :), beyond_travel(:, :)
-    integer, allocatable :: leader(:, :)        !! node whose displacement the freedom shares: itself if not tied [2, nodes]
+    !> Node whose displacement the freedom shares: itself if not tied [2, nodes]
+    integer, allocatable :: leader(:, :)
     logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
     real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]
     integer, allocatable :: pair_id(:)          !! [pairs]
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
     real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
-    !> Row k of N: along its normal the nodes row_node(row_start(k):row_start(k+1)-1) open the gap by row_weight. The
-    !! weights of a row sum to 0. [pairs + 1], [entries], [entries]
+    !> Row k of N: along its normal the nodes row_node(row_start(k):row_start(k+1)-1) open the gap by
+    !! row_weight. The weights of a row sum to 0. [pairs + 1], [entries], [entries]
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
-    type(boxed_line) :: boundary                !! sides of the bodies' outlines, by the same numbers, with normals; where lines are
+    !> Sides of the bodies' outlines, by the same numbers, with normals; where lines are
+    type(boxed_line) :: boundary
     type(named_line), allocatable :: line(:)
+    type(line_couple), allocatable :: couple(:)
     type(line_contact), allocatable :: line_contact(:)
     integer, allocatable :: body(:)             !! of each node [nodes]
     type(outline_type) :: body_outline          !! of all bodies
@@ -85,6 +102,7 @@ module epcont_model_model
     procedure :: coordinates
     procedure :: corners
     procedure :: edge
+    procedure :: side_between
     procedure :: edge_coordinates
     procedure :: depth
     procedure :: has_rings
@@ -93,6 +111,8 @@ module epcont_model_model
     procedure :: can_yield
     procedure :: has_flat_curve
     procedure :: opening
+    procedure :: single_pairs
+    procedure :: name_of
   end type model_type
 
 contains
@@ -100,7 +120,7 @@ contains
   !> Coordinates of the nodes of an element [length] [2, order].
   pure function coordinates(self, element) result(x)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
+    integer, intent(in) :: element   !! which element
     real(wp) :: x(2, self%order(element))
 
     x = self%x(:, self%connectivity(:self%order(element), element))
@@ -109,15 +129,16 @@ contains
   !> Corners, and sides, of an element.
   pure integer function corners(self, element)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
+    integer, intent(in) :: element   !! which element
 
     corners = self%kinds(self%kind(element))%corners
   end function corners
 
-  !> Nodes of a side of an element: where it begins and ends, counter-clockwise, and its middle, 0 where it has none.
+  !> Nodes of a side of an element: where it begins and ends, counter-clockwise, and its middle, 0 where it
+  !! has none.
   pure function edge(self, element, side)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element, side
+    integer, intent(in) :: element, side   !! which element, which side of it
     integer :: edge(3)
 
     associate (node => self%connectivity(:, element), n => self%corners(element))
@@ -126,19 +147,33 @@ contains
     end associate
   end function edge
 
+  !> The side of an element that ends at two corners, in either order; 0: it has none.
+  pure integer function side_between(self, element, a, b) result(side)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: element   !! which element
+    integer, intent(in) :: a, b      !! the corners
+    integer :: ends(3)
+
+    do side = self%corners(element), 1, -1
+      ends = self%edge(element, side)
+      if (all(ends(:2) == [a, b]) .or. all(ends(:2) == [b, a])) return
+    end do
+  end function side_between
+
   !> Coordinates of the nodes of a side [length] [2, 2 or 3].
   pure function edge_coordinates(self, edge) result(x)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: edge(3)
+    integer, intent(in) :: edge(3)   !! nodes of the side, see `edge`
     real(wp) :: x(2, merge(3, 2, edge(3) > 0))
 
     x = self%x(:, edge(:size(x, 2)))
   end function edge_coordinates
 
-  !> What belongs to a length in the plane at a radius: the thickness of an element, or the way round its ring [length].
+  !> What belongs to a length in the plane at a radius: the thickness of an element, or the way round its ring
+  !! [length].
   pure real(wp) function depth(self, element, radius)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
+    integer, intent(in) :: element   !! which element
     real(wp), intent(in) :: radius   !! x [length]
 
     associate (section => self%section(element))
@@ -157,15 +192,16 @@ contains
   !> Does RBE2 say where one of these nodes goes?
   pure logical function is_tied(self, node)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: node(:)
+    integer, intent(in) :: node(:)   !! these nodes [any]
 
     is_tied = any(self%leader(1, node) /= node) .or. any(self%leader(2, node) /= node)
   end function is_tied
 
-  !> Do supports and RBE2 keep the shape between these nodes? In each direction they are all held, or all tied to one.
+  !> Do supports and RBE2 keep the shape between these nodes? In each direction they are all held, or all tied
+  !! to one.
   pure logical function is_rigid(self, node)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: node(:)
+    integer, intent(in) :: node(:)   !! these nodes [any]
     integer :: c
 
     is_rigid = .true.
@@ -179,7 +215,7 @@ contains
   !> Can an element yield?
   elemental function can_yield(self, element)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element
+    integer, intent(in) :: element   !! which element
     logical :: can_yield
 
     can_yield = allocated(self%curve(self%section(element))%strain)
@@ -202,7 +238,7 @@ contains
   !> How far displacements open the gap of a pair.
   pure function opening(self, pair, displacement)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: pair
+    integer, intent(in) :: pair   !! which pair
     real(wp), intent(in) :: displacement(:, :)  !! of the nodes of its row [2, entries of the row]
     real(wp) :: opening, apart(2)
     integer :: k
@@ -214,4 +250,55 @@ contains
     end do
     opening = dot_product(self%normal(:, pair), apart)
   end function opening
+
+  !> How many pairs are given one by one (CGAP); those of lines come behind them.
+  pure integer function single_pairs(self)
+    class(model_type), intent(in) :: self
+
+    single_pairs = self%pairs
+    if (.not. allocated(self%line_contact)) return
+    if (size(self%line_contact) > 0) single_pairs = self%line_contact(1)%first - 1
+  end function single_pairs
+
+  !> What messages call a part of the scene: `GRID 17`, `CTRIA3 5`.
+  pure function name_of(self, kind, which) result(name)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: kind    !! of_node, of_element, of_section, of_pair, of_line or of_couple
+    integer, intent(in) :: which   !! of these, by its position
+    character(len=:), allocatable :: name
+
+    select case (kind)
+    case (of_node)
+      name = 'GRID '//text_of(self%node_id(which))
+    case (of_element)
+      name = element_name(self, which)
+    case (of_section)
+      name = trim(merge('PSOLID', 'PSHELL', self%kinematics(which) == axisymmetric))//' '// &
+             text_of(self%property_id(which))
+    case (of_pair)
+      name = 'CGAP '//text_of(self%pair_id(which))
+    case (of_line)
+      name = 'BLSEG '//text_of(self%line(which)%id)
+    case (of_couple)
+      name = 'BCONP '//text_of(self%couple(which)%id)
+    case (of_paper_ratio)
+      name = 'PARAM MUP'
+    case default
+      name = ''
+    end select
+  end function name_of
+
+  !> The card and the id of an element.
+  pure function element_name(self, e) result(name)
+    type(model_type), intent(in) :: self
+    integer, intent(in) :: e
+    character(len=:), allocatable :: name
+    logical :: ring
+
+    ring = .false.
+    if (self%section(e) > 0) ring = self%kinematics(self%section(e)) == axisymmetric
+    associate (kind => self%kinds(self%kind(e)))
+      name = trim(merge(kind%ring_card, kind%plane_card, ring))//' '//text_of(self%element_id(e))
+    end associate
+  end function element_name
 end module epcont_model_model

@@ -1,5 +1,6 @@
-!> The rigid motion that supports prescribe to a body as a whole. It is taken off before the body is solved and added afterwards,
-!> as the motions are that supports leave free: it strains nothing, and strains would lose their digits in it.
+!> The rigid motion that supports prescribe to a body as a whole. It is taken off before the body is solved
+!> and added afterwards, as the motions are that supports leave free: it strains nothing, and strains would
+!> lose their digits in it.
 module epcont_model_travel
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
@@ -7,7 +8,8 @@ module epcont_model_travel
   private
   public :: find_travels
 
-  !> A motion is taken off where all supports of a body follow it but for this part of the largest prescribed displacement.
+  !> A motion is taken off where all supports of a body follow it but for this part of the largest prescribed
+  !! displacement.
   real(wp), parameter :: follows = 1.0e-2_wp
   !> Of that displacement: what is left by a motion that they follow exactly.
   real(wp), parameter :: rounding = 64.0_wp*epsilon(1.0_wp)
@@ -18,7 +20,7 @@ contains
 
   !> Set the travel of each node, and what supports prescribe beyond it.
   pure subroutine find_travels(model)
-    type(model_type), intent(inout) :: model
+    type(model_type), intent(inout) :: model   !! the scene
     logical :: moved(model%bodies)
     integer :: b, i
 
@@ -33,13 +35,14 @@ contains
     end do
   end subroutine find_travels
 
-  !> The motion of one body that fits best, if it fits: u = shift + turn x (x - centre), with a centre of its own for each
-  !! direction, so that the three do not depend on each other.
+  !> The motion of one body that fits best, if it fits: u = shift + turn x (x - centre), with a centre of its
+  !! own for each direction, so that the three do not depend on each other.
   pure subroutine find_travel(model, node)
     type(model_type), intent(inout) :: model
     integer, intent(in) :: node(:)   !! of the body
     real(wp), dimension(2, size(node)) :: arm, travel, u
-    logical :: known(2, size(node))   !! what is prescribed, and the SUPORT freedoms: these move by the approach alone
+    !> What is prescribed, and the SUPORT freedoms: these move by the approach alone
+    logical :: known(2, size(node))
     real(wp) :: shift(2), turn
     integer :: c
 
@@ -58,7 +61,8 @@ contains
     travel = spread(shift, 2, size(node)) + turn*arm
     if (maxval(abs(u - travel), mask=known) > follows*maxval(abs(u), mask=known)) return
     model%travel(:, node) = travel
-    model%beyond_travel(:, node) = merge(u - travel, 0.0_wp, known .and. abs(u - travel) > rounding*maxval(abs(u)))
+    model%beyond_travel(:, node) = merge(u - travel, 0.0_wp, known .and. &
+                                         abs(u - travel) > rounding*maxval(abs(u)))
   end subroutine find_travel
 
   !> Mean of those values that are known, exact where they are all the same; 0 of none.

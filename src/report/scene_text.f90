@@ -2,10 +2,10 @@
 module epcont_report_scene_text
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
-  use epcont_build_elements, only: element_name
   use epcont_certificate_scene, only: beyond_place, largest_change, little, overlap_place, scene_type
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_boundary_line, only: boundary_line
+  use epcont_model_finding, only: of_element
   use epcont_model_model, only: model_type
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: figure, right
@@ -57,7 +57,7 @@ contains
     character(len=:), allocatable :: text
 
     associate (place => scene%passed)
-      text = element_name(model, model%body_outline%element(place%side))
+      text = model%name_of(of_element, model%body_outline%element(place%side))
       if (scene%passed%node > 0) text = 'GRID '//text_of(model%node_id(scene%passed%node))
       text = text//' of the body of GRID '//first_node(model, place%side)// &
              ' goes through that of GRID '//first_node(model, place%other)//', '//short_real(place%depth)//' deep at '// &
@@ -115,7 +115,7 @@ contains
 
     associate (outline => model%body_outline)
       name = 'side GRID '//text_of(model%node_id(outline%node(1, side)))//' to '// &
-             text_of(model%node_id(outline%node(2, side)))//' of '//element_name(model, outline%element(side))
+             text_of(model%node_id(outline%node(2, side)))//' of '//model%name_of(of_element, outline%element(side))
     end associate
   end function side_name
 

@@ -1,13 +1,11 @@
-!> Nodes that lie on a side of an element of their own body and are no nodes of it, though elements share the side's ends: meshes of
-!> unlike fineness, or six-node elements beside others, put together. Nothing keeps such a node on that side.
-module epcont_build_hanging_nodes
+!> Nodes that lie on a side of an element of their own body and are no nodes of it, though elements share the
+!> side's ends: meshes of unlike fineness, or six-node elements beside others, put together. Nothing keeps
+!> such a node on that side.
+module epcont_contact_geometry_hanging_nodes
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_build_elements, only: element_name
-  use epcont_deck_card_kinds, only: card_grid
-  use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostics
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
+  use epcont_model_finding, only: and_more, findings, of_element, of_node
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -19,29 +17,29 @@ module epcont_build_hanging_nodes
 contains
 
   !> One warning, at the first of them.
-  subroutine warn_of_hanging_nodes(deck, model, faults)
-    type(deck_type), intent(in) :: deck
-    type(model_type), intent(in) :: model
-    type(diagnostics), intent(inout) :: faults
-    integer :: edge(3, model%nodes)      ! where each node hangs: the ends of the side and its element; 0: nowhere
-    integer :: first, hanging
-    character(len=:), allocatable :: others
+  pure subroutine warn_of_hanging_nodes(model, found)
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    ! Where each node hangs: the ends of the side and its element; 0: nowhere
+    integer :: edge(3, model%nodes)
+    integer :: first
 
     edge = 0
     call find_middles(model, edge)
     call find_chains(model, edge)
-    hanging = count(edge(3, :) > 0)
-    if (hanging == 0) return
+    if (all(edge(3, :) == 0)) return
     first = findloc(edge(3, :) > 0, .true., dim=1)
-    others = ''
-    if (hanging > 1) others = '; so do '//text_of(hanging - 1)//' more nodes'
-    call faults%add_warning(deck%place(card_grid, first, 1), deck%identity(card_grid, first)//': lies on side GRID '// &
-                            text_of(model%node_id(edge(1, first)))//' to '//text_of(model%node_id(edge(2, first)))//' of '// &
-                            element_name(model, edge(3, first))//' and is no node of it: the body may open there'//others, &
-                            'elements that share all nodes of their common sides')
+    call found%add_warning(of_node, first, 1, ': lies on side '//model%name_of(of_node, edge(1, first))// &
+                           ' to '// &
+                           text_of(model%node_id(edge(2, first)))//' of '// &
+                           model%name_of(of_element, edge(3, first))// &
+                           ' and is no node of it: the body may open there'// &
+                           and_more(count(edge(3, :) > 0), '; so do ', ' more nodes'), &
+                           'elements that share all nodes of their common sides')
   end subroutine warn_of_hanging_nodes
 
-  !> Middles of sides that an element with another middle, or none, has too. A middle of two elements hangs nowhere.
+  !> Middles of sides that an element with another middle, or none, has too. A middle of two elements hangs
+  !! nowhere.
   pure subroutine find_middles(model, edge)
     type(model_type), intent(in) :: model
     integer, intent(inout) :: edge(:, :)
@@ -63,15 +61,11 @@ contains
   pure integer function other_of(model, element, side) result(other)
     type(model_type), intent(in) :: model
     integer, intent(in) :: element, side(3)
-    integer :: ends(3), k, s
+    integer :: k
 
     do k = model%around%start(side(1)), model%around%start(side(1) + 1) - 1
       other = model%around%group(k)
-      if (other == element) cycle
-      do s = 1, model%corners(other)
-        ends = model%edge(other, s)
-        if (all(ends(:2) == side(2:1:-1)) .or. all(ends(:2) == side(:2))) return
-      end do
+      if (other /= element .and. model%side_between(other, side(1), side(2)) > 0) return
     end do
     other = 0
   end function other_of
@@ -132,7 +126,8 @@ contains
       do while (outline%node(2, last) /= outline%node(1, side))
         associate (node => outline%node(2, last))
           place = drawn%near_side(side, model%x(:, node))
-          if (place%distance > coincident*norm2(drawn%chord(side)) .or. place%s <= 0.0_wp .or. place%s >= 1.0_wp) return
+          if (place%distance > coincident*norm2(drawn%chord(side)) .or. place%s <= 0.0_wp .or. &
+              place%s >= 1.0_wp) return
         end associate
         last = outline%after(last)
         if (last == from) return
@@ -147,4 +142,4 @@ contains
       end do
     end associate
   end subroutine follow
-end module epcont_build_hanging_nodes
+end module epcont_contact_geometry_hanging_nodes

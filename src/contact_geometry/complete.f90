@@ -1,0 +1,137 @@
+!> The scene made complete: from what is given of it, by a deck or by arrays, to a model that is checked and
+!> can be solved.
+!>
+!> From arrays: `new_scene` of the nodes, `set_sections`, `add_elements`, `set_pairs` (epcont_model_given); in
+!> the components of the model, where there are any, supports (held, prescribed), ties (leader), reference
+!> freedoms, loads, curves, lines of nodes (line) and which of these may touch (couple), and what a deck says
+!> by PARAM (controls). Nodes are known by their columns. `complete_model` checks it all and finds the rest.
+!> Pressures come last (add_pressure).
+module epcont_contact_geometry_complete
+  use epcont_base_error, only: error_type, raise, status_deck
+  use epcont_contact_geometry_free_sides, only: find_outline
+  use epcont_contact_geometry_hanging_nodes, only: warn_of_hanging_nodes
+  use epcont_contact_geometry_line_contacts, only: find_line_contacts
+  use epcont_contact_geometry_lying_together, only: warn_of_lying_together
+  use epcont_contact_geometry_pair_checks, only: check_pairs
+  use epcont_contact_geometry_pairs_twice, only: refuse_pairs_twice
+  use epcont_element_kinematics, only: plane_strain
+  use epcont_model_controls, only: method_newton
+  use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
+  use epcont_model_finding, only: findings, found_error, of_node, of_paper_ratio, of_section
+  use epcont_model_given, only: check_given
+  use epcont_model_model, only: model_type
+  use epcont_model_single_pairs, only: complete_pairs
+  use epcont_model_ties, only: find_bodies, follow_to_the_end, set_reference, tie
+  use epcont_model_travel, only: find_travels
+  implicit none
+  private
+  public :: complete_model, check_controls, find_contacts, finish_model
+
+contains
+
+  !> A model made from arrays, checked and made complete.
+  subroutine complete_model(model, found, error)
+    type(model_type), intent(inout) :: model   !! what is given; read-only from then on
+    type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
+    !> The first thing that is wrong: the model does not serve
+    type(error_type), allocatable, intent(out) :: error
+    integer :: i
+
+    call check_given(model, found)
+    if (found%errors == 0) then
+      call complete_elements(model, found)
+      call complete_freedoms(model, found)
+      call check_axis(model, found)
+      call complete_pairs(model, .false., found)
+      call find_contacts(model, found)
+      call check_controls(model, found)
+    end if
+    if (found%errors == 0) call finish_model(model, found)
+    do i = 1, found%count
+      if (found%list(i)%severity /= found_error) cycle
+      call raise(error, status_deck, sentence(model, found, i))
+      return
+    end do
+  end subroutine complete_model
+
+  !> Ties and reference freedoms, one by one: each is checked against those before it.
+  pure subroutine complete_freedoms(model, found)
+    type(model_type), intent(inout) :: model
+    type(findings), intent(inout) :: found
+    integer, allocatable :: leader(:, :)
+    logical, allocatable :: reference(:, :)
+    integer :: c, i
+
+    leader = model%leader
+    reference = model%reference
+    model%leader = spread([(i, i=1, model%nodes)], 1, 2)
+    do i = 1, model%nodes
+      do c = 1, 2
+        if (leader(c, i) /= i) call tie(model, c, i, leader(c, i), [of_node, i, 0], found)
+      end do
+    end do
+    call follow_to_the_end(model%leader)
+    do i = 1, model%nodes
+      do c = 1, 2
+        if (reference(c, i)) call set_reference(model, c, i, [of_node, i, 0], found)
+      end do
+    end do
+  end subroutine complete_freedoms
+
+  !> A finding as a sentence: `CTRIA3 5: its corners 1, 2 and 3 lie on one line; corners that span an area`.
+  pure function sentence(model, found, i) result(text)
+    type(model_type), intent(in) :: model
+    type(findings), intent(in) :: found
+    integer, intent(in) :: i
+    character(len=:), allocatable :: text
+
+    associate (one => found%list(i))
+      text = model%name_of(one%of, one%which)//one%what//' (wanted: '//one%remedy//')'
+    end associate
+  end function sentence
+
+  !> Bodies, their outlines, and the contacts of lines: after elements, supports, ties and single pairs.
+  pure subroutine find_contacts(model, found)
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+
+    ! Lines are sides of the outlines, and only sound elements have outlines.
+    if (found%errors == 0) then
+      call find_bodies(model)
+      model%body_outline = find_outline(model)
+    end if
+    call find_line_contacts(model, found)
+  end subroutine find_contacts
+
+  !> What a scene without errors must still be refused or warned of, and its travels.
+  pure subroutine finish_model(model, found)
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+
+    call refuse_pairs_twice(model, found)
+    call warn_of_elements_twice(model, found)
+    call check_pairs(model, found)
+    call find_travels(model)
+    call warn_of_hanging_nodes(model, found)
+    call warn_of_lying_together(model, found)
+  end subroutine finish_model
+
+  !> MUP PAPER is of the secant stiffness, and of plane strain.
+  pure subroutine check_controls(model, found)
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer :: s
+
+    if (.not. model%controls%paper_ratio) return
+    if (model%controls%method == method_newton) &
+      call found%add_error(of_paper_ratio, 0, 2, ': PAPER does not go with METHOD NEWTON', &
+                           'METHOD SECANT, MODSEC or INISTR, or MUP EXACT')
+    do s = 1, size(model%curve)
+      if (model%kinematics(s) == plane_strain .or. .not. allocated(model%curve(s)%strain)) cycle
+      call found%add_error(of_paper_ratio, 0, 2, ': PAPER is for plane strain, and '// &
+                           model%name_of(of_section, s)// &
+                           ' is not', 'MUP EXACT')
+      return
+    end do
+  end subroutine check_controls
+end module epcont_contact_geometry_complete

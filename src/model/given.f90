@@ -1,0 +1,177 @@
+!> What a scene is given by, where it comes from arrays and not from a deck: nobody has looked at it before.
+module epcont_model_given
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
+  use epcont_element_element_kinds, only: element_kinds
+  use epcont_element_kinematics, only: axisymmetric, plane_strain
+  use epcont_model_finding, only: findings, of_couple, of_element, of_line, of_node, of_pair, of_scene, &
+                                  of_section
+  use epcont_model_model, only: model_type
+  use epcont_model_yield_curve, only: check_curve
+  implicit none
+  private
+  public :: new_scene, set_sections, add_elements, set_pairs, check_given
+
+contains
+
+  !> A scene of nodes alone: no elements, supports, ties, loads, pairs and lines.
+  function new_scene(x) result(model)
+    real(wp), intent(in) :: x(:, :)            !! their coordinates [length] [2, nodes]
+    type(model_type) :: model
+    integer :: i
+
+    model%x = x
+    model%nodes = size(x, 2)
+    model%node_id = [(i, i=1, model%nodes)]
+    model%kinds = element_kinds()
+    model%leader = spread(model%node_id, 1, 2)
+    allocate (model%held(2, model%nodes), model%reference(2, model%nodes), source=.false.)
+    allocate (model%prescribed(2, model%nodes), model%load(2, model%nodes), source=0.0_wp)
+    allocate (model%element_id(0), model%kind(0), model%section(0), model%connectivity(0, 0))
+    allocate (model%line(0), model%couple(0))
+    call set_sections(model, [real(wp) ::], [real(wp) ::], [integer ::])
+    call set_pairs(model, reshape([integer ::], [2, 0]), reshape([real(wp) ::], [2, 0]), [real(wp) ::])
+  end function new_scene
+
+  !> What elements are made of; of thickness 1, and nothing yields: that may be changed.
+  pure subroutine set_sections(model, young, poisson, kinematics)
+    type(model_type), intent(inout) :: model   !! the scene
+    real(wp), intent(in) :: young(:)          !! [stress] [sections]
+    real(wp), intent(in) :: poisson(:)        !! [sections]
+    integer, intent(in) :: kinematics(:)      !! plane_strain, plane_stress or axisymmetric [sections]
+    integer :: s
+
+    model%young = young
+    model%poisson = poisson
+    model%kinematics = kinematics
+    model%thickness = spread(1.0_wp, 1, size(young))
+    model%property_id = [(s, s=1, size(young))]
+    model%material_id = model%property_id
+    if (allocated(model%curve)) deallocate (model%curve)
+    allocate (model%curve(size(young)))
+  end subroutine set_sections
+
+  !> Elements of one kind, behind those that the model has; their ids go on.
+  pure subroutine add_elements(model, name, node, section)
+    type(model_type), intent(inout) :: model   !! the scene
+    character(len=*), intent(in) :: name       !! of their card: CTRIA3, CTRIA6, CQUAD4, CTRAX3, CTRAX6
+    !> Corners in either turning sense, then middles of sides [nodes, elements]
+    integer, intent(in) :: node(:, :)
+    integer, intent(in) :: section(:)          !! of each [elements]
+    integer, allocatable :: before(:, :)
+    integer :: e, kind
+
+    if (size(section) == 0) return
+    kind = findloc(model%kinds%plane_card == name .or. model%kinds%ring_card == name, .true., dim=1)
+    model%kind = [model%kind, spread(kind, 1, size(section))]
+    model%section = [model%section, section]
+    model%element_id = [model%element_id, (e, e=model%elements + 1, size(model%section))]
+    call move_alloc(model%connectivity, before)
+    allocate (model%connectivity(max(size(before, 1), size(node, 1)), size(model%section)), source=0)
+    model%connectivity(:size(before, 1), :model%elements) = before
+    model%connectivity(:size(node, 1), model%elements + 1:) = node
+    model%elements = size(model%section)
+  end subroutine add_elements
+
+  !> Pairs of nodes that may touch, numbered from 1 on.
+  pure subroutine set_pairs(model, node, normal, gap)
+    type(model_type), intent(inout) :: model   !! the scene
+    integer, intent(in) :: node(:, :)         !! A and B [2, pairs]
+    real(wp), intent(in) :: normal(:, :)      !! unit, along which B is pushed; zero: from A to B [2, pairs]
+    real(wp), intent(in) :: gap(:)            !! initial [length] [pairs]
+    integer :: k
+
+    model%pairs = size(gap)
+    model%pair_id = [(k, k=1, model%pairs)]
+    model%pair_node = node
+    model%normal = normal
+    model%initial_gap = gap
+  end subroutine set_pairs
+
+  !> Sizes, sections, numbers of nodes, sections and lines. What a deck's reader has looked at by itself is
+  !! not looked at again.
+  pure subroutine check_given(model, found)
+    type(model_type), intent(in) :: model   !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer :: i, s
+
+    call check_sizes(model, found)
+    if (found%errors > 0) return
+    do i = 1, model%nodes
+      if (.not. all(abs(model%x(:, i)) <= huge(1.0_wp))) &
+        call found%add_error(of_node, i, 3, ': its coordinates are no numbers', 'finite ones')
+      call check_numbers(model%leader(:, i), model%nodes, of_node, i, 'node', found)
+    end do
+    do i = 1, model%elements
+      call check_numbers(model%connectivity(:model%kinds(model%kind(i))%nodes, i), model%nodes, of_element, &
+                         i, 'node', found)
+      call check_numbers([model%section(i)], size(model%young), of_element, i, 'section', found)
+    end do
+    do i = 1, model%pairs
+      call check_numbers(model%pair_node(:, i), model%nodes, of_pair, i, 'node', found)
+    end do
+    do i = 1, size(model%line)
+      call check_numbers(model%line(i)%node, model%nodes, of_line, i, 'node', found)
+    end do
+    do i = 1, size(model%couple)
+      call check_numbers(model%couple(i)%line, size(model%line), of_couple, i, 'line', found)
+    end do
+    do s = 1, size(model%young)
+      call check_section(model, s, found)
+    end do
+  end subroutine check_given
+
+  !> Arrays must go together.
+  pure subroutine check_sizes(model, found)
+    type(model_type), intent(in) :: model
+    type(findings), intent(inout) :: found
+
+    if (model%elements == 0) call found%add_error(of_scene, 0, 0, 'the scene has no elements', 'some of them')
+    if (any(model%kind == 0)) &
+      call found%add_error(of_scene, 0, 0, 'elements are of a kind that there is not', 'CTRIA3, say')
+    if (any([size(model%kinematics), size(model%poisson), size(model%thickness)] /= size(model%young))) &
+      call found%add_error(of_scene, 0, 0, 'the sections have arrays of different lengths', &
+                           'one number for each section')
+    if (any([size(model%pair_node, 2), size(model%normal, 2)] /= model%pairs)) &
+      call found%add_error(of_scene, 0, 0, 'the pairs have arrays of different lengths', &
+                           'one column for each pair')
+  end subroutine check_sizes
+
+  !> Numbers of things lie within how many of these there are.
+  pure subroutine check_numbers(number, most, of, which, noun, found)
+    integer, intent(in) :: number(:), most
+    integer, intent(in) :: of, which             !! what has these numbers
+    character(len=*), intent(in) :: noun
+    type(findings), intent(inout) :: found
+    integer :: k
+
+    do k = 1, size(number)
+      if (number(k) < 1 .or. number(k) > most) &
+        call found%add_error(of, which, 0, ': there is no '//noun//' '//text_of(number(k)), &
+                             'numbers from 1 to '//text_of(most))
+    end do
+  end subroutine check_numbers
+
+  !> Stiffnesses above zero; and a curve that can be.
+  pure subroutine check_section(model, s, found)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: s
+    type(findings), intent(inout) :: found
+    character(len=:), allocatable :: what, remedy
+    integer :: wrong
+
+    if (.not. (model%young(s) > 0.0_wp .and. model%young(s) <= huge(1.0_wp))) &
+      call found%add_error(of_section, s, 0, ': Young''s modulus is not above zero', 'a stiffness')
+    if (.not. (model%poisson(s) >= 0.0_wp .and. model%poisson(s) < 0.5_wp)) &
+      call found%add_error(of_section, s, 0, ': Poisson''s ratio is out of range', &
+                           '0 or more, and less than 0.5')
+    if (.not. (model%thickness(s) > 0.0_wp .and. model%thickness(s) <= huge(1.0_wp))) &
+      call found%add_error(of_section, s, 0, ': the thickness is not above zero', 'a length')
+    if (model%kinematics(s) < plane_strain .or. model%kinematics(s) > axisymmetric) &
+      call found%add_error(of_section, s, 0, ': of no known kinematics', &
+                           'plane_strain, plane_stress or axisymmetric')
+    if (found%errors > 0 .or. .not. allocated(model%curve(s)%strain)) return
+    call check_curve(model%curve(s)%strain, model%curve(s)%stress, model%young(s), wrong, what, remedy)
+    if (wrong > 0) call found%add_error(of_section, s, 0, ': '//what, remedy)
+  end subroutine check_section
+end module epcont_model_given

@@ -1,0 +1,94 @@
+!> Pairs of nodes that are given one by one (CGAP): checked, and what follows from their nodes.
+module epcont_model_single_pairs
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: short_real, text_of
+  use epcont_model_finding, only: findings, of_pair
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: complete_pairs
+
+  !> Nodes closer than this part of the nearest edge are at one place: they give no direction.
+  real(wp), parameter :: coincident = 1.0e-4_wp
+
+contains
+
+  !> From nodes, normals and gaps of each pair. Node 0 is one that could not be found; a normal of zero is one
+  !! from A to B.
+  pure subroutine complete_pairs(model, by_geometry, found)
+    type(model_type), intent(inout) :: model   !! the scene
+    logical, intent(in) :: by_geometry       !! how far the nodes are apart along the normal counts in the gap
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    real(wp), allocatable :: edge(:)         ! the shortest at each node, found when a pair first needs it
+    real(wp) :: between(2)
+    integer :: i
+
+    do i = 1, model%pairs
+      associate (a => model%pair_node(1, i), b => model%pair_node(2, i), normal => model%normal(:, i))
+        if (a == b .or. a == 0 .or. b == 0) then
+          if (a == b .and. a > 0) &
+            call found%add_error(of_pair, i, 4, ': GA and GB are the same GRID', &
+                                 'a node on each side of the gap')
+          model%initial_gap(i) = 0.0_wp
+          cycle
+        end if
+        between = model%x(:, b) - model%x(:, a)
+        if (all(normal == 0.0_wp)) then
+          if (.not. allocated(edge)) edge = shortest_edge(model)
+          if (norm2(between) > coincident*min(edge(a), edge(b))) then
+            normal = between/norm2(between)
+          else
+            call found%add_error(of_pair, i, 8, &
+                                 ': GA and GB are at one place and field 9 (CID) is blank: no direction', &
+                                 'the id of a CORD2R whose x-axis is the normal')
+          end if
+        end if
+        if (by_geometry) model%initial_gap(i) = model%initial_gap(i) + dot_product(normal, between)
+      end associate
+    end do
+    model%row_start = [(2*i - 1, i=1, model%pairs + 1)]
+    model%row_node = reshape(model%pair_node([2, 1], :), [2*model%pairs])
+    model%row_weight = [(1.0_wp, -1.0_wp, i=1, model%pairs)]
+    call warn_of_overlap(model, found)
+  end subroutine complete_pairs
+
+  !> One warning for all overlaps: shrink fits have many.
+  pure subroutine warn_of_overlap(model, found)
+    type(model_type), intent(in) :: model
+    type(findings), intent(inout) :: found
+    character(len=:), allocatable :: others
+    integer :: first, overlaps
+
+    overlaps = count(model%initial_gap < 0.0_wp)
+    if (overlaps == 0) return
+    first = findloc(model%initial_gap < 0.0_wp, .true., dim=1)
+    others = ''
+    if (overlaps > 1) others = '; '//text_of(overlaps)//' pairs overlap, by up to '// &
+                               short_real(-minval(model%initial_gap))
+    call found%add_warning(of_pair, first, 1, ': the initial gap is '// &
+                           short_real(model%initial_gap(first))//others, &
+                           'a gap of 0.0 or more, unless a fit is meant')
+  end subroutine warn_of_overlap
+
+  !> Shortest edge at each node; 0 at nodes without elements, which say nothing of the mesh's size.
+  pure function shortest_edge(model) result(edge)
+    type(model_type), intent(in) :: model
+    real(wp), allocatable :: edge(:)
+    real(wp) :: length
+    integer :: e, k, side(3)
+
+    allocate (edge(model%nodes), source=huge(1.0_wp))
+    do e = 1, model%elements
+      if (any(model%connectivity(:model%order(e), e) == 0)) cycle
+      do k = 1, model%corners(e)
+        side = model%edge(e, k)
+        associate (node => side(:merge(3, 2, side(3) > 0)))
+          length = norm2(model%x(:, side(1)) - model%x(:, side(2)))/(size(node) - 1)
+          edge(node) = min(edge(node), length)
+        end associate
+      end do
+    end do
+    where (edge == huge(1.0_wp)) edge = maxval(edge, mask=edge < huge(1.0_wp))
+    where (edge < 0.0_wp) edge = 0.0_wp
+  end function shortest_edge
+end module epcont_model_single_pairs

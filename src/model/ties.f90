@@ -1,0 +1,108 @@
+!> Freedoms that follow others (RBE2), those of reference (SUPORT), and the bodies that elements and ties make
+!> of nodes.
+module epcont_model_ties
+  use epcont_base_partition, only: new_partition, partition
+  use epcont_base_text, only: text_of
+  use epcont_model_finding, only: findings, of_node
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: tie, follow_to_the_end, set_reference, find_bodies, join_nodes
+
+contains
+
+  !> Have a freedom follow that of another node, if that can be.
+  pure subroutine tie(model, c, node, leader, card, found)
+    type(model_type), intent(inout) :: model   !! the scene
+    integer, intent(in) :: c, node             !! direction and node of the freedom
+    integer, intent(in) :: leader              !! the node that it follows
+    integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    character(len=:), allocatable :: remedy, why
+    integer :: at
+
+    at = leader
+    do while (model%leader(c, at) /= at .and. at /= node)
+      at = model%leader(c, at)
+    end do
+    if (at == node) then
+      why = ' would follow itself'
+      remedy = 'nodes that follow GN, without GN'
+    else if (model%leader(c, node) /= node) then
+      why = ' follows another RBE2 already'
+      remedy = 'one leader for each freedom'
+    else if (model%held(c, node)) then
+      why = ' is held by a support too'
+      remedy = 'the support at GN '//text_of(model%node_id(leader))//' instead'
+    else
+      model%leader(c, node) = leader
+      return
+    end if
+    call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)//why, remedy)
+  end subroutine tie
+
+  !> Chains of ties are followed to their ends: who leads follows nobody.
+  pure subroutine follow_to_the_end(leader)
+    integer, intent(inout) :: leader(:, :)   !! of each freedom, itself if it is not tied [2, nodes]
+    integer :: c, node
+
+    do node = 1, size(leader, 2)
+      do c = 1, 2
+        do while (leader(c, leader(c, node)) /= leader(c, node))
+          leader(c, node) = leader(c, leader(c, node))
+        end do
+      end do
+    end do
+  end subroutine follow_to_the_end
+
+  !> Make a freedom one of reference: it must be free to move.
+  pure subroutine set_reference(model, c, node, card, found)
+    type(model_type), intent(inout) :: model   !! the scene
+    integer, intent(in) :: c, node             !! direction and node of the freedom
+    integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+
+    if (model%held(c, model%leader(c, node)) .or. model%leader(c, node) /= node) &
+      call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)// &
+                           ' is held by a support or follows an RBE2', 'a freedom that is free to move')
+    model%reference(c, node) = .true.
+  end subroutine set_reference
+
+  pure function freedom(model, c, node) result(text)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: c, node
+    character(len=:), allocatable :: text
+
+    text = 'direction '//text_of(c)//' of '//model%name_of(of_node, node)
+  end function freedom
+
+  !> Bodies: nodes joined by elements or ties.
+  pure subroutine find_bodies(model)
+    type(model_type), intent(inout) :: model   !! the scene
+
+    call join_nodes(model, .true., model%body, model%bodies)
+  end subroutine find_bodies
+
+  !> Sets of nodes that elements join, and ties if these are to count.
+  pure subroutine join_nodes(model, by_ties, set, sets)
+    type(model_type), intent(in) :: model   !! the scene
+    logical, intent(in) :: by_ties   !! RBE2 joins too
+    integer, allocatable, intent(out) :: set(:)   !! number of each node's [nodes]
+    integer, intent(out) :: sets                  !! how many there are
+    type(partition) :: joined
+    integer :: c, i, k
+
+    joined = new_partition(model%nodes)
+    do i = 1, model%elements
+      do k = 2, model%order(i)
+        call joined%join(model%connectivity(1, i), model%connectivity(k, i))
+      end do
+    end do
+    do i = 1, merge(model%nodes, 0, by_ties)
+      do c = 1, 2
+        call joined%join(i, model%leader(c, i))
+      end do
+    end do
+    call joined%numbers(set, sets)
+  end subroutine join_nodes
+end module epcont_model_ties
