@@ -18,13 +18,15 @@ module epcont_app_driver
   use epcont_plan_numbering, only: number_equations
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_report_file, only: file_lock, lock_files, unlock_files
+  use epcont_report_layout, only: right
   use epcont_report_limit, only: limit_of_largest, reason_of
   use epcont_report_motions, only: report_motion_faults
-  use epcont_report_number, only: column_number, known_column
-  use epcont_report_outcome, only: judge, outcome_type
+  use epcont_report_number, only: known, listed_number, number
+  use epcont_report_outcome, only: judge
   use epcont_report_plan_text, only: plan_text
   use epcont_report_remarks, only: remark_answer, remarks_of_deck
-  use epcont_report_results, only: remove_results, run_results, write_results
+  use epcont_report_results, only: remove_results, write_results
+  use epcont_report_run, only: outcome_type, run_results
   use epcont_report_timing, only: timing_text
   use epcont_result_answer, only: answer_type
   use epcont_system_memory, only: peak_memory
@@ -144,9 +146,8 @@ contains
       if (.not. entered) exit
       call make_plan(run, plan, watch)
     end do
-    run%outcome = judge(run%model, run%motions, run%answer, run%certificate, run%answer%singular)
-    if (run%outcome%has_answer) &
-      call remark_answer(run%model, run%motions, run%answer, run%certificate%scene, run%remarks)
+    run%outcome = judge(run)
+    if (run%outcome%has_answer) call remark_answer(run)
   end subroutine solve
 
   !> Say what is wrong.
@@ -210,7 +211,7 @@ contains
     call watch%lap(stage_numbering)
     plan%iteration = plan_iteration(run%model)
     plan%expected = forecast(run%model, run%motions, run%numbering, plan%iteration)
-    run%plan = plan_text(run%model, run%motions, plan%iteration, run%numbering, plan%expected)
+    run%plan = plan_text(run%planned_scene, plan%iteration, plan%expected)
     call watch%lap(stage_plan)
   end subroutine make_plan
 
@@ -225,12 +226,12 @@ contains
     text = stem//'  '//outcome%word
     if (.not. outcome%has_answer) return
     if (size(answer%pressure) > 0) then
-      text = text//'  p_max'//known_column(answer%largest_pressure(), 0.0_wp)
+      text = text//'  p_max'//right(listed_number(known, answer%largest_pressure(), 0.0_wp), 13)
       limit = limit_of_largest(answer, accuracy)
       if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
     end if
     if (size(answer%contact%approach) > 0) &
-      text = text//'  approach'//column_number(answer%contact%approach(1), 0.0_wp)
+      text = text//'  approach'//right(listed_number(number, answer%contact%approach(1), 0.0_wp), 13)
   end function one_line
 
   subroutine say(arguments, text, status)

@@ -14,9 +14,9 @@ contains
 
   !> Of the largest pressure of a zone; empty where that is not known, or nothing presses.
   pure function limit_of_zone(answer, accuracy, z) result(word)
-    type(answer_type), intent(in) :: answer
-    type(accuracy_type), intent(in) :: accuracy
-    integer, intent(in) :: z
+    type(answer_type), intent(in) :: answer       !! the answer
+    type(accuracy_type), intent(in) :: accuracy   !! what its figures are worth
+    integer, intent(in) :: z                      !! the zone
     character(len=:), allocatable :: word
 
     word = ''
@@ -32,17 +32,18 @@ contains
 
   !> Of the largest pressure of all.
   pure function limit_of_largest(answer, accuracy) result(word)
-    type(answer_type), intent(in) :: answer
-    type(accuracy_type), intent(in) :: accuracy
+    type(answer_type), intent(in) :: answer       !! the answer
+    type(accuracy_type), intent(in) :: accuracy   !! what its figures are worth
     character(len=:), allocatable :: word
 
     word = ''
-    if (size(answer%zones) > 0) word = limit_of_zone(answer, accuracy, maxloc(answer%zones%max_pressure, dim=1))
+    if (size(answer%zones) > 0) &
+      word = limit_of_zone(answer, accuracy, maxloc(answer%zones%max_pressure, dim=1))
   end function limit_of_largest
 
   !> What a limit means, for the end of a line of the listing; empty where there is nothing to say.
   pure function reason_of(word) result(text)
-    character(len=*), intent(in) :: word
+    character(len=*), intent(in) :: word   !! of one of the functions above
     character(len=:), allocatable :: text
 
     text = ''
