@@ -1,6 +1,5 @@
 !> One deck from file to results.
 module epcont_app_driver
-  use epcont_accuracy_accuracy, only: accuracy_type
   use epcont_analysis, only: analyse
   use epcont_app_arguments, only: arguments_type, stem_of
   use epcont_app_console, only: newline, print_error, print_text
@@ -26,9 +25,8 @@ module epcont_app_driver
   use epcont_report_plan_text, only: plan_text
   use epcont_report_remarks, only: remark_answer, remarks_of_deck
   use epcont_report_results, only: remove_results, write_results
-  use epcont_report_run, only: outcome_type, run_results
+  use epcont_report_run, only: run_results
   use epcont_report_timing, only: timing_text
-  use epcont_result_answer, only: answer_type
   use epcont_system_memory, only: peak_memory
   use epcont_system_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
   use epcont_system_threads, only: granted_threads
@@ -116,7 +114,7 @@ contains
     else
       call tell(shown(path)//': ', run%remarks%of_answer)
       if (len(run%outcome%sentence) > 0) call tell(shown(path)//': ', run%outcome%sentence//newline)
-      call say(arguments, one_line(name, run%answer, run%accuracy, run%outcome), status)
+      call say(arguments, one_line(name, run), status)
     end if
   end subroutine solve_deck
 
@@ -216,22 +214,20 @@ contains
   end subroutine make_plan
 
   !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh shows, that too.
-  pure function one_line(stem, answer, accuracy, outcome) result(text)
+  pure function one_line(stem, run) result(text)
     character(len=*), intent(in) :: stem
-    type(answer_type), intent(in) :: answer
-    type(accuracy_type), intent(in) :: accuracy
-    type(outcome_type), intent(in) :: outcome
+    type(run_results), intent(in) :: run
     character(len=:), allocatable :: limit, text
 
-    text = stem//'  '//outcome%word
-    if (.not. outcome%has_answer) return
-    if (size(answer%pressure) > 0) then
-      text = text//'  p_max'//right(listed_number(known, answer%largest_pressure(), 0.0_wp), 13)
-      limit = limit_of_largest(answer, accuracy)
+    text = stem//'  '//run%outcome%word
+    if (.not. run%outcome%has_answer) return
+    if (run%model%pairs > 0) then
+      text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)
+      limit = limit_of_largest(run)
       if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
     end if
-    if (size(answer%contact%approach) > 0) &
-      text = text//'  approach'//right(listed_number(number, answer%contact%approach(1), 0.0_wp), 13)
+    if (run%motions%count > 0) &
+      text = text//'  approach'//right(listed_number(number, run%answer%contact%approach(1), 0.0_wp), 13)
   end function one_line
 
   subroutine say(arguments, text, status)

@@ -3,7 +3,7 @@ module epcont_report_outcome
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real
-  use epcont_certificate_certificate, only: certificate_type, figure_name
+  use epcont_certificate_certificate, only: figure_name
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_controls, only: precision_name
   use epcont_model_model, only: model_type
@@ -53,31 +53,31 @@ contains
                               'no set of touching pairs passed the test: rounding has won '// &
                               '(condition of the stiffness)')
       else
-        outcome = outcome_of_answer(model, answer, run%certificate)
+        outcome = outcome_of_answer(run)
       end if
     end associate
   end function judge
 
   !> Judge an answer, where there is one.
-  pure function outcome_of_answer(model, answer, certificate) result(outcome)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    type(certificate_type), intent(in) :: certificate
+  pure function outcome_of_answer(run) result(outcome)
+    type(run_results), intent(in) :: run
     type(outcome_type) :: outcome
     logical :: is_exact
 
-    is_exact = answer%lost() <= largest_loss
-    if (answer%converged .and. certificate%valid .and. is_exact) then
-      outcome = new_outcome(status_valid, 'valid', '')
-      if (.not. certificate%scene%sound()) &
-        outcome = new_outcome(status_numerical, 'not certified', scene_fault(model, certificate%scene))
-    else if (.not. answer%converged .and. (certificate%balanced .and. is_exact .or. answer%runs_away)) then
-      outcome = new_outcome(status_no_answer, 'not converged', unconverged(answer))
-    else
-      outcome = new_outcome(status_numerical, 'not certified', &
-                             'the figures are not to be trusted: '//doubts(model, answer, certificate))
-      if (certificate%valid .or. certificate%balanced .and. .not. is_exact) outcome%word = 'ill-conditioned'
-    end if
+    associate (answer => run%answer, certificate => run%certificate)
+      is_exact = answer%lost() <= largest_loss
+      if (answer%converged .and. certificate%valid .and. is_exact) then
+        outcome = new_outcome(status_valid, 'valid', '')
+        if (.not. certificate%scene%sound()) &
+          outcome = new_outcome(status_numerical, 'not certified', scene_fault(run%model, certificate%scene))
+      else if (.not. answer%converged .and. (certificate%balanced .and. is_exact .or. answer%runs_away)) then
+        outcome = new_outcome(status_no_answer, 'not converged', unconverged(answer))
+      else
+        outcome = new_outcome(status_numerical, 'not certified', &
+                              'the figures are not to be trusted: '//doubts(run))
+        if (certificate%valid .or. certificate%balanced .and. .not. is_exact) outcome%word = 'ill-conditioned'
+      end if
+    end associate
     outcome%has_answer = .true.
   end function outcome_of_answer
 
@@ -108,34 +108,32 @@ contains
 
   !> What speaks against an answer: the figure of the certificate that is farthest beyond its tolerance, and
   !! lost digits.
-  pure function doubts(model, answer, certificate) result(text)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    type(certificate_type), intent(in) :: certificate
+  pure function doubts(run) result(text)
+    type(run_results), intent(in) :: run
     character(len=:), allocatable :: text
     real(wp), parameter :: least = 1.0e-200_wp   ! a figure over a limit of no size stays a number
     real(wp) :: figure(size(figure_name)), largest(size(figure_name)), taken
     integer :: worst
 
-    call certificate%figures(figure, largest)
+    call run%certificate%figures(figure, largest)
     worst = maxloc(figure/max(largest, least), dim=1)
-    taken = epsilon(1.0_wp)/answer%weakest%ratio   ! of a pivot: the cause, also if refinement has mended it
+    taken = epsilon(1.0_wp)/run%answer%weakest%ratio   ! of a pivot: the cause, even if mended
     text = ''
     if (figure(worst) > largest(worst)) &
       text = trim(figure_name(worst))//' '//short_real(figure(worst))//' (at most '// &
              short_real(largest(worst))//')'
     if (.not. all(figure <= huge(figure))) then
       text = 'the work of the loads is too far from 1.0 for a number: other units'
-    else if (taken > 0.1_wp*certificate%tolerance) then
+    else if (taken > 0.1_wp*run%certificate%tolerance) then
       if (len(text) > 0) text = text//'; '
       text = text//'rounding takes '//short_real(taken)// &
-             ' of a pivot in the stiffness of '//body_name(model, answer%weakest%body)//': '//reason
-    else if (certificate%lost_stress > 0.1_wp*certificate%tolerance) then
-      text = text//'; the rounding of displacements is '//short_real(certificate%lost_stress)// &
+             ' of a pivot in the stiffness of '//body_name(run%model, run%answer%weakest%body)//': '//reason
+    else if (run%certificate%lost_stress > 0.1_wp*run%certificate%tolerance) then
+      text = text//'; the rounding of displacements is '//short_real(run%certificate%lost_stress)// &
              ' of the largest stress: elements too small or too stiff for how far they travel, '// &
              'or a Poisson''s ratio is too near 0.5'
-    else if (answer%condition*epsilon(1.0_wp) > 0.1_wp*certificate%tolerance) then
-      text = text//'; the condition of the stiffness is '//short_real(answer%condition)// &
+    else if (run%answer%condition*epsilon(1.0_wp) > 0.1_wp*run%certificate%tolerance) then
+      text = text//'; the condition of the stiffness is '//short_real(run%answer%condition)// &
              ': slender bodies or elements, or SUPORT nodes that are near each other'
     end if
   end function doubts

@@ -89,7 +89,8 @@ contains
                               [real(wp) ::], [width, times, way])//newline
       end associate
     end do
-    if (size(numbering%body) > most) text = text//'  and '//plural(size(numbering%body) - most, 'further one')//newline
+    if (size(numbering%body) > most) &
+      text = text//'  and '//plural(size(numbering%body) - most, 'further one')//newline
   end function body_table
 
   !> Memory, rounded up.

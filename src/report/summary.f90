@@ -70,7 +70,7 @@ contains
                contact => run%answer%contact)
       if (model%pairs > 0) call all%put('max_pressure', stress, known, answer%largest_pressure(), &
                                         'largest pressure', &
-                                        reason_of(limit_of_largest(answer, run%accuracy)))
+                                        reason_of(limit_of_largest(run)))
       largest = maxval(abs(answer%displacement))
       do k = 1, motions%count
         call all%put('approach_'//key_of(run, k), length, number, contact%approach(k))
@@ -167,13 +167,13 @@ contains
       call all%put('mesh_error_energy_norm', none, part, accuracy%energy_norm, &
                    'mesh: error in the energy norm')
       if (model%pairs > 0) then
-        call all%put_word('max_pressure_is', limit_of_largest(answer, accuracy))
+        call all%put_word('max_pressure_is', limit_of_largest(run))
         call all%put('mesh_error_max_pressure', stress, known, accuracy%max_pressure)
       end if
       do k = 1, size(accuracy%zone)
         call all%put_error('pressure_zone_'//text_of(k), stress, 'largest pressure of zone '//text_of(k), &
                            accuracy%zone(k)%pressure, answer%zones(k)%max_pressure, &
-                           limit_of_zone(answer, accuracy, k))
+                           limit_of_zone(run, k))
         call all%put_error('half_width_zone_'//text_of(k), length, 'half-width of zone '//text_of(k), &
                            accuracy%zone(k)%half_width, answer%zones(k)%half_width)
       end do

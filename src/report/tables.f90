@@ -155,7 +155,7 @@ contains
       associate (zone => run%answer%zones(z))
         call table%row([z, run%model%pair_id([zone%first, zone%last])], &
                        [zone%force, zone%max_pressure, zone%half_width_pairs, zone%half_width], &
-                       [character(len=12) :: limit_of_zone(run%answer, run%accuracy, z)])
+                       [character(len=12) :: limit_of_zone(run, z)])
       end associate
     end do
   end subroutine put_zones

@@ -6,7 +6,6 @@ module epcont_report_vtk_bodies
   use epcont_model_model, only: model_type
   use epcont_report_run, only: run_results
   use epcont_report_vtk_grid, only: new_vtk_grid, vtk_cells, vtk_grid
-  use epcont_result_answer, only: answer_type
   implicit none
   private
   public :: write_vtk_bodies
@@ -26,43 +25,41 @@ contains
       node = pack([(i, i=1, model%nodes)], has_element(model))
       call new_vtk_grid(path, run%outcome%status, model%x(:, node), cells_of(model, node), grid, error)
       if (allocated(error)) return
-      call put_node_results(model, run%answer, node, grid)
-      call put_element_results(model, run%answer, grid)
+      call put_node_results(run, node, grid)
+      call put_element_results(run, grid)
     end associate
     call grid%finish(error)
   end subroutine write_vtk_bodies
 
-  subroutine put_node_results(model, answer, node, grid)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
+  subroutine put_node_results(run, node, grid)
+    type(run_results), intent(in) :: run
     integer, intent(in) :: node(:)   !! of each point
     type(vtk_grid), intent(inout) :: grid
     real(wp), allocatable :: force(:, :)
 
-    force = pair_forces(model, answer%contact%force)
+    force = pair_forces(run%model, run%answer%contact%force)
     call grid%begin_point_data('Vectors="displacement"')
-    call grid%put('node_id', model%node_id(node))
-    call grid%put('displacement', answer%displacement(:, node))
+    call grid%put('node_id', run%model%node_id(node))
+    call grid%put('displacement', run%answer%displacement(:, node))
     call grid%put('contact_force', force(:, node))
-    call grid%put('reaction', answer%reaction(:, node))
+    call grid%put('reaction', run%answer%reaction(:, node))
   end subroutine put_node_results
 
-  subroutine put_element_results(model, answer, grid)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
+  subroutine put_element_results(run, grid)
+    type(run_results), intent(in) :: run
     type(vtk_grid), intent(inout) :: grid
 
     call grid%begin_cell_data('Scalars="equivalent_stress"')
-    call grid%put('element_id', model%element_id)
-    call grid%put('body', model%body(model%connectivity(1, :)))
-    call grid%put('property_id', model%property_id(model%section))
-    call grid%put('material_id', model%material_id(model%section))
-    call grid%put('stress', answer%stress)
-    call grid%put('equivalent_stress', answer%equivalent_stress)
-    call grid%put('max_equivalent_stress', answer%largest_stress)
-    call grid%put('equivalent_strain', answer%equivalent_strain)
-    call grid%put('secant_modulus', answer%secant_modulus)
-    call grid%put('yielded', merge(1, 0, answer%plastic))
+    call grid%put('element_id', run%model%element_id)
+    call grid%put('body', run%model%body(run%model%connectivity(1, :)))
+    call grid%put('property_id', run%model%property_id(run%model%section))
+    call grid%put('material_id', run%model%material_id(run%model%section))
+    call grid%put('stress', run%answer%stress)
+    call grid%put('equivalent_stress', run%answer%equivalent_stress)
+    call grid%put('max_equivalent_stress', run%answer%largest_stress)
+    call grid%put('equivalent_strain', run%answer%equivalent_strain)
+    call grid%put('secant_modulus', run%answer%secant_modulus)
+    call grid%put('yielded', merge(1, 0, run%answer%plastic))
   end subroutine put_element_results
 
   !> Which nodes belong to elements.
