@@ -1,6 +1,5 @@
 !> One deck from file to results.
 module epcont_app_driver
-  use epcont_accuracy_accuracy, only: accuracy_type
   use epcont_analysis, only: analyse
   use epcont_app_arguments, only: arguments_type, stem_of
   use epcont_app_console, only: newline, print_error, print_text
@@ -18,15 +17,16 @@ module epcont_app_driver
   use epcont_plan_numbering, only: number_equations
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_report_file, only: file_lock, lock_files, unlock_files
+  use epcont_report_layout, only: right
   use epcont_report_limit, only: limit_of_largest, reason_of
   use epcont_report_motions, only: report_motion_faults
-  use epcont_report_number, only: column_number, known_column
-  use epcont_report_outcome, only: judge, outcome_type
+  use epcont_report_number, only: known, listed_number, number
+  use epcont_report_outcome, only: judge
   use epcont_report_plan_text, only: plan_text
   use epcont_report_remarks, only: remark_answer, remarks_of_deck
-  use epcont_report_results, only: remove_results, run_results, write_results
+  use epcont_report_results, only: remove_results, write_results
+  use epcont_report_run, only: run_results
   use epcont_report_timing, only: timing_text
-  use epcont_result_answer, only: answer_type
   use epcont_system_memory, only: peak_memory
   use epcont_system_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
   use epcont_system_threads, only: granted_threads
@@ -114,7 +114,7 @@ contains
     else
       call tell(shown(path)//': ', run%remarks%of_answer)
       if (len(run%outcome%sentence) > 0) call tell(shown(path)//': ', run%outcome%sentence//newline)
-      call say(arguments, one_line(name, run%answer, run%accuracy, run%outcome), status)
+      call say(arguments, one_line(name, run), status)
     end if
   end subroutine solve_deck
 
@@ -144,9 +144,8 @@ contains
       if (.not. entered) exit
       call make_plan(run, plan, watch)
     end do
-    run%outcome = judge(run%model, run%motions, run%answer, run%certificate, run%answer%singular)
-    if (run%outcome%has_answer) &
-      call remark_answer(run%model, run%motions, run%answer, run%certificate%scene, run%remarks)
+    run%outcome = judge(run)
+    if (run%outcome%has_answer) call remark_answer(run)
   end subroutine solve
 
   !> Say what is wrong.
@@ -210,27 +209,25 @@ contains
     call watch%lap(stage_numbering)
     plan%iteration = plan_iteration(run%model)
     plan%expected = forecast(run%model, run%motions, run%numbering, plan%iteration)
-    run%plan = plan_text(run%model, run%motions, plan%iteration, run%numbering, plan%expected)
+    run%plan = plan_text(run%planned_scene, plan%iteration, plan%expected)
     call watch%lap(stage_plan)
   end subroutine make_plan
 
   !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh shows, that too.
-  pure function one_line(stem, answer, accuracy, outcome) result(text)
+  pure function one_line(stem, run) result(text)
     character(len=*), intent(in) :: stem
-    type(answer_type), intent(in) :: answer
-    type(accuracy_type), intent(in) :: accuracy
-    type(outcome_type), intent(in) :: outcome
+    type(run_results), intent(in) :: run
     character(len=:), allocatable :: limit, text
 
-    text = stem//'  '//outcome%word
-    if (.not. outcome%has_answer) return
-    if (size(answer%pressure) > 0) then
-      text = text//'  p_max'//known_column(answer%largest_pressure(), 0.0_wp)
-      limit = limit_of_largest(answer, accuracy)
+    text = stem//'  '//run%outcome%word
+    if (.not. run%outcome%has_answer) return
+    if (run%model%pairs > 0) then
+      text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)
+      limit = limit_of_largest(run)
       if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
     end if
-    if (size(answer%contact%approach) > 0) &
-      text = text//'  approach'//column_number(answer%contact%approach(1), 0.0_wp)
+    if (run%motions%count > 0) &
+      text = text//'  approach'//right(listed_number(number, run%answer%contact%approach(1), 0.0_wp), 13)
   end function one_line
 
   subroutine say(arguments, text, status)

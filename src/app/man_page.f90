@@ -5,6 +5,7 @@ module epcont_app_man_page
   use epcont_base_text, only: upper
   use epcont_base_version, only: program_date, program_name, program_version
   use epcont_report_results, only: result_files
+  use epcont_report_tables, only: columns_in
   implicit none
   private
   public :: man_page
@@ -48,7 +49,7 @@ contains
            '.SH EXIT STATUS'//newline//paragraph('Of several decks the largest counts.')// &
            entries('.B', ['0', '1', '2', '3', '4', '5'], status_meaning)// &
            '.SH FILES'//newline//paragraph('In the current directory, or in DIR.')// &
-           entries('.IB DECK', result_files%suffix, result_files%text)// &
+           file_list()// &
            '.SH EXAMPLES'//newline//entries('.B', examples%command, examples%text)// &
            '.SH ENVIRONMENT'//newline// &
            paragraph('OMP_NUM_THREADS: threads that may work on bodies side by side, where a scene has several large ones; '// &
@@ -86,6 +87,19 @@ contains
       text = '.B '//names//' '//roff(trim(option%value))
     end if
   end function heading
+
+  !> The files, and the columns of tables.
+  pure function file_list() result(text)
+    character(len=:), allocatable :: columns, text
+    integer :: k
+
+    text = ''
+    do k = 1, size(result_files)
+      text = text//entry('.IB DECK '//roff(trim(result_files(k)%suffix)), result_files(k)%text)
+      columns = columns_in(trim(result_files(k)%suffix))
+      if (len(columns) > 0) text = text//'.br'//newline//paragraph('Columns: '//columns//'.')
+    end do
+  end function file_list
 
   !> An entry for each name.
   pure function entries(macro, name, explanation) result(text)

@@ -1,8 +1,10 @@
 !> Files that appear whole or not at all: written beside their place, then renamed.
 !>
-!> They are written by the streams of C, which say whether all has reached the disk; Fortran's `close` does not.
+!> They are written by the streams of C, which say whether all has reached the disk; Fortran's `close` does
+!> not.
 module epcont_report_file
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_null_char, c_null_ptr, &
+                                         c_ptr, c_size_t
   use epcont_base_error, only: error_type, raise, status_usage
   implicit none
   private
@@ -10,7 +12,7 @@ module epcont_report_file
 
   !> Between `new_text_file` and `finish` the program is not to be stopped, lest half a file stay behind.
   type :: text_file
-    character(len=:), allocatable :: mark          !! stands behind each heading; empty where the answer is valid
+    character(len=:), allocatable :: mark   !! stands behind each heading; empty where the answer is valid
     type(c_ptr), private :: stream = c_null_ptr
     character(len=:), allocatable, private :: path
   contains
@@ -32,61 +34,61 @@ module epcont_report_file
 
   interface
     type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
-      import :: c_char, c_ptr
+      import
       character(kind=c_char), intent(in) :: path(*), mode(*)
     end function c_fopen
     integer(c_size_t) function c_fwrite(text, size, count, stream) bind(c, name='fwrite')
-      import :: c_char, c_ptr, c_size_t
+      import
       character(kind=c_char), intent(in) :: text(*)
       integer(c_size_t), value :: size, count
       type(c_ptr), value :: stream
     end function c_fwrite
     integer(c_int) function c_ferror(stream) bind(c, name='ferror')
-      import :: c_int, c_ptr
+      import
       type(c_ptr), value :: stream
     end function c_ferror
     integer(c_int) function c_fclose(stream) bind(c, name='fclose')
-      import :: c_int, c_ptr
+      import
       type(c_ptr), value :: stream
     end function c_fclose
     integer(c_int) function c_fileno(stream) bind(c, name='fileno')
-      import :: c_int, c_ptr
+      import
       type(c_ptr), value :: stream
     end function c_fileno
     integer(c_int) function c_flock(descriptor, operation) bind(c, name='flock')
-      import :: c_int
+      import
       integer(c_int), value :: descriptor, operation
     end function c_flock
     integer(c_int) function c_fcntl(descriptor, command, argument) bind(c, name='fcntl')
-      import :: c_int
+      import
       integer(c_int), value :: descriptor, command, argument
     end function c_fcntl
     integer(c_int) function c_close(descriptor) bind(c, name='close')
-      import :: c_int
+      import
       integer(c_int), value :: descriptor
     end function c_close
     type(c_ptr) function c_errno_location() bind(c, name='__errno_location')
-      import :: c_ptr
+      import
     end function c_errno_location
     integer(c_int) function c_rename(old, new) bind(c, name='rename')
-      import :: c_char, c_int
+      import
       character(kind=c_char), intent(in) :: old(*), new(*)
     end function c_rename
     integer(c_int) function c_unlink(path) bind(c, name='unlink')
-      import :: c_char, c_int
+      import
       character(kind=c_char), intent(in) :: path(*)
     end function c_unlink
     integer(c_int) function c_mkdir(path, mode) bind(c, name='mkdir')
-      import :: c_char, c_int
+      import
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: mode
     end function c_mkdir
     integer(c_int) function c_sighold(signal) bind(c, name='sighold')
-      import :: c_int
+      import
       integer(c_int), value :: signal
     end function c_sighold
     integer(c_int) function c_sigrelse(signal) bind(c, name='sigrelse')
-      import :: c_int
+      import
       integer(c_int), value :: signal
     end function c_sigrelse
   end interface
@@ -95,7 +97,7 @@ contains
 
   !> Make a directory, where there is none; that it cannot be written to shows when a file is opened.
   subroutine make_directory(path)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !! of the directory
     integer(c_int), parameter :: all_may = int(o'777', c_int)
     integer(c_int) :: ignored
 
@@ -104,20 +106,20 @@ contains
 
   !> Remove a file, where there is one.
   subroutine remove_file(path)
-    character(len=*), intent(in) :: path
+    character(len=*), intent(in) :: path   !! of the file
     integer(c_int) :: ignored
 
     ignored = c_unlink(path//c_null_char)
   end subroutine remove_file
 
-  !> Take the right to write the files that begin with `stem`. What tells others is a lock of the system on a file beside them: one
-  !! that a killed process left behind is free. Where there can be no such file that shows when results are written, and where the
-  !! file system knows no locks there is none.
+  !> Take the right to write the files that begin with `stem`. What tells others is a lock of the system on a
+  !! file beside them: one that a killed process left behind is free. Where there can be no such file that
+  !! shows when results are written, and where the file system knows no locks there is none.
   subroutine lock_files(stem, lock, error)
-    character(len=*), intent(in) :: stem
-    type(file_lock), intent(out) :: lock
-    type(error_type), allocatable, intent(out) :: error
-    integer(c_int), parameter :: exclusive_at_once = 6, would_wait = 11   ! LOCK_EX + LOCK_NB, EWOULDBLOCK of Linux
+    character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
+    type(file_lock), intent(out) :: lock                  !! the right, where it could be taken
+    type(error_type), allocatable, intent(out) :: error   !! another run has it
+    integer(c_int), parameter :: exclusive_at_once = 6, would_wait = 11   ! LOCK_EX + LOCK_NB, EWOULDBLOCK
     integer(c_int), pointer :: errno
     integer(c_int) :: ignored
     logical :: exists
@@ -131,8 +133,8 @@ contains
         if (errno /= would_wait) return
         ignored = c_close(lock%descriptor)
         lock%descriptor = no_file
-        call raise(error, status_usage, stem//'.lst: another run is at work on these results: wait for it, '// &
-                   'or take another -o DIR')
+        call raise(error, status_usage, stem//'.lst: another run is at work on these results: '// &
+                   'wait for it, or take another -o DIR')
         return
       end if
       inquire (file=lock%path, exist=exists)
@@ -141,10 +143,11 @@ contains
     end do
   end subroutine lock_files
 
-  !> Open the file; but not in the place of a standard stream that is closed, or what is printed would go there.
+  !> Open the file; but not in the place of a standard stream that is closed, or what is printed would go
+  !! there.
   subroutine open_lock(lock)
     type(file_lock), intent(inout) :: lock
-    integer(c_int), parameter :: duplicate = 0, first = 3   ! F_DUPFD of Linux, and the first that is no standard stream
+    integer(c_int), parameter :: duplicate = 0, first = 3   ! F_DUPFD; the first that is no standard stream
     type(c_ptr) :: stream
     integer(c_int) :: ignored
 
@@ -157,7 +160,7 @@ contains
 
   !> Give it back.
   subroutine unlock_files(lock)
-    type(file_lock), intent(inout) :: lock
+    type(file_lock), intent(inout) :: lock   !! the right, which ends
     integer(c_int) :: ignored
 
     if (lock%descriptor == no_file) return
@@ -168,9 +171,9 @@ contains
 
   !> Begin a file.
   subroutine new_text_file(path, file, error)
-    character(len=*), intent(in) :: path
-    type(text_file), intent(out) :: file
-    type(error_type), allocatable, intent(out) :: error
+    character(len=*), intent(in) :: path                  !! of the file, once it is finished
+    type(text_file), intent(out) :: file                  !! open, without a line
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
 
     file%path = path
     file%mark = ''
@@ -178,13 +181,14 @@ contains
     file%stream = c_fopen(path//'.part'//c_null_char, 'w'//c_null_char)
     if (c_associated(file%stream)) return
     call release_signals()
-    call raise(error, status_usage, path//': cannot be written: a directory that is there, writable, would be right')
+    call raise(error, status_usage, path// &
+               ': cannot be written: a directory that is there, writable, would be right')
   end subroutine new_text_file
 
   !> Add a line, without blanks at its end. What goes wrong shows in `finish`.
   subroutine line(self, text)
     class(text_file), intent(in) :: self
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in) :: text   !! of the line
     integer(c_size_t) :: ignored
 
     ignored = c_fwrite(text, 1_c_size_t, len_trim(text, kind=c_size_t), self%stream)
@@ -194,7 +198,7 @@ contains
   !> Close the file and give it its name.
   subroutine finish(self, error)
     class(text_file), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: error
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
     logical :: whole
 
     whole = c_ferror(self%stream) == 0

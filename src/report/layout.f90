@@ -11,27 +11,32 @@ contains
 
   !> A blank line and a heading, marked where the answer is not valid.
   subroutine heading(file, text)
-    type(text_file), intent(in) :: file
-    character(len=*), intent(in) :: text
+    type(text_file), intent(in) :: file    !! the listing
+    character(len=*), intent(in) :: text   !! of the heading
 
     call file%line('')
     call file%line(text//file%mark)
   end subroutine heading
 
-  !> A named figure.
-  subroutine figure(file, name, value)
-    type(text_file), intent(in) :: file
-    character(len=*), intent(in) :: name, value
+  !> A named figure: its value at the right of 13 columns, and what is to be said of it.
+  subroutine figure(file, name, value, note)
+    type(text_file), intent(in) :: file              !! the listing
+    character(len=*), intent(in) :: name, value      !! in at most 44 characters; any text
+    character(len=*), intent(in), optional :: note   !! behind the value
     character(len=44) :: label
 
     label = name
-    call file%line('  '//label//value)
+    if (present(note)) then
+      call file%line('  '//label//right(value, 13)//note)
+    else
+      call file%line('  '//label//right(value, 13))
+    end if
   end subroutine figure
 
   !> Text on lines of at most 132 columns.
   subroutine wrap(file, text)
-    type(text_file), intent(in) :: file
-    character(len=*), intent(in) :: text
+    type(text_file), intent(in) :: file    !! the listing
+    character(len=*), intent(in) :: text   !! what would be a long line
     integer, parameter :: columns = 132
     integer :: from, to
 
@@ -47,8 +52,8 @@ contains
 
   !> Text at the right of `width` columns; wider text is kept whole.
   pure function right(text, width) result(field)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: width
+    character(len=*), intent(in) :: text   !! any text
+    integer, intent(in) :: width           !! number of columns
     character(len=:), allocatable :: field
 
     field = repeat(' ', max(0, width - len(text)))//text

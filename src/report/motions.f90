@@ -7,6 +7,7 @@ module epcont_report_motions
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: motion_fault, motion_not_held, motion_too_many
+  use epcont_report_names, only: grid_name
   implicit none
   private
   public :: report_motion_faults
@@ -16,11 +17,12 @@ module epcont_report_motions
 
 contains
 
+  !> Say what is wrong with each body.
   subroutine report_motion_faults(deck, model, found, faults)
-    type(deck_type), intent(in) :: deck
-    type(model_type), intent(in) :: model
-    type(motion_fault), intent(in) :: found(:)
-    type(diagnostics), intent(inout) :: faults
+    type(deck_type), intent(in) :: deck          !! whose cards are named
+    type(model_type), intent(in) :: model        !! the model
+    type(motion_fault), intent(in) :: found(:)   !! what is wrong with the SUPORT freedoms of bodies
+    type(diagnostics), intent(inout) :: faults   !! all faults of the deck
     character(len=:), allocatable :: body
     type(place_type) :: place
     integer :: i
@@ -28,17 +30,18 @@ contains
     do i = 1, size(found)
       associate (fault => found(i))
         place = deck%place(card_grid, fault%node, 0)
-        body = 'the body of GRID '//text_of(model%node_id(fault%node))
+        body = 'the body of '//grid_name(model, fault%node)
         if (fault%kind == motion_not_held) then
           if (fault%moving /= fault%node) then
             place = deck%place(card_grid, fault%moving, 0)
-            body = 'a part of '//body//', with GRID '//text_of(model%node_id(fault%moving))//','
+            body = 'a part of '//body//', with '//grid_name(model, fault%moving)//','
           end if
           call faults%add_error(place, body//' is free to move: '//motion_list(model, fault), &
                                 'hold it by SPC1, or solve for the motion by '//suport_card(model, fault))
         else if (fault%kind == motion_too_many) then
           call faults%add_error(place, body//' has '//plural(fault%motions, 'free motion')//' and '// &
-                                plural(fault%references, 'SUPORT freedom'), 'as many SUPORT freedoms as free motions')
+                                plural(fault%references, 'SUPORT freedom'), &
+                                'as many SUPORT freedoms as free motions')
         else
           call faults%add_error(place, body//': its SUPORT freedoms hardly tell its free motions apart', &
                                 'SUPORT nodes farther from each other')
@@ -58,7 +61,7 @@ contains
     do k = 1, size(fault%freedom, 2)
       if (k > 1) text = text//', '
       if (fault%turn(k) > no_turn) then
-        text = text//'it turns, GRID '//text_of(model%node_id(fault%freedom(1, k)))//' moving along ('
+        text = text//'it turns, '//grid_name(model, fault%freedom(1, k))//' moving along ('
       else
         text = text//'it shifts along ('
       end if

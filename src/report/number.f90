@@ -1,14 +1,82 @@
 !> Numbers as the listing and the tables print them.
 module epcont_report_number
   use epcont_base_kinds, only: wp
+  use epcont_base_text, only: short_real, text_of
+  use epcont_report_layout, only: right
   implicit none
   private
-  public :: column_number, known_column, estimate_number, rounding_number, full_number, known_number
+  public :: listed_number, full_numbers, is_known, estimate_number, rounding_number, percent
+
+  !> What a number is, which says how it is written: in a file in full, in the listing in the digits that
+  !! tell.
+  integer, parameter, public :: number = 1     !! six digits
+  integer, parameter, public :: known = 2      !! the same; not known where it is negative
+  integer, parameter, public :: estimate = 3   !! two digits; not known where it is negative
+  integer, parameter, public :: size_of = 4    !! four digits
+  integer, parameter, public :: rounding = 5   !! the power of ten that it is below, where it is rounding
+  integer, parameter, public :: off_curve = 6  !! the same: a stress's distance from its curve over the latter
+  integer, parameter, public :: factor = 7     !! of errors: two digits; not known where it is negative
+  integer, parameter, public :: part = 8       !! per cent
+  integer, parameter, public :: no_number = 9  !! there is none in this scene
 
   !> A value below this part of its column's scale is rounding and prints as 0.0.
   real(wp), parameter :: noise = 1.0e-12_wp
+  !> An error below this part is rounding and prints as 0.0.
+  real(wp), parameter :: no_error = 1.0e-9_wp
+  !> Beyond these rounding has a say in the number itself.
+  real(wp), parameter :: largest_off_curve = 10.0_wp, largest_factor = 1.0e6_wp
 
 contains
+
+  !> A number of one of the kinds above in the listing.
+  pure function listed_number(kind, value, scale) result(text)
+    integer, intent(in) :: kind   !! one of the kinds above
+    real(wp), intent(in) :: value   !! the number
+    real(wp), intent(in) :: scale   !! largest magnitude of its column; of an estimate: what it is an error of
+    character(len=:), allocatable :: text
+
+    text = '-'
+    select case (kind)
+    case (number)
+      text = column_number(value, scale)
+    case (known)
+      if (value >= 0.0_wp) text = column_number(value, scale)
+    case (estimate)
+      if (value >= 0.0_wp) text = '0.0'
+      if (value > no_error*scale) text = estimate_number(value)
+    case (size_of)
+      text = short_real(value)
+    case (rounding)
+      text = 'unknown'
+      if (value >= 0.0_wp) text = rounding_number(value)
+    case (off_curve)
+      text = '> '//text_of(nint(largest_off_curve))
+      if (value <= largest_off_curve) text = rounding_number(value)
+    case (factor)
+      text = estimate_number(value)
+      if (value > largest_factor) text = '> '//estimate_number(largest_factor)
+    case (part)
+      text = right(percent(value, 1.0_wp), 15)   ! the sign stands behind the column
+    end select
+  end function listed_number
+
+  !> Numbers in a file: 17 digits, and blanks behind them. They are written at once, since a format takes
+  !! longer than a number.
+  pure function full_numbers(values) result(text)
+    real(wp), intent(in) :: values(:)   !! at least one
+    character(len=25) :: text(size(values))
+
+    write (text, '(es25.16e3)') merge(0.0_wp, values, values == 0.0_wp)   ! no negative zero
+    text = adjustl(text)
+  end function full_numbers
+
+  !> Is a number known? Errors, pressures and the like are not where they are negative.
+  pure logical function is_known(kind, value)
+    integer, intent(in) :: kind     !! one of the kinds above
+    real(wp), intent(in) :: value   !! the number
+
+    is_known = kind /= no_number .and. (value >= 0.0_wp .or. all(kind /= [known, estimate, factor, part]))
+  end function is_known
 
   !> A number of a listing's column, six digits in 13 characters.
   pure function column_number(value, scale) result(text)
@@ -25,24 +93,15 @@ contains
     end if
   end function column_number
 
-  !> The same of a figure that is never below zero; one that is not known is.
-  pure function known_column(value, scale) result(text)
-    real(wp), intent(in) :: value, scale
-    character(len=13) :: text
-
-    text = '            -'
-    if (value >= 0.0_wp) text = column_number(value, scale)
-  end function known_column
-
   !> A figure that is rounding in a valid answer, as the power of ten it is below, since rounding differs
   !! between builds: `< 1E-12` at the least. What is no rounding has two digits.
   pure function rounding_number(value) result(text)
-    real(wp), intent(in) :: value
+    real(wp), intent(in) :: value   !! the number
     character(len=:), allocatable :: text
-    real(wp), parameter :: rounding = 1.0e-9_wp
+    real(wp), parameter :: no_rounding = 1.0e-9_wp
     character(len=12) :: buffer
 
-    if (value < rounding) then
+    if (value < no_rounding) then
       write (buffer, '(a, i0)') '< 1E', ceiling(log10(max(value, 0.999_wp*noise)))
     else
       write (buffer, '(es9.1e3)') value
@@ -52,7 +111,7 @@ contains
 
   !> An estimate: two digits.
   pure function estimate_number(value) result(text)
-    real(wp), intent(in) :: value
+    real(wp), intent(in) :: value   !! the number
     character(len=:), allocatable :: text
     character(len=12) :: buffer
 
@@ -61,22 +120,22 @@ contains
     text = trim(adjustl(buffer))
   end function estimate_number
 
-  !> A number in full precision: 17 digits.
-  pure function full_number(value) result(text)
-    real(wp), intent(in) :: value
+  !> A part in per cent, two digits of it; empty where it is a hundred times the whole.
+  pure function percent(value, of) result(text)
+    real(wp), intent(in) :: value   !! the number
+    real(wp), intent(in) :: of      !! the whole
     character(len=:), allocatable :: text
-    character(len=26) :: buffer
-
-    write (buffer, '(es25.16e3)') merge(0.0_wp, value, value == 0.0_wp)  ! no negative zero
-    text = trim(adjustl(buffer))
-  end function full_number
-
-  !> The same of a figure that is never below zero; empty where it is, since it is not known.
-  pure function known_number(value) result(text)
-    real(wp), intent(in) :: value
-    character(len=:), allocatable :: text
+    character(len=12) :: buffer
+    real(wp) :: hundredths
 
     text = ''
-    if (value >= 0.0_wp) text = full_number(value)
-  end function known_number
+    if (of <= 0.0_wp .or. value >= 100.0_wp*of) return
+    hundredths = 100.0_wp*value/of
+    buffer = '< 0.001'
+    if (hundredths >= 0.00095_wp) &
+      write (buffer, '(f12.'//text_of(max(0, 1 - floor(log10(1.05_wp*hundredths))))//')') hundredths
+    text = trim(adjustl(buffer))
+    if (text(len(text):) == '.') text = text(:len(text) - 1)
+    text = text//' %'
+  end function percent
 end module epcont_report_number

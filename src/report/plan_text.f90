@@ -2,67 +2,98 @@
 module epcont_report_plan_text
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: plural, short_real, text_of
-  use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, precision_double, &
-                                   precision_name, precision_open, solver_auto, solver_band, solver_frontal, solver_name
-  use epcont_model_model, only: model_type
+  use epcont_geometry_boundary_line, only: boundary_line
+  use epcont_model_controls, only: method_inistr, method_modsec, method_name, method_newton, &
+                                   precision_double, precision_name, precision_open, precision_single, &
+                                   solver_auto, solver_band, solver_frontal, solver_name
+  use epcont_model_model, only: line_contact, model_type
   use epcont_plan_forecast, only: forecast_type
-  use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: contact_plan, iteration_plan, many_pairs
-  use epcont_plan_numbering, only: body_numbering, many_operations, numbering_type
-  use epcont_report_layout, only: newline, right
-  use epcont_report_line_plan, only: lines_text
-  use epcont_report_precision, only: precision_text
+  use epcont_plan_numbering, only: many_operations, numbering_type
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_report_columns, only: column, state, table_type, whole, word
+  use epcont_report_layout, only: newline
+  use epcont_report_names, only: joined, motion_name
   implicit none
   private
   public :: plan_text
 
-  !> Free motions, and bodies, that are told of one by one.
-  integer, parameter :: most = 20
+  !> Free motions, bodies and contacts that are told of one by one, and corners of each line.
+  integer, parameter :: most = 20, most_corners = 8
+
+  type(column), parameter :: body_columns(*) = [ &
+    column(whole, head='body', width=7), column(whole, head='nodes', width=7), &
+    column(whole, head='equations', width=11), column(word, head='half-bandwidth', width=16), &
+    column(whole, head='contact equations', width=19), column(whole, head='border', width=8), &
+    column(word, head='factorizations', width=16), column(state, head='flexibility by', width=16)]
 
 contains
 
-  pure function plan_text(model, motions, iteration, numbering, expected) result(text)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(iteration_plan), intent(in) :: iteration
-    type(numbering_type), intent(in) :: numbering
-    type(forecast_type), intent(in) :: expected
+  !> The plan of a scene, in lines.
+  pure function plan_text(scene, iteration, expected) result(text)
+    type(planned_scene), intent(in) :: scene        !! what is to be solved
+    type(iteration_plan), intent(in) :: iteration   !! how contact and yielding are found
+    type(forecast_type), intent(in) :: expected     !! memory and work
     character(len=:), allocatable :: text
-    integer :: b, k
+    integer :: k
 
-    text = newline//'PLAN'//newline
-    text = text//'  '//plural(model%nodes, 'node')//', '//plural(model%elements, 'element')//', '// &
-           plural(model%pairs, 'pair')//'; bodies: '//text_of(model%bodies)//newline
-    text = text//iteration_text(model, iteration)
-    if (model%pairs == 0) then
-      text = text//'  no pairs: no flexibility, no simplex'//newline
-    else
-      text = text//'  contact by '//rule_text(iteration%contact)//newline
-    end if
-    text = text//lines_text(model)
-    do k = 1, min(most, motions%count)
-      text = text//'  free motion: GRID '//text_of(model%node_id(motions%node(k)))//' direction '// &
-             text_of(motions%component(k))//newline
-    end do
-    if (motions%count > most) text = text//'  and '//plural(motions%count - most, 'further free motion')//newline
-    text = text//solver_text(model, numbering)//precision_text(iteration%precision)
-    if (model%controls%accuracy > 0.0_wp) text = text//accuracy_text(model, iteration)
-    text = text//newline//'   body  nodes  equations  half-bandwidth  contact equations  border  factorizations'// &
-           '  flexibility by'//newline
-    do b = 1, min(most, model%bodies)
-      associate (body => numbering%body(b))
-        text = text//right(text_of(b), 7)//right(text_of(size(body%node)), 7)//right(text_of(body%equations), 11)// &
-               right(width_text(body), 16)//right(text_of(body%contact_equations), 19)// &
-               right(text_of(body%border), 8)//right(factorizations(iteration, body, b), 16)//'  '//flexibility_text(body)//newline
-      end associate
-    end do
-    if (model%bodies > most) text = text//'  and '//plural(model%bodies - most, 'further one')//newline
+    associate (model => scene%model, motions => scene%motions%count)
+      text = newline//'PLAN'//newline// &
+             '  '//plural(model%nodes, 'node')//', '//plural(model%elements, 'element')//', '// &
+             plural(model%pairs, 'pair')//'; bodies: '//text_of(model%bodies)//newline// &
+             iteration_text(model, iteration)
+      if (model%pairs == 0) then
+        text = text//'  no pairs: no flexibility, no simplex'//newline
+      else
+        text = text//'  contact by '//rule_text(iteration%contact)//newline
+      end if
+      text = text//lines_text(model)
+      do k = 1, min(most, motions)
+        text = text//'  free motion: '//motion_name(scene, k)//newline
+      end do
+      if (motions > most) text = text//'  and '//plural(motions - most, 'further free motion')//newline
+      text = text//solver_text(model, scene%numbering, iteration%precision)
+      if (model%controls%accuracy > 0.0_wp) text = text//accuracy_text(model, iteration)
+    end associate
+    text = text//newline//body_table(iteration, scene%numbering)
     text = text//newline//'  memory '//megabytes(expected%bytes)
-    if (iteration%precision /= precision_double) text = text//' (in double '//megabytes(expected%double_bytes)//')'
+    if (iteration%precision /= precision_double) &
+      text = text//' (in double '//megabytes(expected%double_bytes)//')'
     text = text//', operations '//short_real(expected%operations)// &
            trim(merge(' a solve', '        ', iteration%yields))//newline
   end function plan_text
 
+  !> A row a body: what its matrix is like, how often that is factored, and how its flexibility follows from
+  !! the factor: by inverting the trailing block, or by forward substitution of the pairs.
+  pure function body_table(iteration, numbering) result(text)
+    type(iteration_plan), intent(in) :: iteration
+    type(numbering_type), intent(in) :: numbering
+    character(len=:), allocatable :: text
+    type(table_type) :: table
+    character(len=14) :: width, times, way
+    integer :: b
+
+    call table%describe(body_columns)
+    text = table%head_text()//newline
+    do b = 1, min(most, size(numbering%body))
+      associate (body => numbering%body(b))
+        width = text_of(body%half_bandwidth)
+        if (body%solver /= solver_band) width = solver_name(body%solver)
+        times = '1'
+        if (iteration%body(b) .and. iteration%method /= method_inistr) times = 'each iteration'
+        if (body%equations == 0) times = '0'
+        way = '-'
+        if (body%contact_equations > 0) way = merge('inversion   ', 'substitution', body%contact_last)
+        text = text// &
+               table%row_text([b, size(body%node), body%equations, body%contact_equations, body%border], &
+                              [real(wp) ::], [width, times, way])//newline
+      end associate
+    end do
+    if (size(numbering%body) > most) &
+      text = text//'  and '//plural(size(numbering%body) - most, 'further one')//newline
+  end function body_table
+
+  !> Memory, rounded up.
   pure function megabytes(bytes) result(text)
     integer(i8), intent(in) :: bytes
     character(len=:), allocatable :: text
@@ -77,9 +108,12 @@ contains
     character(len=:), allocatable :: text
 
     text = ''
-    if (iteration%yields .and. model%controls%tolerance == 0.0_wp) text = text//', TOL '//short_real(iteration%tolerance)
-    if (iteration%yields .and. iteration%chosen_here) text = text//', METHOD '//trim(method_name(iteration%method))
-    if (model%controls%precision == precision_open) text = text//', PRECIS '//trim(precision_name(iteration%precision))
+    if (iteration%yields .and. model%controls%tolerance == 0.0_wp) &
+      text = text//', TOL '//short_real(iteration%tolerance)
+    if (iteration%yields .and. iteration%chosen_here) &
+      text = text//', METHOD '//trim(method_name(iteration%method))
+    if (model%controls%precision == precision_open) &
+      text = text//', PRECIS '//trim(precision_name(iteration%precision))
     if (len(text) == 0) text = ', nothing: the deck sets all itself'
     text = '  ACCURACY '//short_real(model%controls%accuracy)//' chooses '//text(3:)//newline
   end function accuracy_text
@@ -92,53 +126,29 @@ contains
     text = 'the simplex with contact entry rule (CONRY)'
     if (.not. plan%by_blocks) return
     text = 'block pivoting of the contacts (BLOCK)'
-    if (plan%chosen_here) text = text//newline//'    chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on'
+    if (plan%chosen_here) &
+      text = text//newline//'    chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on'
   end function rule_text
 
-  !> How bodies are factored, where it is not in panels of their bands alone.
-  pure function solver_text(model, numbering) result(text)
+  !> How bodies are factored, where it is not in panels of their bands alone, and in double precision.
+  pure function solver_text(model, numbering, precision) result(text)
     type(model_type), intent(in) :: model
     type(numbering_type), intent(in) :: numbering
+    integer, intent(in) :: precision
     character(len=:), allocatable :: text
+    integer :: fronts
 
     text = ''
-    if (.not. any(numbering%body%solver == solver_frontal)) return
-    text = '  bodies factored in nested fronts (FRONTAL): '//text_of(count(numbering%body%solver == solver_frontal))//newline
-    if (model%controls%solver /= solver_auto) return
-    text = text//'    chosen here (AUTO): faster where a band (BAND) takes more than '//short_real(many_operations)// &
-           ' operations'//newline
+    fronts = count(numbering%body%solver == solver_frontal)
+    if (fronts > 0) text = '  bodies factored in nested fronts (FRONTAL): '//text_of(fronts)//newline
+    if (fronts > 0 .and. model%controls%solver == solver_auto) text = text// &
+      '    chosen here (AUTO): faster where a band (BAND) takes more than '//short_real(many_operations)// &
+      ' operations'//newline
+    if (precision == precision_double) return
+    text = text//'  factors in single precision, '// &
+           trim(merge('not refined      ', 'refined to double', precision == precision_single))// &
+           ' ('//trim(precision_name(precision))//'); where that fails, all is solved anew in double'//newline
   end function solver_text
-
-  !> Half-bandwidth, or the solver of a body that has none.
-  pure function width_text(body) result(text)
-    type(body_numbering), intent(in) :: body
-    character(len=:), allocatable :: text
-
-    text = text_of(body%half_bandwidth)
-    if (body%solver /= solver_band) text = trim(solver_name(body%solver))
-  end function width_text
-
-  !> How a body's flexibility follows from its factor: by inverting the trailing block, or by forward substitution of
-  !! the pairs.
-  pure function flexibility_text(body) result(text)
-    type(body_numbering), intent(in) :: body
-    character(len=:), allocatable :: text
-
-    text = '-'
-    if (body%contact_equations > 0) text = trim(merge('inversion   ', 'substitution', body%contact_last))
-  end function flexibility_text
-
-  !> How often a body is factored.
-  pure function factorizations(iteration, body, b) result(text)
-    type(iteration_plan), intent(in) :: iteration
-    type(body_numbering), intent(in) :: body
-    integer, intent(in) :: b
-    character(len=:), allocatable :: text
-
-    text = '1'
-    if (iteration%body(b) .and. iteration%method /= method_inistr) text = 'each iteration'
-    if (body%equations == 0) text = '0'
-  end function factorizations
 
   !> Whether the scene can yield, and how that is iterated.
   pure function iteration_text(model, iteration) result(text)
@@ -152,13 +162,20 @@ contains
     end if
     text = '  total theory of plasticity; bodies that can yield: '//text_of(count(iteration%body))//newline
     text = text//'  iteration '//trim(method_name(iteration%method))//': '//what_it_does(iteration)//newline
-    if (iteration%chosen_here) text = text//'    chosen here (AUTO): '//why(iteration)//newline
-    text = text//'    until no displacement changes, or is estimated to be off, by more than '//short_real(iteration%tolerance)// &
+    if (iteration%chosen_here .and. iteration%method == method_newton) then
+      text = text//'    chosen here (AUTO): it needs the fewest factorizations'//newline
+    else if (iteration%chosen_here) then
+      text = text//'    chosen here (AUTO): the method of the paper, '// &
+             'as MUP PAPER has no tangent for NEWTON'//newline
+    end if
+    text = text//'    until no displacement changes, or is estimated to be off, by more than '// &
+           short_real(iteration%tolerance)// &
            ' of the largest,'//newline//'    and no stress is off its curve by more than '// &
            short_real(iteration%off_curve)//' of the stress there; at most '// &
            plural(model%controls%most_iterations, 'iteration')//newline
     if (iteration%load_steps > 1) &
-      text = text//'  '//plural(iteration%load_steps, 'load step')//'; elastic unloading is not modelled'//newline
+      text = text//'  '//plural(iteration%load_steps, 'load step')//'; elastic unloading is not modelled'// &
+             newline
     if (model%controls%paper_ratio) &
       text = text//'  MUP PAPER: Poisson''s ratio in the equivalent strain by formula (2-4)'//newline
   end function iteration_text
@@ -179,14 +196,58 @@ contains
     end select
   end function what_it_does
 
-  pure function why(iteration) result(text)
-    type(iteration_plan), intent(in) :: iteration
+  !> All contacts of lines.
+  pure function lines_text(model) result(text)
+    type(model_type), intent(in) :: model
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = ''
+    do k = 1, min(most, size(model%line_contact))
+      text = text//contact_text(model, model%line_contact(k))
+    end do
+    if (size(model%line_contact) > most) &
+      text = text//'  and '//plural(size(model%line_contact) - most, 'further contact')//' of lines'//newline
+  end function lines_text
+
+  !> One of them.
+  pure function contact_text(model, contact) result(text)
+    type(model_type), intent(in) :: model
+    type(line_contact), intent(in) :: contact
     character(len=:), allocatable :: text
 
-    if (iteration%method == method_newton) then
-      text = 'it needs the fewest factorizations'
-    else
-      text = 'the method of the paper, as MUP PAPER has no tangent for NEWTON'
-    end if
-  end function why
+    text = '  BCONP '//joined(contact%bconp, ', ')//': nodes of BLSEG '//joined(contact%slave_id, ', ')// &
+           ' against sides of BLSEG '//joined(contact%master_id, ', ')//': '// &
+           plural(contact%last - contact%first + 1, 'pair')//', initial gaps '// &
+           short_real(minval(model%initial_gap(contact%first:contact%last)))//' to '// &
+           short_real(maxval(model%initial_gap(contact%first:contact%last)))
+    if (contact%nodes_left_out > 0) text = text//'; left out, since they face nothing within '// &
+                                           short_real(contact%search)// &
+                                           ': '//plural(contact%nodes_left_out, 'node')
+    text = text//newline
+    if (contact%last >= contact%first_of_master) &
+      text = text//'    of these nodes of BLSEG '//joined(contact%master_id, ', ')// &
+             ' that stand on sides of the former: '// &
+             text_of(contact%last - contact%first_of_master + 1)//newline
+    if (contact%is_wider .or. size(contact%came_near) > 0) &
+      text = text//'    solved anew, with nodes that came near'//newline
+    text = text//corner_text(model, contact%slave, contact%slave_id)// &
+           corner_text(model, contact%master, contact%master_id)
+  end function contact_text
+
+  !> The corners of lines: where a face ends, and nothing is smoothed.
+  pure function corner_text(model, line, id) result(text)
+    type(model_type), intent(in) :: model
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: id(:)
+    character(len=:), allocatable :: text
+    integer, allocatable :: node(:)
+
+    node = pack(line%segment(1, :), line%corner(1, :) .and. .not. line%mirrored(1, :))
+    node = [node, pack(line%segment(2, :), line%corner(2, :) .and. .not. line%mirrored(2, :) .and. &
+                       line%neighbour(2, :) == 0)]
+    text = ''
+    if (size(node) > 0) text = '    corners of BLSEG '//joined(id, ', ')//': GRID '// &
+                               joined(model%node_id(node), ', ', most_corners)//newline
+  end function corner_text
 end module epcont_report_plan_text

@@ -11,14 +11,14 @@ module epcont_report_progress_line
 
 contains
 
-  !> Time gone and expected, then what the last solve has found, in the words of the listing. Of a line that would be longer than
-  !! `width` the last parts are left out, whole.
+  !> Time gone and expected, then what the last solve has found, in the words of the listing. Of a line that
+  !! would be longer than `width` the last parts are left out, whole.
   pure function progress_line(stem, elapsed, expected, now, width) result(text)
-    character(len=*), intent(in) :: stem
-    real(wp), intent(in) :: elapsed                 !! [s]
-    type(expectation_type), intent(in) :: expected
-    type(iteration_record), intent(in) :: now       !! iteration 0: before the first solve
-    integer, intent(in) :: width
+    character(len=*), intent(in) :: stem             !! name of the deck
+    real(wp), intent(in) :: elapsed                  !! [s]
+    type(expectation_type), intent(in) :: expected   !! how long it will take
+    type(iteration_record), intent(in) :: now        !! iteration 0: before the first solve
+    integer, intent(in) :: width                     !! of the terminal, in columns
     character(len=:), allocatable :: text, more
     integer :: room
 
@@ -27,7 +27,8 @@ contains
     more = ''
     if (now%iteration > 0) then
       more = ', iteration '//text_of(now%iteration)//', load factor '//short_real(now%load_factor)// &
-             ', change '//rounding_number(now%change)//', yielded '//text_of(now%yielded)//', touching '//text_of(now%touching)
+             ', change '//rounding_number(now%change)//', yielded '//text_of(now%yielded)//', touching '// &
+             text_of(now%touching)
     else if (expected%seconds < 0.0_wp) then
       more = ', first solve after about '//duration(expected%first_solve)
     end if
@@ -40,7 +41,7 @@ contains
 
   !> Seconds, minutes or hours in two or three digits.
   pure function duration(seconds) result(text)
-    real(wp), intent(in) :: seconds
+    real(wp), intent(in) :: seconds   !! a time [s]
     character(len=:), allocatable :: text
     character(len=24) :: buffer
 

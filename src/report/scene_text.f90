@@ -8,21 +8,41 @@ module epcont_report_scene_text
   use epcont_model_finding, only: of_element
   use epcont_model_model, only: model_type
   use epcont_report_file, only: text_file
-  use epcont_report_layout, only: figure, right
+  use epcont_report_layout, only: figure
+  use epcont_report_names, only: first_grid, grid_name, point_name
   use epcont_report_number, only: estimate_number
   implicit none
   private
-  public :: scene_fault, deep_text, wide_text, itself_text, mirror_text, drawn_text, slid_text, changed_text, list_scene
+  public :: scene_fault, scene_warning, list_scene
+
+  !> What a scene is warned of, in the order of the warnings.
+  integer, parameter, public :: body_in_itself = 1   !! a body passes through itself
+  integer, parameter, public :: beyond_mirror = 2    !! a body passes a line at which it ends and is held
+  integer, parameter, public :: overlap_drawn = 3    !! bodies overlap as drawn, with no pair to close that
+  integer, parameter, public :: much_overlap = 4     !! bodies lie in each other by much, but allowed
+  integer, parameter, public :: much_gap = 5         !! a pair presses across as wide a gap
+  integer, parameter, public :: side_changed = 6     !! a side turns or stretches too far
+  integer, parameter, public :: sides_slid = 7       !! sides slide too far along each other where they press
+  integer, parameter, public :: scene_warnings = 7
 
   !> Depths that differ by less than this part are not told apart.
   real(wp), parameter :: deeper = 1.1_wp
+
+  !> Sentences about a place; `told` fills in what stands in braces.
+  character(len=*), parameter :: &
+    lies_in = 'the body of {body} lies {depth} deep in that of {other body}, '// &
+              'at {point} on {side}, behind {other side}', &
+    is_off = 'at {point} on {side} is {depth} off {other side}', &
+    by_much = '{share} % of the largest displacement, {moved}: ', &
+    limit = '; {allowed} is allowed', &
+    mending = '. What may mend it: '
 
 contains
 
   !> What speaks against a scene that is not sound.
   pure function scene_fault(model, scene) result(text)
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
+    type(model_type), intent(in) :: model   !! the model
+    type(scene_type), intent(in) :: scene   !! as the certificate has it
     character(len=:), allocatable :: text
 
     if (scene%axis%node > 0) then
@@ -30,52 +50,138 @@ contains
              '; where displacements are small radii stay above 0'
       return
     end if
-    select case (maxloc([scene%inside%ratio, scene%apart%ratio, scene%beside%ratio, scene%passed%ratio], dim=1))
+    select case (maxloc([scene%inside%ratio, scene%apart%ratio, scene%beside%ratio, scene%passed%ratio], &
+                        dim=1))
     case (1)
-      text = 'bodies pass through each other: '//inside(model, scene%inside)//'; '//short_real(scene%inside%allowed)// &
-             ' is allowed'//deepest(scene)//'. What may mend it: '//remedy(model, scene%inside)
+      text = told('bodies pass through each other: '//lies_in//limit, model, scene, scene%inside)
+      if (scene%deepest%depth > deeper*scene%inside%depth) text = text// &
+        told(' (deepest, {depth}, they are at {point}, where {allowed} is allowed)', &
+             model, scene, scene%deepest)
+      text = text//mending//remedy(model, scene%inside)
     case (2)
-      text = 'pair '//text_of(model%pair_id(scene%apart%pair))//' presses across a gap: '//where_is(model, scene%apart)//' is '// &
-             short_real(scene%apart%depth)//' off '//side_name(model, scene%apart%other)//'; '// &
-             short_real(scene%apart%allowed)//' is allowed. What may mend it: pairs of nodes, or lines, that face each other'
+      text = 'pair '//text_of(model%pair_id(scene%apart%pair))// &
+             told(' presses across a gap: '//is_off//limit//mending// &
+             'pairs of nodes, or lines, that face each other', model, scene, scene%apart)
     case (3)
-      text = 'pair '//text_of(model%pair_id(scene%beside%pair))//' presses beside the other body: '// &
-             where_is(model, scene%beside)//' is '//short_real(scene%beside%depth)//' beside the end of '// &
-             side_name(model, scene%beside%other)//'; '//short_real(scene%beside%allowed)//' is allowed. What may mend it: '// &
-             'bodies drawn where they come to, or longer ones: contact is that of undeformed places'
+      text = 'pair '//text_of(model%pair_id(scene%beside%pair))//told(' presses beside the other body: '// &
+             'at {point} on {side} is {depth} beside the end of {other side}'//limit//mending// &
+             'bodies drawn where they come to, or longer ones: contact is that of undeformed places', &
+             model, scene, scene%beside)
     case default
-      text = 'bodies pass through each other on their way: '//passing(model, scene)//'; '//short_real(scene%passed%allowed)// &
-             ' is allowed. What may mend it: '//remedy(model, scene%passed)// &
-             ', or loads and supports that move it another way'
+      text = told('bodies pass through each other on their way: {passing} of the body of {body} goes '// &
+                  'through that of {other body}, {depth} deep at {point}, behind {other side}'// &
+                  limit//mending, model, scene, scene%passed)// &
+             remedy(model, scene%passed)//', or loads and supports that move it another way'
     end select
   end function scene_fault
 
-  !> Which node goes through which body, and how deep it is on its way.
-  pure function passing(model, scene) result(text)
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
-    character(len=:), allocatable :: text
-
-    associate (place => scene%passed)
-      text = model%name_of(of_element, model%body_outline%element(place%side))
-      if (scene%passed%node > 0) text = 'GRID '//text_of(model%node_id(scene%passed%node))
-      text = text//' of the body of GRID '//first_node(model, place%side)// &
-             ' goes through that of GRID '//first_node(model, place%other)//', '//short_real(place%depth)//' deep at '// &
-             short_real(place%x(1))//' '//short_real(place%x(2))//', behind '//side_name(model, place%other)
-    end associate
-  end function passing
-
-  !> The deepest place, where it is not the one that is worst by what is allowed.
-  pure function deepest(scene) result(text)
-    type(scene_type), intent(in) :: scene
+  !> What is to be known of a scene though it may be sound; empty: nothing.
+  pure function scene_warning(model, scene, about) result(text)
+    type(model_type), intent(in) :: model   !! the model
+    type(scene_type), intent(in) :: scene   !! as the certificate has it
+    integer, intent(in) :: about            !! one of the warnings above
     character(len=:), allocatable :: text
 
     text = ''
-    associate (place => scene%deepest)
-      if (place%depth > deeper*scene%inside%depth) text = ' (deepest, '//short_real(place%depth)//', they are at '// &
-        short_real(place%x(1))//' '//short_real(place%x(2))//', where '//short_real(place%allowed)//' is allowed)'
-    end associate
-  end function deepest
+    select case (about)
+    case (body_in_itself)
+      if (scene%itself%ratio > 1.0_wp) text = told('a body passes through itself: it lies {depth} deep, '// &
+        'at {point} on {side}, behind {other side}'//limit, model, scene, scene%itself)
+    case (beyond_mirror)
+      if (scene%mirror%node > 0) text = 'a body passes through its mirror image: '// &
+        beyond(model, scene%mirror)// &
+        ', to which its body is held; no harm where that is no line of symmetry'
+    case (overlap_drawn)
+      if (scene%drawn%ratio > 1.0_wp) &
+        text = told('bodies overlap as drawn, with no pair between them there: '//lies_in, &
+                    model, scene, scene%drawn)
+    case (much_overlap)
+      if (scene%sound() .and. scene%deep%ratio > 1.0_wp) &
+        text = told('bodies lie in each other by '//by_much//lies_in//finer(scene%deep), &
+                    model, scene, scene%deep)
+    case (much_gap)
+      if (scene%sound() .and. scene%wide%ratio > 1.0_wp) &
+        text = told('a pair presses across a gap of '//by_much//is_off//finer(scene%wide), &
+                    model, scene, scene%wide)
+    case (side_changed)
+      if (scene%change > largest_change) text = 'displacements are not small: '// &
+        side_name(model, scene%changed_side)// &
+        ' is turned or stretched by '//short_real(scene%change)
+    case (sides_slid)
+      if (scene%slid%ratio > 1.0_wp) &
+        text = told('displacements are not small: bodies that press on each other slide by {depth} along '// &
+                    'each other, at {point} on {side}, where sides are {length} long; contact is that of '// &
+                    'undeformed places', model, scene, scene%slid)
+    end select
+  end function scene_warning
+
+  !> What would mend that much: sides so short that they leave no more than is not told. (Depths shrink with
+  !! the sides at corners, faster elsewhere.)
+  pure function finer(place) result(sentence)
+    type(overlap_place), intent(in) :: place
+    character(len=:), allocatable :: sentence
+
+    sentence = '; sides of about {finer} there would leave 10 %'
+    if (place%moving) sentence = '; turns and slides there are not small'
+  end function finer
+
+  !> A sentence about a place, filled in.
+  pure function told(sentence, model, scene, place) result(text)
+    character(len=*), intent(in) :: sentence
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    type(overlap_place), intent(in) :: place
+    character(len=:), allocatable :: text
+    integer :: brace, from
+
+    text = ''
+    from = 1
+    do
+      brace = from + index(sentence(from:), '{') - 1
+      if (brace < from) exit
+      text = text//sentence(from:brace - 1)
+      from = brace + index(sentence(brace:), '}')
+      text = text//word_for(sentence(brace + 1:from - 2), model, scene, place)
+    end do
+    text = text//sentence(from:)
+  end function told
+
+  !> What stands in a sentence for one of the names in braces.
+  pure function word_for(name, model, scene, place) result(text)
+    character(len=*), intent(in) :: name
+    type(model_type), intent(in) :: model
+    type(scene_type), intent(in) :: scene
+    type(overlap_place), intent(in) :: place
+    character(len=:), allocatable :: text
+
+    select case (name)
+    case ('point')
+      text = point_name(place%x)
+    case ('depth')
+      text = short_real(place%depth)
+    case ('allowed')
+      text = short_real(place%allowed)
+    case ('side')
+      text = side_name(model, place%side)
+    case ('other side')
+      text = side_name(model, place%other)
+    case ('body')
+      text = body_name(model, place%side)
+    case ('other body')
+      text = body_name(model, place%other)
+    case ('passing')
+      text = model%name_of(of_element, model%body_outline%element(place%side))
+      if (place%node > 0) text = grid_name(model, place%node)
+    case ('length')
+      text = short_real(longest_side(model, place))
+    case ('finer')
+      text = short_real(longest_side(model, place)/place%ratio)
+    case ('share')
+      text = text_of(nint(100.0_wp*place%depth/scene%moved))
+    case default
+      text = short_real(scene%moved)
+    end select
+  end function word_for
 
   !> Where a node is that is beyond a line.
   pure function beyond(model, place) result(text)
@@ -83,29 +189,9 @@ contains
     type(beyond_place), intent(in) :: place
     character(len=:), allocatable :: text
 
-    text = 'GRID '//text_of(model%node_id(place%node))//' comes '//short_real(place%depth)//' beyond '// &
+    text = grid_name(model, place%node)//' comes '//short_real(place%depth)//' beyond '// &
            merge('x', 'y', place%component == 1)//' = '//short_real(place%line)
   end function beyond
-
-  !> Which body lies where in which, and how deep.
-  pure function inside(model, place) result(text)
-    type(model_type), intent(in) :: model
-    type(overlap_place), intent(in) :: place
-    character(len=:), allocatable :: text
-
-    text = 'the body of GRID '//first_node(model, place%side)//' lies '//short_real(place%depth)// &
-           ' deep in that of GRID '//first_node(model, place%other)//', '//where_is(model, place)//', behind '// &
-           side_name(model, place%other)
-  end function inside
-
-  !> The place and the side it is on.
-  pure function where_is(model, place) result(text)
-    type(model_type), intent(in) :: model
-    type(overlap_place), intent(in) :: place
-    character(len=:), allocatable :: text
-
-    text = 'at '//short_real(place%x(1))//' '//short_real(place%x(2))//' on '//side_name(model, place%side)
-  end function where_is
 
   !> A side of the outlines by its ends.
   pure function side_name(model, side) result(name)
@@ -114,21 +200,22 @@ contains
     character(len=:), allocatable :: name
 
     associate (outline => model%body_outline)
-      name = 'side GRID '//text_of(model%node_id(outline%node(1, side)))//' to '// &
-             text_of(model%node_id(outline%node(2, side)))//' of '//model%name_of(of_element, outline%element(side))
+      name = 'side '//grid_name(model, outline%node(1, side))//' to '// &
+             text_of(model%node_id(outline%node(2, side)))// &
+             ' of '//model%name_of(of_element, outline%element(side))
     end associate
   end function side_name
 
-  !> Id of the first node of the body that a side belongs to.
-  pure function first_node(model, side) result(id)
+  !> The body that a side belongs to, by its first node.
+  pure function body_name(model, side) result(name)
     type(model_type), intent(in) :: model
     integer, intent(in) :: side
-    character(len=:), allocatable :: id
+    character(len=:), allocatable :: name
 
     associate (outline => model%body_outline)
-      id = text_of(minval(model%node_id, mask=outline%part_of == outline%part(side)))
+      name = first_grid(model, outline%part_of == outline%part(side))
     end associate
-  end function first_node
+  end function body_name
 
   !> What would keep the bodies apart there.
   pure function remedy(model, place) result(text)
@@ -146,13 +233,15 @@ contains
           text = 'SLAVE and MASTER of BCONP '//text_of(contact%bconp(1))//' exchanged, or '//text
       end associate
     else if (all(lines > 0)) then
-      text = 'a BCONP between BLSEG '//text_of(model%line(lines(1))%id)//' and BLSEG '//text_of(model%line(lines(2))%id)
+      text = 'a BCONP between BLSEG '//text_of(model%line(lines(1))%id)//' and BLSEG '// &
+             text_of(model%line(lines(2))%id)
     else if (any(lines > 0)) then
       text = 'a BLSEG along '//side_name(model, merge(place%other, place%side, lines(1) > 0))// &
              ', and a BCONP between it and BLSEG '//text_of(model%line(maxval(lines))%id)
     else
       text = 'a BLSEG along each of the two sides, and a BCONP between the lines'
-      if (is_mate(find_mates(model), model%body_outline%node(:, place%side), model%body_outline%part(place%other))) &
+      if (is_mate(find_mates(model), model%body_outline%node(:, place%side), &
+                  model%body_outline%part(place%other))) &
         text = 'more CGAPs there, or '//text
     end if
   end function remedy
@@ -190,73 +279,6 @@ contains
                    line%element == model%body_outline%element(side))
   end function has_side
 
-  !> A body that passes through itself; empty: none does.
-  pure function itself_text(model, scene) result(text)
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (scene%itself%ratio > 1.0_wp) text = 'a body passes through itself: it lies '//short_real(scene%itself%depth)// &
-      ' deep, '//where_is(model, scene%itself)//', behind '//side_name(model, scene%itself%other)//'; '// &
-      short_real(scene%itself%allowed)//' is allowed'
-  end function itself_text
-
-  !> Bodies that lie in each other by much of what moves, allowed though it is; empty: none do.
-  pure function deep_text(model, scene) result(text)
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (scene%sound() .and. scene%deep%ratio > 1.0_wp) text = 'bodies lie in each other by '// &
-      part_of_moved(scene, scene%deep)//': '//inside(model, scene%deep)//'; '//coarse(model, scene%deep)
-  end function deep_text
-
-  !> The same of a gap across which a pair presses.
-  pure function wide_text(model, scene) result(text)
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (scene%sound() .and. scene%wide%ratio > 1.0_wp) text = 'a pair presses across a gap of '// &
-      part_of_moved(scene, scene%wide)//': '//where_is(model, scene%wide)//' is '//short_real(scene%wide%depth)//' off '// &
-      side_name(model, scene%wide%other)//'; '//coarse(model, scene%wide)
-  end function wide_text
-
-  !> A depth, of the largest displacement.
-  pure function part_of_moved(scene, place) result(text)
-    type(scene_type), intent(in) :: scene
-    type(overlap_place), intent(in) :: place
-    character(len=:), allocatable :: text
-
-    text = text_of(nint(100.0_wp*place%depth/scene%moved))//' % of the largest displacement, '//short_real(scene%moved)
-  end function part_of_moved
-
-  !> What would mend that: how long sides would be that leave no more than is not told. (Depths shrink with the sides at corners,
-  !! faster elsewhere.)
-  pure function coarse(model, place) result(text)
-    type(model_type), intent(in) :: model
-    type(overlap_place), intent(in) :: place
-    character(len=:), allocatable :: text
-
-    text = 'turns and slides there are not small'
-    if (.not. place%moving) text = 'sides of about '//short_real(longest_side(model, place)/place%ratio)//' there would leave 10 %'
-  end function coarse
-
-  !> Sides that slide too far along each other where they press; empty: none do.
-  pure function slid_text(model, scene) result(text)
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (scene%slid%ratio > 1.0_wp) text = 'displacements are not small: bodies that press on each other slide by '// &
-      short_real(scene%slid%depth)//' along each other, '//where_is(model, scene%slid)//', where sides are '// &
-      short_real(longest_side(model, scene%slid))//' long; contact is that of undeformed places'
-  end function slid_text
-
   !> Length of the longer of the two sides at a place, as drawn [length].
   pure real(wp) function longest_side(model, place) result(longest)
     type(model_type), intent(in) :: model
@@ -267,54 +289,20 @@ contains
     end associate
   end function longest_side
 
-  !> A body that passes a line at which it ends and is held; empty: none does.
-  pure function mirror_text(model, scene) result(text)
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (scene%mirror%node > 0) text = 'a body passes through its mirror image: '//beyond(model, scene%mirror)// &
-      ', to which its body is held; no harm where that is no line of symmetry'
-  end function mirror_text
-
-  !> Bodies that overlap as drawn, and have no pair to close that; empty: none do.
-  pure function drawn_text(model, scene) result(text)
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (scene%drawn%ratio > 1.0_wp) text = 'bodies overlap as drawn, with no pair between them there: '//inside(model, scene%drawn)
-  end function drawn_text
-
-  !> A side that turns or stretches too far for small displacements; empty: none does.
-  pure function changed_text(model, scene) result(text)
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (scene%change > largest_change) text = 'displacements are not small: '//side_name(model, scene%changed_side)// &
-      ' is turned or stretched by '//short_real(scene%change)
-  end function changed_text
-
   !> The lines of the certificate.
   subroutine list_scene(file, model, scene)
-    type(text_file), intent(in) :: file
-    type(model_type), intent(in) :: model
-    type(scene_type), intent(in) :: scene
+    type(text_file), intent(in) :: file     !! the listing
+    type(model_type), intent(in) :: model   !! the model
+    type(scene_type), intent(in) :: scene   !! as the certificate has it
 
-    if (scene%looked_through) then
-      call list_ratio('bodies in each other, of what is allowed', scene%inside)
-      call list_larger('  at the deepest place, of what is allowed', scene%deepest, scene%inside)
-      if (scene%passed%side > 0) call list_ratio('  on their way through each other', scene%passed)
-      if (model%pairs > 0) then
-        call list_ratio('pressed across a gap, of what is allowed', scene%apart)
-        call list_larger('  at the widest place, of what is allowed', scene%widest, scene%apart)
-        if (scene%beside%ratio >= little) call list_ratio('  beside the other body', scene%beside)
-      end if
-    end if
+    if (.not. scene%looked_through) return
+    call list_ratio('bodies in each other, of what is allowed', scene%inside)
+    call list_larger('  at the deepest place, of what is allowed', scene%deepest, scene%inside)
+    if (scene%passed%side > 0) call list_ratio('  on their way through each other', scene%passed)
+    if (model%pairs == 0) return
+    call list_ratio('pressed across a gap, of what is allowed', scene%apart)
+    call list_larger('  at the widest place, of what is allowed', scene%widest, scene%apart)
+    if (scene%beside%ratio >= little) call list_ratio('  beside the other body', scene%beside)
 
   contains
 
@@ -326,15 +314,17 @@ contains
       if (largest%ratio >= little .and. largest%depth > deeper*worst%depth) call list_ratio(name, largest)
     end subroutine list_larger
 
+    !> A depth, over what is allowed; and where.
     subroutine list_ratio(name, place)
       character(len=*), intent(in) :: name
       type(overlap_place), intent(in) :: place
-      character(len=:), allocatable :: text
 
-      text = right('< '//short_real(little), 13)
-      if (place%ratio >= little) text = right(estimate_number(place%ratio), 13)//'   '//short_real(place%depth)// &
-                                        ' at '//short_real(place%x(1))//' '//short_real(place%x(2))
-      call figure(file, name, text)
+      if (place%ratio < little) then
+        call figure(file, name, '< '//short_real(little))
+      else
+        call figure(file, name, estimate_number(place%ratio), &
+                    '   '//short_real(place%depth)//' at '//point_name(place%x))
+      end if
     end subroutine list_ratio
   end subroutine list_scene
 end module epcont_report_scene_text

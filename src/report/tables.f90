@@ -1,306 +1,311 @@
-!> Result tables in full precision, one value a column (CSV).
+!> The tables: what their columns are, and what stands in their rows. They go to files, the listing or both.
 module epcont_report_tables
-  use epcont_accuracy_accuracy, only: accuracy_type
-  use epcont_base_error, only: error_type
+  use epcont_accuracy_body_shares, only: most_bodies
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_certificate_certificate, only: certificate_type
-  use epcont_certificate_scene, only: little, overlap_place
   use epcont_model_model, only: model_type
-  use epcont_plan_free_motion, only: free_motions
-  use epcont_report_file, only: new_text_file, text_file
-  use epcont_report_limit, only: limit_of_largest, limit_of_zone
-  use epcont_report_number, only: full_number, known_number
-  use epcont_report_outcome, only: outcome_type
-  use epcont_report_remarks, only: remarks_type
-  use epcont_result_answer, only: answer_type
-  use epcont_result_stresses, only: first_largest, place_of_point
+  use epcont_report_columns, only: column, columns_text, state, table_type, whole, word
+  use epcont_report_limit, only: limit_of_zone
+  use epcont_report_number, only: estimate, known, no_number, number, off_curve, rounding
+  use epcont_report_run, only: run_results
+  use epcont_result_stresses, only: place_of_point
   implicit none
   private
-  public :: write_summary, write_contact, write_zones, write_bodies, write_nodes, write_elements, write_history
+  public :: columns_in
+  public :: put_contact, put_zones, put_lines, put_bodies, put_nodes, put_elements, put_history, put_pivots
+
+  character(len=*), parameter :: length = 'length', force = 'force', stress = 'force/length2'
+
+  type(column), parameter :: contact_columns(*) = [ &
+    column(whole, 'pair', '', 'id of the CGAP, or its own where lines are in contact', width=10), &
+    column(whole, 'ga', '', 'GRID A and GRID B', 'GA', 9), &
+    column(whole, 'gb', '', '', 'GB', 9), &
+    column(number, 'x', length, 'GRID B as drawn'), &
+    column(number, 'y'), &
+    column(number, 'nx', '', 'normal, along which B is pressed', width=0), &
+    column(number, 'ny', width=0), &
+    column(number, 'initial_gap', length, 'as drawn; negative: an overlap', width=0), &
+    column(number, 'force', force, 'of contact'), &
+    column(known, 'pressure', stress, 'empty where no boundary belongs to the pair'), &
+    column(number, 'gap', length, 'under load'), &
+    column(state, 'status', '', 'touching or open', 'state', 10), &
+    column(word, width=1)]
+
+  type(column), parameter :: zone_columns(*) = [ &
+    column(whole, 'zone', '', 'a run of neighbouring pairs that touch', width=8), &
+    column(whole, 'first_pair', '', 'pairs at its ends', 'first pair', 11), &
+    column(whole, 'last_pair', '', '', 'last pair', 11), &
+    column(number, 'force', force, 'sum over its pairs'), &
+    column(known, 'max_pressure', stress, 'empty where no boundary belongs to its pairs', 'max pressure'), &
+    column(number, 'half_width_last_pair', length, 'half of the way between its last pairs', &
+           'to last pair', 14), &
+    column(known, 'half_width', length, 'to where the pressure vanishes; empty: not known', 'half-width'), &
+    column(word, 'max_pressure_is', '', 'bounded, unbounded or not resolved; empty: not known', width=0)]
+
+  type(column), parameter :: line_columns(*) = [ &
+    column(word, head='BCONP', width=10), column(word, head='slave', width=9), &
+    column(word, head='master', width=9), column(whole, head='pairs', width=9), &
+    column(whole, head='left out', width=9), column(whole, head='touching', width=9), &
+    column(number, head='force'), column(number, head='on slave'), column(number, head='on master'), &
+    column(number, head='difference')]
+
+  type(column), parameter :: body_columns(*) = [ &
+    column(whole, 'body', '', 'its number', width=10), &
+    column(whole, 'first_node', '', 'its first GRID', 'first GRID', 12), &
+    column(number, 'force_x', force, 'of contact on the body; empty: rings have no x', 'force x'), &
+    column(number, 'force_y', '', '', 'force y'), &
+    column(estimate, 'mesh_error_x', force, 'what the mesh may add to that; empty: not known', 'error', 12), &
+    column(estimate, 'mesh_error_y', '', '', 'error', 12)]
+
+  type(column), parameter :: node_columns(*) = [ &
+    column(whole, 'node', '', 'id of the GRID', 'GRID', 10), &
+    column(number, 'x', length, 'as drawn'), &
+    column(number, 'y'), &
+    column(number, 'ux', length, 'displacement'), &
+    column(number, 'uy'), &
+    column(number, 'rx', force, 'reaction of the support'), &
+    column(number, 'ry')]
+
+  type(column), parameter :: element_columns(*) = [ &
+    column(whole, 'element', '', 'its id', width=10), &
+    column(number, 'x', length, 'mean of its nodes, as drawn', width=0), &
+    column(number, 'y', width=0), &
+    column(number, 'sx', stress, 'means over the element'), &
+    column(number, 'sy'), &
+    column(number, 'sz'), &
+    column(number, 'txy'), &
+    column(number, 'equivalent_stress', stress, 'von Mises, mean over the element', 'equivalent'), &
+    column(number, 'max_equivalent_stress', stress, 'the largest of its integration points', 'largest'), &
+    column(word, head='at GRID', width=9), &
+    column(number, 'max_x', length, 'that integration point, as drawn', width=0), &
+    column(number, 'max_y', width=0), &
+    column(number, 'equivalent_strain', '', 'mean over the element', 'strain'), &
+    column(number, 'secant_modulus', stress, 'of the curve at that strain', 'secant'), &
+    column(state, 'state', '', 'elastic or plastic, at any of its integration points', width=9)]
+
+  type(column), parameter :: history_columns(*) = [ &
+    column(whole, 'iteration', '', 'counted through all load steps', width=0), &
+    column(whole, head='iteration', width=10), &
+    column(rounding, 'change', '', 'of a displacement, over the largest displacement'), &
+    column(off_curve, 'residual', '', 'distance of a stress from its curve, over the latter', &
+           'off the curve', 15), &
+    column(whole, 'pairs_in_contact', '', 'their number', 'touching', 10), &
+    column(whole, 'plastic_elements', '', 'their number', 'yielded', 10), &
+    column(whole, 'pivots', '', 'of the contact solver', width=10), &
+    column(number, 'load_factor', '', 'part of the loads that the iteration is for', 'load factor')]
+
+  type(column), parameter :: pivot_columns(*) = [ &
+    column(whole, head='pivot', width=10), column(word, head='entered', width=17), &
+    column(word, head='left', width=17), column(number, head='load factor'), column(number, head='ratio')]
 
 contains
 
-  !> key,value,unit.
-  subroutine write_summary(stem, model, motions, answer, certificate, accuracy, outcome, remarks, error)
-    character(len=*), intent(in) :: stem
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(answer_type), intent(in) :: answer
-    type(certificate_type), intent(in) :: certificate
-    type(accuracy_type), intent(in) :: accuracy
-    type(outcome_type), intent(in) :: outcome
-    type(remarks_type), intent(in) :: remarks
-    type(error_type), allocatable, intent(out) :: error
-    type(text_file) :: file
-    real(wp) :: place(2)
+  !> The columns of a file of results in words; empty: it is none of these tables.
+  pure function columns_in(suffix) result(text)
+    character(len=*), intent(in) :: suffix   !! of the file's name
+    character(len=:), allocatable :: text
+
+    select case (suffix)
+    case ('.contact.csv')
+      text = columns_text(contact_columns)
+    case ('.zones.csv')
+      text = columns_text(zone_columns)
+    case ('.bodies.csv')
+      text = columns_text(body_columns)
+    case ('.history.csv')
+      text = columns_text(history_columns)
+    case ('.nodes.csv')
+      text = columns_text(node_columns)
+    case ('.elements.csv')
+      text = columns_text(element_columns)
+    case default
+      text = ''
+    end select
+  end function columns_in
+
+  !> Forces, pressures and gaps: a row a pair.
+  subroutine put_contact(run, table)
+    type(run_results), intent(in) :: run       !! what is known of the run
+    type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: k
 
-    call new_text_file(stem//'.summary.csv', file, error)
-    if (allocated(error)) return
-    call file%line('key,value,unit')
-    call file%line('status,'//outcome%word//',')
-    call file%line('warnings,'//text_of(remarks%warnings)//',')
-    call file%line('notes,'//text_of(remarks%notes)//',')
-    if (outcome%has_answer) then
-      if (model%pairs > 0) &
-        call file%line('max_pressure,'//known_number(answer%largest_pressure())//',force/length2')
-      do k = 1, motions%count
-        call put('approach_'//text_of(model%node_id(motions%node(k)))//'_'//text_of(motions%component(k)), &
-                 answer%contact%approach(k), 'length')
-      end do
-      call put('total_contact_force', sum(answer%contact%force), 'force')
-      call file%line('pairs_in_contact,'//text_of(count(answer%contact%touching))//',')
-      call file%line('plastic_elements,'//text_of(count(answer%plastic))//',')
-      call file%line('iterations,'//text_of(size(answer%history))//',')
-      call file%line('factorizations,'//text_of(answer%factorizations)//',')
-      call file%line('pivots,'//text_of(sum(answer%history%pivots))//',')
-      associate (e => first_largest(answer%largest_stress))
-        call put('max_equivalent_stress', answer%largest_stress(e), 'force/length2')
-        call file%line('max_equivalent_stress_element,'//text_of(model%element_id(e))//',')
-        place = place_of_point(model, answer%largest_at(e))
-        call put('max_equivalent_stress_x', place(1), 'length')
-        call put('max_equivalent_stress_y', place(2), 'length')
-      end associate
-      call put('max_displacement', maxval(norm2(answer%displacement, dim=1)), 'length')
-      call put('equilibrium_residual', certificate%equilibrium, '')
-      call put('smallest_force', certificate%smallest_force, 'force')
-      call put('smallest_gap', certificate%smallest_gap, 'length')
-      call put('largest_force_gap_product', certificate%force_gap, 'force*length')
-      call put('stress_off_curve', certificate%off_curve, '')
-      call put('curve_tolerance', certificate%curve_tolerance, '')
-      call put('stress_off_curve_limit', certificate%off_curve_limit, '')
-      call put('energy_balance', certificate%energy, '')
-      if (certificate%scene%looked_through) then
-        call write_places(file, 'penetration', certificate%scene%deepest, certificate%scene%inside)
-        call write_places(file, 'pressed_gap', certificate%scene%widest, certificate%scene%apart)
-      end if
-      call put('condition', answer%condition, '')
-      call put('load_factor', answer%load_factor, '')
-      k = findloc(answer%history%load_factor, answer%load_factor, dim=1, back=.true.)
-      call put('iteration_error_displacement', answer%history(k)%error, '')
-      call put('iteration_error_force', answer%history(k)%force_error, '')
-      call write_accuracy(file, model, motions, answer, accuracy)
-    end if
-    call file%finish(error)
-
-  contains
-
-    subroutine put(key, value, unit)
-      character(len=*), intent(in) :: key, unit
-      real(wp), intent(in) :: value
-
-      call file%line(key//','//full_number(value)//','//unit)
-    end subroutine put
-  end subroutine write_summary
-
-  !> The largest depth, the one that is worst by what is allowed, and that; 0 where it is so little that rounding chooses the
-  !! place.
-  subroutine write_places(file, name, largest, worst)
-    type(text_file), intent(in) :: file
-    character(len=*), intent(in) :: name
-    type(overlap_place), intent(in) :: largest, worst
-
-    call put('largest_', merge(largest%depth, 0.0_wp, largest%ratio >= little))
-    call put('worst_', merge(worst%depth, 0.0_wp, worst%ratio >= little))
-    call put('allowed_worst_', merge(worst%allowed, 0.0_wp, worst%ratio >= little))
-
-  contains
-
-    subroutine put(which, value)
-      character(len=*), intent(in) :: which
-      real(wp), intent(in) :: value
-
-      call file%line(which//name//','//full_number(value)//',length')
-    end subroutine put
-  end subroutine write_places
-
-  !> What the figures are worth; empty where an error is not known: `max_pressure_is` unbounded, or not resolved.
-  subroutine write_accuracy(file, model, motions, answer, accuracy)
-    type(text_file), intent(in) :: file
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    type(answer_type), intent(in) :: answer
-    type(accuracy_type), intent(in) :: accuracy
-    integer :: k
-
-    call put('mesh_error_energy_norm', accuracy%energy_norm, '')
-    if (model%pairs > 0) then
-      call file%line('max_pressure_is,'//limit_of_largest(answer, accuracy)//',')
-      call put('mesh_error_max_pressure', accuracy%max_pressure, 'force/length2')
-    end if
-    do k = 1, size(accuracy%zone)
-      call put('mesh_error_pressure_zone_'//text_of(k), accuracy%zone(k)%pressure, 'force/length2')
-      call put('mesh_error_half_width_zone_'//text_of(k), accuracy%zone(k)%half_width, 'length')
-    end do
-    do k = 1, motions%count
-      call put('mesh_error_approach_'//text_of(model%node_id(motions%node(k)))//'_'//text_of(motions%component(k)), &
-               merge(-1.0_wp, accuracy%approach(k), accuracy%approach_unbounded(k)), 'length')
-    end do
-    if (model%pairs > 0) call put('mesh_error_total_contact_force', accuracy%total_force, 'force')
-    if (.not. accuracy%sensitivity%known) return
-    call put('contact_amplification', accuracy%sensitivity%amplification, '')
-    call put('rounding_error_force', max(accuracy%sensitivity%rounding, answer%rounding_error), '')
-    call file%line('weak_pairs,'//text_of(count(accuracy%weak))//',')
-
-  contains
-
-    subroutine put(key, value, unit)
-      character(len=*), intent(in) :: key, unit
-      real(wp), intent(in) :: value
-
-      call file%line(key//','//known_number(value)//','//unit)
-    end subroutine put
-  end subroutine write_accuracy
-
-  !> One row a pair.
-  subroutine write_contact(stem, model, answer, error)
-    character(len=*), intent(in) :: stem
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    type(error_type), allocatable, intent(out) :: error
-    type(text_file) :: file
-    integer :: k
-
-    call new_text_file(stem//'.contact.csv', file, error)
-    if (allocated(error)) return
-    call file%line('pair,ga,gb,x,y,nx,ny,initial_gap,force,pressure,gap,status')
-    do k = 1, model%pairs
-      associate (a => model%pair_node(1, k), b => model%pair_node(2, k))
-        call file%line(text_of(model%pair_id(k))//','//text_of(model%node_id(a))//','//text_of(model%node_id(b))//','// &
-                       row([model%x(:, b), model%normal(:, k), model%initial_gap(k), answer%contact%force(k)])//','// &
-                       known_number(answer%pressure(k))//','//full_number(answer%contact%gap(k))//','// &
-                       trim(merge('touching', 'open    ', answer%contact%touching(k))))
-      end associate
-    end do
-    call file%finish(error)
-  end subroutine write_contact
-
-  !> One row a zone.
-  subroutine write_zones(stem, model, answer, accuracy, error)
-    character(len=*), intent(in) :: stem
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    type(accuracy_type), intent(in) :: accuracy
-    type(error_type), allocatable, intent(out) :: error
-    type(text_file) :: file
-    integer :: z
-
-    call new_text_file(stem//'.zones.csv', file, error)
-    if (allocated(error)) return
-    call file%line('zone,first_pair,last_pair,force,max_pressure,half_width_last_pair,half_width,max_pressure_is')
-    associate (zones => answer%zones)
-      do z = 1, size(zones)
-        call file%line(text_of(z)//','//text_of(model%pair_id(zones(z)%first))//','// &
-                       text_of(model%pair_id(zones(z)%last))//','// &
-                       full_number(zones(z)%force)//','//known_number(zones(z)%max_pressure)//','// &
-                       full_number(zones(z)%half_width_pairs)//','//known_number(zones(z)%half_width)//','// &
-                       limit_of_zone(answer, accuracy, z))
+    associate (model => run%model, contact => run%answer%contact, pressure => run%answer%pressure)
+      call table%begin('CONTACT', contact_columns, &
+                       [spread(0.0_wp, 1, 5), maxval(abs(contact%force)), maxval(pressure), &
+                        max(maxval(abs(contact%gap)), maxval(abs(run%answer%displacement)))])
+      do k = 1, model%pairs
+        call table%row([model%pair_id(k), model%node_id(model%pair_node(:, k))], &
+                       [model%x(:, model%pair_node(2, k)), model%normal(:, k), model%initial_gap(k), &
+                        contact%force(k), pressure(k), contact%gap(k)], &
+                       [character(len=18) :: merge('touching', 'open    ', contact%touching(k)), &
+                        merge(', force not unique', '                  ', contact%indeterminate(k))])
       end do
     end associate
-    call file%finish(error)
-  end subroutine write_zones
+  end subroutine put_contact
 
-  !> One row a body that has elements: what contact exerts on it, and how much that may be off; no x in rings.
-  subroutine write_bodies(stem, model, answer, accuracy, error)
-    character(len=*), intent(in) :: stem
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    type(accuracy_type), intent(in) :: accuracy
-    type(error_type), allocatable, intent(out) :: error
-    type(text_file) :: file
-    character(len=:), allocatable :: force_x, error_x
-    integer :: i
+  !> Runs of touching pairs: a row a zone.
+  subroutine put_zones(run, table)
+    type(run_results), intent(in) :: run       !! what is known of the run
+    type(table_type), intent(inout) :: table   !! the listing, or a file
+    integer :: z
 
-    call new_text_file(stem//'.bodies.csv', file, error)
-    if (allocated(error)) return
-    call file%line('body,first_node,force_x,force_y,mesh_error_x,mesh_error_y')
-    do i = 1, size(answer%bodies)
-      associate (body => answer%bodies(i))
-        force_x = ''
-        error_x = ''
-        if (.not. model%has_rings()) then
-          force_x = full_number(body%resultant(1))
-          error_x = known_number(accuracy%body_force(1, i))
-        end if
-        call file%line(text_of(body%body)//','//text_of(model%node_id(body%node))//','//force_x//','// &
-                       full_number(body%resultant(2))//','//error_x//','//known_number(accuracy%body_force(2, i)))
+    call table%begin('ZONES  (half-widths of whole zones, mirrored at lines of symmetry; '// &
+                     'forces of the pairs listed alone)', zone_columns)
+    do z = 1, size(run%answer%zones)
+      associate (zone => run%answer%zones(z))
+        call table%row([z, run%model%pair_id([zone%first, zone%last])], &
+                       [zone%force, zone%max_pressure, zone%half_width_pairs, zone%half_width], &
+                       [character(len=12) :: limit_of_zone(run, z)])
       end associate
     end do
-    call file%finish(error)
-  end subroutine write_bodies
+  end subroutine put_zones
 
-  !> One row a node.
-  subroutine write_nodes(stem, model, answer, error)
-    character(len=*), intent(in) :: stem
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    type(error_type), allocatable, intent(out) :: error
-    type(text_file) :: file
+  !> Contact of lines, seen from both sides: a row a contact.
+  subroutine put_lines(run, table)
+    type(run_results), intent(in) :: run       !! what is known of the run
+    type(table_type), intent(inout) :: table   !! the listing, or a file
+    integer :: c
+
+    call table%begin('LINES IN CONTACT  (pressures on the slave line are those above; '// &
+                     'on the master line by its nodes'' forces)', line_columns, &
+                     [0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
+    do c = 1, size(run%answer%lines)
+      associate (contact => run%model%line_contact(c), line => run%answer%lines(c))
+        call table%row([contact%last - contact%first + 1, contact%nodes_left_out, line%touching], &
+                       [line%force, line%on_slave, line%on_master, line%difference], &
+                       [first_of(contact%bconp), first_of(contact%slave_id), first_of(contact%master_id)])
+      end associate
+    end do
+  end subroutine put_lines
+
+  !> The first of some ids, and a mark where there are more: the plan has them all.
+  pure function first_of(id) result(text)
+    integer, intent(in) :: id(:)
+    character(len=10) :: text
+
+    text = text_of(id(1))//merge('+', ' ', size(id) > 1)
+  end function first_of
+
+  !> What contact exerts: a row a body that has elements. Rings have no x.
+  subroutine put_bodies(run, table)
+    type(run_results), intent(in) :: run       !! what is known of the run
+    type(table_type), intent(inout) :: table   !! the listing, or a file
+    type(column) :: columns(size(body_columns))
+    real(wp) :: scale
     integer :: i
 
-    call new_text_file(stem//'.nodes.csv', file, error)
-    if (allocated(error)) return
-    call file%line('node,x,y,ux,uy,rx,ry')
-    do i = 1, model%nodes
-      call file%line(text_of(model%node_id(i))//','// &
-                     row([model%x(:, i), answer%displacement(:, i), answer%reaction(:, i)]))
-    end do
-    call file%finish(error)
-  end subroutine write_nodes
+    columns = body_columns
+    if (run%model%has_rings()) columns([3, 5])%kind = no_number
+    associate (bodies => run%answer%bodies)
+      scale = maxval([(abs(bodies(i)%resultant), i=1, size(bodies))])
+      call table%begin('BODIES  (force of contact on each that has elements; error: of the mesh, '// &
+                       'estimated of up to '//text_of(most_bodies)//' bodies)', &
+                       columns, spread(scale, 1, 4), order=[1, 2, 3, 5, 4, 6])
+      do i = 1, size(bodies)
+        call table%row([bodies(i)%body, run%model%node_id(bodies(i)%node)], &
+                       [bodies(i)%resultant, run%accuracy%body_force(:, i)])
+      end do
+    end associate
+  end subroutine put_bodies
 
-  !> One row an element; x and y are its centre, max_x and max_y the integration point where the von Mises stress is largest.
-  subroutine write_elements(stem, model, answer, error)
-    character(len=*), intent(in) :: stem
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    type(error_type), allocatable, intent(out) :: error
-    type(text_file) :: file
+  !> Displacements and reactions: a row a node.
+  subroutine put_nodes(run, table)
+    type(run_results), intent(in) :: run       !! what is known of the run
+    type(table_type), intent(inout) :: table   !! the listing, or a file
+    integer :: i
+
+    associate (model => run%model, u => run%answer%displacement, reaction => run%answer%reaction)
+      call table%begin('DISPLACEMENTS AND REACTIONS', node_columns, &
+                       [0.0_wp, 0.0_wp, spread(maxval(abs(u)), 1, 2), spread(maxval(abs(reaction)), 1, 2)])
+      do i = 1, model%nodes
+        call table%row([model%node_id(i)], [model%x(:, i), u(:, i), reaction(:, i)])
+      end do
+    end associate
+  end subroutine put_nodes
+
+  !> Stresses and strains: a row an element.
+  subroutine put_elements(run, table)
+    type(run_results), intent(in) :: run       !! what is known of the run
+    type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: e
 
-    call new_text_file(stem//'.elements.csv', file, error)
-    if (allocated(error)) return
-    call file%line('element,x,y,sx,sy,sz,txy,equivalent_stress,max_equivalent_stress,max_x,max_y,equivalent_strain,'// &
-                   'secant_modulus,state')
-    do e = 1, model%elements
-      call file%line(text_of(model%element_id(e))//','// &
-                     row([sum(model%coordinates(e), dim=2)/model%order(e), answer%stress(:, e), answer%equivalent_stress(e), &
-                          answer%largest_stress(e), place_of_point(model, answer%largest_at(e)), &
-                          answer%equivalent_strain(e), answer%secant_modulus(e)])//','// &
-                     trim(merge('plastic', 'elastic', answer%plastic(e))))
-    end do
-    call file%finish(error)
-  end subroutine write_elements
+    associate (model => run%model, answer => run%answer)
+      call table%begin('STRESSES  (means over the element; largest: von Mises at the integration point '// &
+                       'nearest to that GRID of it)', element_columns, &
+                       [0.0_wp, 0.0_wp, spread(maxval(abs(answer%stress)), 1, 6), 0.0_wp, 0.0_wp, &
+                        maxval(answer%equivalent_strain), 0.0_wp])
+      do e = 1, model%elements
+        call table%row([model%element_id(e)], &
+                       [sum(model%coordinates(e), dim=2)/model%order(e), answer%stress(:, e), &
+                        answer%equivalent_stress(e), &
+                        answer%largest_stress(e), place_of_point(model, answer%largest_at(e)), &
+                        answer%equivalent_strain(e), answer%secant_modulus(e)], &
+                       [nearest_grid(model, answer%largest_at(e)), &
+                        merge('plastic ', 'elastic ', answer%plastic(e))])
+      end do
+    end associate
+  end subroutine put_elements
 
-  !> One row a solve.
-  subroutine write_history(stem, answer, error)
-    character(len=*), intent(in) :: stem
-    type(answer_type), intent(in) :: answer
-    type(error_type), allocatable, intent(out) :: error
-    type(text_file) :: file
+  !> Id of the corner of an element that an integration point is nearest to; of one in the middle: none.
+  pure function nearest_grid(model, point) result(id)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: point
+    character(len=8) :: id
+    real(wp) :: x(2)
+
+    associate (e => model%point_element(point))
+      id = '-'
+      if (model%first_point(e + 1) - model%first_point(e) == 1) return
+      x = place_of_point(model, point)
+      associate (corner => model%connectivity(:model%corners(e), e))
+        id = text_of(model%node_id(corner(minloc((model%x(1, corner) - x(1))**2 + &
+                                                 (model%x(2, corner) - x(2))**2, dim=1))))
+      end associate
+    end associate
+  end function nearest_grid
+
+  !> The plastic iteration: a row a solve.
+  subroutine put_history(run, table)
+    type(run_results), intent(in) :: run       !! what is known of the run
+    type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: k
 
-    call new_text_file(stem//'.history.csv', file, error)
-    if (allocated(error)) return
-    call file%line('iteration,change,residual,pairs_in_contact,plastic_elements,pivots,load_factor')
-    do k = 1, size(answer%history)
-      associate (now => answer%history(k))
-        call file%line(text_of(k)//','//row([now%change, now%residual])//','//text_of(now%touching)//','// &
-                       text_of(now%yielded)//','//text_of(now%pivots)//','//full_number(now%load_factor))
+    call table%begin('ITERATIONS', history_columns, [0.0_wp, 0.0_wp, 1.0_wp], order=[2, 8, 3, 4, 5, 6, 7])
+    do k = 1, size(run%answer%history)
+      associate (now => run%answer%history(k))
+        call table%row([k, now%iteration, now%touching, now%yielded, now%pivots], &
+                       [now%change, now%residual, now%load_factor])
       end associate
     end do
-    call file%finish(error)
-  end subroutine write_history
+  end subroutine put_history
 
-  !> Numbers with commas between them.
-  pure function row(values) result(text)
-    real(wp), intent(in) :: values(:)
-    character(len=:), allocatable :: text
+  !> The first pivots of the simplex, below the pairs.
+  subroutine put_pivots(run, table)
+    type(run_results), intent(in) :: run       !! what is known of the run
+    type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: k
 
-    text = full_number(values(1))
-    do k = 2, size(values)
-      text = text//','//full_number(values(k))
+    call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
+    do k = 1, size(run%answer%contact%history)
+      associate (pivot => run%answer%contact%history(k))
+        call table%row([k], [pivot%load_factor, pivot%ratio], &
+                       [variable(run%model, pivot%entered), variable(run%model, pivot%left)])
+      end associate
     end do
-  end function row
+  end subroutine put_pivots
+
+  !> A variable of the simplex by the id of its pair.
+  pure function variable(model, code) result(text)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: code
+    character(len=14) :: text
+
+    if (code == 0) then
+      text = 'load'
+    else if (code > 0) then
+      text = 'force '//text_of(model%pair_id(code))
+    else
+      text = 'gap '//text_of(model%pair_id(-code))
+    end if
+  end function variable
 end module epcont_report_tables

@@ -9,11 +9,12 @@ module epcont_report_timing
 
 contains
 
-  !> A row a stage; each begins with the name of the deck, so that those of many decks in one file can be told apart.
+  !> A row a stage; each begins with the name of the deck, so that those of many decks in one file can be told
+  !! apart.
   pure function timing_text(stem, watch, peak) result(text)
-    character(len=*), intent(in) :: stem
-    class(stopwatch), intent(in) :: watch
-    integer(i8), intent(in) :: peak   !! memory [bytes]
+    character(len=*), intent(in) :: stem    !! name of the deck
+    class(stopwatch), intent(in) :: watch   !! times of the stages
+    integer(i8), intent(in) :: peak         !! memory [bytes]
     character(len=:), allocatable :: text
     character(len=13) :: buffer
     integer :: k

@@ -4,8 +4,8 @@ module epcont_report_vtk_bodies
   use epcont_base_kinds, only: wp
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_model_model, only: model_type
+  use epcont_report_run, only: run_results
   use epcont_report_vtk_grid, only: new_vtk_grid, vtk_cells, vtk_grid
-  use epcont_result_answer, only: answer_type
   implicit none
   private
   public :: write_vtk_bodies
@@ -13,55 +13,53 @@ module epcont_report_vtk_bodies
 contains
 
   !> DECK.vtu: nodes that belong to elements are the points, in the order of the deck; elements are the cells.
-  subroutine write_vtk_bodies(stem, model, answer, status, error)
-    character(len=*), intent(in) :: stem
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    integer, intent(in) :: status   !! exit status of the run
-    type(error_type), allocatable, intent(out) :: error
+  subroutine write_vtk_bodies(run, path, error)
+    type(run_results), intent(in) :: run                  !! what is known of the run
+    character(len=*), intent(in) :: path                  !! of the file
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
     type(vtk_grid) :: grid
     integer, allocatable :: node(:)
     integer :: i
 
-    node = pack([(i, i=1, model%nodes)], has_element(model))
-    call new_vtk_grid(stem//'.vtu', status, model%x(:, node), cells_of(model, node), grid, error)
-    if (allocated(error)) return
-    call put_node_results(model, answer, node, grid)
-    call put_element_results(model, answer, grid)
+    associate (model => run%model)
+      node = pack([(i, i=1, model%nodes)], has_element(model))
+      call new_vtk_grid(path, run%outcome%status, model%x(:, node), cells_of(model, node), grid, error)
+      if (allocated(error)) return
+      call put_node_results(run, node, grid)
+      call put_element_results(run, grid)
+    end associate
     call grid%finish(error)
   end subroutine write_vtk_bodies
 
-  subroutine put_node_results(model, answer, node, grid)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
+  subroutine put_node_results(run, node, grid)
+    type(run_results), intent(in) :: run
     integer, intent(in) :: node(:)   !! of each point
     type(vtk_grid), intent(inout) :: grid
     real(wp), allocatable :: force(:, :)
 
-    force = pair_forces(model, answer%contact%force)
+    force = pair_forces(run%model, run%answer%contact%force)
     call grid%begin_point_data('Vectors="displacement"')
-    call grid%integers('node_id', model%node_id(node))
-    call grid%vectors('displacement', answer%displacement(:, node))
-    call grid%vectors('contact_force', force(:, node))
-    call grid%vectors('reaction', answer%reaction(:, node))
+    call grid%put('node_id', run%model%node_id(node))
+    call grid%put('displacement', run%answer%displacement(:, node))
+    call grid%put('contact_force', force(:, node))
+    call grid%put('reaction', run%answer%reaction(:, node))
   end subroutine put_node_results
 
-  subroutine put_element_results(model, answer, grid)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
+  subroutine put_element_results(run, grid)
+    type(run_results), intent(in) :: run
     type(vtk_grid), intent(inout) :: grid
 
     call grid%begin_cell_data('Scalars="equivalent_stress"')
-    call grid%integers('element_id', model%element_id)
-    call grid%integers('body', model%body(model%connectivity(1, :)))
-    call grid%integers('property_id', model%property_id(model%section))
-    call grid%integers('material_id', model%material_id(model%section))
-    call grid%tensors('stress', answer%stress)
-    call grid%reals('equivalent_stress', answer%equivalent_stress)
-    call grid%reals('max_equivalent_stress', answer%largest_stress)
-    call grid%reals('equivalent_strain', answer%equivalent_strain)
-    call grid%reals('secant_modulus', answer%secant_modulus)
-    call grid%integers('yielded', merge(1, 0, answer%plastic))
+    call grid%put('element_id', run%model%element_id)
+    call grid%put('body', run%model%body(run%model%connectivity(1, :)))
+    call grid%put('property_id', run%model%property_id(run%model%section))
+    call grid%put('material_id', run%model%material_id(run%model%section))
+    call grid%put('stress', run%answer%stress)
+    call grid%put('equivalent_stress', run%answer%equivalent_stress)
+    call grid%put('max_equivalent_stress', run%answer%largest_stress)
+    call grid%put('equivalent_strain', run%answer%equivalent_strain)
+    call grid%put('secant_modulus', run%answer%secant_modulus)
+    call grid%put('yielded', merge(1, 0, run%answer%plastic))
   end subroutine put_element_results
 
   !> Which nodes belong to elements.

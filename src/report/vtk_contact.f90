@@ -3,8 +3,8 @@ module epcont_report_vtk_contact
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
+  use epcont_report_run, only: run_results
   use epcont_report_vtk_grid, only: new_vtk_grid, vtk_cells, vtk_grid, vtk_line, vtk_vertex
-  use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line, find_contact_line
   implicit none
   private
@@ -12,55 +12,52 @@ module epcont_report_vtk_contact
 
 contains
 
-  !> DECK.contact.vtu: pairs are the points, each at its node of the boundary, in the order of the deck; cells are the lines
-  !! between neighbours, and the points of pairs that have none.
-  subroutine write_vtk_contact(stem, model, answer, status, error)
-    character(len=*), intent(in) :: stem
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    integer, intent(in) :: status   !! exit status of the run
-    type(error_type), allocatable, intent(out) :: error
+  !> DECK.contact.vtu: pairs are the points, each at its node of the boundary, in the order of the deck; cells
+  !! are the lines between neighbours, and the points of pairs that have none.
+  subroutine write_vtk_contact(run, path, error)
+    type(run_results), intent(in) :: run                  !! what is known of the run
+    character(len=*), intent(in) :: path                  !! of the file
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
     type(contact_line) :: line
     type(vtk_cells) :: cells
     type(vtk_grid) :: grid
 
-    line = find_contact_line(model)
+    line = find_contact_line(run%model)
     cells = cells_of(line)
-    call new_vtk_grid(stem//'.contact.vtu', status, model%x(:, line%node), cells, grid, error)
+    call new_vtk_grid(path, run%outcome%status, run%model%x(:, line%node), cells, grid, error)
     if (allocated(error)) return
-    call put_pair_results(model, answer, line%node, grid)
+    call put_pair_results(run, line%node, grid)
     call grid%begin_cell_data('Scalars="bconp"')
-    call grid%integers('bconp', contact_ids(model, cells%point(cells%last)))
+    call grid%put('bconp', contact_ids(run%model, cells%point(cells%last)))
     call grid%finish(error)
   end subroutine write_vtk_contact
 
-  subroutine put_pair_results(model, answer, node, grid)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
+  subroutine put_pair_results(run, node, grid)
+    type(run_results), intent(in) :: run
     integer, intent(in) :: node(:)   !! of the boundary at each pair
     type(vtk_grid), intent(inout) :: grid
-    real(wp) :: force(2, model%pairs)
-    integer :: k, zone(model%pairs)
+    real(wp) :: force(2, run%model%pairs)
+    integer :: k, zone(run%model%pairs)
 
-    do k = 1, model%pairs
-      force(:, k) = answer%contact%force(k)*model%normal(:, k)
-      if (node(k) /= model%pair_node(2, k)) force(:, k) = -force(:, k)
+    do k = 1, run%model%pairs
+      force(:, k) = run%answer%contact%force(k)*run%model%normal(:, k)
+      if (node(k) /= run%model%pair_node(2, k)) force(:, k) = -force(:, k)
     end do
     zone = 0
-    do k = 1, size(answer%zones)
-      zone(answer%zones(k)%pairs) = k
+    do k = 1, size(run%answer%zones)
+      zone(run%answer%zones(k)%pairs) = k
     end do
     call grid%begin_point_data('Scalars="pressure" Vectors="displacement"')
-    call grid%integers('pair_id', model%pair_id)
-    call grid%integers('node_a', model%node_id(model%pair_node(1, :)))
-    call grid%integers('node_b', model%node_id(model%pair_node(2, :)))
-    call grid%vectors('displacement', answer%displacement(:, node))
-    call grid%vectors('contact_force', force)
-    call grid%reals('pressure', max(0.0_wp, answer%pressure))
-    call grid%integers('has_pressure', merge(1, 0, answer%pressure >= 0.0_wp))
-    call grid%reals('gap', answer%contact%gap)
-    call grid%integers('touching', merge(1, 0, answer%contact%touching))
-    call grid%integers('zone', zone)
+    call grid%put('pair_id', run%model%pair_id)
+    call grid%put('node_a', run%model%node_id(run%model%pair_node(1, :)))
+    call grid%put('node_b', run%model%node_id(run%model%pair_node(2, :)))
+    call grid%put('displacement', run%answer%displacement(:, node))
+    call grid%put('contact_force', force)
+    call grid%put('pressure', max(0.0_wp, run%answer%pressure))
+    call grid%put('has_pressure', merge(1, 0, run%answer%pressure >= 0.0_wp))
+    call grid%put('gap', run%answer%contact%gap)
+    call grid%put('touching', merge(1, 0, run%answer%contact%touching))
+    call grid%put('zone', zone)
   end subroutine put_pair_results
 
   !> Lines between neighbouring pairs, then pairs that have no neighbour.

@@ -58,11 +58,18 @@ class Page(unittest.TestCase):
             self.assertTrue(line and line == line.rstrip(), line)
 
     def test_files(self):
-        """The files of a run with all that can be asked for are those of FILES."""
+        """The files of a run with all that can be asked for are those of FILES, and the columns of its tables those told there."""
         with tempfile.TemporaryDirectory() as place:
             subprocess.run([PROGRAM, DECK, "-o", place, "--tables", "all", "--vtk", "--quiet"], check=True)
-            written = {path.name.replace("hertz44", "", 1) for path in pathlib.Path(place).iterdir()}
-        self.assertEqual(written, {line.split()[2] for line in section("FILES") if line.startswith(".IB DECK")})
+            written = {path.name.replace("hertz44", "", 1): path.read_bytes() for path in pathlib.Path(place).iterdir()}
+        files = dict(text.split("\n", 1) for text in "\n".join(section("FILES")).split(".IB DECK ")[1:])
+        self.assertEqual(set(written), set(files))
+        for name, text in files.items():
+            columns = re.search(r"^Columns: (.*?)\.$", text, re.DOTALL | re.MULTILINE)
+            head = written[name].split(b"\n")[0].decode()
+            self.assertEqual(bool(columns), name.endswith(".csv") and head != "key,value,unit", name)
+            if columns:
+                self.assertEqual(head, re.sub(r"\s+\([^)]*\)|\s", "", columns[1]))
 
     def test_examples(self):
         commands = [line.split()[1:] for line in section("EXAMPLES") if line.startswith(".B ")]

@@ -1,0 +1,75 @@
+!> Parts of a model in words: by their ids, and where they are.
+module epcont_report_names
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: short_real, text_of
+  use epcont_model_model, only: model_type
+  use epcont_plan_planned_scene, only: planned_scene
+  implicit none
+  private
+  public :: centre_name, first_grid, grid_name, joined, motion_name, point_name
+
+contains
+
+  !> `GRID 12`.
+  pure function grid_name(model, node) result(name)
+    type(model_type), intent(in) :: model   !! whose ids are named
+    integer, intent(in) :: node             !! number of the node
+    character(len=:), allocatable :: name
+
+    name = 'GRID '//text_of(model%node_id(node))
+  end function grid_name
+
+  !> `GRID 12`, of some nodes the one with the least id: bodies are named by it.
+  pure function first_grid(model, chosen) result(name)
+    type(model_type), intent(in) :: model   !! whose ids are named
+    logical, intent(in) :: chosen(:)        !! some of its nodes [nodes]
+    character(len=:), allocatable :: name
+
+    name = 'GRID '//text_of(minval(model%node_id, mask=chosen))
+  end function first_grid
+
+  !> `GRID 12 direction 2`: the SUPORT freedom that measures a free motion.
+  pure function motion_name(scene, k) result(name)
+    class(planned_scene), intent(in) :: scene   !! with its model and free motions
+    integer, intent(in) :: k                    !! which of them
+    character(len=:), allocatable :: name
+
+    associate (motions => scene%motions)
+      name = grid_name(scene%model, motions%node(k))//' direction '//text_of(motions%component(k))
+    end associate
+  end function motion_name
+
+  !> `1.000 2.500`.
+  pure function point_name(x) result(name)
+    real(wp), intent(in) :: x(2)              !! [length]
+    character(len=:), allocatable :: name
+
+    name = short_real(x(1))//' '//short_real(x(2))
+  end function point_name
+
+  !> The mean of an element's nodes, as `point_name` has it.
+  pure function centre_name(model, element) result(name)
+    type(model_type), intent(in) :: model   !! that has the element
+    integer, intent(in) :: element          !! its number
+    character(len=:), allocatable :: name
+
+    name = point_name(sum(model%coordinates(element), dim=2)/model%order(element))
+  end function centre_name
+
+  !> `1, 2, 3, and 4 more`: numbers, those beyond the first `most` only counted.
+  pure function joined(numbers, separator, most) result(text)
+    integer, intent(in) :: numbers(:)           !! at least one
+    character(len=*), intent(in) :: separator   !! between two of them
+    integer, intent(in), optional :: most       !! that are named; not given: all
+    character(len=:), allocatable :: text
+    integer :: k, named
+
+    named = size(numbers)
+    if (present(most)) named = min(named, most)
+    text = text_of(numbers(1))
+    do k = 2, named
+      text = text//separator//text_of(numbers(k))
+    end do
+    if (size(numbers) > named) text = text//separator//'and '//text_of(size(numbers) - named)//' more'
+  end function joined
+end module epcont_report_names
