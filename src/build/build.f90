@@ -56,7 +56,7 @@ contains
     nodes = index_of(deck, card_grid)
     call build_sections(deck, model, found)
     call build_elements(deck, nodes, model, found)
-    call check_unique(deck, [element_cards, card_rbe2, card_cgap], found)
+    call check_unique(deck, [element_cards(deck), card_rbe2, card_cgap], found)
     call build_supports(deck, nodes, model, found)
     call build_ties(deck, nodes, model, found)
     call check_axis(model, found)
@@ -108,6 +108,7 @@ contains
     type(deck_type), intent(in) :: deck
     type(finding), intent(in) :: found
     integer :: card(3)
+    integer, allocatable :: cards(:)
     integer :: c
 
     card = [found%of, found%which, found%item]
@@ -115,8 +116,9 @@ contains
     case (of_node)
       card(1) = card_grid
     case (of_element)
-      do c = 1, size(element_cards)
-        card(1) = element_cards(c)
+      cards = element_cards(deck)
+      do c = 1, size(cards)
+        card(1) = cards(c)
         if (card(2) <= deck%card(card(1))%count) exit
         card(2) = card(2) - deck%card(card(1))%count
       end do

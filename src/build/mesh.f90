@@ -4,9 +4,9 @@ module epcont_build_mesh
   use epcont_base_text, only: short_real
   use epcont_build_materials, only: material_card, read_materials
   use epcont_build_reference, only: card_index, check_unique, index_of, resolve
-  use epcont_deck_card_kinds, only: card_cquad4, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, &
-                                    card_grid, card_mat1, card_param, card_pshell, card_psolid
+  use epcont_deck_card_kinds, only: card_grid, card_mat1, card_param, card_pshell, card_psolid
   use epcont_deck_deck, only: deck_type
+  use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
   use epcont_model_element_shapes, only: complete_elements
   use epcont_model_finding, only: findings
@@ -14,12 +14,7 @@ module epcont_build_mesh
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: build_nodes, build_sections, build_elements
-
-  !> The cards of elements, in the order in which they are read.
-  integer, parameter, public :: element_cards(5) = [card_ctria3, card_ctria6, card_cquad4, card_ctrax3, &
-                                                    card_ctrax6]
-  logical, parameter :: is_ring(5) = [.false., .false., .false., .true., .true.]
+  public :: build_nodes, build_sections, build_elements, element_cards
 
 contains
 
@@ -101,26 +96,45 @@ contains
     end associate
   end subroutine choose_kinematics
 
+  !> The cards of elements, in the order in which they are read: those that the table of elements names.
+  pure function element_cards(deck) result(cards)
+    type(deck_type), intent(in) :: deck   !! its cards
+    integer, allocatable :: cards(:)
+    character(len=8) :: name
+    integer :: c
+
+    allocate (cards(0))
+    associate (kinds => element_kinds())
+      do c = 1, size(deck%card)
+        name = deck%card(c)%entry%name
+        if (any(kinds%plane_card == name .or. kinds%ring_card == name)) cards = [cards, c]
+      end do
+    end associate
+  end function element_cards
+
   !> All elements, card by card.
   subroutine build_elements(deck, nodes, model, found)
     type(deck_type), intent(in) :: deck   !! its cards
     type(card_index), intent(in) :: nodes   !! ids of GRID
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer, allocatable :: node(:, :), section(:)
-    integer :: c, k
+    integer, allocatable :: cards(:), node(:, :), section(:)
+    integer :: c, k, n
+    logical :: ring
 
-    do c = 1, size(element_cards)
-      associate (card => deck%card(element_cards(c)))
+    cards = element_cards(deck)
+    do c = 1, size(cards)
+      associate (card => deck%card(cards(c)))
+        ring = any(model%kinds%ring_card == card%entry%name)
         ! Without id and section
         allocate (node(size(card%entry%field) - 2, card%count), section(card%count))
-        call resolve(deck, element_cards(c), 2, index_of(deck, merge(card_psolid, card_pshell, is_ring(c))), &
-                     found, section)
-        if (is_ring(c)) where (section > 0) section = section + deck%card(card_pshell)%count
+        call resolve(deck, cards(c), 2, index_of(deck, merge(card_psolid, card_pshell, ring)), found, section)
+        if (ring) where (section > 0) section = section + deck%card(card_pshell)%count
         do k = 1, size(node, 1)
-          call resolve(deck, element_cards(c), 2 + k, nodes, found, node(k, :))
+          call resolve(deck, cards(c), 2 + k, nodes, found, node(k, :))
         end do
-        if (element_cards(c) == card_ctrax6) node = node([1, 3, 5, 2, 4, 6], :)
+        n = size(node, 1)
+        if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)   ! in their order along the boundary
         call add_elements(model, card%entry%name, node, section)
         model%element_id(model%elements - card%count + 1:) = int(card%value(1, :))
         deallocate (node, section)

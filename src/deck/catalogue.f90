@@ -5,7 +5,7 @@ module epcont_deck_catalogue
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cbar, card_cgap, card_cord2r, card_cquad4, &
-                                    card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_force, card_grid, &
+                                    card_cquad8, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_force, card_grid, &
                                     card_kinds, card_mat1, card_mats1, card_param, card_pgap, card_ploadx1, &
                                     card_pshell, card_psolid, card_rbe2, card_spc, card_spc1, card_suport, card_tables1
   use epcont_deck_entry, only: any_field, below, card_entry, cause, components_field, field_entry, id_field, &
@@ -21,6 +21,10 @@ module epcont_deck_catalogue
   character(len=*), parameter :: six(6) = [character(len=37) :: &
     'first corner, in either turning sense', 'second corner', 'third corner', &
     'between the first and the second', 'between the second and the third', 'between the third and the first']
+  character(len=*), parameter :: eight(8) = [character(len=37) :: &
+    'first corner, in either turning sense', 'second corner', 'third corner', 'fourth corner', &
+    'between the first and the second', 'between the second and the third', 'between the third and the fourth', &
+    'between the fourth and the first']
   integer, parameter :: round(6) = [1, 4, 2, 5, 3, 6]   !! the same, in their order along the boundary
 
 contains
@@ -56,6 +60,7 @@ contains
     card(card_ctria3) = element('CTRIA3', 'constant-strain triangle', 'PSHELL', in_turn(:3))
     card(card_ctria6) = element('CTRIA6', 'six-node triangle', 'PSHELL', six)
     card(card_cquad4) = element('CQUAD4', 'four-node quadrilateral, B-bar', 'PSHELL', in_turn)
+    card(card_cquad8) = element('CQUAD8', 'eight-node quadrilateral', 'PSHELL', eight)
     card(card_ctrax3) = &
       element('CTRAX3', 'ring of a three-node triangle; x is the radius', 'PSOLID', in_turn(:3))
     card(card_ctrax6) = &

@@ -67,7 +67,7 @@ module epcont_element_element_kind
 contains
 
   !> A kind by its nodes, shape functions and integration points; its strains are sampled and compared at these.
-  function new_kind(corners, nodes, shape, slope, point, weight) result(kind)
+  pure function new_kind(corners, nodes, shape, slope, point, weight) result(kind)
     integer, intent(in) :: corners, nodes      !! how many
     procedure(shape_functions) :: shape        !! of the nodes, at a local place
     procedure(shape_slopes) :: slope           !! their derivatives there

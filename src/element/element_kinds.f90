@@ -12,7 +12,7 @@ module epcont_element_element_kinds
 contains
 
   !> All kinds of elements.
-  function element_kinds() result(kind)
+  pure function element_kinds() result(kind)
     type(element_kind), allocatable :: kind(:)
 
     kind = [tria3(), tria6(), quad4(), quad8()]

@@ -15,7 +15,7 @@ module epcont_element_quad4
 contains
 
   !> The kind, for the table.
-  function quad4() result(kind)
+  pure function quad4() result(kind)
     type(element_kind) :: kind
 
     kind = new_kind(4, 4, values, slopes, point, weight)

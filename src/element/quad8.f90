@@ -19,7 +19,7 @@ module epcont_element_quad8
 contains
 
   !> The kind, for the table.
-  function quad8() result(kind)
+  pure function quad8() result(kind)
     type(element_kind) :: kind
     real(wp) :: sample_of(9, 4)
     integer :: i, j

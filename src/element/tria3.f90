@@ -15,7 +15,7 @@ module epcont_element_tria3
 contains
 
   !> The kind, for the table.
-  function tria3() result(kind)
+  pure function tria3() result(kind)
     type(element_kind) :: kind
 
     kind = new_kind(3, 3, values, slopes, point, weight)

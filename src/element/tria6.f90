@@ -22,7 +22,7 @@ module epcont_element_tria6
 contains
 
   !> The kind, for the table.
-  function tria6() result(kind)
+  pure function tria6() result(kind)
     type(element_kind) :: kind
     real(wp) :: from_points(3, 6)
     integer :: k
