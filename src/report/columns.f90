@@ -100,11 +100,13 @@ contains
   !> Write a row.
   subroutine row(self, wholes, numbers, words)
     class(table_type), intent(in) :: self
-    integer, intent(in) :: wholes(:)                     !! as `row_text` has them
-    real(wp), intent(in) :: numbers(:)                   !! as `row_text` has them
-    character(len=*), intent(in), optional :: words(:)   !! as `row_text` has them
+    integer, intent(in) :: wholes(:)           !! as `row_text` has them
+    real(wp), intent(in) :: numbers(:)         !! as `row_text` has them
+    character(len=*), intent(in) :: words(:)   !! as `row_text` has them
+    character(len=:), allocatable :: text
 
-    call self%file%line(self%row_text(wholes, numbers, words))
+    text = self%row_text(wholes, numbers, words)
+    call self%file%line(text)
   end subroutine row
 
   !> The heads of the columns.
@@ -125,9 +127,9 @@ contains
   !> A row, as `row` writes it.
   pure function row_text(self, wholes, numbers, words) result(text)
     class(table_type), intent(in) :: self
-    integer, intent(in) :: wholes(:)                     !! ids and counts, in the order of the file's columns
-    real(wp), intent(in) :: numbers(:)                   !! in that order
-    character(len=*), intent(in), optional :: words(:)   !! in that order; not given: there are none
+    integer, intent(in) :: wholes(:)           !! ids and counts, in the order of the file's columns
+    real(wp), intent(in) :: numbers(:)         !! in that order
+    character(len=*), intent(in) :: words(:)   !! in that order
     character(len=:), allocatable :: text
     character(len=25) :: full(size(numbers))
     integer :: i

@@ -75,7 +75,8 @@ contains
     integer, intent(in) :: kind     !! one of the kinds above
     real(wp), intent(in) :: value   !! the number
 
-    is_known = kind /= no_number .and. (value >= 0.0_wp .or. all(kind /= [known, estimate, factor, part]))
+    is_known = kind /= no_number
+    if (any(kind == [known, estimate, factor, part])) is_known = value >= 0.0_wp
   end function is_known
 
   !> A number of a listing's column, six digits in 13 characters.

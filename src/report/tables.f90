@@ -137,7 +137,7 @@ contains
         call table%row([model%pair_id(k), model%node_id(model%pair_node(:, k))], &
                        [model%x(:, model%pair_node(2, k)), model%normal(:, k), model%initial_gap(k), &
                         contact%force(k), pressure(k), contact%gap(k)], &
-                       [character(len=18) :: merge('touching', 'open    ', contact%touching(k)), &
+                       [merge('touching          ', 'open              ', contact%touching(k)), &
                         merge(', force not unique', '                  ', contact%indeterminate(k))])
       end do
     end associate
@@ -147,15 +147,17 @@ contains
   subroutine put_zones(run, table)
     type(run_results), intent(in) :: run       !! what is known of the run
     type(table_type), intent(inout) :: table   !! the listing, or a file
+    character(len=12) :: limit
     integer :: z
 
     call table%begin('ZONES  (half-widths of whole zones, mirrored at lines of symmetry; '// &
                      'forces of the pairs listed alone)', zone_columns)
     do z = 1, size(run%answer%zones)
+      limit = limit_of_zone(run, z)
       associate (zone => run%answer%zones(z))
         call table%row([z, run%model%pair_id([zone%first, zone%last])], &
                        [zone%force, zone%max_pressure, zone%half_width_pairs, zone%half_width], &
-                       [character(len=12) :: limit_of_zone(run, z)])
+                       [limit])
       end associate
     end do
   end subroutine put_zones
@@ -203,7 +205,7 @@ contains
                        columns, spread(scale, 1, 4), order=[1, 2, 3, 5, 4, 6])
       do i = 1, size(bodies)
         call table%row([bodies(i)%body, run%model%node_id(bodies(i)%node)], &
-                       [bodies(i)%resultant, run%accuracy%body_force(:, i)])
+                       [bodies(i)%resultant, run%accuracy%body_force(:, i)], [character ::])
       end do
     end associate
   end subroutine put_bodies
@@ -218,7 +220,7 @@ contains
       call table%begin('DISPLACEMENTS AND REACTIONS', node_columns, &
                        [0.0_wp, 0.0_wp, spread(maxval(abs(u)), 1, 2), spread(maxval(abs(reaction)), 1, 2)])
       do i = 1, model%nodes
-        call table%row([model%node_id(i)], [model%x(:, i), u(:, i), reaction(:, i)])
+        call table%row([model%node_id(i)], [model%x(:, i), u(:, i), reaction(:, i)], [character ::])
       end do
     end associate
   end subroutine put_nodes
@@ -274,7 +276,7 @@ contains
     do k = 1, size(run%answer%history)
       associate (now => run%answer%history(k))
         call table%row([k, now%iteration, now%touching, now%yielded, now%pivots], &
-                       [now%change, now%residual, now%load_factor])
+                       [now%change, now%residual, now%load_factor], [character ::])
       end associate
     end do
   end subroutine put_history
