@@ -56,7 +56,8 @@ contains
     real(wp), intent(in) :: force(:)
 
     bearing_pairs = count(force > no_force*sum(force))
-    if (.not. model%has_rings()) bearing_pairs = nint(sum(force)**2/sum(force**2))
+    if (.not. model%has_rings() .and. bearing_pairs > 0) bearing_pairs = nint(sum(force)**2/sum(force**2))
+    bearing_pairs = max(bearing_pairs, 1)
   end function bearing_pairs
 
   !> Force of a pair over the depth of its elements [force/length].
