@@ -132,7 +132,7 @@ contains
 
   !> For all sides of the outlines.
   pure function new_allowance(model, drawn, now) result(allowance)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model           !! the scene
     type(outline_shape), intent(in) :: drawn, now   !! the outlines as drawn, and displaced
     type(allowance_type) :: allowance
     real(wp), allocatable :: joint(:)   !! turn of the outline as drawn where a side ends, 0 at corners [rad]

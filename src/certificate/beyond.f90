@@ -15,7 +15,7 @@ contains
   !> Of rings: the node of least radius, if that is below 0. Of all bodies: the node farthest beyond a line
   !! along which all of an end of its body is held across and somewhere free.
   pure subroutine look_beyond(model, displacement, least, scene)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model        !! the scene
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     real(wp), intent(in) :: least                !! less is rounding [length]
     type(scene_type), intent(inout) :: scene     !! its places beyond the axis and beyond a mirror are set

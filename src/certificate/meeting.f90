@@ -52,7 +52,7 @@ contains
 
   !> For a scene that has outlines.
   pure function new_search(model, displacement) result(search)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model        !! the scene
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     type(search_type) :: search
     integer :: k
@@ -99,8 +99,8 @@ contains
   !> A point of the outlines.
   pure type(point_type) function point_on(search, side, s) result(point)
     type(search_type), intent(in) :: search   !! the outlines
-    integer, intent(in) :: side   !! of the outlines
-    real(wp), intent(in) :: s   !! along the side, from 0 to 1
+    integer, intent(in) :: side               !! of the outlines
+    real(wp), intent(in) :: s                 !! along the side, from 0 to 1
 
     point = point_type(side, s, .false., search%drawn%at(side, s), motion_at(search, side, s), &
                        search%now%at(side, s))
@@ -108,7 +108,7 @@ contains
 
   !> The boxes of a tree that meet the one from `low` to `high`.
   pure function boxes_meeting(tree, low, high) result(box)
-    type(box_tree), intent(in) :: tree   !! of the boxes
+    type(box_tree), intent(in) :: tree        !! of the boxes
     real(wp), intent(in) :: low(2), high(2)   !! [length]
     integer, allocatable :: box(:), found(:)
     integer :: n
@@ -121,8 +121,8 @@ contains
   !> The sides of a part whose boxes do.
   pure function sides_meeting(shape, part, low, high) result(side)
     type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
-    integer, intent(in) :: part   !! of the outlines
-    real(wp), intent(in) :: low(2), high(2)   !! [length]
+    integer, intent(in) :: part                !! of the outlines
+    real(wp), intent(in) :: low(2), high(2)    !! [length]
     integer, allocatable :: side(:)
 
     side = boxes_meeting(shape%side_tree(part), low, high)
@@ -132,8 +132,8 @@ contains
   !> Displacement of a place of a side [length].
   pure function motion_at(search, side, s) result(motion)
     type(search_type), intent(in) :: search   !! the outlines
-    integer, intent(in) :: side   !! of the outlines
-    real(wp), intent(in) :: s   !! from 0 to 1
+    integer, intent(in) :: side               !! of the outlines
+    real(wp), intent(in) :: s                 !! from 0 to 1
     real(wp) :: motion(2)
 
     associate (own => search%motion(:, :, side))
@@ -146,9 +146,9 @@ contains
   !> How much of a motion goes along a side, either way [length].
   pure real(wp) function part_along(shape, side, s, motion) result(part)
     type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
-    integer, intent(in) :: side   !! of the outlines
-    real(wp), intent(in) :: s           !! where on it, from 0 to 1
-    real(wp), intent(in) :: motion(2)   !! [length]
+    integer, intent(in) :: side                !! of the outlines
+    real(wp), intent(in) :: s                  !! where on it, from 0 to 1
+    real(wp), intent(in) :: motion(2)          !! [length]
 
     associate (along => shape%tangent(side, s))
       part = abs(dot_product(along, motion))/max(norm2(along), tiny(1.0_wp))
@@ -159,8 +159,8 @@ contains
   !! the two sides, and at a node by the one with which the side shares that, too.
   pure type(overlap_place) function meet(search, point, place) result(found)
     type(search_type), intent(in) :: search   !! the outlines
-    type(point_type), intent(in) :: point   !! displaced
-    type(near_place), intent(in) :: place   !! the nearest one of the other outline
+    type(point_type), intent(in) :: point     !! displaced
+    type(near_place), intent(in) :: place     !! the nearest one of the other outline
     integer :: i, side(2, 2)
     real(wp) :: longest(2), moved(2), own(2), s(2), slide(2)
 
@@ -227,8 +227,8 @@ contains
   !! Allowed is what sides about it allow, where more was found than the nearest two do. Where bodies may have
   !! overlapped as drawn, that is taken off, and the deepest such overlap kept too.
   pure subroutine keep(search, found, worst, deepest, not_told, drawn)
-    type(search_type), intent(in) :: search   !! the outlines
-    type(overlap_place), intent(in) :: found   !! from `meet`; its depth may be another
+    type(search_type), intent(in) :: search                          !! the outlines
+    type(overlap_place), intent(in) :: found                         !! from `meet`; its depth may be another
     type(overlap_place), intent(inout) :: worst, deepest, not_told   !! those kept so far
     type(overlap_place), intent(inout), optional :: drawn            !! the deepest as drawn
     type(overlap_place) :: place, telling
@@ -292,7 +292,7 @@ contains
 
   !> Put a number into an ascending list.
   pure subroutine insert(number, list)
-    real(wp), intent(in) :: number   !! what is put in
+    real(wp), intent(in) :: number                    !! what is put in
     real(wp), allocatable, intent(inout) :: list(:)   !! made longer by one
 
     list = [pack(list, list <= number), number, pack(list, list > number)]

@@ -22,9 +22,9 @@ contains
 
   !> All pressed pairs of two bodies.
   pure subroutine look_at_pairs(model, search, force, scene)
-    type(model_type), intent(in) :: model   !! the scene
-    type(search_type), intent(in) :: search   !! its outlines
-    real(wp), intent(in) :: force(:)             !! contact forces [pairs]
+    type(model_type), intent(in) :: model      !! the scene
+    type(search_type), intent(in) :: search    !! its outlines
+    real(wp), intent(in) :: force(:)           !! contact forces [pairs]
     type(scene_type), intent(inout) :: scene   !! what is found is added
     type(point_type) :: point
     real(wp) :: least
@@ -58,7 +58,6 @@ contains
     type(scene_type), intent(inout) :: scene
     type(near_place) :: place
     type(overlap_place) :: found, slid
-    integer :: side(2)
     real(wp) :: off
 
     place = search%now%nearest_place(part, point%x)
@@ -67,12 +66,10 @@ contains
     slid = found
     slid%depth = part_along(search%now, place%side, place%s, &
                             point%motion - motion_at(search, place%side, place%s))
-    side = [found%side, found%other]
-    slid%allowed = max(part_of_side*maxval(search%allowance%length(side)), &
-                       part_of_body*minval(search%width(search%now%outline%part(side))))
+    slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
+                       part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
     call take_if(is_worse(slid, scene%slid), slid, scene%slid)
     if (place%inside) return
-
     found%depth = abs(dot_product(point%x - place%x, normal))
     off = abs(cross_product(point%x - place%x, normal))
     if (off <= found%depth) then

@@ -30,7 +30,7 @@ contains
 
   !> Look through the whole scene.
   pure function look_through(model, displacement, force) result(scene)
-    type(model_type), intent(in) :: model   !! what is looked through
+    type(model_type), intent(in) :: model        !! what is looked through
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
     type(scene_type) :: scene

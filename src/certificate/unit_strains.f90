@@ -18,7 +18,7 @@ contains
   !> Derivatives of the nodes' shares in what is at each integration point of a kind, by the two local
   !! coordinates.
   pure subroutine find_slopes(kind, slope)
-    type(element_kind), intent(in) :: kind   !! of elements
+    type(element_kind), intent(in) :: kind                       !! of elements
     real(wp), intent(out) :: slope(2, most_nodes, most_points)   !! [local coordinates, nodes, points]
     real(wp) :: step(2)
     integer :: c, p
@@ -35,8 +35,8 @@ contains
   !> Strains xx, yy, zz, xy (engineering) that a unit displacement of each freedom gives at the integration
   !! places of an element, and the volumes that belong to them.
   pure subroutine unit_strains(model, element, slope, strain, volume)
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: element   !! which of its elements
+    type(model_type), intent(in) :: model                            !! the scene
+    integer, intent(in) :: element                                   !! which of its elements
     real(wp), intent(in) :: slope(2, most_nodes, most_points)        !! of its kind, from `find_slopes`
     real(wp), intent(out) :: strain(4, 2, most_nodes, most_points)   !! [1/length]
     real(wp), intent(out) :: volume(most_points)                     !! [length**3]

@@ -47,7 +47,7 @@ contains
   !> The paths of all nodes of the outlines, and of a point within each part: of two bodies with one outline
   !! no node goes inside.
   pure subroutine look_at_ways(search, scene)
-    type(search_type), intent(in) :: search   !! the outlines
+    type(search_type), intent(in) :: search    !! the outlines
     type(scene_type), intent(inout) :: scene   !! what is found is added
     type(ways_type) :: ways
     integer :: part, side

@@ -18,8 +18,8 @@ contains
   !> Stress xx, yy, zz, xy of a strain xx, yy, zz, xy (engineering) [stress].
   pure function stress_on_curve(model, section, strain) result(stress)
     type(model_type), intent(in) :: model   !! its sections, their curves and PARAM MUP
-    integer, intent(in) :: section   !! of the model
-    real(wp), intent(in) :: strain(4)   !! xx, yy, zz, xy (engineering)
+    integer, intent(in) :: section          !! of the model
+    real(wp), intent(in) :: strain(4)       !! xx, yy, zz, xy (engineering)
     real(wp) :: stress(4)
     real(wp) :: across, lambda, mu, secant, shear
 
