@@ -70,7 +70,7 @@ contains
         body%element = elements%group(elements%start(b):elements%start(b + 1) - 1)
         body%can_yield = any(model%can_yield(body%element))
         if (size(body%element) == 0) then
-          call number_nodes(model, body%node, numbering, b)
+          call number_nodes(model, (body%node), numbering, b)
           call find_panels(model, numbering, b)
         else if (model%controls%solver == solver_frontal) then
           call number_fronts(model, numbering, b)
@@ -295,25 +295,16 @@ contains
 
     associate (body => numbering%body(b), equation => numbering%equation)
       body%node = order
-      body%border = 0
       body%equations = 0
       body%contact_equations = 0
       equation(:, body%node) = 0
-      do i = 1, size(body%node)
-        do c = 1, 2
-          associate (leader => model%leader(c, body%node(i)))
-            if (leader == body%node(i) .or. is_fixed(leader) .or. equation(c, leader) < 0) cycle
-            body%border = body%border + 1
-            equation(c, leader) = -body%border
-          end associate
-        end do
-      end do
+      call number_border(model, body, equation)
       do i = 1, size(body%node)
         associate (node => body%node(i))
           do c = 1, 2
             if (model%leader(c, node) /= node) then
               equation(c, node) = equation(c, model%leader(c, node))
-            else if (equation(c, node) == 0 .and. .not. is_fixed(node)) then
+            else if (equation(c, node) == 0 .and. .not. is_fixed(model, c, node)) then
               body%equations = body%equations + 1
               equation(c, node) = body%equations
               if (.not. numbering%at_contact(node)) cycle
@@ -325,16 +316,34 @@ contains
       end do
       if (body%contact_equations == 0) body%first_contact = body%equations + 1
     end associate
-
-  contains
-
-    !> Has a support or SUPORT the freedom c of a node?
-    pure logical function is_fixed(node)
-      integer, intent(in) :: node
-
-      is_fixed = model%held(c, node) .or. model%reference(c, node)
-    end function is_fixed
   end subroutine number_nodes
+
+  !> Number the free leaders of ties.
+  pure subroutine number_border(model, body, equation)
+    type(model_type), intent(in) :: model
+    type(body_numbering), intent(inout) :: body
+    integer, intent(inout) :: equation(:, :)
+    integer :: c, i
+
+    body%border = 0
+    do i = 1, size(body%node)
+      do c = 1, 2
+        associate (leader => model%leader(c, body%node(i)))
+          if (leader == body%node(i) .or. is_fixed(model, c, leader) .or. equation(c, leader) < 0) cycle
+          body%border = body%border + 1
+          equation(c, leader) = -body%border
+        end associate
+      end do
+    end do
+  end subroutine number_border
+
+  !> Has a freedom a support, or SUPORT?
+  pure logical function is_fixed(model, c, node)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: c, node
+
+    is_fixed = model%held(c, node) .or. model%reference(c, node)
+  end function is_fixed
 
   !> The panels of a body, as far down as each equation is coupled.
   pure subroutine find_panels(model, numbering, b)
