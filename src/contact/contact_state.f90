@@ -12,7 +12,8 @@ module epcont_contact_contact_state
   !! of a guess, from which better sets may be found.
   real(wp), parameter, public :: sign_tolerance = 1.0e-10_wp, guess_tolerance = 1.0e-12_wp
   !> Part of the magnitudes that a sum is made of that rounding leaves where it should cancel: some hundred
-  !! terms, each rounded once (`rounding` of the flexibility is the same).
+  !! terms, each rounded once (`rounding` of the flexibility is the same). One rounding is too little
+  !! (tests/contact/test_random).
   real(wp), parameter, public :: noise = 100*epsilon(1.0_wp)
 
   !> Without forces where the basis is not sound.

@@ -164,9 +164,8 @@ contains
     type(model_type), intent(in) :: model
     type(numbering_type), intent(inout) :: numbering
     integer, intent(in) :: b
-    type(body_numbering) :: plain
     type(level_order) :: order
-    integer, allocatable :: begins(:), equation(:, :), nodes(:)
+    integer, allocatable :: nodes(:)
 
     nodes = numbering%body(b)%node
     order = sweep(model, nodes(:1), nodes)
@@ -189,16 +188,30 @@ contains
       if (model%controls%solver == solver_auto .and. body%operations > many_operations) then
         body%node = nodes
         call number_fronts(model, numbering, b)
-        return
+      else if (any(numbering%at_contact(nodes))) then
+        ! The roots stand in the order of the sweep from the far end, which runs along the contact.
+        call root_at_contact(model, nodes, pack(order%node, numbering%at_contact(order%node)), numbering, b)
       end if
-      order%node = pack(order%node, numbering%at_contact(order%node))
-      if (size(order%node) == 0) return
-      equation = numbering%equation(:, nodes)
-      begins = maxval(numbering%equation(:, order%node), dim=1)
+    end associate
+  end subroutine number_band
+
+  !> Number a body anew so that the contact comes last, if that takes fewer operations.
+  pure subroutine root_at_contact(model, nodes, roots, numbering, b)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: nodes(:)       !! of the body
+    integer, intent(in) :: roots(:)       !! of these at contact
+    type(numbering_type), intent(inout) :: numbering
+    integer, intent(in) :: b
+    type(body_numbering) :: plain
+    type(level_order) :: order
+    integer, allocatable :: begins(:), equation(:, :)
+
+    associate (body => numbering%body(b))
+      begins = maxval(numbering%equation(:, roots), dim=1)
       body%operations = body%operations + body%panels%compliance_operations(pack(begins, begins > 0))
       plain = body
-      ! The roots stand in the order of the sweep from the far end, which runs along the contact.
-      order = sweep(model, order%node, nodes)
+      equation = numbering%equation(:, nodes)
+      order = sweep(model, roots, nodes)
       call number_nodes(model, order%node(size(nodes):1:-1), numbering, b)
       call find_panels(model, numbering, b)
       body%contact_last = .true.
@@ -207,7 +220,7 @@ contains
       numbering%equation(:, nodes) = equation
       body = plain
     end associate
-  end subroutine number_band
+  end subroutine root_at_contact
 
   !> Operations of a band that is as narrow as it can be for a body so deep: all levels of the same width.
   pure real(wp) function least_operations(order)
