@@ -14,8 +14,8 @@ module epcont_contact_basis
   public :: contact_basis, new_basis, hold_motions, respond
   public :: regular_flexibility, rank_tolerance, weight_of_motions
 
-  !> Pivots of F_g, parts of the largest flexibility, from which on no force depends on the others whatever
-  !! the order.
+  !> Pivots of F_g, as parts of the largest flexibility, from which on no force depends on the others whatever
+  !! the order. It chooses between two factors of one set alone: tests/contact pass from 1e-10 to 1e-6.
   real(wp), parameter :: clearly_definite = 1.0e-8_wp
 
   !> A set of pairs in contact whose forces are unique, and the factors that give them.

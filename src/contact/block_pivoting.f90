@@ -22,7 +22,8 @@ module epcont_contact_block_pivoting
 
   !> Part of the largest force by which forces and gaps may have the wrong sign while there is something to
   !! gain. Where rounding is larger the steps end without progress, and the test of the fresh solution
-  !! decides.
+  !! decides. With 1e-11 sets are left that it refuses (tests/contact/test_block_pivoting, test_answers);
+  !! 1e-15 does as well.
   real(wp), parameter :: exchange_tolerance = 1.0e-13_wp
   !> Steps without fewer wrong pairs before single pairs are exchanged.
   integer, parameter :: patience_limit = 10

@@ -8,10 +8,12 @@ module epcont_contact_contact_state
   public :: contact_state, fresh_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
 
   !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can
-  !! be asked where the flexibility is badly conditioned, and what is asked of a guess, from which better sets
-  !! may be found.
+  !! be asked where the flexibility is badly conditioned (1e10: tests/contact/hard_problem), and what is asked
+  !! of a guess, from which better sets may be found.
   real(wp), parameter, public :: sign_tolerance = 1.0e-10_wp, guess_tolerance = 1.0e-12_wp
-  !> Part of a quantity that rounding leaves where it should cancel.
+  !> Part of the magnitudes that a sum is made of that rounding leaves where it should cancel: some hundred
+  !! terms, each rounded once (`rounding` of the flexibility is the same). One rounding is too little
+  !! (tests/contact/test_random).
   real(wp), parameter, public :: noise = 100*epsilon(1.0_wp)
 
   !> Without forces where the basis is not sound.

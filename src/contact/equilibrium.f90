@@ -21,7 +21,8 @@ module epcont_contact_equilibrium
     real(wp), allocatable :: escape(:)     !! y with P'y > 0, A y <= 0, if not balanced [m]
   end type rigid_start
 
-  !> Part of |P| that phase 1 may leave uncarried.
+  !> Part of the largest load along a motion that phase 1 may leave uncarried: its rounding, far below what a
+  !! deck's digits leave (tests/contact pass from 1e-11 to 1e-7, as they do with the next).
   real(wp), parameter :: balance_tolerance = 1.0e-9_wp
   !> A row whose entries are all below this, with A and P of size one, depends on the others.
   real(wp), parameter :: dependence_tolerance = 1.0e-9_wp

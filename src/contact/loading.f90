@@ -14,7 +14,7 @@ module epcont_contact_loading
   integer, parameter, public :: path_ray = 1       !! the load cannot grow and nothing gives way
   integer, parameter, public :: path_endless = 2   !! too many pivots: rounding has broken the order of ties
 
-  !> A load factor this near to 1 is all of the load.
+  !> A load factor this near to 1 is all of the load: as near as signs can be asked for (`sign_tolerance`).
   real(wp), parameter :: load_tolerance = 1.0e-10_wp
 
 contains

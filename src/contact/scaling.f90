@@ -15,7 +15,9 @@ module epcont_contact_scaling
   private
   public :: scaled_problem, scale_problem, drop_motions, restore_units
 
-  !> In scaled units an entry up to this is zero, and ratios this near are tied.
+  !> In scaled units, where what drives the contact is of size one, an entry up to this is zero, and ratios
+  !! this near are tied. Between 1e-9, which takes forces for unique that are not (tests/contact/
+  !! test_uniqueness), and 1e-13, which takes rounding for forces (test_answers).
   real(wp), parameter, public :: negligible = 1.0e-11_wp
 
   !> The problem in its own units, over the motions that are kept.

@@ -21,13 +21,14 @@ module epcont_contact_simplex
   private
   public :: find_contacts
 
-  !> Part of its forces by which a ray may miss F z = 0 and A'z = 0.
+  !> Part of its largest force by which a ray may miss F z = 0 and A'z = 0: it comes off the end of a long
+  !! path (tests/contact pass from 1e-9 to 1e-5).
   real(wp), parameter, public :: ray_tolerance = 1.0e-7_wp
   !> Pivots allowed for each unknown before rounding is taken to have broken the path; sound ones were seen to
   !! take up to 2.
   integer, parameter :: pivots_per_unknown = 4
-  !> Flexibility of its own that tells pairs apart whose forces depend on each other; it opens gaps by less
-  !! than their rounding.
+  !> Flexibility of its own, as a part of the largest, that tells pairs apart whose forces depend on each
+  !! other; it opens gaps by less than `sign_tolerance` (tests/contact pass from 1e-12 to 1e-8).
   real(wp), parameter :: own_flexibility = 1.0e-10_wp
   !> Fresh starts before the problem is given up.
   integer, parameter :: restart_limit = 10

@@ -15,7 +15,8 @@ module epcont_contact_solver
   private
   public :: solve_contact
 
-  !> What holds a motion by less than this part of the largest force, the digits of a deck do.
+  !> What holds a motion by less than this part of the largest force, the digits of a deck do: eight in its
+  !! short fields (1e-10 takes them for a support: tests/contact/test_answers).
   real(wp), parameter :: weak = 1.0e-8_wp
 
 contains

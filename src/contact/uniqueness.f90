@@ -9,7 +9,8 @@ module epcont_contact_uniqueness
   private
   public :: find_indeterminate_forces, share_equally, find_free_motions
 
-  !> Components of a null vector (largest about 1) up to this are zero.
+  !> Components of a null vector (largest about 1) up to this are zero: below 1e-9 rounding counts as a force
+  !! that can change (tests/contact/test_uniqueness).
   real(wp), parameter :: null_tolerance = 1.0e-7_wp
   !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this is
   !! allowed for.

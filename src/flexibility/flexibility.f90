@@ -12,7 +12,8 @@ module epcont_flexibility_flexibility
   public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
     motion_resultants, pair_forces
 
-  !> Part of what a sum is made of that rounding leaves where it should cancel.
+  !> Part of the magnitudes that a sum is made of that rounding leaves where it should cancel: some hundred
+  !! terms, each rounded once (`noise` of the contact is the same).
   real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
 
   !> One body's part of F, between the pairs that it gives way at.

@@ -15,7 +15,7 @@ module epcont_linalg_lapack
     !> C = alpha op(A) op(B) + beta C
     pure subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
       import :: wp
-      character(len=1), intent(in) :: transa, transb
+      character, intent(in) :: transa, transb
       integer, intent(in) :: m, n, k, lda, ldb, ldc
       real(wp), intent(in) :: alpha, beta
       real(wp), intent(in) :: a(lda, *), b(ldb, *)
@@ -25,7 +25,7 @@ module epcont_linalg_lapack
     !> y = alpha op(A) x + beta y
     pure subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
       import :: wp
-      character(len=1), intent(in) :: trans
+      character, intent(in) :: trans
       integer, intent(in) :: m, n, lda, incx, incy
       real(wp), intent(in) :: alpha, beta
       real(wp), intent(in) :: a(lda, *), x(*)
@@ -35,7 +35,7 @@ module epcont_linalg_lapack
     !> C = alpha A A' + beta C (or A'A), one triangle of C
     pure subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
       import :: wp
-      character(len=1), intent(in) :: uplo, trans
+      character, intent(in) :: uplo, trans
       integer, intent(in) :: n, k, lda, ldc
       real(wp), intent(in) :: alpha, beta
       real(wp), intent(in) :: a(lda, *)
@@ -45,7 +45,7 @@ module epcont_linalg_lapack
     !> op(A) X = alpha B or X op(A) = alpha B, A triangular; X replaces B
     pure subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
       import :: wp
-      character(len=1), intent(in) :: side, uplo, transa, diag
+      character, intent(in) :: side, uplo, transa, diag
       integer, intent(in) :: m, n, lda, ldb
       real(wp), intent(in) :: alpha
       real(wp), intent(in) :: a(lda, *)
@@ -58,7 +58,7 @@ module epcont_linalg_lapack
     !> Cholesky factor
     pure subroutine dpotrf(uplo, n, a, lda, info)
       import :: wp
-      character(len=1), intent(in) :: uplo
+      character, intent(in) :: uplo
       integer, intent(in) :: n, lda
       real(wp), intent(inout) :: a(lda, *)
       integer, intent(out) :: info
@@ -67,7 +67,7 @@ module epcont_linalg_lapack
     !> Solution with the factor of dpotrf
     pure subroutine dpotrs(uplo, n, nrhs, a, lda, b, ldb, info)
       import :: wp
-      character(len=1), intent(in) :: uplo
+      character, intent(in) :: uplo
       integer, intent(in) :: n, nrhs, lda, ldb
       real(wp), intent(in) :: a(lda, *)
       real(wp), intent(inout) :: b(ldb, *)
@@ -77,7 +77,7 @@ module epcont_linalg_lapack
     !> Inverse from the factor of dpotrf
     pure subroutine dpotri(uplo, n, a, lda, info)
       import :: wp
-      character(len=1), intent(in) :: uplo
+      character, intent(in) :: uplo
       integer, intent(in) :: n, lda
       real(wp), intent(inout) :: a(lda, *)
       integer, intent(out) :: info
@@ -86,7 +86,7 @@ module epcont_linalg_lapack
     !> Cholesky factor of a semidefinite matrix with complete pivoting, P'AP = LL'
     pure subroutine dpstrf(uplo, n, a, lda, piv, rank, tol, work, info)
       import :: wp
-      character(len=1), intent(in) :: uplo
+      character, intent(in) :: uplo
       integer, intent(in) :: n, lda
       real(wp), intent(inout) :: a(lda, *)
       integer, intent(out) :: piv(*), rank, info
@@ -99,7 +99,7 @@ module epcont_linalg_lapack
   interface
     pure subroutine sgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
       import :: sp
-      character(len=1), intent(in) :: trans
+      character, intent(in) :: trans
       integer, intent(in) :: m, n, lda, incx, incy
       real(sp), intent(in) :: alpha, beta
       real(sp), intent(in) :: a(lda, *), x(*)
@@ -108,7 +108,7 @@ module epcont_linalg_lapack
 
     pure subroutine ssyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
       import :: sp
-      character(len=1), intent(in) :: uplo, trans
+      character, intent(in) :: uplo, trans
       integer, intent(in) :: n, k, lda, ldc
       real(sp), intent(in) :: alpha, beta
       real(sp), intent(in) :: a(lda, *)
@@ -117,7 +117,7 @@ module epcont_linalg_lapack
 
     pure subroutine sgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
       import :: sp
-      character(len=1), intent(in) :: transa, transb
+      character, intent(in) :: transa, transb
       integer, intent(in) :: m, n, k, lda, ldb, ldc
       real(sp), intent(in) :: alpha, beta
       real(sp), intent(in) :: a(lda, *), b(ldb, *)
@@ -126,7 +126,7 @@ module epcont_linalg_lapack
 
     pure subroutine strsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
       import :: sp
-      character(len=1), intent(in) :: side, uplo, transa, diag
+      character, intent(in) :: side, uplo, transa, diag
       integer, intent(in) :: m, n, lda, ldb
       real(sp), intent(in) :: alpha
       real(sp), intent(in) :: a(lda, *)
@@ -135,7 +135,7 @@ module epcont_linalg_lapack
 
     pure subroutine spotrf(uplo, n, a, lda, info)
       import :: sp
-      character(len=1), intent(in) :: uplo
+      character, intent(in) :: uplo
       integer, intent(in) :: n, lda
       real(sp), intent(inout) :: a(lda, *)
       integer, intent(out) :: info
@@ -156,7 +156,7 @@ module epcont_linalg_lapack
     !> Singular values, descending, and singular vectors
     pure subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
       import :: wp
-      character(len=1), intent(in) :: jobu, jobvt
+      character, intent(in) :: jobu, jobvt
       integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
       real(wp), intent(inout) :: a(lda, *)
       real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)

@@ -13,9 +13,11 @@ module epcont_plan_free_motion
   private
   public :: free_motions, find_free_motions, motion_fault
 
-  !> A singular value up to this part of unit displacements is a free motion.
+  !> A singular value up to this is a free motion; rows are displacements by unit motions, of size one, known
+  !! to the digits of the coordinates.
   real(wp), parameter :: free_tolerance = 1.0e-9_wp
-  !> SUPORT freedoms that measure the motions with a condition above this are too close to each other.
+  !> SUPORT freedoms that measure the motions with a condition above this are too close to each other: six
+  !! digits of the displacements would be lost.
   real(wp), parameter :: largest_condition = 1.0e6_wp
 
   !> A part of a body that moves by less than this part of what moves most does not move.

@@ -70,7 +70,7 @@ contains
         body%element = elements%group(elements%start(b):elements%start(b + 1) - 1)
         body%can_yield = any(model%can_yield(body%element))
         if (size(body%element) == 0) then
-          call number_nodes(model, body%node, numbering, b)
+          call number_nodes(model, (body%node), numbering, b)
           call find_panels(model, numbering, b)
         else if (model%controls%solver == solver_frontal) then
           call number_fronts(model, numbering, b)
@@ -164,9 +164,8 @@ contains
     type(model_type), intent(in) :: model
     type(numbering_type), intent(inout) :: numbering
     integer, intent(in) :: b
-    type(body_numbering) :: plain
     type(level_order) :: order
-    integer, allocatable :: begins(:), equation(:, :), nodes(:)
+    integer, allocatable :: nodes(:)
 
     nodes = numbering%body(b)%node
     order = sweep(model, nodes(:1), nodes)
@@ -189,16 +188,30 @@ contains
       if (model%controls%solver == solver_auto .and. body%operations > many_operations) then
         body%node = nodes
         call number_fronts(model, numbering, b)
-        return
+      else if (any(numbering%at_contact(nodes))) then
+        ! The roots stand in the order of the sweep from the far end, which runs along the contact.
+        call root_at_contact(model, nodes, pack(order%node, numbering%at_contact(order%node)), numbering, b)
       end if
-      order%node = pack(order%node, numbering%at_contact(order%node))
-      if (size(order%node) == 0) return
-      equation = numbering%equation(:, nodes)
-      begins = maxval(numbering%equation(:, order%node), dim=1)
+    end associate
+  end subroutine number_band
+
+  !> Number a body anew so that the contact comes last, if that takes fewer operations.
+  pure subroutine root_at_contact(model, nodes, roots, numbering, b)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: nodes(:)       !! of the body
+    integer, intent(in) :: roots(:)       !! of these at contact
+    type(numbering_type), intent(inout) :: numbering
+    integer, intent(in) :: b
+    type(body_numbering) :: plain
+    type(level_order) :: order
+    integer, allocatable :: begins(:), equation(:, :)
+
+    associate (body => numbering%body(b))
+      begins = maxval(numbering%equation(:, roots), dim=1)
       body%operations = body%operations + body%panels%compliance_operations(pack(begins, begins > 0))
       plain = body
-      ! The roots stand in the order of the sweep from the far end, which runs along the contact.
-      order = sweep(model, order%node, nodes)
+      equation = numbering%equation(:, nodes)
+      order = sweep(model, roots, nodes)
       call number_nodes(model, order%node(size(nodes):1:-1), numbering, b)
       call find_panels(model, numbering, b)
       body%contact_last = .true.
@@ -207,7 +220,7 @@ contains
       numbering%equation(:, nodes) = equation
       body = plain
     end associate
-  end subroutine number_band
+  end subroutine root_at_contact
 
   !> Operations of a band that is as narrow as it can be for a body so deep: all levels of the same width.
   pure real(wp) function least_operations(order)
@@ -295,25 +308,16 @@ contains
 
     associate (body => numbering%body(b), equation => numbering%equation)
       body%node = order
-      body%border = 0
       body%equations = 0
       body%contact_equations = 0
       equation(:, body%node) = 0
-      do i = 1, size(body%node)
-        do c = 1, 2
-          associate (leader => model%leader(c, body%node(i)))
-            if (leader == body%node(i) .or. is_fixed(leader) .or. equation(c, leader) < 0) cycle
-            body%border = body%border + 1
-            equation(c, leader) = -body%border
-          end associate
-        end do
-      end do
+      call number_border(model, body, equation)
       do i = 1, size(body%node)
         associate (node => body%node(i))
           do c = 1, 2
             if (model%leader(c, node) /= node) then
               equation(c, node) = equation(c, model%leader(c, node))
-            else if (equation(c, node) == 0 .and. .not. is_fixed(node)) then
+            else if (equation(c, node) == 0 .and. .not. is_fixed(model, c, node)) then
               body%equations = body%equations + 1
               equation(c, node) = body%equations
               if (.not. numbering%at_contact(node)) cycle
@@ -325,16 +329,34 @@ contains
       end do
       if (body%contact_equations == 0) body%first_contact = body%equations + 1
     end associate
-
-  contains
-
-    !> Has a support or SUPORT the freedom c of a node?
-    pure logical function is_fixed(node)
-      integer, intent(in) :: node
-
-      is_fixed = model%held(c, node) .or. model%reference(c, node)
-    end function is_fixed
   end subroutine number_nodes
+
+  !> Number the free leaders of ties.
+  pure subroutine number_border(model, body, equation)
+    type(model_type), intent(in) :: model
+    type(body_numbering), intent(inout) :: body
+    integer, intent(inout) :: equation(:, :)
+    integer :: c, i
+
+    body%border = 0
+    do i = 1, size(body%node)
+      do c = 1, 2
+        associate (leader => model%leader(c, body%node(i)))
+          if (leader == body%node(i) .or. is_fixed(model, c, leader) .or. equation(c, leader) < 0) cycle
+          body%border = body%border + 1
+          equation(c, leader) = -body%border
+        end associate
+      end do
+    end do
+  end subroutine number_border
+
+  !> Has a freedom a support, or SUPORT?
+  pure logical function is_fixed(model, c, node)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: c, node
+
+    is_fixed = model%held(c, node) .or. model%reference(c, node)
+  end function is_fixed
 
   !> The panels of a body, as far down as each equation is coupled.
   pure subroutine find_panels(model, numbering, b)

@@ -5,7 +5,6 @@
 module epcont_plan_rigid_parts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
-  use epcont_element_element_kind, only: most_nodes
   use epcont_element_kinematics, only: axisymmetric
   use epcont_model_model, only: model_type
   implicit none
@@ -33,10 +32,10 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     type(rigid_parts) :: parts
     integer, allocatable :: of_element(:)
-    integer :: e, hinges, i, k
+    integer :: e, i, solid
 
-    call join_elements(model, of_element, parts%count)
-    allocate (parts%turns(parts%count), source=.true.)
+    call join_elements(model, of_element, solid)
+    parts%count = solid
     allocate (parts%of_node(model%nodes))
     do i = 1, model%nodes
       if (model%around%start(i) < model%around%start(i + 1)) then
@@ -46,30 +45,39 @@ contains
         parts%of_node(i) = parts%count
       end if
     end do
-    parts%turns = [parts%turns, spread(.false., 1, parts%count - size(parts%turns))]
+    parts%turns = [(i <= solid, i=1, parts%count)]
     allocate (parts%body(parts%count))
+    allocate (parts%ring(parts%count), source=.false.)
     parts%body(parts%of_node) = model%body
     do e = 1, model%elements
       parts%body(of_element(e)) = model%body(model%connectivity(1, e))
-    end do
-    allocate (parts%ring(parts%count), source=.false.)
-    do e = 1, model%elements
       parts%ring(of_element(e)) = model%kinematics(model%section(e)) == axisymmetric
     end do
-    allocate (parts%hinge(3, most_nodes*model%elements))
-    hinges = 0
-    do i = 1, model%nodes
-      do k = model%around%start(i), model%around%start(i + 1) - 1
-        e = model%around%group(k)
-        if (of_element(e) == parts%of_node(i)) cycle
-        if (any(of_element(model%around%group(model%around%start(i):k - 1)) == of_element(e))) cycle
-        hinges = hinges + 1
-        parts%hinge(:, hinges) = [i, parts%of_node(i), of_element(e)]
-      end do
-    end do
-    parts%hinge = parts%hinge(:, :hinges)
+    call find_hinges(model, of_element, parts)
     call measure(model, parts)
   end function find_rigid_parts
+
+  !> Where parts share a single node.
+  pure subroutine find_hinges(model, of_element, parts)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: of_element(:)    !! the part of each element
+    type(rigid_parts), intent(inout) :: parts
+    integer :: hinges, i, k
+
+    allocate (parts%hinge(3, size(model%around%group)))
+    hinges = 0
+    do i = 1, model%nodes
+      associate (around => model%around%group, first => model%around%start(i))
+        do k = first, model%around%start(i + 1) - 1
+          if (of_element(around(k)) == parts%of_node(i)) cycle
+          if (any(of_element(around(first:k - 1)) == of_element(around(k)))) cycle
+          hinges = hinges + 1
+          parts%hinge(:, hinges) = [i, parts%of_node(i), of_element(around(k))]
+        end do
+      end associate
+    end do
+    parts%hinge = parts%hinge(:, :hinges)
+  end subroutine find_hinges
 
   !> Number the sets of elements that share two nodes.
   pure subroutine join_elements(model, of_element, count)
