@@ -118,7 +118,8 @@ contains
       call raise(error, status_usage, trim(option%name)//' '//value//': '//right//' would be right')
   end subroutine take
 
-  !> Take a positive number without exponent, which no length makes overflow. READ alone takes `2 x`, `,` and `nan`.
+  !> Take a positive number without exponent, which no length makes overflow. READ alone takes `2 x`, `,` and
+  !! `nan`.
   subroutine read_positive(text, number, taken)
     character(len=*), intent(in) :: text
     real(wp), intent(inout) :: number
@@ -145,7 +146,8 @@ contains
     end if
     do i = 1, size(arguments%deck)
       if (.not. is_result(arguments%deck(i)%text)) cycle
-      call raise(error, status_usage, arguments%deck(i)%text//': results are written under such names: a deck is named DECK.dat')
+      call raise(error, status_usage, arguments%deck(i)%text// &
+                 ': results are written under such names: a deck is named DECK.dat')
       return
     end do
     do i = 2, size(arguments%deck)

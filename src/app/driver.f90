@@ -28,7 +28,8 @@ module epcont_app_driver
   use epcont_report_run, only: run_results
   use epcont_report_timing, only: timing_text
   use epcont_system_memory, only: peak_memory
-  use epcont_system_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
+  use epcont_system_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, &
+                                     stopwatch
   use epcont_system_threads, only: granted_threads
   implicit none
   private
@@ -140,7 +141,8 @@ contains
       call watch%expect(plan%iteration, run%model%controls%most_iterations, plan%expected%operations)
       call analyse(run%planned_scene, plan%iteration, run%answer, run%certificate, run%accuracy, watch)
       if (run%answer%singular > 0 .or. count == most_solves) exit
-      call enter_nodes_that_came_near(run%model, run%answer%displacement, run%answer%contact%touching, entered)
+      call enter_nodes_that_came_near(run%model, run%answer%displacement, &
+                                      run%answer%contact%touching, entered)
       if (.not. entered) exit
       call make_plan(run, plan, watch)
     end do

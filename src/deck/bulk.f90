@@ -110,7 +110,8 @@ contains
     kind = unknown_card
   end function kind_of
 
-  !> Which PARAM it is, and so what its value may be: any word where the name is none, and a fault where it is unknown.
+  !> Which PARAM it is, and so what its value may be: any word where the name is none, and a fault where it is
+  !! unknown.
   subroutine choose_parameter(card, parameter_entry, value_entry, faults)
     type(card_fields), intent(in) :: card
     type(field_entry), intent(in) :: parameter_entry(:)
@@ -203,8 +204,10 @@ contains
     character(len=:), allocatable :: remedy
 
     remedy = 'blank'
-    if (.not. table%entry%has_list()) &
-      remedy = remedy//'; '//trim(table%entry%name)//' ends with field '//text_of(number_of(size(table%entry%field)))
+    associate (entry => table%entry)
+      if (.not. entry%has_list()) &
+        remedy = 'blank; '//trim(entry%name)//' ends with field '//text_of(number_of(size(entry%field)))
+    end associate
     call add_fault(card, table, slot, 'must be blank', remedy, faults)
   end subroutine add_surplus
 

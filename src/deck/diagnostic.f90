@@ -58,7 +58,7 @@ contains
   subroutine add_warning(self, place, what, remedy)
     class(diagnostics), intent(inout) :: self
     type(place_type), intent(in) :: place   !! where
-    character(len=*), intent(in) :: what, remedy   !! is to be looked at, and what would be right (may be empty)
+    character(len=*), intent(in) :: what, remedy !! is to be looked at, and what would be right (may be empty)
 
     call add(self, diagnostic(severity_warning, place, what, remedy))
   end subroutine add_warning
