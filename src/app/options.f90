@@ -1,5 +1,5 @@
-!> THE table of options. The parser, --help and the manual page come from it; what each does is in `take` of
-!> the arguments.
+!> THE table of options. The parser, --help and the manual page come from it; what they do is asked by
+!> their names (`asks` of the arguments).
 module epcont_app_options
   implicit none
   private
@@ -14,7 +14,6 @@ module epcont_app_options
     character(len=76) :: text = ''    !! what it does
     character(len=320) :: more = ''   !! for the manual page alone
   contains
-    procedure :: takes_value
     procedure :: needs_value
     procedure :: usage
   end type option_type
@@ -30,8 +29,8 @@ module epcont_app_options
     option_type('--memory', '', 'GB', 'refuse decks that need more memory (default 16)', ''), &
     option_type('--progress', '', '', 'tell of every solve on standard error, terminal or not', &
                 'Without it, one line on a terminal tells of runs of more than a second, and goes when'// &
-                ' they end: seconds gone and expected, iteration, load factor, change of the displacements,'// &
-                ' yielded elements, touching pairs.'), &
+                ' they end: seconds gone and expected, iteration, load factor, change of the'// &
+                ' displacements, yielded elements, touching pairs.'), &
     option_type('--timing', '', '', 'print on standard error where the time of each run went', &
                 'Seconds of wall clock and of processor by stage, and the largest memory of the process'// &
                 ' so far.'), &
@@ -54,13 +53,6 @@ contains
       if (word == options(k)%name .or. word == options(k)%short) option = options(k)
     end do
   end function find_option
-
-  !> May something follow it?
-  pure logical function takes_value(self)
-    class(option_type), intent(in) :: self
-
-    takes_value = self%value /= ''
-  end function takes_value
 
   !> Must something follow it?
   pure logical function needs_value(self)
