@@ -63,7 +63,8 @@ contains
         slips(i, j) = min(slips(i - 1, j) + 1, slips(i, j - 1) + 1, &
                           slips(i - 1, j - 1) + merge(0, 1, a(i:i) == b(j:j)))
         if (i < 2 .or. j < 2) cycle
-        if (a(i - 1:i) == b(j:j)//b(j - 1:j - 1)) slips(i, j) = min(slips(i, j), slips(i - 2, j - 2) + 1)
+        if (a(i - 1:i) == b(j:j)//b(j - 1:j - 1)) &
+          slips(i, j) = min(slips(i, j), slips(max(i - 2, 0), max(j - 2, 0)) + 1)
       end do
     end do
     distance = slips(len(a), len(b))
