@@ -216,7 +216,8 @@ contains
     call watch%lap(stage_plan)
   end subroutine make_plan
 
-  !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh shows, that too.
+  !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh
+  !! shows, that too.
   pure function one_line(stem, run) result(text)
     character(len=*), intent(in) :: stem
     type(run_results), intent(in) :: run
