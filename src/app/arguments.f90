@@ -1,7 +1,7 @@
 !> The command line.
 module epcont_app_arguments
-  use epcont_app_options, only: find_option, option_type
-  use epcont_base_error, only: error_type, raise, status_internal, status_usage
+  use epcont_app_options, only: find_option, option_type, options
+  use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_kinds, only: wp
   implicit none
   private
@@ -15,11 +15,11 @@ module epcont_app_arguments
   type :: arguments_type
     type(word_type), allocatable :: deck(:)         !! paths
     character(len=:), allocatable :: directory      !! for the results
-    logical :: check = .false., plan = .false., all_tables = .false., vtk = .false.
-    logical :: progress = .false., timing = .false., quiet = .false.
-    logical :: help = .false., man = .false., version = .false., cards = .false.
     character(len=:), allocatable :: card           !! name behind --cards, or empty
     real(wp) :: memory = 16.0_wp                    !! limit for matrices [GB]
+    logical, private :: asked(size(options)) = .false.
+  contains
+    procedure :: asks
   end type arguments_type
 
 contains
@@ -43,6 +43,7 @@ contains
     type(arguments_type), intent(out) :: arguments   !! what they ask for
     type(error_type), allocatable, intent(out) :: error   !! of usage
     type(option_type) :: option
+    character(len=:), allocatable :: value
     logical :: is_deck(size(words))
     integer :: i
 
@@ -55,23 +56,31 @@ contains
       is_deck(i) = index(words(i)%text, '-') /= 1
       if (is_deck(i)) cycle
       option = find_option(words(i)%text)
+      value = ''
       if (option%name == '') then
         call raise(error, status_usage, words(i)%text//': no such option; epcont --help lists them')
-      else if (option%takes_value() .and. i < size(words)) then
+      else if (option%value /= '' .and. i < size(words)) then
         i = i + 1
-        call take(option, words(i)%text, arguments, error)
+        value = words(i)%text
       else if (option%needs_value()) then
         call raise(error, status_usage, words(i)%text//' needs a value')
-      else
-        call take(option, '', arguments, error)
       end if
+      if (.not. allocated(error)) call take(option, value, arguments, error)
       if (allocated(error)) return
     end do
     arguments%deck = pack(words, is_deck)
     call check(arguments, error)
   end subroutine read_arguments
 
-  !> What an option of the table does.
+  !> Has an option been given?
+  pure logical function asks(self, name)
+    class(arguments_type), intent(in) :: self
+    character(len=*), intent(in) :: name   !! of the option, as its table has it
+
+    asks = any(self%asked .and. options%name == name)
+  end function asks
+
+  !> Take an option, and its value where it has one.
   subroutine take(option, value, arguments, error)
     type(option_type), intent(in) :: option
     character(len=*), intent(in) :: value
@@ -80,45 +89,25 @@ contains
     character(len=:), allocatable :: right   ! value, where this is not
     logical :: taken
 
+    arguments%asked = arguments%asked .or. options%name == option%name
     right = ''
     select case (option%name)
     case ('-o')
       arguments%directory = value
-    case ('--check')
-      arguments%check = .true.
-    case ('--plan')
-      arguments%plan = .true.
     case ('--tables')
-      arguments%all_tables = value == 'all'
-      if (.not. arguments%all_tables) right = '--tables all'
-    case ('--vtk')
-      arguments%vtk = .true.
+      if (value /= 'all') right = '--tables all'
     case ('--memory')
       call read_positive(value, arguments%memory, taken)
       if (.not. taken) right = 'a positive number of GB'
-    case ('--progress')
-      arguments%progress = .true.
-    case ('--timing')
-      arguments%timing = .true.
-    case ('--quiet')
-      arguments%quiet = .true.
     case ('--cards')
-      arguments%cards = .true.
       arguments%card = value
-    case ('--man')
-      arguments%man = .true.
-    case ('--version')
-      arguments%version = .true.
-    case ('--help')
-      arguments%help = .true.
-    case default
-      call raise(error, status_internal, trim(option%name)//': an option that nothing takes')
     end select
     if (len(right) > 0) &
       call raise(error, status_usage, trim(option%name)//' '//value//': '//right//' would be right')
   end subroutine take
 
-  !> Take a positive number without exponent, which no length makes overflow. READ alone takes `2 x`, `,` and `nan`.
+  !> Take a positive number without exponent, which no length makes overflow. READ alone takes `2 x`, `,` and
+  !! `nan`.
   subroutine read_positive(text, number, taken)
     character(len=*), intent(in) :: text
     real(wp), intent(inout) :: number
@@ -138,14 +127,16 @@ contains
     type(error_type), allocatable, intent(out) :: error
     integer :: i, j
 
-    if (arguments%help .or. arguments%man .or. arguments%version .or. arguments%cards) return
+    if (arguments%asks('--help') .or. arguments%asks('--man')) return
+    if (arguments%asks('--version') .or. arguments%asks('--cards')) return
     if (size(arguments%deck) == 0) then
       call raise(error, status_usage, 'no deck given: epcont [options] DECK...; epcont --help says more')
       return
     end if
     do i = 1, size(arguments%deck)
       if (.not. is_result(arguments%deck(i)%text)) cycle
-      call raise(error, status_usage, arguments%deck(i)%text//': results are written under such names: a deck is named DECK.dat')
+      call raise(error, status_usage, arguments%deck(i)%text// &
+                 ': results are written under such names: a deck is named DECK.dat')
       return
     end do
     do i = 2, size(arguments%deck)

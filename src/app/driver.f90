@@ -28,7 +28,8 @@ module epcont_app_driver
   use epcont_report_run, only: run_results
   use epcont_report_timing, only: timing_text
   use epcont_system_memory, only: peak_memory
-  use epcont_system_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, stopwatch
+  use epcont_system_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, &
+                                     stopwatch
   use epcont_system_threads, only: granted_threads
   implicit none
   private
@@ -55,8 +56,8 @@ contains
     type(file_lock) :: lock
     logical :: writes, written
 
-    call watch%begin(shown(stem_of(path)), arguments%progress, arguments%quiet)
-    writes = .not. (arguments%check .or. arguments%plan)
+    call watch%begin(shown(stem_of(path)), arguments%asks('--progress'), arguments%asks('--quiet'))
+    writes = .not. (arguments%asks('--check') .or. arguments%asks('--plan'))
     if (writes) call lock_files(output_stem(path, arguments), lock, error)
     if (allocated(error)) then
       call refuse(error, status)
@@ -65,7 +66,7 @@ contains
       if (writes .and. .not. written) call remove_results(output_stem(path, arguments))
       if (writes) call unlock_files(lock)
     end if
-    if (arguments%timing) call print_error(timing_text(shown(stem_of(path)), watch, peak_memory()))
+    if (arguments%asks('--timing')) call print_error(timing_text(shown(stem_of(path)), watch, peak_memory()))
   end subroutine run_deck
 
   !> From file to results, and what there is to say of it.
@@ -91,20 +92,21 @@ contains
         call say(arguments, name//'  rejected', status)
         return
       end if
-      if (arguments%check) then
+      if (arguments%asks('--check')) then
         call say(arguments, name//'  checked', status)
       else
         call make_plan(run, plan, watch)
-        if (arguments%plan) call print_text(name//run%plan, status)
+        if (arguments%asks('--plan')) call print_text(name//run%plan, status)
       end if
       call print_error(render(run%faults, run%deck%source))
-      if (arguments%check .or. arguments%plan) return
+      if (arguments%asks('--check') .or. arguments%asks('--plan')) return
       call solve(run, plan, arguments%memory, watch, error)
       if (allocated(error)) error%message = path//': '//error%message
     end if
     if (.not. allocated(error)) then
       status = run%outcome%status
-      call write_results(run, output_stem(path, arguments), arguments%all_tables, arguments%vtk, error)
+      call write_results(run, output_stem(path, arguments), arguments%asks('--tables'), &
+                         arguments%asks('--vtk'), error)
       written = .true.
       call watch%lap(stage_writing)
       call watch%erase()
@@ -140,7 +142,8 @@ contains
       call watch%expect(plan%iteration, run%model%controls%most_iterations, plan%expected%operations)
       call analyse(run%planned_scene, plan%iteration, run%answer, run%certificate, run%accuracy, watch)
       if (run%answer%singular > 0 .or. count == most_solves) exit
-      call enter_nodes_that_came_near(run%model, run%answer%displacement, run%answer%contact%touching, entered)
+      call enter_nodes_that_came_near(run%model, run%answer%displacement, &
+                                      run%answer%contact%touching, entered)
       if (.not. entered) exit
       call make_plan(run, plan, watch)
     end do
@@ -213,7 +216,8 @@ contains
     call watch%lap(stage_plan)
   end subroutine make_plan
 
-  !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh shows, that too.
+  !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh
+  !! shows, that too.
   pure function one_line(stem, run) result(text)
     character(len=*), intent(in) :: stem
     type(run_results), intent(in) :: run
@@ -235,6 +239,6 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: status
 
-    if (.not. arguments%quiet) call print_text(text, status)
+    if (.not. arguments%asks('--quiet')) call print_text(text, status)
   end subroutine say
 end module epcont_app_driver

@@ -30,11 +30,12 @@ module epcont_app_ending
 
 contains
 
-  !> From here on the program ends by `stop_with`, or else with the exit status of its fault: the Fortran runtime and
-  !! OpenBLAS have statuses of their own, which here would mean that there is an answer. A closed pipe, or a file above
-  !! the size allowed, is a fault of that file.
+  !> From here on the program ends by `stop_with`, or else with the exit status of its fault: the Fortran
+  !! runtime and OpenBLAS have statuses of their own, which here would mean that there is an answer. A closed
+  !! pipe, or a file above the size allowed, is a fault of that file.
   subroutine watch_exit(ended)
-    logical(c_bool), target, intent(in) :: ended   !! lives as long as the program; true when `stop_with` is called
+    !> lives as long as the program; true when `stop_with` is called
+    logical(c_bool), target, intent(in) :: ended
     integer(c_int), parameter :: broken_pipe = 13, file_size = 25
     integer(c_int) :: ignored
 
@@ -43,7 +44,8 @@ contains
     ignored = c_on_exit(c_funloc(judge_exit), c_loc(ended))
   end subroutine watch_exit
 
-  !> What `exit` calls. Status 1 is that of memory that could not be had, with the Fortran runtime and with OpenBLAS.
+  !> What `exit` calls. Status 1 is that of memory that could not be had, with the Fortran runtime and with
+  !! OpenBLAS.
   subroutine judge_exit(status, ended) bind(c)
     integer(c_int), value :: status
     type(c_ptr), value :: ended

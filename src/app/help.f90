@@ -21,7 +21,8 @@ contains
 
     text = 'usage: epcont [options] DECK...'//newline// &
            newline// &
-           'Solves the contact of plane bodies and rings from card decks. Results go to DECK.lst and DECK.*.csv.'//newline// &
+           'Solves the contact of plane bodies and rings from card decks. Results go to DECK.lst and'// &
+           ' DECK.*.csv.'//newline// &
            newline
     do k = 1, size(options)
       option = options(k)

@@ -41,13 +41,13 @@ contains
       call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs')
     if (allocated(error)) then
       call refuse(error, worst)
-    else if (arguments%help) then
+    else if (arguments%asks('--help')) then
       call print_text(help_text(), worst)
-    else if (arguments%man) then
+    else if (arguments%asks('--man')) then
       call print_text(man_page(), worst)
-    else if (arguments%version) then
+    else if (arguments%asks('--version')) then
       call print_text(program_name//' '//program_version, worst)
-    else if (arguments%cards) then
+    else if (arguments%asks('--cards')) then
       call print_manual(arguments%card, worst)
     else
       if (len(arguments%directory) > 0) call make_directory(arguments%directory)

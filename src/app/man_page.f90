@@ -19,8 +19,10 @@ module epcont_app_man_page
 
   !> With the deck that is installed beside the page (a test runs them).
   type(example_type), parameter :: examples(*) = [ &
-    example_type('epcont hertz44.dat', 'Solve the deck; the answer is in hertz44.lst and tables beside it.'), &
-    example_type('epcont -o out --tables all hertz44.dat', 'The same to the folder out, with displacements and stresses.'), &
+    example_type('epcont hertz44.dat', &
+                 'Solve the deck; the answer is in hertz44.lst and tables beside it.'), &
+    example_type('epcont -o out --tables all hertz44.dat', &
+                 'The same to the folder out, with displacements and stresses.'), &
     example_type('epcont --check *.dat', 'Name every fault of many decks, and solve none.'), &
     example_type('epcont --plan hertz44.dat', 'How many unknowns, which method and why, how much memory.'), &
     example_type('epcont --cards PARAM', 'The fields of a card, and what may stand in them.')]
@@ -31,7 +33,8 @@ contains
   pure function man_page() result(text)
     character(len=:), allocatable :: text
 
-    text = '.TH EPCONT 1 '//program_date//' "'//program_name//' '//program_version//'" "User Commands"'//newline// &
+    text = '.TH EPCONT 1 '//program_date//' "'//program_name//' '//program_version//'" '// &
+           '"User Commands"'//newline// &
            '.SH NAME'//newline// &
            program_name//' \- contact and yielding of plane bodies and rings, from card decks'//newline// &
            '.SH SYNOPSIS'//newline// &
@@ -39,10 +42,11 @@ contains
            '.RI [ options ]'//newline// &
            '.IR DECK ...'//newline// &
            '.SH DESCRIPTION'//newline// &
-           paragraph('For each deck of NASTRAN bulk data: what touches, with what force, how far the bodies '// &
-                     'approach, and where they have yielded.')// &
-           paragraph('Contact is exact to rounding, yielding follows total theory, and every answer is certified '// &
-                     'by code of its own: the exit status and the listing say whether the certificate holds.')// &
+           paragraph('For each deck of NASTRAN bulk data: what touches, with what force, how far the'// &
+                     ' bodies approach, and where they have yielded.')// &
+           paragraph('Contact is exact to rounding, yielding follows total theory, and every answer is'// &
+                     ' certified by code of its own: the exit status and the listing say whether the'// &
+                     ' certificate holds.')// &
            paragraph('A deck is named DECK.dat; the same deck gives the same files, byte for byte.')// &
            paragraph('Faults go to standard error, one line of outcome for each deck to standard output.')// &
            '.SH OPTIONS'//newline//option_list()// &
@@ -52,10 +56,12 @@ contains
            file_list()// &
            '.SH EXAMPLES'//newline//entries('.B', examples%command, examples%text)// &
            '.SH ENVIRONMENT'//newline// &
-           paragraph('OMP_NUM_THREADS: threads that may work on bodies side by side, where a scene has several large ones; '// &
-                     'one if it is not set. Results are the same bytes on any number.')// &
-           paragraph('OMP_WAIT_POLICY: what threads do that wait; PASSIVE, which leaves their core to others, if it is not set '// &
-                     'and OpenBLAS is a part of the program, as the scripts link it.')// &
+           paragraph('OMP_NUM_THREADS: threads that may work on bodies side by side, where a scene has'// &
+                     ' several large ones; one if it is not set. Results are the same bytes on any'// &
+                     ' number.')// &
+           paragraph('OMP_WAIT_POLICY: what threads do that wait; PASSIVE, which leaves their core to'// &
+                     ' others, if it is not set and OpenBLAS is a part of the program, as the scripts'// &
+                     ' link it.')// &
            paragraph('OpenBLAS chooses its kernels by the processor, or by OPENBLAS_CORETYPE: '// &
                      'others change the last of the 17 digits of the tables.')// &
            '.SH COPYRIGHT'//newline//paragraph('The epcont authors; MIT License.')

@@ -1,4 +1,5 @@
-!> THE table of options. The parser, --help and the manual page come from it; what each does is in `take` of the arguments.
+!> THE table of options. The parser, --help and the manual page come from it; what they do is asked by
+!> their names (`asks` of the arguments).
 module epcont_app_options
   implicit none
   private
@@ -7,12 +8,12 @@ module epcont_app_options
   type :: option_type
     character(len=10) :: name = ''    !! as it is given; blank: no option
     character(len=2) :: short = ''    !! another name of it
-    character(len=6) :: value = ''    !! what follows it: capital letters stand for something, others for themselves;
-                                      !! in brackets where it may be left out
+    !> what follows it: capital letters stand for something, others for themselves; in brackets where it may
+    !! be left out
+    character(len=6) :: value = ''
     character(len=76) :: text = ''    !! what it does
     character(len=320) :: more = ''   !! for the manual page alone
   contains
-    procedure :: takes_value
     procedure :: needs_value
     procedure :: usage
   end type option_type
@@ -27,11 +28,14 @@ module epcont_app_options
     option_type('--vtk', '', '', 'write DECK.vtu and DECK.contact.vtu, for ParaView', ''), &
     option_type('--memory', '', 'GB', 'refuse decks that need more memory (default 16)', ''), &
     option_type('--progress', '', '', 'tell of every solve on standard error, terminal or not', &
-                'Without it, one line on a terminal tells of runs of more than a second, and goes when they end: seconds gone '// &
-                'and expected, iteration, load factor, change of the displacements, yielded elements, touching pairs.'), &
+                'Without it, one line on a terminal tells of runs of more than a second, and goes when'// &
+                ' they end: seconds gone and expected, iteration, load factor, change of the'// &
+                ' displacements, yielded elements, touching pairs.'), &
     option_type('--timing', '', '', 'print on standard error where the time of each run went', &
-                'Seconds of wall clock and of processor by stage, and the largest memory of the process so far.'), &
-    option_type('--quiet', '', '', 'print nothing on standard output, and no progress unless --progress asks', ''), &
+                'Seconds of wall clock and of processor by stage, and the largest memory of the process'// &
+                ' so far.'), &
+    option_type('--quiet', '', '', &
+                'print nothing on standard output, and no progress unless --progress asks', ''), &
     option_type('--cards', '', '[NAME]', 'print the manual of the cards, or of one', ''), &
     option_type('--man', '', '', 'print the manual page: epcont --man | man -l -', ''), &
     option_type('--version', '', '', 'print the version', ''), &
@@ -49,13 +53,6 @@ contains
       if (word == options(k)%name .or. word == options(k)%short) option = options(k)
     end do
   end function find_option
-
-  !> May something follow it?
-  pure logical function takes_value(self)
-    class(option_type), intent(in) :: self
-
-    takes_value = self%value /= ''
-  end function takes_value
 
   !> Must something follow it?
   pure logical function needs_value(self)

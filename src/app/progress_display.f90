@@ -1,5 +1,5 @@
-!> How far a run is, on standard error: on a terminal one line, drawn anew after each solve and erased at the end; else, where
-!> it is asked for, a line a solve.
+!> How far a run is, on standard error: on a terminal one line, drawn anew after each solve and erased at the
+!> end; else, where it is asked for, a line a solve.
 module epcont_app_progress_display
   use epcont_app_console, only: is_terminal, newline, print_error, terminal_columns
   use epcont_base_kinds, only: wp

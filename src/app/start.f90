@@ -1,5 +1,5 @@
-!> What is done before anything else where OpenBLAS is a part of the program: tools/cmake/static.cmake has it called
-!> before OpenBLAS and the runtime of OpenMP look at the environment and at memory.
+!> What is done before anything else where OpenBLAS is a part of the program: tools/cmake/static.cmake has it
+!> called before OpenBLAS and the runtime of OpenMP look at the environment and at memory.
 module epcont_app_start
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char
   use epcont_app_ending, only: stop_now
@@ -11,7 +11,8 @@ module epcont_app_start
   private
   public :: prepare_start
 
-  !> What OpenBLAS maps for each thread before the main program begins, and what the program wants beside it [bytes].
+  !> What OpenBLAS maps for each thread before the main program begins, and what the program wants beside it
+  !! [bytes].
   integer(i8), parameter :: memory_of_blas = 134217728_i8, memory_beside = 32000000_i8
   integer(c_int), parameter :: processors_online = 84   !! `sysconf` of Linux
 
@@ -30,9 +31,9 @@ module epcont_app_start
 
 contains
 
-  !> One thread unless the environment says more, and threads that wait give up their core. Where OpenBLAS cannot have
-  !! its memory, room for each thread but for no more than there are processors, it waits without end: that is refused.
-  !! (The runtime of Fortran has not begun: READ and WRITE are not to be had.)
+  !> One thread unless the environment says more, and threads that wait give up their core. Where OpenBLAS
+  !! cannot have its memory, room for each thread but for no more than there are processors, it waits without
+  !! end: that is refused. (The runtime of Fortran has not begun: READ and WRITE are not to be had.)
   subroutine prepare_start() bind(c, name='epcont_prepare_start')
     integer(c_int) :: ignored
     integer(i8) :: threads

@@ -72,8 +72,8 @@ contains
     end do
   end subroutine merge_runs
 
-  !> Rearrange items so that no key of the first half is above any of the second; the first half has n/2, rounded down
-  !! (Hoare's selection).
+  !> Rearrange items so that no key of the first half is above any of the second; the first half has n/2,
+  !! rounded down (Hoare's selection).
   pure subroutine halve(key, item)
     real(wp), intent(in) :: key(:)          !! [n]
     integer, intent(inout) :: item(:)       !! [n]

@@ -62,11 +62,13 @@ contains
     text = trim(adjustl(buffer))
   end function short_real
 
-  !> A name as it may be printed: control characters, which would move the cursor, colour the screen or feign a line, as \x1B.
+  !> A name as it may be printed: control characters, which would move the cursor, colour the screen or feign
+  !! a line, as \x1B.
   pure function shown(name) result(text)
     character(len=*), intent(in) :: name   !! any bytes
     character(len=:), allocatable :: text
-    integer, parameter :: delete = 127, first_of_c1 = 194   !! in UTF-8 the controls from 128 to 159 begin with a byte of 194
+    !> in UTF-8 the controls from 128 to 159 begin with a byte of 194
+    integer, parameter :: delete = 127, first_of_c1 = 194
     character(len=2) :: code
     logical :: control
     integer :: i
@@ -75,7 +77,8 @@ contains
     do i = 1, len(name)
       control = name(i:i) < ' ' .or. iachar(name(i:i)) == delete
       if (i > 1) control = control .or. iachar(name(i - 1:i - 1)) == first_of_c1 .and. iachar(name(i:i)) < 160
-      if (i < len(name)) control = control .or. iachar(name(i:i)) == first_of_c1 .and. iachar(name(i + 1:i + 1)) < 160
+      if (i < len(name)) &
+        control = control .or. iachar(name(i:i)) == first_of_c1 .and. iachar(name(i + 1:i + 1)) < 160
       write (code, '(z2.2)') iachar(name(i:i))
       if (control) then
         text = text//'\x'//code

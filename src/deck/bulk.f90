@@ -31,12 +31,14 @@ contains
     type(card_entry) :: entry(card_kinds)
     type(field_entry), allocatable :: parameter_entry(:)
     type(card_fields) :: card
+    character(len=8) :: names(card_kinds)
     integer, allocatable :: kind(:)
     integer :: line, k, errors
 
     entry = catalogue()
     parameter_entry = parameters()
-    kind = kinds_of_lines(lines, first, entry%name)
+    names = entry%name
+    kind = kinds_of_lines(lines, first, names)
     allocate (table(card_kinds))
     do k = 1, card_kinds
       call table(k)%begin(entry(k), count(kind == k))
@@ -47,7 +49,7 @@ contains
       errors = faults%error_count()
       call gather(lines, line, card, faults)
       if (k == unknown_card) then
-        if (card%sound) call add_unknown(card, entry%name, faults)
+        if (card%sound) call add_unknown(card, names, faults)
         cycle
       end if
       call table(k)%add_card(line)
@@ -74,6 +76,7 @@ contains
     allocate (kind(lines%count), source=no_card)
     begun = .false.
     before = ''
+    found = unknown_card   ! a card without a name
     do i = first, lines%count
       associate (line => lines%line(i))
         if (line%last < line%first) cycle
@@ -110,28 +113,30 @@ contains
     kind = unknown_card
   end function kind_of
 
-  !> Which PARAM it is, and so what its value may be: any word where the name is none, and a fault where it is unknown.
+  !> Which PARAM it is, and so what its value may be: any word where the name is none, and a fault where it is
+  !! unknown.
   subroutine choose_parameter(card, parameter_entry, value_entry, faults)
     type(card_fields), intent(in) :: card
     type(field_entry), intent(in) :: parameter_entry(:)
     type(field_entry), intent(out) :: value_entry
     type(diagnostics), intent(inout) :: faults
-    character(len=8) :: word
+    character(len=8) :: word, names(size(parameter_entry))
     integer :: outcome, i
 
     value_entry = field_entry('VALUE', kind_word, required=.true.)
     outcome = -1
     if (card%filled(1)) call scan_word(card%text(card%first(1):card%last(1)), word, outcome)
     if (outcome /= scan_sound) return
-    do i = 1, size(parameter_entry)
-      if (parameter_entry(i)%name == word) then
+    names = parameter_entry%name
+    do i = 1, size(names)
+      if (names(i) == word) then
         value_entry = parameter_entry(i)
         value_entry%name = 'VALUE'
         return
       end if
     end do
     call faults%add_error(card%place(1), 'unknown parameter '//trim(word), &
-                          suggestion(word, parameter_entry%name, 'epcont --cards PARAM lists the parameters'))
+                          suggestion(word, names, 'epcont --cards PARAM lists the parameters'))
   end subroutine choose_parameter
 
   !> Read one card into the last row of its table.
@@ -203,8 +208,10 @@ contains
     character(len=:), allocatable :: remedy
 
     remedy = 'blank'
-    if (.not. table%entry%has_list()) &
-      remedy = remedy//'; '//trim(table%entry%name)//' ends with field '//text_of(number_of(size(table%entry%field)))
+    associate (entry => table%entry)
+      if (.not. entry%has_list()) &
+        remedy = 'blank; '//trim(entry%name)//' ends with field '//text_of(number_of(size(entry%field)))
+    end associate
     call add_fault(card, table, slot, 'must be blank', remedy, faults)
   end subroutine add_surplus
 

@@ -156,7 +156,8 @@ contains
     type(diagnostics), intent(inout) :: faults
 
     if (code == 9) then
-      call faults%add_error(place, 'a tab in column '//text_of(place%first), 'blanks: a tab has no width in columns')
+      call faults%add_error(place, 'a tab in column '//text_of(place%first), &
+                            'blanks: a tab has no width in columns')
     else
       call faults%add_error(place, 'a character that is not printable ASCII (code '//text_of(code)//')', &
                             'only comments and titles may hold such')
@@ -181,8 +182,8 @@ contains
     call trim_blanks(text, first, last)
   end subroutine find_name
 
-  !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are blank, and
-  !! stand behind the line's end.
+  !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are
+  !! blank, and stand behind the line's end.
   pure subroutine open_slots(card, at, large)
     type(card_fields), intent(inout) :: card
     type(card_line), intent(inout) :: at
@@ -245,7 +246,8 @@ contains
         card%at(slot) = place_type(at%line, left, max(left, right))
         card%first(slot) = from
         card%last(slot) = to
-      else if (from <= to .and. (slot > at%slot + at%fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
+      else if (from <= to .and. &
+               (slot > at%slot + at%fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
         card%sound = .false.
         call faults%add_error(place_type(at%line, from - at%before, at%length), &
                               'more than '//text_of(at%fields)//' data fields on a line', &
@@ -257,8 +259,9 @@ contains
     end do
   end subroutine cut_free
 
-  !> Move `from` and `to` inwards over blanks. These are compared by their codes: a character compared with a blank
-  !! becomes a call of len_trim, which for so few characters costs more than the loop; so does an unrolled loop.
+  !> Move `from` and `to` inwards over blanks. These are compared by their codes: a character compared with a
+  !! blank becomes a call of len_trim, which for so few characters costs more than the loop; so does an
+  !! unrolled loop.
   pure subroutine trim_blanks(text, from, to)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to
@@ -303,8 +306,8 @@ contains
     is_large = self%at(slot)%last - self%at(slot)%first == 2*width - 1
   end function is_large
 
-  !> The columns of a slot: those of the whole field; of the name for slot 0 and where the card has no such line; behind
-  !! the line's end where it does not say anything of the slot.
+  !> The columns of a slot: those of the whole field; of the name for slot 0 and where the card has no such
+  !! line; behind the line's end where it does not say anything of the slot.
   pure type(place_type) function place(self, slot)
     class(card_fields), intent(in) :: self
     integer, intent(in) :: slot   !! which field; 0: the name

@@ -21,8 +21,9 @@ module epcont_deck_case_control
     logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
   end type case_control
 
-  character(len=*), parameter :: keyword(13) = [character(len=12) :: 'SOL', 'CEND', 'TITLE', 'SUBTITLE', 'LABEL', 'SPC', &
-                                                'LOAD', 'ECHO', 'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'SUBCASE', 'NLPARM']
+  character(len=*), parameter :: keyword(13) = [character(len=12) :: &
+    'SOL', 'CEND', 'TITLE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'ECHO', 'DISPLACEMENT', 'STRESS', &
+    'SPCFORCES', 'SUBCASE', 'NLPARM']
 
   !> One statement, cut into its parts. Columns count from the first of the line.
   type :: statement
@@ -121,19 +122,22 @@ contains
       if (keyword(k) == parts%word) exit
     end do
     if (k == 0) then
-      call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, suggestion(parts%word, &
-        keyword, 'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'))
+      call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
+        suggestion(parts%word, keyword, &
+                   'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'))
       return
     end if
-    if (stated(k)) call faults%add_error(parts%word_place, parts%word//' is stated twice', &
-                                         'one '//parts%word//trim(merge(' a deck', '       ', parts%word == 'SUBCASE')))
+    if (stated(k)) &
+      call faults%add_error(parts%word_place, parts%word//' is stated twice', &
+                            'one '//parts%word//trim(merge(' a deck', '       ', parts%word == 'SUBCASE')))
     stated(k) = .true.
     if (parts%has_option) call faults%add_note(parts%option_place, parts%word//': options have no effect')
     select case (parts%word)
     case ('SOL')
       call take_number(parts, control%solution, faults)
     case ('CEND')
-      if (len(parts%value) > 0) call faults%add_error(parts%value_place, 'CEND takes no value', 'nothing here')
+      if (len(parts%value) > 0) &
+        call faults%add_error(parts%value_place, 'CEND takes no value', 'nothing here')
     case ('TITLE')
       control%title = parts%value
     case ('SUBTITLE')
@@ -172,7 +176,8 @@ contains
     if (outcome == scan_sound .and. value > 0 .and. value <= largest_id) then
       number = int(value)
     else
-      call refuse(parts, 'a number', 'a number that can be used', 'a whole number from 1 to '//text_of(largest_id), faults)
+      call refuse(parts, 'a number', 'a number that can be used', &
+                  'a whole number from 1 to '//text_of(largest_id), faults)
     end if
   end subroutine take_number
 

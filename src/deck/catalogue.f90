@@ -1,13 +1,14 @@
 !> THE table of cards and fields. The reader checks by it, and `epcont --cards` prints it: there is
-!> no other place that knows a column. The fields of a card stand in their order: fields 2 to 9, then 12 to 19, and so
-!> on; one that must be blank is `field_entry()`.
+!> no other place that knows a column. The fields of a card stand in their order: fields 2 to 9, then 12 to
+!> 19, and so on; one that must be blank is `field_entry()`.
 module epcont_deck_catalogue
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cbar, card_cgap, card_cord2r, card_cquad4, &
-                                    card_cquad8, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_force, card_grid, &
-                                    card_kinds, card_mat1, card_mats1, card_param, card_pgap, card_ploadx1, &
-                                    card_pshell, card_psolid, card_rbe2, card_spc, card_spc1, card_suport, card_tables1
+                                    card_cquad8, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_force, &
+                                    card_grid, card_kinds, card_mat1, card_mats1, card_param, card_pgap, &
+                                    card_ploadx1, card_pshell, card_psolid, card_rbe2, card_spc, card_spc1, &
+                                    card_suport, card_tables1
   use epcont_deck_entry, only: any_field, below, card_entry, cause, components_field, field_entry, id_field, &
                                integer_field, largest_id, last_field, new_card, next_field, noted, positive, &
                                real_field, word_field, zero_field
@@ -243,8 +244,8 @@ contains
     solver = choice('SOLVER', 'AUTO BAND FRONTAL', &
                     'matrices of the bodies: panels of a band, or nested fronts; default AUTO')
     solver%withdrawn = 'SPARSE'
-    corner = positive(real_field('CORNER', 'sides of a boundary line that turn by more than this meet at a'// &
-                                 ' corner; default: decided from the turns beside it', 'degree'))
+    corner = positive(real_field('CORNER', 'sides of a boundary line that turn by more than this meet at'// &
+                                 ' a corner; default: decided from the turns beside it', 'degree'))
     corner%highest = 180.0_wp
     field = [ &
       choice('PLANE', 'STRAIN STRESS', 'every PSHELL with blank MID2'), &
@@ -252,19 +253,20 @@ contains
       choice('GAPGEOM', 'NO YES', 'YES adds the distance of the nodes to each gap; default NO'), &
       choice('UNITS', '', 'printed with the results; nothing is converted'), &
       choice('METHOD', 'AUTO SECANT MODSEC INISTR NEWTON', 'plastic iteration; default AUTO'), &
-      below(1.0_wp, positive(real_field('TOL', 'largest change of a displacement, of the largest, that ends'// &
-                                        ' the iteration; default 0.01, for NEWTON 1.E-8', ''))), &
+      below(1.0_wp, positive(real_field('TOL', 'largest change of a displacement, of the largest, that'// &
+                                        ' ends the iteration; default 0.01, for NEWTON 1.E-8', ''))), &
       integer_field('MAXIT', 'iterations of a load step; default 100', 1, 100000), &
       choice('MUP', 'EXACT PAPER', &
              'Poisson''s ratio in the equivalent strain: exact, or formula (2-4); default EXACT'), &
       integer_field('NLOAD', 'load steps; default 1', 1, 10000), &
-      positive(real_field('SEARCH', 'how far BCONP looks for a segment; default twice the longest segment of'// &
-                          ' the two lines', 'length')), &
+      positive(real_field('SEARCH', 'how far BCONP looks for a segment; default twice the longest segment'// &
+                          ' of the two lines', 'length')), &
       solver, &
       choice('PRECIS', 'DOUBLE MIXED SINGLE', &
-             'factors in double or single precision, these refined to double (MIXED) or not; default DOUBLE'), &
-      below(1.0_wp, positive(real_field('ACCURACY', 'wanted relative error of contact pressures: sets TOL,'// &
-                                        ' METHOD and PRECIS where they are left out', ''))), &
+             'factors in double or single precision, these refined to double (MIXED) or not;'// &
+             ' default DOUBLE'), &
+      below(1.0_wp, positive(real_field('ACCURACY', 'wanted relative error of contact pressures: sets'// &
+                                        ' TOL, METHOD and PRECIS where they are left out', ''))), &
       corner]
     field%required = .true.
   end function parameters

@@ -32,7 +32,8 @@ contains
     word = name(:scan(name//' ', ' =(') - 1)
     remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
     if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6, CQUAD4 or CQUAD8'
-    if (index(control_words, ' '//word//' ') > 0 .and. len(word) > 0) remedy = 'one line BEGIN BULK behind case control'
+    if (index(control_words, ' '//word//' ') > 0 .and. len(word) > 0) &
+      remedy = 'one line BEGIN BULK behind case control'
     call faults%add_error(place, 'unknown card '//name, remedy)
   end subroutine add_unknown
 

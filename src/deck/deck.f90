@@ -16,7 +16,7 @@ module epcont_deck_deck
   !> All that a deck says: titles, sets chosen and output wanted, as case control has it, and the cards.
   type, extends(case_control) :: deck_type
     type(source) :: source                         !! its text
-    type(card_table), allocatable :: card(:)       !! its cards, and what the catalogue says of them [card_kinds]
+    type(card_table), allocatable :: card(:)  !! its cards, and what the catalogue says of them [card_kinds]
   contains
     procedure :: place
     procedure :: list_place
@@ -43,8 +43,8 @@ contains
     call read_bulk(deck%source, bulk, deck%card, faults)
   end subroutine read_deck
 
-  !> The text, and the fields of all cards but the parameters, are done with: their memory is free for what follows. How many cards
-  !! there are remains known.
+  !> The text, and the fields of all cards but the parameters, are done with: their memory is free for what
+  !! follows. How many cards there are remains known.
   pure subroutine forget_text(self)
     class(deck_type), intent(inout) :: self
     integer :: k
@@ -68,7 +68,8 @@ contains
     place = fields%place(field)
   end function place
 
-  !> Where an item of the open list of a card stands. A card may have ten thousands of them: their places are kept.
+  !> Where an item of the open list of a card stands. A card may have ten thousands of them: their places are
+  !! kept.
   pure type(place_type) function list_place(self, card, k)
     class(deck_type), intent(in) :: self
     integer, intent(in) :: card  !! which table

@@ -58,7 +58,7 @@ contains
   subroutine add_warning(self, place, what, remedy)
     class(diagnostics), intent(inout) :: self
     type(place_type), intent(in) :: place   !! where
-    character(len=*), intent(in) :: what, remedy   !! is to be looked at, and what would be right (may be empty)
+    character(len=*), intent(in) :: what, remedy !! is to be looked at, and what would be right (may be empty)
 
     call add(self, diagnostic(severity_warning, place, what, remedy))
   end subroutine add_warning
@@ -113,13 +113,14 @@ contains
   pure function in_deck_order(self) result(order)
     class(diagnostics), intent(in) :: self
     integer, allocatable :: order(:)
-    integer, allocatable :: line(:)
+    integer, allocatable :: line(:), column(:)
 
     order = [integer ::]
     if (self%count == 0) return
     line = self%list(:self%count)%place%line
     where (line == 0) line = huge(1)
-    order = sorted_order(self%list(:self%count)%place%first)
+    column = self%list(:self%count)%place%first
+    order = sorted_order(column)
     order = order(sorted_order(line(order)))
   end function in_deck_order
 

@@ -11,7 +11,8 @@ module epcont_deck_entry
 
   !> Kinds of fields.
   integer, parameter :: kind_blank = 0
-  integer, parameter, public :: kind_integer = 1, kind_real = 2, kind_components = 3, kind_word = 4, kind_any = 5
+  integer, parameter, public :: &
+    kind_integer = 1, kind_real = 2, kind_components = 3, kind_word = 4, kind_any = 5
   !> Fields that belong together are neighbours.
   integer, parameter, public :: next_field = 1, last_field = -1
   !> The largest id.
@@ -19,10 +20,10 @@ module epcont_deck_entry
   !> Data fields on one line: numbers 2 to 9, then 12 to 19, and so on.
   integer, parameter, public :: fields_a_line = 8
 
-  !> Sizes of numbers that have an effect: at most `farthest`; where zero is none, at least `least_divisor`; of what
-  !! loads a scene (force, pressure, prescribed displacement, gap), zero or at least `least_cause`. Then works are
-  !! numbers, though they are squares of it over stiffnesses, areas and lengths of `farthest`, and of what rounding
-  !! leaves where loads cancel.
+  !> Sizes of numbers that have an effect: at most `farthest`; where zero is none, at least `least_divisor`;
+  !! of what loads a scene (force, pressure, prescribed displacement, gap), zero or at least `least_cause`.
+  !! Then works are numbers, though they are squares of it over stiffnesses, areas and lengths of `farthest`,
+  !! and of what rounding leaves where loads cancel.
   real(wp), parameter, public :: farthest = 1.0e30_wp, least_divisor = 1.0e-30_wp, least_cause = 1.0e-60_wp
 
   !> One field of a card, or one PARAM. The functions below make it, and refine it.
@@ -69,7 +70,8 @@ module epcont_deck_entry
 
 contains
 
-  !> The n-th data field of a card is at the position `number_of(n)`: every tenth and eleventh hold continuation marks.
+  !> The n-th data field of a card is at the position `number_of(n)`: every tenth and eleventh hold
+  !! continuation marks.
   elemental integer function number_of(slot)
     integer, intent(in) :: slot   !! n
 
@@ -169,7 +171,8 @@ contains
 
   !> A real; where it is not required, a blank has a meaning of its own.
   pure function real_field(name, meaning, unit, required) result(field)
-    character(len=*), intent(in) :: name, meaning, unit   !! as the manual of cards prints them; blank: it has no unit
+    !> as the manual of cards prints them; blank: it has no unit
+    character(len=*), intent(in) :: name, meaning, unit
     logical, intent(in), optional :: required           !! may not be blank; default: it may
     type(field_entry) :: field
 
@@ -179,7 +182,8 @@ contains
 
   !> A real; a blank means 0.0.
   pure function zero_field(name, meaning, unit) result(field)
-    character(len=*), intent(in) :: name, meaning, unit   !! as the manual of cards prints them; blank: it has no unit
+    !> as the manual of cards prints them; blank: it has no unit
+    character(len=*), intent(in) :: name, meaning, unit
     type(field_entry) :: field
 
     field = field_entry(name, kind_real, meaning, unit, has_default=.true.)
@@ -285,7 +289,8 @@ contains
     else
       text = 'a real'
       if (lower) text = text//trim(merge(' above', ' from ', self%above_lowest))//' '//decimal(self%lowest)
-      if (upper) text = text//trim(merge(' to below', ' to      ', self%below_highest))//' '//decimal(self%highest)
+      if (upper) &
+        text = text//trim(merge(' to below', ' to      ', self%below_highest))//' '//decimal(self%highest)
     end if
   end function real_range
 

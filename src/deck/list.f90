@@ -1,5 +1,5 @@
-!> The list at the end of a card: ids, `G1 G2 ..`, with `G1 THRU G2` and `G1 THRU G2 BY step` where the card allows it;
-!! or points, `X1 Y1 X2 Y2 .. ENDT`.
+!> The list at the end of a card: ids, `G1 G2 ..`, with `G1 THRU G2` and `G1 THRU G2 BY step` where the card
+!! allows it; or points, `X1 Y1 X2 Y2 .. ENDT`.
 module epcont_deck_list
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -131,8 +131,10 @@ contains
       slot = slot + 2
     end do
     do slot = slot + 1, card%count
-      if (card%filled(slot)) call faults%add_error(card%place(slot), table%identity(table%count)//': field '// &
-        text_of(number_of(slot))//' must be blank', 'blank: '//end_word//' ends the card')
+      if (card%filled(slot)) &
+        call faults%add_error(card%place(slot), table%identity(table%count)//': field '// &
+                              text_of(number_of(slot))//' must be blank', &
+                              'blank: '//end_word//' ends the card')
     end do
   end subroutine read_points
 end module epcont_deck_list

@@ -10,7 +10,7 @@ module epcont_deck_manual
 
   character(len=*), parameter :: newline = new_line('a')
   !> What fields hold, by their kinds.
-  character(len=7), parameter :: kind_name(5) = [character(len=7) :: 'integer', 'real', 'digits', 'word', 'any']
+  character(len=7), parameter :: kind_name(5) = ['integer', 'real   ', 'digits ', 'word   ', 'any    ']
 
 contains
 
@@ -109,7 +109,8 @@ contains
     text = text_of(first)//'-'//text_of(first + 7)
   end function columns
 
-  !> What a blank means: a value, another field, nothing that would do, or `blank` where it has a meaning of its own.
+  !> What a blank means: a value, another field, nothing that would do, or `blank` where it has a meaning of
+  !! its own.
   pure function default_text(entry, slot) result(text)
     type(card_entry), intent(in) :: entry
     integer, intent(in) :: slot

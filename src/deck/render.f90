@@ -1,7 +1,8 @@
 !> Faults of a deck as text: file, line and columns, the line itself, and what would be right.
 module epcont_deck_render
   use epcont_base_text, only: plural, shown, text_of
-  use epcont_deck_diagnostic, only: diagnostic, diagnostics, place_type, severity_error, severity_note, severity_warning
+  use epcont_deck_diagnostic, only: diagnostic, diagnostics, place_type, severity_error, severity_note, &
+                                     severity_warning
   use epcont_deck_source, only: source
   implicit none
   private
@@ -38,8 +39,8 @@ contains
     if (any(found > 0)) text = text//shown(lines%deck_name())//': '//tally(found)//newline
   end function render
 
-  !> Warnings and notes in deck order, one line each, for the listing: without the name of the deck, and of included files
-  !! the name as seen from it, so that it does not matter from where the deck was read.
+  !> Warnings and notes in deck order, one line each, for the listing: without the name of the deck, and of
+  !! included files the name as seen from it, so that it does not matter from where the deck was read.
   pure function render_notes(faults, lines) result(text)
     type(diagnostics), intent(in) :: faults   !! of the deck
     type(source), intent(in) :: lines   !! its lines
@@ -87,15 +88,16 @@ contains
     end do
   end function tally
 
-  !> One fault: `hertz.dat:41:25-32: GRID 17: field 4 (X1) is not a real number`, line of the deck, carets and remedy.
+  !> One fault: `hertz.dat:41:25-32: GRID 17: field 4 (X1) is not a real number`, line of the deck, carets and
+  !! remedy.
   pure function paragraph(fault, lines) result(text)
     type(diagnostic), intent(in) :: fault
     type(source), intent(in) :: lines
     character(len=:), allocatable :: text
 
     if (fault%place%line > 0) then
-      text = shown(lines%file_name(fault%place%line))//':'//columns(fault%place, lines)//said(fault)//newline// &
-             excerpt(fault, lines)
+      text = shown(lines%file_name(fault%place%line))//':'//columns(fault%place, lines)// &
+             said(fault)//newline//excerpt(fault, lines)
     else
       text = shown(lines%deck_name())//': '//said(fault)//newline
       if (len(fault%remedy) > 0) text = text//'  '//fault%remedy//newline

@@ -20,7 +20,8 @@ module epcont_deck_source
 
   !> One file of the deck.
   type :: source_file
-    character(len=:), allocatable :: name  !! as the user gave it; an included one with the directory of its parent
+    !> as the user gave it; an included one with the directory of its parent
+    character(len=:), allocatable :: name
     integer :: parent = 0                  !! the file that includes it
     integer :: first = 1                   !! its first character in the buffer
     integer :: last = 0                    !! its last
@@ -94,7 +95,8 @@ contains
       trouble = 'a directory, not a file'
       return
     end if
-    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=status)
+    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
+          iostat=status)
     if (status /= 0) then
       trouble = 'cannot be opened for reading'
       return
@@ -163,14 +165,16 @@ contains
   end subroutine cut
 
   !> The end of the line that begins at `first`: its last character that is neither comment nor blank, and
-  !! the first character of the next line. On the way, its first comma or character that is not printable ASCII.
+  !! the first character of the next line. On the way, its first comma or character that is not printable
+  !! ASCII.
   pure subroutine find_end(text, first, last, special, next)
     character(len=*), intent(in) :: text
     integer, intent(in) :: first
     integer, intent(out) :: last, special, next
     integer :: at, comment, code
     ! By code, the characters that mean nothing but themselves: printable ASCII but `$` and `,`.
-    logical, parameter :: plain(0:255) = [(code >= 32 .and. code <= 126 .and. all(code /= iachar(['$', ','])), code=0, 255)]
+    logical, parameter :: plain(0:255) = [(code >= 32 .and. code <= 126 .and. &
+                                           all(code /= iachar(['$', ','])), code=0, 255)]
 
     comment = huge(1)
     special = huge(1)
@@ -233,9 +237,11 @@ contains
     path = relative_to(self%files(parent)%name, path)
     select case (files_above(self, parent, path))
     case (0)
-      call faults%add_error(place, 'INCLUDE: '//shown(path)//' includes itself', 'a file that does not lead back here')
+      call faults%add_error(place, 'INCLUDE: '//shown(path)//' includes itself', &
+                            'a file that does not lead back here')
     case (deepest + 1:)
-      call faults%add_error(place, 'INCLUDE: files are included more than '//text_of(deepest)//' deep', 'fewer levels')
+      call faults%add_error(place, 'INCLUDE: files are included more than '//text_of(deepest)//' deep', &
+                            'fewer levels')
     case default
       if (size(self%files) > most_files) then
         call faults%add_error(place, 'INCLUDE: more than '//text_of(most_files)//' files', 'fewer files')

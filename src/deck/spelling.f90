@@ -17,8 +17,8 @@ contains
     if (likely_name(word, names) > 0) remedy = 'did you mean '//trim(names(likely_name(word, names)))//'?'
   end function suggestion
 
-  !> The name nearest to `word`: same first letter, and one slip away (two for words of more than five letters).
-  !! 0 where none is. Digits are no slips: CTRIA6 is not a misspelt CTRIA3.
+  !> The name nearest to `word`: same first letter, and one slip away (two for words of more than five
+  !! letters). 0 where none is. Digits are no slips: CTRIA6 is not a misspelt CTRIA3.
   pure integer function likely_name(word, names)
     character(len=*), intent(in) :: word      !! in capitals
     character(len=*), intent(in) :: names(:)   !! those that are known
@@ -49,7 +49,8 @@ contains
     end do
   end function digits_of
 
-  !> Letters to insert, leave out, replace or exchange with their neighbour (Damerau, optimal string alignment).
+  !> Letters to insert, leave out, replace or exchange with their neighbour (Damerau, optimal string
+  !! alignment).
   pure integer function distance(a, b)
     character(len=*), intent(in) :: a, b
     integer :: slips(0:len(a), 0:len(b))
@@ -62,7 +63,8 @@ contains
         slips(i, j) = min(slips(i - 1, j) + 1, slips(i, j - 1) + 1, &
                           slips(i - 1, j - 1) + merge(0, 1, a(i:i) == b(j:j)))
         if (i < 2 .or. j < 2) cycle
-        if (a(i - 1:i) == b(j:j)//b(j - 1:j - 1)) slips(i, j) = min(slips(i, j), slips(i - 2, j - 2) + 1)
+        if (a(i - 1:i) == b(j:j)//b(j - 1:j - 1)) &
+          slips(i, j) = min(slips(i, j), slips(max(i - 2, 0), max(j - 2, 0)) + 1)
       end do
     end do
     distance = slips(len(a), len(b))

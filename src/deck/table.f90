@@ -21,14 +21,15 @@ module epcont_deck_table
     integer :: count = 0                               !! cards
     real(wp), allocatable :: value(:, :)               !! numbers; integers are exact [columns, count]
     logical, allocatable :: given(:, :)                !! the field is not blank [columns, count]
-    character(len=8), allocatable :: word(:, :)        !! words; only where the card has such fields [columns, count]
+    character(len=8), allocatable :: word(:, :) !! words; only where the card has such fields [columns, count]
     logical, allocatable :: sound(:)                   !! the reader found no fault in the card [count]
     integer, allocatable :: line(:)                    !! where the card begins [count]
-    integer, allocatable :: noted(:)                   !! how often each field without effect is filled [columns]
+    integer, allocatable :: noted(:)  !! how often each field without effect is filled [columns]
     integer, allocatable :: noted_card(:)              !! the first card in which it is [columns]
     integer :: items = 0                               !! in all lists
     type(list_item), allocatable :: list(:)            !! of all cards [items or more]
-    integer, allocatable :: list_start(:)              !! card i has the items list_start(i) to list_start(i+1)-1 [count + 1]
+    !> card i has the items list_start(i) to list_start(i+1)-1 [count + 1]
+    integer, allocatable :: list_start(:)
   contains
     procedure :: begin
     procedure :: column

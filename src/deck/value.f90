@@ -6,8 +6,8 @@ module epcont_deck_value
   use epcont_deck_complaint, only: add_fault
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_entry, only: farthest, field_entry, kind_components, kind_integer, kind_real, kind_word
-  use epcont_deck_field, only: scan_components, scan_integer, scan_malformed, scan_no_point, scan_real, scan_sound, &
-                               scan_too_large, scan_too_long, scan_too_small, scan_word
+  use epcont_deck_field, only: scan_components, scan_integer, scan_malformed, scan_no_point, scan_real, &
+                               scan_sound, scan_too_large, scan_too_long, scan_too_small, scan_word
   use epcont_deck_table, only: card_table
   implicit none
   private
@@ -96,7 +96,8 @@ contains
           number > entry%highest .or. (entry%below_highest .and. number >= entry%highest)) then
         outcome = out_of_range
       else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
-        if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) outcome = out_of_reach
+        if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) &
+          outcome = out_of_reach
       end if
     end associate
   end function judged

@@ -1,5 +1,5 @@
-!> Large pages: one of 2 MB is mapped in one step where 512 of 4 kB take 512, and the processor finds it sooner.
-!> Nothing but speed depends on them.
+!> Large pages: one of 2 MB is mapped in one step where 512 of 4 kB take 512, and the processor finds it
+!> sooner. Nothing but speed depends on them.
 module epcont_system_large_pages
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_loc, c_size_t
   use epcont_base_kinds, only: sp, wp
@@ -9,12 +9,14 @@ module epcont_system_large_pages
 
   integer(c_intptr_t), parameter :: page = 4096            !! where advice may begin [bytes]
   integer(c_intptr_t), parameter :: large_page = 2097152   !! [bytes]
-  integer(c_int), parameter :: advice_large_pages = 14     !! MADV_HUGEPAGE of Linux; others refuse it, to no harm
+  integer(c_int), parameter :: advice_large_pages = 14 !! MADV_HUGEPAGE of Linux; others refuse it, to no harm
 
   !> Parameters of glibc's `mallopt`.
   integer(c_int), parameter :: trim_threshold = -1, top_pad = -2, mmap_threshold = -3, arena_max = -8
-  integer(c_int), parameter :: heap_step = 67108864        !! by which the heap grows; memory is taken when touched [bytes]
-  integer(c_int), parameter :: largest_in_heap = 33554432  !! arrays up to here are in the heap: glibc's own limit [bytes]
+  !> by which the heap grows; memory is taken when touched [bytes]
+  integer(c_int), parameter :: heap_step = 67108864
+  !> arrays up to here are in the heap: glibc's own limit [bytes]
+  integer(c_int), parameter :: largest_in_heap = 33554432
 
   interface use_large_pages
     module procedure use_under_double, use_under_single
@@ -54,8 +56,9 @@ contains
     call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*storage_size(array)/8)
   end subroutine use_under_single
 
-  !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them. Threads have no heaps of
-  !! their own: each would take 128 MB of addresses, and keep what it frees from the others.
+  !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them.
+  !! Threads have no heaps of their own: each would take 128 MB of addresses, and keep what it frees from the
+  !! others.
   subroutine prepare_heap()
     integer(c_int) :: ignored
     integer(c_intptr_t) :: first

@@ -24,8 +24,8 @@ module epcont_system_stopwatch
     stages = 14
 
   character(len=13), parameter, public :: stage_name(stages) = [character(len=13) :: &
-    'reading', 'model', 'plan', 'numbering', 'stiffness', 'factor', 'flexibility', 'contact', 'displacements', 'yielding', &
-    'stresses', 'certificate', 'accuracy', 'writing']
+    'reading', 'model', 'plan', 'numbering', 'stiffness', 'factor', 'flexibility', 'contact', &
+    'displacements', 'yielding', 'stresses', 'certificate', 'accuracy', 'writing']
 
   type :: stopwatch
     real(wp) :: wall(stages) = 0.0_wp        !! [s]

@@ -1,7 +1,8 @@
-!> How many threads the user grants, and one for the BLAS, whatever the environment says: with more, sums are cut
-!> differently, and the last digits of the tables are others. (Decks run side by side use more cores.)
+!> How many threads the user grants, and one for the BLAS, whatever the environment says: with more, sums are
+!> cut differently, and the last digits of the tables are others. (Decks run side by side use more cores.)
 module epcont_system_threads
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, c_null_char, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, &
+                                         c_null_char, c_null_ptr, c_ptr
   implicit none
   private
   public :: granted_threads, stated_threads, use_one_thread
@@ -28,8 +29,8 @@ module epcont_system_threads
 
 contains
 
-  !> As many as OMP_NUM_THREADS says; 1 where it is not set (decks side by side use cores better), where the program is
-  !! built without OpenMP, or where the BLAS is not known to bear calls side by side.
+  !> As many as OMP_NUM_THREADS says; 1 where it is not set (decks side by side use cores better), where the
+  !! program is built without OpenMP, or where the BLAS is not known to bear calls side by side.
   integer function granted_threads()
     granted_threads = 1
     !$ if (blas_may_be_shared()) granted_threads = max(1, stated_threads())
@@ -60,8 +61,8 @@ contains
     call set(1_c_int)
   end subroutine use_one_thread
 
-  !> Whether threads may call the BLAS at the same time: an OpenBLAS that is built for threads locks its buffers, one that is
-  !! not shares them, and of another nothing is known.
+  !> Whether threads may call the BLAS at the same time: an OpenBLAS that is built for threads locks its
+  !! buffers, one that is not shares them, and of another nothing is known.
   logical function blas_may_be_shared()
     procedure(get_parallel), pointer :: parallel
     type(c_funptr) :: address
@@ -73,7 +74,8 @@ contains
     blas_may_be_shared = parallel() /= 0   ! 0 sequential, 1 threads, 2 OpenMP
   end function blas_may_be_shared
 
-  !> Where a procedure of the program or its libraries is; null: nowhere. Which BLAS there is, is not known before.
+  !> Where a procedure of the program or its libraries is; null: nowhere. Which BLAS there is, is not known
+  !! before.
   type(c_funptr) function procedure_of(name) result(address)
     character(len=*), intent(in) :: name
 
