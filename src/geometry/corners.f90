@@ -142,8 +142,8 @@ contains
     end if
   end function beside
 
-  !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the first or the last node of
-  !! one (beside a node within it, and they turn like that)?
+  !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the
+  !! first or the last node of one (beside a node within it, and they turn like that)?
   pure function is_on_curve(line, turn) result(on)
     type(boundary_line), intent(in) :: line
     real(wp), intent(in) :: turn(:, :)
@@ -164,7 +164,8 @@ contains
       do end = 1, 2
         next = merge(0, line%neighbour(end, i), line%mirrored(end, i))
         turns = beside(line, turn, end, i)*sign(1.0_wp, turn(end, i))
-        on(end, i) = inner(end, i) .or. any([inner(3 - end, i), inner(end, next)] .and. alike*turns > abs(turn(end, i)))
+        on(end, i) = inner(end, i) .or. any([inner(3 - end, i), inner(end, next)] .and. &
+                                            alike*turns > abs(turn(end, i)))
       end do
     end do
     on = on .and. abs(turn) < always_corner
