@@ -227,11 +227,13 @@ contains
     real(wp), intent(in) :: reach
     real(wp), allocatable :: cut(:)
     integer, allocatable :: near(:)
-    real(wp) :: s
+    real(wp) :: middle(2), s, within
     integer :: i, k, n
     logical :: found
 
-    near = master%near(0.5_wp*(slave%x(:, 1, side) + slave%x(:, 2, side)), reach + slave%chord_length(side))
+    middle = 0.5_wp*(slave%x(:, 1, side) + slave%x(:, 2, side))
+    within = reach + slave%chord_length(side)
+    near = master%in_box(middle - within, middle + within)
     allocate (cut(2*size(near) + 2))
     cut(:2) = [1.0_wp, 0.0_wp]
     n = 2

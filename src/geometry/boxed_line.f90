@@ -12,7 +12,6 @@ module epcont_geometry_boxed_line
   type, extends(boundary_line) :: boxed_line
     type(box_tree), private :: tree
   contains
-    procedure :: near
     procedure :: in_box
   end type boxed_line
 
@@ -35,15 +34,6 @@ contains
     end do
     boxed%tree = new_box_tree(low, high)
   end function new_boxed_line
-
-  !> The sides whose boxes are not farther from a point than `distance` in either direction, in their order.
-  pure function near(self, point, distance) result(sides)
-    class(boxed_line), intent(in) :: self
-    real(wp), intent(in) :: point(2), distance   !! [length]
-    integer, allocatable :: sides(:)
-
-    sides = self%in_box(point - distance, point + distance)
-  end function near
 
   !> The sides whose boxes meet a box, in their order.
   pure function in_box(self, low, high) result(sides)

@@ -35,7 +35,6 @@ contains
     !> Turns above it are corners, others are not [degree]; 0: decided here
     real(wp), intent(in) :: angle
     real(wp) :: turn(2, size(line%element))
-    logical :: inner(2, size(line%element))
     integer :: n
 
     n = size(line%element)
@@ -47,8 +46,7 @@ contains
     if (angle > 0.0_wp) then
       line%corner = abs(turn) > angle*degree + rounding
     else
-      inner = is_inner(line, turn)
-      line%corner = .not. (abs(turn) < always_smooth .or. inner .or. is_beside(line, turn, inner))
+      line%corner = .not. (abs(turn) < always_smooth .or. is_on_curve(line, turn))
     end if
     where (ends_there(line)) line%corner = .true.
     line%tip = line%corner .and. (turn > 0.0_wp .or. ends_there(line)) .and. .not. line%mirrored
@@ -144,44 +142,34 @@ contains
     end if
   end function beside
 
-  !> Nodes within a curve: those on both sides turn as they do, and are no corners.
-  pure function is_inner(line, turn) result(inner)
+  !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the
+  !! first or the last node of one (beside a node within it, and they turn like that)?
+  pure function is_on_curve(line, turn) result(on)
     type(boundary_line), intent(in) :: line
     real(wp), intent(in) :: turn(:, :)
-    logical :: inner(2, size(line%element))
+    logical :: on(2, size(line%element))
+    logical :: inner(2, 0:size(line%element))
     real(wp) :: turns(2)
-    integer :: end, i
+    integer :: end, i, next
 
+    inner = .false.
     do i = 1, size(line%element)
       do end = 1, 2
         turns = beside(line, turn, end, i)*sign(1.0_wp, turn(end, i))
-        inner(end, i) = abs(turn(end, i)) < always_corner .and. &
-                        all(alike*turns > abs(turn(end, i)) .and. turns < always_corner)
+        inner(end, i) = all(alike*turns > abs(turn(end, i)) .and. turns < always_corner)
       end do
     end do
-  end function is_inner
-
-  !> The first and the last nodes of a curve: beside a node within it, and they turn like that.
-  pure function is_beside(line, turn, inner) result(found)
-    type(boundary_line), intent(in) :: line
-    real(wp), intent(in) :: turn(:, :)
-    logical, intent(in) :: inner(:, :)
-    logical :: found(2, size(line%element))
-    real(wp) :: turns(2)
-    logical :: within(2)
-    integer :: end, i
-
+    inner(:, 1:) = inner(:, 1:) .and. abs(turn) < always_corner
     do i = 1, size(line%element)
       do end = 1, 2
-        within = [inner(3 - end, i), .false.]
-        if (line%neighbour(end, i) > 0 .and. .not. line%mirrored(end, i)) &
-          within(2) = inner(end, line%neighbour(end, i))
+        next = merge(0, line%neighbour(end, i), line%mirrored(end, i))
         turns = beside(line, turn, end, i)*sign(1.0_wp, turn(end, i))
-        found(end, i) = abs(turn(end, i)) < always_corner .and. &
-                        any(within .and. alike*turns > abs(turn(end, i)))
+        on(end, i) = inner(end, i) .or. any([inner(3 - end, i), inner(end, next)] .and. &
+                                            alike*turns > abs(turn(end, i)))
       end do
     end do
-  end function is_beside
+    on = on .and. abs(turn) < always_corner
+  end function is_on_curve
 
   !> Normals from the sides that meet, or from the other end of the side.
   pure subroutine set_normals(line)

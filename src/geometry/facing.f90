@@ -99,7 +99,7 @@ contains
     more = min(search, 2.0_wp*norm2(from%along))
     do round = rounds, 0, -1
       within = search/widening**round
-      call look_at(line, line%near(from%x, within), obstacles, who, best, second)
+      call look_at(line, line%in_box(from%x - within, from%x + within), obstacles, who, best, second)
       ! Sides that were left out are farther than `within`.
       if (best%place%found .and. abs(best%place%gap) + more < within - 2.0_wp*equal*search) exit
     end do
