@@ -134,7 +134,8 @@ contains
           call resolve(deck, cards(c), 2 + k, nodes, found, node(k, :))
         end do
         n = size(node, 1)
-        if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)   ! in their order along the boundary
+        ! In their order along the boundary
+        if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)
         call add_elements(model, card%entry%name, node, section)
         model%element_id(model%elements - card%count + 1:) = int(card%value(1, :))
         deallocate (node, section)
