@@ -66,6 +66,7 @@ contains
     if (.not. goes_on(line, pair)) return
     run(2:4) = [line%neighbour(1, pair), pair, line%neighbour(2, pair)]
     if (line%mirrored(pair)) run([2, 4]) = maxval(run([2, 4]))
+    if (any(run([2, 4]) == 0)) return
     spacing = 0.5_wp*(distance(model, line, pair, run(2)) + distance(model, line, pair, run(4)))
     run(1) = behind(line, run(2), pair)
     run(5) = behind(line, run(4), pair)

@@ -37,7 +37,11 @@ contains
     end do
     do p = 1, kind%points
       associate (slope => kind%slopes(:, :n, p), values => kind%values(:n, p))
-        jacobian = matmul(slope, transpose(from_first(:, :n)))   ! d x_j/d local_i
+        jacobian = 0.0_wp   ! d x_j/d local_i
+        do i = 1, n
+          jacobian(:, 1) = jacobian(:, 1) + slope(:, i)*from_first(1, i)
+          jacobian(:, 2) = jacobian(:, 2) + slope(:, i)*from_first(2, i)
+        end do
         determinant = jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1)
         point(p)%volume = kind%weight(p)*determinant*thickness
         point(p)%b(:, :2*n) = 0.0_wp
