@@ -216,6 +216,14 @@ def draw(found, path):
     figure.savefig(path, dpi=110, metadata={"Software": None})
 
 
+#: The decision that PARAM PRECIS stays, by what it does on larger meshes than these.
+PRECISION = (
+    "Why PRECIS stays: it must be worth 1.3 times in time or memory at some size that people run. The scenes below are too "
+    "small to show it. Two cylinders of 42 032 nodes (`tools/decks hertz 42000`, medians of three, 2026-11-23): beyond yield "
+    "DOUBLE 1.30 s and 336 MB, MIXED 1.84 s and 227 MB (1.48 times less), SINGLE 1.05 s and 224 MB; elastic DOUBLE .51 s and "
+    "154 MB, MIXED .60 s and 121 MB (1.28), SINGLE .37 s (1.4 times faster) and 117 MB.")
+
+
 def page(found, quick, spent, picture):
     count = sum(len(runs) + len(failed) for _, runs, failed in found)
     text = ["# What each choice costs and buys",
@@ -231,6 +239,7 @@ def page(found, quick, spent, picture):
              "approach moves at most, true error (median); runs that gave no answer (not converged in 100 iterations, or none that the certificate takes).",
              table(["scene", "choice", "time", "largest", "memory", "moves by", "error", "no answer"],
                    [row for scene, runs, failed in found for row in one_at_a_time(runs, failed, scene)])]
+    text += [PRECISION]
     text += ["## Pareto fronts", "Runs that err less, by a tenth at least, than all that cost less; of choices within a tenth of each other on one mesh the one nearest to "
              f"{words(BASE)}."]
     for scene, runs, _ in found:

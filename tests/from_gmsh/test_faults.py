@@ -123,7 +123,8 @@ SCENE = [
 ]
 GMSH = "mend the drawing until it opens and meshes in Gmsh itself without an error"
 THERE = " that the drawing has; bodies in contact have their own each: no Coherence, no BooleanFragments"
-WITHIN = "triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1)"
+WITHIN = ("triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1) or eight "
+          "(Mesh.SecondOrderIncomplete = 1)")
 
 #: The same of the file of Gmsh.
 MESH = [
@@ -142,7 +143,7 @@ MESH = [
      ["[body.below]: 14 of its elements in two.geo are Triangle 10, which epcont has no card for", WITHIN,
       "[body.above]: 14 of its elements in two.geo are Triangle 10, which epcont has no card for", WITHIN]),
     ('("above") = {2};', '("above") = {2}; Recombine Surface{1}; Mesh.ElementOrder = 2;',
-     ["[body.below]: 6 of its elements in two.geo are second-order quadrilaterals, which epcont has no card for", WITHIN]),
+     ["[body.below]: 6 of its elements in two.geo are quadrilaterals of nine nodes, which epcont has no card for", WITHIN]),
     ("EndFor", "EndFor\nCoherence;", ["mesh: two.geo has no curve 5, which its Physical Curve 'under' asks for", f"curves{THERE}"]),
     ('("under") = {5}', '("under") = {3}; Coherence', [
         part for which, name in (("slave", "under"), ("master", "face")) for part in (

@@ -13,7 +13,7 @@ sys.path.insert(0, str(TOP / "tests" / "independent"))
 from deck import DeckError, at, ids, read, real  # noqa: E402
 
 #: Nodes of each kind of element in their order round it, as positions among the nodes of its card.
-ROUND = {"CTRIA3": [0, 1, 2], "CTRAX3": [0, 1, 2], "CQUAD4": [0, 1, 2, 3], "CTRIA6": [0, 3, 1, 4, 2, 5], "CTRAX6": [0, 1, 2, 3, 4, 5]}
+ROUND = {"CTRIA3": [0, 1, 2], "CTRAX3": [0, 1, 2], "CQUAD4": [0, 1, 2, 3], "CTRIA6": [0, 3, 1, 4, 2, 5], "CQUAD8": [0, 4, 1, 5, 2, 6, 3, 7], "CTRAX6": [0, 1, 2, 3, 4, 5]}
 
 
 class Refused(Exception):

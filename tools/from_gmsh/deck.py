@@ -5,7 +5,7 @@ from .lines import nodes_of, shares
 from .match import Groups, check_bodies
 
 AXES = {"1": "x", "2": "y"}
-ELEMENTS = {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6"}
+ELEMENTS = {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6", 8: "CQUAD8"}
 RINGS = {3: "CTRAX3", 6: "CTRAX6"}
 
 

@@ -9,9 +9,9 @@ import gmsh
 from .faults import Faults, Rejected, listed, spot
 
 #: Corners and nodes of the elements of Gmsh that have a card, by its number of their kind.
-SURFACES = {2: (3, 3), 3: (4, 4), 9: (3, 6)}
+SURFACES = {2: (3, 3), 3: (4, 4), 9: (3, 6), 16: (4, 8)}
 LINES = {1: 2, 8: 3}
-NAMES = {4: "second-order quadrilaterals", 10: "second-order quadrilaterals", 16: "second-order quadrilaterals"}
+NAMES = {10: "quadrilaterals of nine nodes"}
 POINT, LINE, SURFACE = 0, 1, 2
 DIMENSIONS = {"point": POINT, "curve": LINE, "surface": SURFACE}
 KIND = {POINT: "Physical Point", LINE: "Physical Curve", SURFACE: "Physical Surface"}
@@ -210,7 +210,8 @@ def surface(entity, mesh, name, faults):
         if int(kind) not in SURFACES:
             said = NAMES.get(int(kind)) or gmsh.model.mesh.getElementProperties(int(kind))[0]
             faults.add(f"[body.{name}]", f"{len(tags)} of its elements in {mesh.file} are {said}, which epcont has no card for",
-                       "triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1)")
+                       "triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1) or eight "
+                       "(Mesh.SecondOrderIncomplete = 1)")
             continue
         corners, count = SURFACES[int(kind)]
         for i in range(len(tags)):

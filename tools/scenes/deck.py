@@ -3,6 +3,8 @@ import textwrap
 
 from cards import written
 
+from .mesh import corners_of
+
 
 def long(value):
     """A real in at most 16 characters, with nine digits or more."""
@@ -52,7 +54,7 @@ class Deck:
             nodes = [first_node + n for n in nodes]
             if self.rings and len(nodes) == 6:  # CTRAX6 goes round its sides
                 nodes = [nodes[i] for i in (0, 3, 1, 4, 2, 5)]
-            name = {3: "CTRAX3", 6: "CTRAX6"} if self.rings else {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6"}
+            name = {3: "CTRAX3", 6: "CTRAX6"} if self.rings else {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6", 8: "CQUAD8"}
             self.card(name[len(nodes)], first + k, prop, *nodes)
 
     def material(self, number, young, nu, thickness=1.0):
@@ -82,7 +84,7 @@ class Deck:
 
     def press(self, mesh, line, value, first=1, first_node=1, theta=0.0):
         """Pressure on the sides between the corners of a line."""
-        corners = {n for nodes in mesh.element for n in nodes[:3 if len(nodes) == 6 else 4]}
+        corners = {n for nodes in mesh.element for n in nodes[:corners_of(nodes)]}
         line = [n for n in line if n in corners]
         for a, b in zip(line, line[1:]):
             element = mesh.side(a, b)

@@ -2,8 +2,13 @@
 import math
 
 
+def corners_of(nodes):
+    """How many corners the element of these nodes has."""
+    return {3: 3, 4: 4, 6: 3, 8: 4}[len(nodes)]
+
+
 class Mesh:
-    """Points and elements (their corners; with six points also the middles of the sides, the first behind the first corner);
+    """Points and elements (their corners; with six or eight points also the middles of the sides, the first behind the first corner);
     `line` says which points lie on a named line, in order."""
 
     def __init__(self, point, element, line):

@@ -4,7 +4,7 @@ A side of a patch is a list of places, a corner of an element and the middle of 
 """
 import math
 
-from .mesh import Mesh
+from .mesh import Mesh, corners_of
 
 
 def halves(places):
@@ -51,7 +51,7 @@ def patch(bottom, top, left, right):
 
 
 def join(patches, element):
-    """One mesh of patches that share sides. `element`: ctria3, ctria6, cquad4."""
+    """One mesh of patches that share sides. `element`: ctria3, ctria6, cquad4, cquad8."""
     point, found, cells = [], {}, []
     size = max(abs(x) for rows in patches for row in rows for place in row for x in place)
     grain = 1e-7 * size
@@ -69,8 +69,8 @@ def join(patches, element):
             for i in range(0, len(rows[0]) - 1, 2):
                 a, b, c, d = rows[j][i], rows[j][i + 2], rows[j + 2][i + 2], rows[j + 2][i]
                 ab, bc, cd, da, m = rows[j][i + 1], rows[j + 1][i + 2], rows[j + 2][i + 1], rows[j + 1][i], rows[j + 1][i + 1]
-                if element == "cquad4":
-                    wanted = [(a, b, c, d)]
+                if element in ("cquad4", "cquad8"):
+                    wanted = [(a, b, c, d, ab, bc, cd, da)[:int(element[-1])]]
                 elif math.dist(a, c) <= math.dist(b, d) * (1 + 1e-9):
                     wanted = [(a, b, c, ab, bc, m), (a, c, d, m, cd, da)]
                 else:
@@ -83,12 +83,12 @@ def boundary(mesh):
     """The node behind each node of the boundary, the body on the left; middles of sides included."""
     after = {}
     for nodes in mesh.element:
-        corners = nodes[:3] if len(nodes) == 6 else nodes
+        corners = nodes[:corners_of(nodes)]
         (xa, ya), (xb, yb), (xc, yc) = (mesh.point[n] for n in corners[:3])
         turn = 1 if (xb - xa) * (yc - ya) > (xc - xa) * (yb - ya) else -1
         for k, a in enumerate(corners):
             b = corners[(k + 1) % len(corners)]
-            after[(a, b) if turn > 0 else (b, a)] = nodes[3 + k] if len(nodes) == 6 else None
+            after[(a, b) if turn > 0 else (b, a)] = nodes[len(corners) + k] if len(nodes) > len(corners) else None
     follows = {}
     for (a, b), middle in after.items():
         if (b, a) not in after:
@@ -102,7 +102,7 @@ def boundary(mesh):
 def walk(mesh, begin, end):
     """The nodes of the boundary from the corner nearest to a place to that nearest to another, the body on the left."""
     follows = boundary(mesh)
-    corners = {n for nodes in mesh.element for n in (nodes[:3] if len(nodes) == 6 else nodes)}
+    corners = {n for nodes in mesh.element for n in nodes[:corners_of(nodes)]}
     node, last = (min(corners & follows.keys(), key=lambda n: math.dist(mesh.point[n], place)) for place in (begin, end))
     nodes = [node]
     while node != last or len(nodes) == 1:

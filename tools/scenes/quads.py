@@ -8,6 +8,8 @@ from .mesh import graded
 from .patches import arc, even, halves, join, patch, straight, walk
 
 STEEL = 210000.0
+#: Elements with nodes between the corners.
+QUADRATIC = ("ctria6", "cquad8")
 
 
 def grid(xs, ys, element):
@@ -47,7 +49,7 @@ def pin_in_lug(half=45.0, around=24, finer=1.4, size=30.0, element="ctria6"):
                             straight(places[k + 1], outer[-1], depth)))
     pin = join(square, element)
     hole = radius + clearance
-    outward = halves(graded(math.pi * hole / lug_around, 1.5 if element == "ctria6" else 1.3, (size - 1) * radius))
+    outward = halves(graded(math.pi * hole / lug_around, 1.5 if element in QUADRATIC else 1.3, (size - 1) * radius))
     turns = even(lug_around)
     lug = join([patch(arc((0.0, 0.0), hole, 90, -90, turns), arc((0.0, 0.0), size * radius, 90, -90, turns),
                       straight((0.0, hole), (0.0, size * radius), outward), straight((0.0, -hole), (0.0, -size * radius), outward))], element)
@@ -75,7 +77,7 @@ def pin_in_lug(half=45.0, around=24, finer=1.4, size=30.0, element="ctria6"):
 def nafems(across=5.0, finer=1.4, element="ctria6"):
     """NAFEMS R0094 no. 1: a steel cylinder on an aluminium block."""
     radius, b = 50.0, 6.21463
-    growth = 1.5 if element == "ctria6" else 1.25
+    growth = 1.5 if element in QUADRATIC else 1.25
 
     def around_core(across, surface, deep, long, below):
         """A core of squares at the contact and two patches round it, right of the axis, y into the body. `surface`: places on it for
@@ -122,7 +124,7 @@ def layer_lines(n=20, element="ctria6"):
     step = 0.85699 / (n - 0.5)
     xs = [step * i for i in range(int(1.6 / step) + 1)]
     xs += [xs[-1] + x for x in graded(step * 1.2, 1.3, 6.0 - xs[-1])[1:]]
-    rows = 10 if element == "ctria6" else 16
+    rows = 10 if element in QUADRATIC else 16
     layer = grid(xs, [0.5 * (1 - math.cos(math.pi * j / rows)) for j in range(rows + 1)], element)
     parts = round(1.3 * 1.6 / step)
     base = grid([1.6 * i / parts for i in range(parts + 1)], [-0.1, 0.0], "ctria3" if element == "ctria6" else element)
