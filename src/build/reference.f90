@@ -33,14 +33,9 @@ contains
     integer, allocatable :: id(:), order(:), row(:), table(:)
     integer :: c, i, k, earlier
 
-    allocate (id(0), table(0), row(0))
-    do c = 1, size(cards)
-      associate (card => deck%card(cards(c)))
-        id = [id, int(card%value(1, :))]
-        table = [table, spread(cards(c), 1, card%count)]
-        row = [row, (i, i=1, card%count)]
-      end associate
-    end do
+    id = [(int(deck%card(cards(c))%value(1, :)), c=1, size(cards))]
+    table = [(spread(cards(c), 1, deck%card(cards(c))%count), c=1, size(cards))]
+    row = [((i, i=1, deck%card(cards(c))%count), c=1, size(cards))]
     order = sorted_order(id)
     do k = 2, size(id)
       i = order(k)

@@ -70,7 +70,10 @@ contains
                            ' cross over, bend inwards or lie on one line', &
                            'four corners in turn, each bending the same way')
     else
-      if (area < 0.0_wp) call turn(model%connectivity(:n, e), model%connectivity(n + 1:model%order(e), e))
+      if (area < 0.0_wp) then
+        call turn(model%connectivity(2:n, e))
+        call turn(model%connectivity(n + 1:model%order(e), e))
+      end if
       if (model%order(e) > n) call check_middles(e, n, model%coordinates(e), found)
     end if
   end subroutine check_shape
@@ -107,11 +110,14 @@ contains
   end function corner_ids
 
   !> The same nodes the other way round.
-  pure subroutine turn(corner, middle)
-    integer, intent(inout) :: corner(:), middle(:)   !! middle nodes of the sides, of some kinds
+  pure subroutine turn(node)
+    integer, intent(inout) :: node(:)
+    integer :: k, n
 
-    corner(2:) = corner(size(corner):2:-1)
-    middle = middle(size(middle):1:-1)
+    n = size(node)
+    do k = 1, n/2
+      node([k, n + 1 - k]) = node([n + 1 - k, k])
+    end do
   end subroutine turn
 
   !> A side's middle node may leave the middle as long as the element does not fold over at a corner; a side
@@ -195,17 +201,14 @@ contains
   pure subroutine warn_of_elements_twice(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer :: count, e, first
+    integer :: e, first, like(model%elements), twice
 
-    count = 0
-    do e = model%elements, 1, -1
-      if (element_like(model, e) == 0) cycle
-      count = count + 1
-      first = e
-    end do
-    if (count > 0) call found%add_warning(of_element, first, 1, ' has the nodes of '// &
-      model%name_of(of_element, element_like(model, first))//': both count, one upon the other'// &
-      and_more(count, '; so it is with ', trim(merge(' more elements', ' more element ', count > 2))), &
+    like = [(element_like(model, e), e=1, model%elements)]
+    twice = count(like > 0)
+    first = findloc(like > 0, .true., dim=1)
+    if (twice > 0) call found%add_warning(of_element, first, 1, ' has the nodes of '// &
+      model%name_of(of_element, like(first))//': both count, one upon the other'// &
+      and_more(twice, '; so it is with ', trim(merge(' more elements', ' more element ', twice > 2))), &
       'one element, unless two laminae are meant')
   end subroutine warn_of_elements_twice
 
@@ -217,12 +220,17 @@ contains
 
     n = model%corners(element)
     associate (corner => model%connectivity(:n, element), start => model%around%start)
-      node = corner(minloc([(start(corner(k) + 1) - start(corner(k)), k=1, n)], dim=1))
+      node = corner(1)
+      do k = 2, n
+        if (start(corner(k) + 1) - start(corner(k)) < start(node + 1) - start(node)) node = corner(k)
+      end do
       do i = start(node), start(node + 1) - 1
         other = model%around%group(i)
         if (other == element) exit
-        if (model%corners(other) /= n) cycle
-        if (all([(any(model%connectivity(:n, other) == corner(k)), k=1, n)])) return
+        do k = 1, n
+          if (.not. any(model%connectivity(:n, other) == corner(k))) exit
+        end do
+        if (k > n .and. model%corners(other) == n) return
       end do
     end associate
     other = 0
