@@ -6,7 +6,7 @@ module epcont_deck_bulk
   use epcont_deck_catalogue, only: catalogue, parameters
   use epcont_deck_complaint, only: add_fault, add_unknown
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_deck_entry, only: card_entry, field_entry, kind_word, number_of
+  use epcont_deck_entry, only: card_entry, field_entry, kind_blank, kind_word, number_of
   use epcont_deck_field, only: scan_sound, scan_word
   use epcont_deck_list, only: read_list
   use epcont_deck_source, only: source
@@ -144,21 +144,28 @@ contains
     type(card_fields), intent(in) :: card
     type(card_table), intent(inout) :: table
     type(diagnostics), intent(inout) :: faults
-    integer :: slot
+    integer :: slot, fields
     logical :: blank
 
-    do slot = 1, min(max(card%count, size(table%entry%field)), table%entry%list_slot - 1)
+    fields = size(table%entry%field)
+    do slot = 1, fields
       blank = slot > card%count
       if (.not. blank) blank = card%last(slot) < card%first(slot)
-      if (table%entry%must_be_blank(slot)) then
-        if (.not. blank) call add_surplus(card, table, slot, faults)
-      else if (blank) then
+      if (blank) then
         call take_blank(card, table, slot, faults)
+      else if (table%entry%field(slot)%kind == kind_blank) then
+        call add_surplus(card, table, slot, faults)
       else
         call read_field(card, table, slot, faults)
       end if
     end do
-    if (table%entry%has_list()) call read_list(card, table, faults)
+    if (table%entry%has_list()) then
+      call read_list(card, table, faults)
+    else
+      do slot = fields + 1, card%count
+        if (card%last(slot) >= card%first(slot)) call add_surplus(card, table, slot, faults)
+      end do
+    end if
   end subroutine read_card
 
   !> Read one field that is not blank.

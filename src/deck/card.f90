@@ -37,7 +37,8 @@ module epcont_deck_card
     character(len=:), allocatable :: text       !! its lines, one behind the other
     integer :: name_first = 1, name_last = 0    !! the name in the text, without `*`
     integer :: count = 0                        !! slots: eight for each row
-    integer, allocatable :: first(:), last(:)   !! [slots or more] the value in the text; last < first: blank
+    !> the value in the text, in a blank slot, such as that behind the last, last < first [slots + 1 or more]
+    integer, allocatable :: first(:), last(:)
     logical :: sound = .true.                   !! the lines can be cut into fields
     type(place_type), private :: name_place
     type(place_type), allocatable, private :: at(:)   !! the whole field of each slot [slots or more]
@@ -85,9 +86,13 @@ contains
     character(len=*), intent(in) :: text   !! the line, which is not blank
     integer :: at
 
-    at = verify(text(:min(width, len(text))), ' ')
-    continues = at == 0 .or. text(1:1) == '+' .or. text(1:1) == '*'
-    if (at > 0) continues = continues .or. text(at:at) == ','
+    continues = text(1:1) == '+' .or. text(1:1) == '*'
+    if (continues) return
+    do at = 1, min(width, len(text))
+      if (iachar(text(at:at)) /= iachar(' ')) exit
+    end do
+    continues = at > width
+    if (.not. continues) continues = text(at:at) == ','
   end function continues
 
   !> Add the fields of one line.
@@ -183,7 +188,7 @@ contains
   end subroutine find_name
 
   !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are
-  !! blank, and stand behind the line's end.
+  !! blank, and stand behind the line's end until it is cut.
   pure subroutine open_slots(card, at, large)
     type(card_fields), intent(inout) :: card
     type(card_line), intent(inout) :: at
@@ -197,13 +202,14 @@ contains
     else
       card%count = card%count + fields_a_line
     end if
-    if (card%count > size(card%first)) then
+    if (card%count >= size(card%first)) then
       card%first = [card%first, card%first]
       card%last = [card%last, card%last]
       card%at = [card%at, card%at]
     end if
-    card%last(at%slot:card%count) = 0
-    card%at(at%slot:card%count) = place_type(at%line, at%length + 1, at%length + 1)
+    card%last(at%slot:card%count + 1) = 0
+    if (card%half_open .or. at%comma > 0) &
+      card%at(at%slot:card%count) = place_type(at%line, at%length + 1, at%length + 1)
   end subroutine open_slots
 
   !> Cut a line of fields of fixed width.
@@ -266,9 +272,9 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to
 
-    !GCC$ unroll 1
-    do to = to, from, -1
+    do while (to >= from)
       if (iachar(text(to:to)) /= iachar(' ')) exit
+      to = to - 1
     end do
     if (iachar(text(from:from)) /= iachar(' ')) return   ! mostly so
     do while (from < to)
