@@ -44,19 +44,20 @@ contains
       call table(k)%begin(entry(k), count(kind == k))
     end do
     do line = first, lines%count
-      k = kind(line)
-      if (k == no_card) cycle
+      if (kind(line) == no_card) cycle
       errors = faults%error_count()
       call gather(lines, line, card, faults)
-      if (k == unknown_card) then
+      if (kind(line) == unknown_card) then
         if (card%sound) call add_unknown(card, names, faults)
         cycle
       end if
-      call table(k)%add_card(line)
-      if (k == card_param .and. card%sound) &
-        call choose_parameter(card, parameter_entry, table(k)%entry%field(2), faults)
-      if (faults%error_count() == errors) call read_card(card, table(k), faults)
-      table(k)%sound(table(k)%count) = faults%error_count() == errors
+      associate (cards => table(kind(line)))
+        call cards%add_card(line)
+        if (kind(line) == card_param .and. card%sound) &
+          call choose_parameter(card, parameter_entry, cards%entry%field(2), faults)
+        if (faults%error_count() == errors) call read_card(card, cards, faults)
+        cards%sound(cards%count) = faults%error_count() == errors
+      end associate
     end do
     do k = 1, card_kinds
       call add_notes(lines, table(k), faults)
@@ -197,9 +198,9 @@ contains
     type(diagnostics), intent(inout) :: faults
     logical :: needed
 
-    associate (field => table%entry%field(slot), row => table%value(:, table%count))
-      row(slot) = field%default
-      if (field%same_as /= 0) row(slot) = row(slot + field%same_as)
+    associate (field => table%entry%field(slot), i => table%count)
+      table%value(slot, i) = field%default
+      if (field%same_as /= 0) table%value(slot, i) = table%value(slot + field%same_as, i)
       needed = field%required
       if (field%with /= 0) needed = needed .or. card%filled(slot + field%with)
       if (needed) call add_fault(card, table, slot, 'is blank', field%allowed(), faults)

@@ -143,13 +143,14 @@ contains
     integer, intent(in) :: file
     type(diagnostics), intent(inout) :: faults
     logical, intent(out) :: ended
-    integer :: at, last, special, next, line, number
+    integer :: at, last, special, next, line, number, end_of_file
     character(len=7) :: word
 
     ended = .false.
     at = self%files(file)%first
+    end_of_file = self%files(file)%last
     number = 0
-    do while (at <= self%files(file)%last .and. .not. ended)
+    do while (at <= end_of_file .and. .not. ended)
       number = number + 1
       call find_end(self%text, at, last, special, next)
       if (self%count == size(self%line)) call double_lines(self)
