@@ -126,7 +126,7 @@ contains
 
     value_entry = field_entry('VALUE', kind_word, required=.true.)
     outcome = -1
-    if (card%filled(1)) call scan_word(card%text(card%first(1):card%last(1)), word, outcome)
+    if (card%filled(1)) call scan_word(card%text(card%slot(1)%first:card%slot(1)%last), word, outcome)
     if (outcome /= scan_sound) return
     names = parameter_entry%name
     do i = 1, size(names)
@@ -151,7 +151,7 @@ contains
     fields = size(table%entry%field)
     do slot = 1, fields
       blank = slot > card%count
-      if (.not. blank) blank = card%last(slot) < card%first(slot)
+      if (.not. blank) blank = card%slot(slot)%last < card%slot(slot)%first
       if (blank) then
         call take_blank(card, table, slot, faults)
       else if (table%entry%field(slot)%kind == kind_blank) then
@@ -164,7 +164,7 @@ contains
       call read_list(card, table, faults)
     else
       do slot = fields + 1, card%count
-        if (card%last(slot) >= card%first(slot)) call add_surplus(card, table, slot, faults)
+        if (card%slot(slot)%last >= card%slot(slot)%first) call add_surplus(card, table, slot, faults)
       end do
     end if
   end subroutine read_card

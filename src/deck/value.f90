@@ -38,7 +38,9 @@ contains
     type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     integer :: outcome
 
-    call read_value(card%text(card%first(slot):card%last(slot)), entry, value, outcome)
+    associate (at => card%slot(slot))
+      call read_value(card%text(at%first:at%last), entry, value, outcome)
+    end associate
     if (outcome == scan_no_point .and. entry%point_optional) then
       if (card%is_large(slot)) outcome = scan_sound
     end if
@@ -58,7 +60,7 @@ contains
     character(len=:), allocatable :: what, remedy
 
     if (card%filled(slot)) then
-      call fault_of(card%text(card%first(slot):card%last(slot)), entry, value, outcome, what, remedy)
+      call fault_of(card%text(card%slot(slot)%first:card%slot(slot)%last), entry, value, outcome, what, remedy)
       call add_fault(card, table, slot, what, remedy, faults)
     else
       call add_fault(card, table, slot, 'is blank', entry%allowed(), faults)
