@@ -6,7 +6,7 @@ module epcont_deck_bulk
   use epcont_deck_catalogue, only: catalogue, parameters
   use epcont_deck_complaint, only: add_fault, add_unknown
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_deck_entry, only: card_entry, field_entry, kind_word, number_of
+  use epcont_deck_entry, only: card_entry, field_entry, kind_blank, kind_word, number_of
   use epcont_deck_field, only: scan_sound, scan_word
   use epcont_deck_list, only: read_list
   use epcont_deck_source, only: source
@@ -44,19 +44,20 @@ contains
       call table(k)%begin(entry(k), count(kind == k))
     end do
     do line = first, lines%count
-      k = kind(line)
-      if (k == no_card) cycle
+      if (kind(line) == no_card) cycle
       errors = faults%error_count()
       call gather(lines, line, card, faults)
-      if (k == unknown_card) then
+      if (kind(line) == unknown_card) then
         if (card%sound) call add_unknown(card, names, faults)
         cycle
       end if
-      call table(k)%add_card(line)
-      if (k == card_param .and. card%sound) &
-        call choose_parameter(card, parameter_entry, table(k)%entry%field(2), faults)
-      if (faults%error_count() == errors) call read_card(card, table(k), faults)
-      table(k)%sound(table(k)%count) = faults%error_count() == errors
+      associate (cards => table(kind(line)))
+        call cards%add_card(line)
+        if (kind(line) == card_param .and. card%sound) &
+          call choose_parameter(card, parameter_entry, cards%entry%field(2), faults)
+        if (faults%error_count() == errors) call read_card(card, cards, faults)
+        cards%sound(cards%count) = faults%error_count() == errors
+      end associate
     end do
     do k = 1, card_kinds
       call add_notes(lines, table(k), faults)
@@ -125,7 +126,7 @@ contains
 
     value_entry = field_entry('VALUE', kind_word, required=.true.)
     outcome = -1
-    if (card%filled(1)) call scan_word(card%text(card%first(1):card%last(1)), word, outcome)
+    if (card%filled(1)) call scan_word(card%text(card%slot(1)%first:card%slot(1)%last), word, outcome)
     if (outcome /= scan_sound) return
     names = parameter_entry%name
     do i = 1, size(names)
@@ -144,21 +145,28 @@ contains
     type(card_fields), intent(in) :: card
     type(card_table), intent(inout) :: table
     type(diagnostics), intent(inout) :: faults
-    integer :: slot
+    integer :: slot, fields
     logical :: blank
 
-    do slot = 1, min(max(card%count, size(table%entry%field)), table%entry%list_slot - 1)
+    fields = size(table%entry%field)
+    do slot = 1, fields
       blank = slot > card%count
-      if (.not. blank) blank = card%last(slot) < card%first(slot)
-      if (table%entry%must_be_blank(slot)) then
-        if (.not. blank) call add_surplus(card, table, slot, faults)
-      else if (blank) then
+      if (.not. blank) blank = card%slot(slot)%last < card%slot(slot)%first
+      if (blank) then
         call take_blank(card, table, slot, faults)
+      else if (table%entry%field(slot)%kind == kind_blank) then
+        call add_surplus(card, table, slot, faults)
       else
         call read_field(card, table, slot, faults)
       end if
     end do
-    if (table%entry%has_list()) call read_list(card, table, faults)
+    if (table%entry%has_list()) then
+      call read_list(card, table, faults)
+    else
+      do slot = fields + 1, card%count
+        if (card%slot(slot)%last >= card%slot(slot)%first) call add_surplus(card, table, slot, faults)
+      end do
+    end if
   end subroutine read_card
 
   !> Read one field that is not blank.
@@ -190,9 +198,9 @@ contains
     type(diagnostics), intent(inout) :: faults
     logical :: needed
 
-    associate (field => table%entry%field(slot), row => table%value(:, table%count))
-      row(slot) = field%default
-      if (field%same_as /= 0) row(slot) = row(slot + field%same_as)
+    associate (field => table%entry%field(slot), i => table%count)
+      table%value(slot, i) = field%default
+      if (field%same_as /= 0) table%value(slot, i) = table%value(slot + field%same_as, i)
       needed = field%required
       if (field%with /= 0) needed = needed .or. card%filled(slot + field%with)
       if (needed) call add_fault(card, table, slot, 'is blank', field%allowed(), faults)

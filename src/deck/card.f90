@@ -30,6 +30,12 @@ module epcont_deck_card
     integer :: fields = 0 !! slots on it, 8 or 4
   end type card_line
 
+  !> One data field of a card.
+  type :: card_slot
+    integer :: first = 1, last = 0   !! the value in the text of the card; last < first: blank
+    type(place_type) :: place        !! the whole field
+  end type card_slot
+
   !> The fields of one card. A slot is a data field: slots 1 to 8 are the fields 2 to 9, slots 9 to 16 the
   !> fields 12 to 19, and so on.
   type :: card_fields
@@ -37,10 +43,9 @@ module epcont_deck_card
     character(len=:), allocatable :: text       !! its lines, one behind the other
     integer :: name_first = 1, name_last = 0    !! the name in the text, without `*`
     integer :: count = 0                        !! slots: eight for each row
-    integer, allocatable :: first(:), last(:)   !! [slots or more] the value in the text; last < first: blank
+    type(card_slot), allocatable :: slot(:)     !! with a blank one behind the last [count + 1 or more]
     logical :: sound = .true.                   !! the lines can be cut into fields
     type(place_type), private :: name_place
-    type(place_type), allocatable, private :: at(:)   !! the whole field of each slot [slots or more]
     logical, private :: half_open = .false.     !! the last line was the first half of a large-field row
     integer, private :: used = 0                !! characters of its text
   contains
@@ -59,9 +64,8 @@ contains
     type(card_fields), intent(inout) :: card   !! its arrays are used again
     type(diagnostics), intent(inout) :: faults   !! of form; they are added
 
-    if (.not. allocated(card%at)) then
-      allocate (card%at(64))
-      allocate (card%first(64), card%last(64), source=1)
+    if (.not. allocated(card%slot)) then
+      allocate (card%slot(64))
       card%text = repeat(' ', longest_free)
     end if
     card%used = 0
@@ -85,9 +89,13 @@ contains
     character(len=*), intent(in) :: text   !! the line, which is not blank
     integer :: at
 
-    at = verify(text(:min(width, len(text))), ' ')
-    continues = at == 0 .or. text(1:1) == '+' .or. text(1:1) == '*'
-    if (at > 0) continues = continues .or. text(at:at) == ','
+    continues = text(1:1) == '+' .or. text(1:1) == '*'
+    if (continues) return
+    do at = 1, min(width, len(text))
+      if (iachar(text(at:at)) /= iachar(' ')) exit
+    end do
+    continues = at > width
+    if (.not. continues) continues = text(at:at) == ','
   end function continues
 
   !> Add the fields of one line.
@@ -183,7 +191,7 @@ contains
   end subroutine find_name
 
   !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are
-  !! blank, and stand behind the line's end.
+  !! blank, and stand behind the line's end until it is cut.
   pure subroutine open_slots(card, at, large)
     type(card_fields), intent(inout) :: card
     type(card_line), intent(inout) :: at
@@ -197,13 +205,10 @@ contains
     else
       card%count = card%count + fields_a_line
     end if
-    if (card%count > size(card%first)) then
-      card%first = [card%first, card%first]
-      card%last = [card%last, card%last]
-      card%at = [card%at, card%at]
-    end if
-    card%last(at%slot:card%count) = 0
-    card%at(at%slot:card%count) = place_type(at%line, at%length + 1, at%length + 1)
+    if (card%count >= size(card%slot)) card%slot = [card%slot, card%slot]
+    if (card%half_open .or. at%comma > 0) &   ! of a fixed line all others are cut
+      card%slot(at%slot:card%count) = card_slot(place=place_type(at%line, at%length + 1, at%length + 1))
+    card%slot(card%count + 1)%last = 0
   end subroutine open_slots
 
   !> Cut a line of fields of fixed width.
@@ -215,14 +220,10 @@ contains
     step = merge(width, 2*width, at%fields == fields_a_line)
     left = width
     do slot = at%slot, at%slot + at%fields - 1
-      card%at(slot) = place_type(at%line, left + 1, left + step)
-      if (left < at%length) then
-        from = at%before + left + 1
-        to = at%before + min(left + step, at%length)
-        call trim_blanks(card%text, from, to)
-        card%first(slot) = from
-        card%last(slot) = to
-      end if
+      from = at%before + left + 1
+      to = at%before + min(left + step, at%length)
+      if (from <= to) call trim_blanks(card%text, from, to)
+      card%slot(slot) = card_slot(from, to, place_type(at%line, left + 1, left + step))
       left = left + step
     end do
   end subroutine cut_fixed
@@ -243,9 +244,7 @@ contains
       to = at%before + right
       call trim_blanks(card%text, from, to)
       if (slot < at%slot + at%fields) then
-        card%at(slot) = place_type(at%line, left, max(left, right))
-        card%first(slot) = from
-        card%last(slot) = to
+        card%slot(slot) = card_slot(from, to, place_type(at%line, left, max(left, right)))
       else if (from <= to .and. &
                (slot > at%slot + at%fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
         card%sound = .false.
@@ -266,9 +265,9 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to
 
-    !GCC$ unroll 1
-    do to = to, from, -1
+    do while (to >= from)
       if (iachar(text(to:to)) /= iachar(' ')) exit
+      to = to - 1
     end do
     if (iachar(text(from:from)) /= iachar(' ')) return   ! mostly so
     do while (from < to)
@@ -283,7 +282,7 @@ contains
     integer, intent(in) :: slot   !! which field
 
     filled = .false.
-    if (slot <= self%count) filled = self%last(slot) >= self%first(slot)
+    if (slot <= self%count) filled = self%slot(slot)%last >= self%slot(slot)%first
   end function filled
 
   !> Does a slot hold this word?
@@ -294,8 +293,9 @@ contains
 
     is_word = .false.
     if (.not. self%filled(slot)) return
-    if (self%last(slot) - self%first(slot) + 1 /= len(word)) return
-    is_word = upper(self%text(self%first(slot):self%last(slot))) == word
+    associate (at => self%slot(slot))
+      if (at%last - at%first + 1 == len(word)) is_word = upper(self%text(at%first:at%last)) == word
+    end associate
   end function is_word
 
   !> Whether a slot is a large field of a fixed line: sixteen columns.
@@ -303,7 +303,7 @@ contains
     class(card_fields), intent(in) :: self
     integer, intent(in) :: slot   !! which field
 
-    is_large = self%at(slot)%last - self%at(slot)%first == 2*width - 1
+    is_large = self%slot(slot)%place%last - self%slot(slot)%place%first == 2*width - 1
   end function is_large
 
   !> The columns of a slot: those of the whole field; of the name for slot 0 and where the card has no such
@@ -313,6 +313,6 @@ contains
     integer, intent(in) :: slot   !! which field; 0: the name
 
     place = self%name_place
-    if (slot > 0 .and. slot <= self%count) place = self%at(slot)
+    if (slot > 0 .and. slot <= self%count) place = self%slot(slot)%place
   end function place
 end module epcont_deck_card

@@ -10,9 +10,8 @@ module epcont_deck_entry
   public :: number_of
 
   !> Kinds of fields.
-  integer, parameter :: kind_blank = 0
   integer, parameter, public :: &
-    kind_integer = 1, kind_real = 2, kind_components = 3, kind_word = 4, kind_any = 5
+    kind_blank = 0, kind_integer = 1, kind_real = 2, kind_components = 3, kind_word = 4, kind_any = 5
   !> Fields that belong together are neighbours.
   integer, parameter, public :: next_field = 1, last_field = -1
   !> The largest id.

@@ -50,7 +50,8 @@ contains
     character(len=*), intent(in) :: text  !! without blanks around it
     integer(i8), intent(out) :: number   !! of too many digits, the first of them
     integer, intent(out) :: outcome       !! one of the outcomes above
-    integer :: at, first, digit
+    integer :: at, first
+    integer(i8) :: digit
     logical :: too_large
 
     number = 0
@@ -60,7 +61,7 @@ contains
     if (first > len(text)) return
     too_large = .false.
     do at = first, len(text)
-      digit = iachar(text(at:at)) - iachar('0')
+      digit = iachar(text(at:at), i8) - iachar('0')
       if (digit < 0 .or. digit > 9) return
       if (number < full) then
         number = 10*number + digit
@@ -104,14 +105,15 @@ contains
     character(len=*), intent(in) :: text
     type(decimal), intent(out) :: parts
     integer, intent(out) :: outcome
-    integer :: at, first, digit
+    integer :: at, first
+    integer(i8) :: digit
 
     outcome = scan_malformed
     if (len(text) == 0) return
     parts%negative = text(1:1) == '-'
     first = merge(2, 1, is_sign(text(1:1)))
     do at = first, len(text)
-      digit = iachar(text(at:at)) - iachar('0')
+      digit = iachar(text(at:at), i8) - iachar('0')
       if (digit >= 0 .and. digit <= 9) then
         if (parts%digits < full) then
           parts%digits = 10*parts%digits + digit

@@ -37,7 +37,7 @@ contains
 
     slot = table%entry%list_slot
     id = id_field('', '')
-    if (.not. any(card%last(slot:card%count) >= card%first(slot:card%count))) &
+    if (.not. any(card%slot(slot:card%count)%last >= card%slot(slot:card%count)%first)) &
       call add_fault(card, table, slot, 'is blank', id%allowed(), faults)
     do while (slot <= card%count)
       if (card%filled(slot)) call read_range(card, table, id, slot, faults)

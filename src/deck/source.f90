@@ -29,10 +29,10 @@ module epcont_deck_source
 
   !> One line, without comment and trailing blanks; one that INCLUDE or ENDDATA has used up is blank.
   type :: source_line
-    integer :: first = 1, last = 0   !! its characters in the buffer
-    integer :: special = 1           !! first comma or character that is not printable; > last: none
-    integer :: number = 0            !! line number in its file
-    integer :: file = 0              !! its file
+    integer :: first, last   !! its characters in the buffer
+    integer :: special       !! first comma or character that is not printable; > last: none
+    integer :: number        !! line number in its file
+    integer :: file          !! its file
   end type source_line
 
   !> The lines of a deck.
@@ -143,16 +143,17 @@ contains
     integer, intent(in) :: file
     type(diagnostics), intent(inout) :: faults
     logical, intent(out) :: ended
-    integer :: at, last, special, next, line, number
+    integer :: at, last, special, next, line, number, end_of_file
     character(len=7) :: word
 
     ended = .false.
     at = self%files(file)%first
+    end_of_file = self%files(file)%last
     number = 0
-    do while (at <= self%files(file)%last .and. .not. ended)
+    do while (at <= end_of_file .and. .not. ended)
       number = number + 1
       call find_end(self%text, at, last, special, next)
-      if (self%count == size(self%line)) self%line = [self%line, self%line]
+      if (self%count == size(self%line)) call double_lines(self)
       self%count = self%count + 1
       line = self%count
       self%line(line) = source_line(at, last, special, number, file)
@@ -163,6 +164,16 @@ contains
       at = next
     end do
   end subroutine cut
+
+  !> Room for twice as many lines.
+  subroutine double_lines(self)
+    type(source), intent(inout) :: self
+    type(source_line), allocatable :: longer(:)
+
+    allocate (longer(2*self%count))
+    longer(:self%count) = self%line
+    call move_alloc(longer, self%line)
+  end subroutine double_lines
 
   !> The end of the line that begins at `first`: its last character that is neither comment nor blank, and
   !! the first character of the next line. On the way, its first comma or character that is not printable

@@ -36,25 +36,38 @@ contains
     type(field_entry), intent(in) :: entry    !! what it may hold
     type(field_value), intent(out) :: value   !! what the field says
     type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
-    character(len=:), allocatable :: what, remedy
     integer :: outcome
 
-    value%sound = .false.
-    if (.not. card%filled(slot)) then
-      call add_fault(card, table, slot, 'is blank', entry%allowed(), faults)
-      return
-    end if
-    call read_value(card%text(card%first(slot):card%last(slot)), entry, value, outcome)
+    associate (at => card%slot(slot))
+      call read_value(card%text(at%first:at%last), entry, value, outcome)
+    end associate
     if (outcome == scan_no_point .and. entry%point_optional) then
       if (card%is_large(slot)) outcome = scan_sound
     end if
     value%sound = outcome == scan_sound
-    if (value%sound) return
-    call fault_of(card%text(card%first(slot):card%last(slot)), entry, value, outcome, what, remedy)
-    call add_fault(card, table, slot, what, remedy, faults)
+    if (.not. value%sound) call refuse(card, table, slot, entry, value, outcome, faults)
   end subroutine read_slot
 
-  !> The value of a field that is not blank. `outcome` is `scan_sound`, or what `fault_of` puts into words.
+  !> Say why a field cannot be taken.
+  subroutine refuse(card, table, slot, entry, value, outcome, faults)
+    type(card_fields), intent(in) :: card
+    type(card_table), intent(in) :: table
+    integer, intent(in) :: slot
+    type(field_entry), intent(in) :: entry
+    type(field_value), intent(in) :: value
+    integer, intent(in) :: outcome
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: what, remedy
+
+    if (card%filled(slot)) then
+      call fault_of(card%text(card%slot(slot)%first:card%slot(slot)%last), entry, value, outcome, what, remedy)
+      call add_fault(card, table, slot, what, remedy, faults)
+    else
+      call add_fault(card, table, slot, 'is blank', entry%allowed(), faults)
+    end if
+  end subroutine refuse
+
+  !> The value of a field; a blank one is malformed. `outcome` is `scan_sound`, or what `fault_of` puts into words.
   pure subroutine read_value(text, entry, value, outcome)
     character(len=*), intent(in) :: text     !! without blanks around it
     type(field_entry), intent(in) :: entry
