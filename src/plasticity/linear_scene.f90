@@ -34,7 +34,7 @@ module epcont_plasticity_linear_scene
     type(factored_bodies) :: bodies
     type(contact_problem) :: problem
     logical, allocatable :: yields(:)                !! the body has elements that can yield [bodies]
-    real(wp), allocatable :: lasting_flexibility(:, :)  !! of the bodies that cannot, factored once [pairs, pairs]
+    real(wp), allocatable :: lasting_flexibility(:, :)  !! of the bodies that cannot, where others can [pairs, pairs]
     logical :: by_blocks = .false.                   !! contact by RULE BLOCK, else CONRY
     integer :: precision = precision_double          !! of the factors
     integer :: threads = 1                           !! that bodies may be worked on by
@@ -83,7 +83,7 @@ contains
     logical, allocatable :: changed(:), chosen(:)
     logical :: first
 
-    first = .not. allocated(self%lasting_flexibility)
+    first = .not. allocated(self%problem%flexibility)
     changed = changed_elements(scene%model, self%law)
     self%law%changed = .false.
     chosen = self%yields .or. first
@@ -94,10 +94,12 @@ contains
     call self%bodies%settle(scene%model, self%operator, self%law)
     call watch%lap(stage_displacements)
     if (first) then
-      allocate (self%lasting_flexibility(scene%model%pairs, scene%model%pairs), source=0.0_wp)
-      call self%add_flexibilities(scene, .not. self%yields, self%lasting_flexibility)
+      allocate (self%problem%flexibility(scene%model%pairs, scene%model%pairs), source=0.0_wp)
+      call self%add_flexibilities(scene, .not. self%yields, self%problem%flexibility)
+      if (any(self%yields)) self%lasting_flexibility = self%problem%flexibility
+    else if (any(self%yields)) then
+      self%problem%flexibility = self%lasting_flexibility
     end if
-    self%problem%flexibility = self%lasting_flexibility
     call self%add_flexibilities(scene, self%yields, self%problem%flexibility)
     call watch%lap(stage_flexibility)
   end subroutine set_stiffness

@@ -32,9 +32,13 @@ class Kind:
     nodes: tuple
     powers: tuple
     points: tuple
-    weight: float
+    weight: float | tuple   # of each point, or one of all
     sides: tuple
     ring: bool = False
+
+    @cached_property
+    def weights(self):
+        return self.weight if isinstance(self.weight, tuple) else (self.weight,) * len(self.points)
 
     def monomial(self, place, power, derived=None):
         """A monomial at a place, or its derivative by one coordinate."""
@@ -70,6 +74,9 @@ KINDS = {
                    ((0, 1, 3), (1, 2, 4), (2, 0, 5))),
     "CQUAD4": Kind(SQUARE, ((0, 0), (1, 0), (0, 1), (1, 1)), tuple((x / 3 ** 0.5, y / 3 ** 0.5) for x, y in SQUARE), 1.0,
                    ((0, 1), (1, 2), (2, 3), (3, 0))),
+    "CQUAD8": Kind((*SQUARE, (0, -1), (1, 0), (0, 1), (-1, 0)), (*QUADRATIC, (2, 1), (1, 2)),
+                   tuple((2 * x - 1, 2 * y - 1) for y in GAUSS[0] for x in GAUSS[0]),
+                   tuple(4 * v * w for w in GAUSS[1] for v in GAUSS[1]), ((0, 1, 4), (1, 2, 5), (2, 3, 6), (3, 0, 7))),
     "CTRAX3": Kind(*TRIANGLE, ring=True),
     "CTRAX6": Kind(((0, 0), (HALF, 0), (1, 0), (HALF, HALF), (0, 1), (0, HALF)), QUADRATIC, INSIDE, 1 / 6,
                    ((0, 2, 1), (2, 4, 3), (4, 0, 5)), ring=True),

@@ -18,7 +18,7 @@ def strain_matrices(kind, x, thickness, mean_dilatation):
     slope = np.stack([kind.shapes(0), kind.shapes(1)], axis=1)            # [point, coordinate, node]
     jacobian = np.einsum("pcn,enj->epcj", slope, x)
     gradient = np.linalg.solve(jacobian, np.broadcast_to(slope, (len(x),) + slope.shape))
-    volume = abs(np.linalg.det(jacobian)) * kind.weight
+    volume = abs(np.linalg.det(jacobian)) * np.array(kind.weights)
     b = np.zeros(gradient.shape[:2] + (4, 2 * len(kind.nodes)))
     b[:, :, 0, 0::2] = b[:, :, 3, 1::2] = gradient[:, :, 0]
     b[:, :, 1, 1::2] = b[:, :, 3, 0::2] = gradient[:, :, 1]

@@ -89,7 +89,7 @@ class Generator(unittest.TestCase):
         """All layers that decide an answer."""
         mutate = load()
         self.assertEqual({path.split("/")[1] for path in mutate.sources()},
-                         {"contact", "model", "certificate", "plasticity", "flexibility", "accuracy", "report", "result"})
+                         {"contact", "contact_geometry", "geometry", "certificate", "plasticity", "flexibility", "accuracy", "report", "result"})
 
 
 class Judged(Trial):

@@ -16,7 +16,7 @@ def unit_strains(name, x, thickness, plane_stress):
     """[(volume, [(of ux, of uy) of each node])] of each point: strains xx, yy, zz, xy that a unit displacement gives."""
     kind, points = KINDS[name], []
     apart = [[p[c] - x[0][c] for c in (0, 1)] for p in x]   # exact, far from the origin
-    for value, by_a, by_b in reference(name):
+    for weight, (value, by_a, by_b) in zip(kind.weights, reference(name)):
         xa, ya, xb, yb = (sum(s * p[c] for s, p in zip(slope, apart)) for slope in (by_a, by_b) for c in (0, 1))
         twice = xa * yb - xb * ya
         radius = sum(v * p[0] for v, p in zip(value, x))
@@ -25,7 +25,7 @@ def unit_strains(name, x, thickness, plane_stress):
         for v, a, b in zip(value, by_a, by_b):
             dx, dy = (a * yb - b * ya) / twice, (b * xa - a * xb) / twice
             unit.append(([dx, 0.0, v / radius if kind.ring else 0.0, dy], [0.0, dy, 0.0, dx]))
-        points.append((abs(twice) * kind.weight * depth, unit))
+        points.append((abs(twice) * weight * depth, unit))
     if name == "CQUAD4" and not plane_stress:
         even_out(points)
     return points
