@@ -33,15 +33,15 @@ contains
     type(card_fields) :: card
     character(len=8) :: names(card_kinds)
     integer, allocatable :: kind(:)
-    integer :: line, k, errors
+    integer :: many(card_kinds), line, k, errors
 
     entry = catalogue()
     parameter_entry = parameters()
     names = entry%name
-    kind = kinds_of_lines(lines, first, names)
+    call find_kinds(lines, first, names, kind, many)
     allocate (table(card_kinds))
     do k = 1, card_kinds
-      call table(k)%begin(entry(k), count(kind == k))
+      call table(k)%begin(entry(k), many(k))
     end do
     do line = first, lines%count
       if (kind(line) == no_card) cycle
@@ -65,16 +65,18 @@ contains
   end subroutine read_bulk
 
   !> The kind of the card that begins on each line. Cards of one name mostly follow each other.
-  pure function kinds_of_lines(lines, first, names) result(kind)
+  pure subroutine find_kinds(lines, first, names, kind, many)
     type(source), intent(in) :: lines
     integer, intent(in) :: first
     character(len=8), intent(in) :: names(:)
-    integer, allocatable :: kind(:)
+    integer, allocatable, intent(out) :: kind(:)
+    integer, intent(out) :: many(:)   !! how many there are of each kind
     character(len=8) :: text, before
     logical :: begun
     integer :: i, found
 
     allocate (kind(lines%count), source=no_card)
+    many = 0
     begun = .false.
     before = ''
     found = unknown_card   ! a card without a name
@@ -94,9 +96,10 @@ contains
           before = text
         end if
         kind(i) = found
+        if (found /= unknown_card) many(found) = many(found) + 1
       end associate
     end do
-  end function kinds_of_lines
+  end subroutine find_kinds
 
   !> The kind of the card that a line begins.
   pure integer function kind_of(text, names) result(kind)

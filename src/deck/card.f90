@@ -39,7 +39,6 @@ module epcont_deck_card
   !> The fields of one card. A slot is a data field: slots 1 to 8 are the fields 2 to 9, slots 9 to 16 the
   !> fields 12 to 19, and so on.
   type :: card_fields
-    integer :: next = 0                         !! first line behind the card
     character(len=:), allocatable :: text       !! its lines, one behind the other
     integer :: name_first = 1, name_last = 0    !! the name in the text, without `*`
     integer :: count = 0                        !! slots: eight for each row
@@ -63,6 +62,7 @@ contains
     integer, intent(in) :: line   !! where it begins
     type(card_fields), intent(inout) :: card   !! its arrays are used again
     type(diagnostics), intent(inout) :: faults   !! of form; they are added
+    integer :: next
 
     if (.not. allocated(card%slot)) then
       allocate (card%slot(64))
@@ -72,15 +72,12 @@ contains
     card%count = 0
     card%sound = .true.
     card%half_open = .false.
-    card%next = line
-    do while (card%next <= lines%count)
-      associate (at => lines%line(card%next))
-        if (at%last >= at%first) then
-          if (card%next > line .and. .not. continues(lines%text(at%first:at%last))) exit
-          call add_line(lines, card%next, card, faults)
-        end if
+    do next = line, lines%count
+      associate (at => lines%line(next))
+        if (at%last < at%first) cycle
+        if (next > line .and. .not. continues(lines%text(at%first:at%last))) exit
       end associate
-      card%next = card%next + 1
+      call add_line(lines, next, card, faults)
     end do
   end subroutine gather
 
@@ -206,7 +203,7 @@ contains
       card%count = card%count + fields_a_line
     end if
     if (card%count >= size(card%slot)) card%slot = [card%slot, card%slot]
-    if (card%half_open .or. at%comma > 0) &   ! of a fixed line all others are cut
+    if (card%half_open .or. at%comma > 0) &   ! all other slots are cut, be it behind the line's end
       card%slot(at%slot:card%count) = card_slot(place=place_type(at%line, at%length + 1, at%length + 1))
     card%slot(card%count + 1)%last = 0
   end subroutine open_slots
@@ -221,7 +218,7 @@ contains
     left = width
     do slot = at%slot, at%slot + at%fields - 1
       from = at%before + left + 1
-      to = at%before + min(left + step, at%length)
+      to = min(from + step - 1, at%before + at%length)
       if (from <= to) call trim_blanks(card%text, from, to)
       card%slot(slot) = card_slot(from, to, place_type(at%line, left + 1, left + step))
       left = left + step
@@ -259,8 +256,7 @@ contains
   end subroutine cut_free
 
   !> Move `from` and `to` inwards over blanks. These are compared by their codes: a character compared with a
-  !! blank becomes a call of len_trim, which for so few characters costs more than the loop; so does an
-  !! unrolled loop.
+  !! blank becomes a call of len_trim, which for so few characters costs more than the loop.
   pure subroutine trim_blanks(text, from, to)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to

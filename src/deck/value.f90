@@ -60,14 +60,17 @@ contains
     character(len=:), allocatable :: what, remedy
 
     if (card%filled(slot)) then
-      call fault_of(card%text(card%slot(slot)%first:card%slot(slot)%last), entry, value, outcome, what, remedy)
+      associate (at => card%slot(slot))
+        call fault_of(card%text(at%first:at%last), entry, value, outcome, what, remedy)
+      end associate
       call add_fault(card, table, slot, what, remedy, faults)
     else
       call add_fault(card, table, slot, 'is blank', entry%allowed(), faults)
     end if
   end subroutine refuse
 
-  !> The value of a field; a blank one is malformed. `outcome` is `scan_sound`, or what `fault_of` puts into words.
+  !> The value of a field; a blank one is malformed. `outcome` is `scan_sound`, or what `fault_of` puts into
+  !! words.
   pure subroutine read_value(text, entry, value, outcome)
     character(len=*), intent(in) :: text     !! without blanks around it
     type(field_entry), intent(in) :: entry
