@@ -27,16 +27,16 @@ module epcont_analysis
   private
   public :: analyse
 
-  !> Steps of refinement where forces, gaps or the energy are out of balance, or rounding has taken too much of a pivot; each
-  !! gains as many digits as the factors have.
+  !> Steps of refinement where forces, gaps or the energy are out of balance, or rounding has taken too much
+  !! of a pivot; each gains as many digits as the factors have.
   integer, parameter :: most_refinements = 3
   !> So many times the load steps, where those asked for did not lead to an answer.
   integer, parameter :: more_steps = 5
 
 contains
 
-  !> Solve the scene. Where a body's stiffness could not be factored (`answer%singular`), or without contact equilibrium
-  !! (`answer%contact%state`), there are no displacements.
+  !> Solve the scene. Where a body's stiffness could not be factored (`answer%singular`), or without contact
+  !! equilibrium (`answer%contact%state`), there are no displacements.
   subroutine analyse(scene, plan, answer, certificate, accuracy, watch)
     type(planned_scene), intent(in) :: scene
     type(iteration_plan), intent(in) :: plan
@@ -105,7 +105,8 @@ contains
     call watch%lap(stage_certificate)
   end subroutine evaluate
 
-  !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved by others in double.
+  !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved
+  !! by others in double.
   subroutine solve(scene, plan, linear, answer, watch)
     type(planned_scene), intent(in) :: scene
     type(iteration_plan), intent(in) :: plan
@@ -133,7 +134,8 @@ contains
     answer%asked_load_steps = plan%load_steps
   end subroutine solve
 
-  !> Follow the loads; where the method was chosen here and has found neither an answer nor a limit load, in more steps.
+  !> Follow the loads; where the method was chosen here and has found neither an answer nor a limit load, in
+  !! more steps.
   subroutine follow_or_step(scene, plan, linear, answer, watch)
     type(planned_scene), intent(in) :: scene
     type(iteration_plan), intent(inout) :: plan   !! its load steps become those that were taken

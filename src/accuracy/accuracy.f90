@@ -1,6 +1,6 @@
-!> What the figures of an answer are worth: the error of the mesh in the energy norm, in the approach, in the total contact force
-!> and what of it each body bears, in the largest pressure and the half-width of each zone; what rounding may have done to the
-!> contact forces; pairs that may as well be open.
+!> What the figures of an answer are worth: the error of the mesh in the energy norm, in the approach, in the
+!> total contact force and what of it each body bears, in the largest pressure and the half-width of each
+!> zone; what rounding may have done to the contact forces; pairs that may as well be open.
 module epcont_accuracy_accuracy
   use epcont_accuracy_body_shares, only: find_shares
   use epcont_accuracy_contact_stress, only: smooth_pressures, surface_compliance
@@ -191,7 +191,8 @@ contains
     if (a > 0.0_wp) part = a/b
   end function part
 
-  !> Elements with the largest errors, largest first; of equal ones, but for rounding, the first. None where there is no error.
+  !> Elements with the largest errors, largest first; of equal ones, but for rounding, the first. None where
+  !! there is no error.
   pure function worst_of(energy) result(worst)
     real(wp), intent(in) :: energy(:)
     integer, allocatable :: worst(:)
@@ -236,7 +237,8 @@ contains
     accuracy%pressure_unbounded = accuracy%zone(z)%unbounded
   end subroutine assess_zones
 
-  !> Pressures are as much off as the total force, where that is not given by loads: of uniform ones nothing else tells.
+  !> Pressures are as much off as the total force, where that is not given by loads: of uniform ones nothing
+  !! else tells.
   pure subroutine widen_pressures(answer, accuracy)
     type(answer_type), intent(in) :: answer
     type(accuracy_type), intent(inout) :: accuracy
@@ -252,8 +254,9 @@ contains
     if (size(accuracy%zone) > 0) accuracy%max_pressure = accuracy%zone(maxloc(answer%zones%max_pressure, dim=1))%pressure
   end subroutine widen_pressures
 
-  !> Error of an approach, or of the total contact force: the product of the errors of the scene and of its answer to a unit load
-  !! along the motion, or to closing gaps, signed, with what contact at nodes alone lets the bodies come too near.
+  !> Error of an approach, or of the total contact force: the product of the errors of the scene and of its
+  !! answer to a unit load along the motion, or to closing gaps, signed, with what contact at nodes alone lets
+  !! the bodies come too near.
   pure real(wp) function error_along(model, line, answer, table, load, accuracy) result(error)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
@@ -275,15 +278,18 @@ contains
         at_end = answer%zones(z)%max_pressure*zone%half_length*surface_compliance(model, table, zone%peak)
         between = at_end*zone%resolution**2
         at_end = at_end*zone%end_resolution**2
-        ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says nothing of one.
+        ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says
+        ! nothing of one.
         if (.not. zone%unbounded) near = near + weights%between*between*sum(force)
-        ! Of a tilt of either sign the ends count, not the sum. Waves are as high above as below the gap that is meant.
+        ! Of a tilt of either sign the ends count, not the sum. Waves are as high above as below the gap that
+        ! is meant.
         if (.not. zone%resolved) vague = unresolved
         end_error = end_error + sum(abs(force))*(weights%end*at_end + 2.0_wp*zone%wave_height + &
                                                  too_near(model, line, answer, table, zone, answer%zones(z)%pairs))
       end associate
     end do
-    ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its field is too small.
+    ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its
+    ! field is too small.
     short = max(abs(load%product(1) - near), uncertain*load%product(2))
     if (load%shared) short = of_shares*(load%product(2) + abs(near))   ! no part cancels another
     error = weights%product*short &
@@ -291,8 +297,8 @@ contains
     error = vague*error
   end function error_along
 
-  !> Where motions are given, waves of the gap that are not pressed flat bear more than what is meant: the higher they are the more,
-  !! and none of it where they are flat [force].
+  !> Where motions are given, waves of the gap that are not pressed flat bear more than what is meant: the
+  !! higher they are the more, and none of it where they are flat [force].
   pure real(wp) function force_of_waves(answer, accuracy, share) result(force)
     type(answer_type), intent(in) :: answer
     type(accuracy_type), intent(in) :: accuracy
@@ -320,7 +326,8 @@ contains
     end associate
   end function is_point_load
 
-  !> Elements at a load on one node, and around these: there no mesh is fine enough, and the contact does not feel it [elements].
+  !> Elements at a load on one node, and around these: there no mesh is fine enough, and the contact does not
+  !! feel it [elements].
   pure function beside_point_loads(model, motions, table) result(beside)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions

@@ -15,8 +15,8 @@ module epcont_accuracy_body_shares
 
 contains
 
-  !> One column for each resultant that may be off by itself; what two bodies exert on each other is one. Of bodies that no pair
-  !! touches, though some might, nothing is known.
+  !> One column for each resultant that may be off by itself; what two bodies exert on each other is one. Of
+  !! bodies that no pair touches, though some might, nothing is known.
   pure subroutine find_shares(model, motions, touching, bodies, share, column)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions
@@ -49,8 +49,8 @@ contains
     end do
   end subroutine find_shares
 
-  !> Is a body free to move along a component? Then contact bears its loads that way. Motions are measured at SUPORT freedoms: that
-  !! one may be a sum of some that turn the body.
+  !> Is a body free to move along a component? Then contact bears its loads that way. Motions are measured at
+  !! SUPORT freedoms: that one may be a sum of some that turn the body.
   pure logical function is_free(model, motions, body, c)
     type(model_type), intent(in) :: model
     type(free_motions), intent(in) :: motions

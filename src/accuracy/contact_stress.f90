@@ -15,8 +15,8 @@ module epcont_accuracy_contact_stress
 
 contains
 
-  !> The normal stress at each pair, as a pressure: the mean of both sides', of which each has errors of its own; 0 where neither
-  !! gives way [stress] [pairs].
+  !> The normal stress at each pair, as a pressure: the mean of both sides', of which each has errors of its
+  !! own; 0 where neither gives way [stress] [pairs].
   pure function smooth_pressures(model, table, materials, smooth) result(pressure)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table

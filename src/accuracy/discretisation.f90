@@ -1,8 +1,9 @@
 !> How far the strains of the elements are from the smooth ones, as an energy (Zienkiewicz and Zhu 1987).
 !>
-!> With s the stress and e the strain of an element, and * for the smooth ones, the square of the error is the integral of
-!> (s* - s).(e* - e), s* being the stress on the material's curve at e*. Of elastic elements that is the energy norm. Of yielding
-!> ones it lies between those of the tangent and of the secant, and vanishes only with the error, whatever the curve.
+!> With s the stress and e the strain of an element, and * for the smooth ones, the square of the error is the
+!> integral of (s* - s).(e* - e), s* being the stress on the material's curve at e*. Of elastic elements that
+!> is the energy norm. Of yielding ones it lies between those of the tangent and of the secant, and vanishes
+!> only with the error, whatever the curve.
 module epcont_accuracy_discretisation
   use epcont_accuracy_patches, only: patch_table
   use epcont_base_kinds, only: wp
@@ -23,9 +24,9 @@ module epcont_accuracy_discretisation
 
 contains
 
-  !> Integrals of error times error: what the stress of the first field, on the material's curve, is off by, times what the strain
-  !! of each field is off by. Of the first field that is the square of its error. Each of the other fields by itself misses a part
-  !! of its energy, too.
+  !> Integrals of error times error: what the stress of the first field, on the material's curve, is off by,
+  !! times what the strain of each field is off by. Of the first field that is the square of its error. Each
+  !! of the other fields by itself misses a part of its energy, too.
   pure function error_products(model, table, materials, volume, strain, smooth, state) result(product)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table

@@ -1,8 +1,9 @@
-!> Where the pressure of a zone has no limit: at a tip inside it, or at an edge, where one body ends and the other goes on.
+!> Where the pressure of a zone has no limit: at a tip inside it, or at an edge, where one body ends and the
+!> other goes on.
 !>
-!> Both are told by the geometry, not by the pressures, of which each kind of element has others. A tip is a bend of the gap, or
-!> of the other body's outline, at one node alone: arcs and fillets bend at each of their nodes. At an edge the contact reaches
-!> the last of its pairs and the pressure does not fall towards it.
+!> Both are told by the geometry, not by the pressures, of which each kind of element has others. A tip is a
+!> bend of the gap, or of the other body's outline, at one node alone: arcs and fillets bend at each of their
+!> nodes. At an edge the contact reaches the last of its pairs and the pressure does not fall towards it.
 module epcont_accuracy_limits
   use epcont_accuracy_contact_stress, only: surface_compliance
   use epcont_accuracy_patches, only: patch_table
@@ -20,8 +21,8 @@ module epcont_accuracy_limits
   real(wp), parameter :: matters = 0.1_wp
   !> An outline that turns by more than this ends [rad].
   real(wp), parameter :: corner = 35.0_wp*acos(-1.0_wp)/180.0_wp
-  !> Bodies that end together in corners of so much in all, or one alone on what is rigid, have no edge: what the quarter plane
-  !! on a frictionless floor is a half of [rad].
+  !> Bodies that end together in corners of so much in all, or one alone on what is rigid, have no edge: what
+  !! the quarter plane on a frictionless floor is a half of [rad].
   real(wp), parameter :: straight = acos(-1.0_wp)*(1.0_wp + 1.0e-3_wp)
   !> Corners of two bodies are at one place within this part of a side.
   real(wp), parameter :: flush = 1.0e-2_wp
@@ -100,7 +101,8 @@ contains
     gap_bends = around >= 0.0_wp .and. curvature >= alone*around
   end function gap_bends
 
-  !> How far a smooth gap may fall below its values at a pair and beside it, by the most that it bends at one of them [length].
+  !> How far a smooth gap may fall below its values at a pair and beside it, by the most that it bends at one
+  !! of them [length].
   pure real(wp) function gap_bulge(model, line, pair)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
@@ -129,8 +131,8 @@ contains
     if (beyond == from) beyond = 0
   end function beyond
 
-  !> By how much the gap bends open at a pair, and that over the length that it stands for; a pair without neighbours on both sides
-  !! does not bend.
+  !> By how much the gap bends open at a pair, and that over the length that it stands for; a pair without
+  !! neighbours on both sides does not bend.
   pure subroutine bend_at(model, line, pair, angle, curvature)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
@@ -203,8 +205,8 @@ contains
     end do
   end function is_flush
 
-  !> By how much an outline turns at a node, outward positive, and that over the length that the node stands for. On a line of
-  !! symmetry it goes on as mirrored there.
+  !> By how much an outline turns at a node, outward positive, and that over the length that the node stands
+  !! for. On a line of symmetry it goes on as mirrored there.
   pure subroutine turn_at(model, node, mirror, beside, angle, curvature)
     type(model_type), intent(in) :: model
     integer, intent(in) :: node
@@ -234,7 +236,8 @@ contains
     curvature = 2.0_wp*angle/(norm2(before) + norm2(behind))
   end subroutine turn_at
 
-  !> Does a side lie on a line of symmetry that is known, or on one along which its nodes alone are free, or on the axis of rings?
+  !> Does a side lie on a line of symmetry that is known, or on one along which its nodes alone are free, or
+  !! on the axis of rings?
   pure logical function along_symmetry(model, c, mirror, one, other)
     type(model_type), intent(in) :: model
     integer, intent(in) :: c   !! the direction across
@@ -270,9 +273,9 @@ contains
     end do
   end function outline_beside
 
-  !> How many pairs at the end of a zone tell by their pressures whether the last candidate is at an edge: 0: it is at none, since
-  !! both bodies end there; 1: the last, where no more than the candidates end; 2: also the one before it, where a body ends in a
-  !! corner, which may bear little by itself.
+  !> How many pairs at the end of a zone tell by their pressures whether the last candidate is at an edge: 0:
+  !! it is at none, since both bodies end there; 1: the last, where no more than the candidates end; 2: also
+  !! the one before it, where a body ends in a corner, which may bear little by itself.
   pure integer function edge_pairs(model, line, pair)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line

@@ -1,5 +1,5 @@
-!> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which way it presses; and
-!> which way pairs beside a corner, and wide zones as a whole, may press.
+!> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which
+!> way it presses; and which way pairs beside a corner, and wide zones as a whole, may press.
 module epcont_accuracy_narrow_zone
   use epcont_accuracy_contact_stress, only: surface_compliance
   use epcont_accuracy_limits, only: gap_bulge
@@ -18,10 +18,11 @@ module epcont_accuracy_narrow_zone
 
   !> Pairs up to which a zone is too narrow to tell where its contact begins.
   integer, parameter :: narrow = 2
-  !> A force on one pair is one on a contact narrower than a side: by each three times finer mesh the bodies come nearer by this
-  !! times the force over depth and modulus, (2/pi) log 3 of the half-plane.
+  !> A force on one pair is one on a contact narrower than a side: by each three times finer mesh the bodies
+  !! come nearer by this times the force over depth and modulus, (2/pi) log 3 of the half-plane.
   real(wp), parameter :: finer = 0.7_wp
-  !> The place where the bodies touch is farther from a pair than the normals there tell, by this much at most.
+  !> The place where the bodies touch is farther from a pair than the normals there tell, by this much at
+  !! most.
   real(wp), parameter :: askew = 1.25_wp
   !> A zone whose normals are across what stays the same, but for this part, does not bear it.
   real(wp), parameter :: bears_on = 0.3_wp
@@ -30,8 +31,9 @@ module epcont_accuracy_narrow_zone
 
 contains
 
-  !> What contact on few pairs says too little: how much nearer the bodies come on a three times finer mesh, and how high a smooth
-  !! gap may bulge between one pair and the next, where contact truly begins; of two pairs, half of that between them [length].
+  !> What contact on few pairs says too little: how much nearer the bodies come on a three times finer mesh,
+  !! and how high a smooth gap may bulge between one pair and the next, where contact truly begins; of two
+  !! pairs, half of that between them [length].
   pure real(wp) function too_near(model, line, answer, table, zone, pairs)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
@@ -49,8 +51,8 @@ contains
                                  force_of_depth(model, table, zone%peak, answer%contact%force(zone%peak))
   end function too_near
 
-  !> How many pairs bear the force of a zone: as many as would if all bore the same. (In rings forces grow with the radius: there
-  !! those that bear any.)
+  !> How many pairs bear the force of a zone: as many as would if all bore the same. (In rings forces grow
+  !! with the radius: there those that bear any.)
   pure integer function bearing_pairs(model, force)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)
@@ -79,8 +81,9 @@ contains
     end do
   end function force_of_depth
 
-  !> What the force of a narrow zone does along each motion, more or less, where it is half a side aside, of two pairs a quarter:
-  !! where in its sides contact is, nothing tells [force*length or force] [motions, zones].
+  !> What the force of a narrow zone does along each motion, more or less, where it is half a side aside, of
+  !! two pairs a quarter: where in its sides contact is, nothing tells [force*length or force] [motions,
+  !! zones].
   pure function shifted_loads(model, line, motions, answer) result(load)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
@@ -127,8 +130,9 @@ contains
     if (allocated(line%place)) call turn_shared_places(model, line%place, answer%contact%force, total, of_body)
   end subroutine find_turned
 
-  !> Pairs may press along the node's own normal instead of that of what it faces: of smooth boundaries these are the same only
-  !! where the bodies touch. In narrow zones each pair by itself; in wide ones all normals of the one body, or of the other.
+  !> Pairs may press along the node's own normal instead of that of what it faces: of smooth boundaries these
+  !! are the same only where the bodies touch. In narrow zones each pair by itself; in wide ones all normals
+  !! of the one body, or of the other.
   pure subroutine turn_zones(model, answer, given, total, of_body)
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
@@ -165,8 +169,8 @@ contains
     of_body = of_body + abs(lean)
   end subroutine turn_zones
 
-  !> Of a force of one at a pair: by how much it grows, and how it changes, where it presses along the node's own normal and bears
-  !! the same along `on`. Nothing where there is no such normal, or no resultant.
+  !> Of a force of one at a pair: by how much it grows, and how it changes, where it presses along the node's
+  !! own normal and bears the same along `on`. Nothing where there is no such normal, or no resultant.
   pure subroutine turn_pair(model, pair, on, least, bears, along, change)
     type(model_type), intent(in) :: model
     integer, intent(in) :: pair
@@ -186,7 +190,8 @@ contains
     end associate
   end subroutine turn_pair
 
-  !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the strongest there does.
+  !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the
+  !! strongest there does.
   pure subroutine turn_shared_places(model, place, force, total, of_body)
     type(model_type), intent(in) :: model
     integer, intent(in) :: place(:)    !! of each pair [pairs]
@@ -216,7 +221,8 @@ contains
     end do
   end subroutine turn_shared_places
 
-  !> What stays the same of the resultants on two bodies where their contact turns: what loads make, else the larger one.
+  !> What stays the same of the resultants on two bodies where their contact turns: what loads make, else the
+  !! larger one.
   pure function kept(resultant, given) result(on)
     real(wp), intent(in) :: resultant(2, 2)
     logical, intent(in) :: given(2, 2)
@@ -236,7 +242,8 @@ contains
     if (abs(a - b) < abs(b)) excess = (a - b)/b
   end function excess
 
-  !> The normal of a line in contact at the node of a pair that stands on the other line; none at a corner, or without lines.
+  !> The normal of a line in contact at the node of a pair that stands on the other line; none at a corner, or
+  !! without lines.
   pure function smooth_normal(model, pair) result(normal)
     type(model_type), intent(in) :: model
     integer, intent(in) :: pair

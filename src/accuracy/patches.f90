@@ -1,7 +1,9 @@
-!> Which elements tell of the strain at a node: those around it of one section, since strains jump where materials change.
+!> Which elements tell of the strain at a node: those around it of one section, since strains jump where
+!> materials change.
 !>
-!> A node where sections meet has a place in each of them. A place at the boundary of its section has elements on one side
-!> only, too few to tell how the strain changes: the elements around its neighbours are added there.
+!> A node where sections meet has a place in each of them. A place at the boundary of its section has elements
+!> on one side only, too few to tell how the strain changes: the elements around its neighbours are added
+!> there.
 module epcont_accuracy_patches
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_model_model, only: model_type
@@ -74,7 +76,8 @@ contains
     table%node = node(:table%places)
   end subroutine split_places
 
-  !> The elements around a place and around the corners of these; `seen` is the last place that each was taken for.
+  !> The elements around a place and around the corners of these; `seen` is the last place that each was taken
+  !! for.
   pure subroutine wide_patch(model, table, place, seen, patch, count)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table

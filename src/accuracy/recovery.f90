@@ -1,8 +1,8 @@
 !> Smooth strains from those of the elements (Zienkiewicz and Zhu 1992, superconvergent patch recovery).
 !>
-!> At each corner a polynomial is fitted by least squares to the strains of the elements around it, at the points where they are
-!> best: the middles of three- and four-node elements (linear), places within those with nodes between corners (quadratic). Nodes
-!> between corners take the mean of the polynomials of both.
+!> At each corner a polynomial is fitted by least squares to the strains of the elements around it, at the
+!> points where they are best: the middles of three- and four-node elements (linear), places within those with
+!> nodes between corners (quadratic). Nodes between corners take the mean of the polynomials of both.
 module epcont_accuracy_recovery
   use epcont_accuracy_patches, only: patch_table, wide_patch
   use epcont_base_kinds, only: wp
@@ -70,8 +70,8 @@ contains
     is_quadratic = model%kinds(model%kind(element))%degree > 1
   end function is_quadratic
 
-  !> Where the strains of the elements are best, and what they are there: the samples of an element have the numbers of its first
-  !! points.
+  !> Where the strains of the elements are best, and what they are there: the samples of an element have the
+  !! numbers of its first points.
   pure subroutine take_samples(model, volume, strain, x, sample)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: volume(:), strain(:, :, :)
@@ -105,7 +105,8 @@ contains
     end do
   end subroutine take_samples
 
-  !> The linear polynomials of one sample an element, at a place. A direction in which the samples do not spread is constant.
+  !> The linear polynomials of one sample an element, at a place. A direction in which the samples do not
+  !! spread is constant.
   pure subroutine fit_linear(model, x, sample, patch, at, value)
     type(model_type), intent(in) :: model
     real(wp), contiguous, intent(in) :: x(:, :), sample(:, :, :)
@@ -150,7 +151,8 @@ contains
     end do
   end subroutine fit_linear
 
-  !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that meet there.
+  !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
+  !! meet there.
   pure subroutine fit_quadratic(model, table, x, sample, patch, p, smooth, fitted)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table

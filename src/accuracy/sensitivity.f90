@@ -1,9 +1,9 @@
 !> What an error of the flexibility and of the gaps does to the contact forces.
 !>
-!> On the pairs in contact the forces are R = -M g + ..., with M = F^-1 - F^-1 A (A'F^-1 A)^-1 A'F^-1. Errors dF and dg move them by
-!> M (dF R + dg), at most |M| (|dF| |R| + |dg|): a bound that no change of units alters (Skeel 1979). Its largest entry is the
-!> 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs are few, else estimated from a few products (Hager 1984;
-!> Higham 1988).
+!> On the pairs in contact the forces are R = -M g + ..., with M = F^-1 - F^-1 A (A'F^-1 A)^-1 A'F^-1. Errors
+!> dF and dg move them by M (dF R + dg), at most |M| (|dF| |R| + |dg|): a bound that no change of units alters
+!> (Skeel 1979). Its largest entry is the 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs
+!> are few, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_accuracy_sensitivity
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, respond
@@ -12,7 +12,8 @@ module epcont_accuracy_sensitivity
   private
   public :: contact_sensitivity, find_sensitivity
 
-  !> Pairs up to which all of M is made: the estimate may stop at one of two nearly equal rows, as rounding has it.
+  !> Pairs up to which all of M is made: the estimate may stop at one of two nearly equal rows, as rounding
+  !! has it.
   integer, parameter :: few_pairs = 200
   integer, parameter :: most_products = 5
 

@@ -1,5 +1,6 @@
-!> What the scene does, the pairs in contact held closed, under a unit load along each free motion, and when their gaps shrink: what
-!> tells of an error anywhere how much of it arrives at the approach, and at sums of contact forces.
+!> What the scene does, the pairs in contact held closed, under a unit load along each free motion, and when
+!> their gaps shrink: what tells of an error anywhere how much of it arrives at the approach, and at sums of
+!> contact forces.
 module epcont_accuracy_unit_motion
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, respond

@@ -1,8 +1,10 @@
-!> Gaps whose bend alternates from node to node: sides of a curve drawn as chords, middle nodes between their corners instead of on
-!> it, polygons of unlike divisions in each other. Such waves are no part of the scene that is meant.
+!> Gaps whose bend alternates from node to node: sides of a curve drawn as chords, middle nodes between their
+!> corners instead of on it, polygons of unlike divisions in each other. Such waves are no part of the scene
+!> that is meant.
 !>
-!> Nodes that stand a above and a below the gap that is meant, by turns, a distance d apart, bend it by r = 8 a/d more at the one
-!> than at the other. Flattened, waves 2 d long take a pressure of pi E* a/(2 d) (Westergaard 1939), which is pi/16 E* r.
+!> Nodes that stand a above and a below the gap that is meant, by turns, a distance d apart, bend it by r = 8
+!> a/d more at the one than at the other. Flattened, waves 2 d long take a pressure of pi E* a/(2 d)
+!> (Westergaard 1939), which is pi/16 E* r.
 module epcont_accuracy_waves
   use epcont_accuracy_contact_stress, only: surface_compliance
   use epcont_accuracy_limits, only: bend_at, beyond, corner
@@ -22,8 +24,9 @@ module epcont_accuracy_waves
 
 contains
 
-  !> Of the pairs of a zone: the pressure that flattens all uneven bends, the largest; whether these are waves; how high they are
-  !! then, the mean. A tip bends the gap once, where a fillet begins its curvature steps: these are uneven bends, and no waves.
+  !> Of the pairs of a zone: the pressure that flattens all uneven bends, the largest; whether these are
+  !! waves; how high they are then, the mean. A tip bends the gap once, where a fillet begins its curvature
+  !! steps: these are uneven bends, and no waves.
   pure subroutine find_waves(model, table, line, pairs, pressure, are_waves, height)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
@@ -48,8 +51,9 @@ contains
     if (.not. are_waves) height = 0.0_wp
   end subroutine find_waves
 
-  !> How much more, or less, the gap bends at a pair than beside it: by its curvature there, since sides may grow along a line. Does
-  !! it so by turns? Of four pairs in a row the first and the third bend it by more than the others, or by less.
+  !> How much more, or less, the gap bends at a pair than beside it: by its curvature there, since sides may
+  !! grow along a line. Does it so by turns? Of four pairs in a row the first and the third bend it by more
+  !! than the others, or by less.
   pure subroutine uneven_bend(model, line, pair, angle, spacing, alternates)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line

@@ -1,4 +1,5 @@
-!> THE table of what the parts of an estimate count, measured on scenes whose answers are known (tests/accuracy).
+!> THE table of what the parts of an estimate count, measured on scenes whose answers are known
+!> (tests/accuracy).
 module epcont_accuracy_weights
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: by_linear_triangles, by_quadrilaterals
@@ -7,21 +8,22 @@ module epcont_accuracy_weights
   public :: estimate_weights, weights_of
 
   type :: estimate_weights
-    !> Of the largest pressure: its distance from a parabola through the nearest pairs, that from the smooth stress, the smaller
-    !! of the two; h/b, (h/b)**2, how much larger that is over the zone and into the bodies than at the peak, and the part of the
-    !! energy that the mesh is off by, of it.
+    !> Of the largest pressure: its distance from a parabola through the nearest pairs, that from the smooth
+    !! stress, the smaller of the two; h/b, (h/b)**2, how much larger that is over the zone and into the
+    !! bodies than at the peak, and the part of the energy that the mesh is off by, of it.
     real(wp) :: parabola, stress, smaller, spacing, square, graded, pressure_energy
     !> Of the half-width: the spacing at its end, and the same part of the energy of it.
     real(wp) :: step, width_energy
-    !> Of the approach: the product of two fields of errors, whose parts may cancel; of pressure (h/b)**2 b/E*, by which bodies
-    !! come too near since their nodes touch and not the line between them; and the same for contact that ends at a node: a distance
-    !! d from the true end counts as d**2.
+    !> Of the approach: the product of two fields of errors, whose parts may cancel; of pressure (h/b)**2
+    !! b/E*, by which bodies come too near since their nodes touch and not the line between them; and the same
+    !! for contact that ends at a node: a distance d from the true end counts as d**2.
     real(wp) :: product, between, end
   end type estimate_weights
 
-  !> Each for elastic scenes, then for those with something beyond yield. Sides of six-node elements are two spacings long.
-  ! Of p_max: parabola, stress, smaller, spacing, square, graded, energy; of b: step, energy; of the approach: product, between,
-  ! end.
+  !> Each for elastic scenes, then for those with something beyond yield. Sides of six-node elements are two
+  !! spacings long.
+  ! Of p_max: parabola, stress, smaller, spacing, square, graded, energy; of b: step, energy; of the approach:
+  ! product, between, end.
   type(estimate_weights), parameter :: tria3(2) = [ &
     estimate_weights(0.5_wp, 0.0_wp, 1.2_wp, 0.1_wp, 0.0_wp, 0.6_wp, 0.2_wp, 0.05_wp, 3.2_wp, 1.6_wp, 0.0_wp, 0.1_wp), &
     estimate_weights(1.3_wp, 0.1_wp, 0.1_wp, 0.02_wp, 0.0_wp, 0.4_wp, 1.6_wp, 0.08_wp, 3.4_wp, 2.6_wp, 0.0_wp, 0.4_wp)]

@@ -1,9 +1,10 @@
 !> Errors of a zone's largest pressure and of its half-width.
 !>
-!> Of the pressure four things tell: how far the peak is off a parabola through the nearest pairs, off the normal stress that the
-!> smooth strains of both sides give there, how many pairs the zone has, and what part of the energy the mesh is off by; of the
-!> half-width the spacing at its ends, and the energy. What each counts is measured (tests/accuracy). Where the pressure has no
-!> limit, or the zone too few pairs, nothing is said of it.
+!> Of the pressure four things tell: how far the peak is off a parabola through the nearest pairs, off the
+!> normal stress that the smooth strains of both sides give there, how many pairs the zone has, and what part
+!> of the energy the mesh is off by; of the half-width the spacing at its ends, and the energy. What each
+!> counts is measured (tests/accuracy). Where the pressure has no limit, or the zone too few pairs, nothing is
+!> said of it.
 module epcont_accuracy_zone_error
   use epcont_accuracy_contact_stress, only: gives_way
   use epcont_accuracy_limits, only: edge_pairs, has_tip
@@ -23,7 +24,8 @@ module epcont_accuracy_zone_error
   integer, parameter :: around_peak = 7
   !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved.
   integer, parameter :: few = 3
-  !> Pairs of a side with a middle node: a zone on one, mirrored or not, follows the pressure no better than one parabola.
+  !> Pairs of a side with a middle node: a zone on one, mirrored or not, follows the pressure no better than
+  !! one parabola.
   integer, parameter :: one_side = 3
   !> Pressures that differ by less than this part are the same all over the zone.
   real(wp), parameter :: uniform = 1.0e-6_wp
@@ -36,10 +38,12 @@ module epcont_accuracy_zone_error
 
   !> An element so many times deeper than its side is wide is not graded.
   real(wp), parameter :: stretched = 1.8_wp
-  !> The last pair of the candidates has half a side. Where pressures rise towards it, its own is the mean over that, and short of
-  !! the pressure at the end itself: of a straight rise by half of what it is above the next pair, and of a steeper one by more.
+  !> The last pair of the candidates has half a side. Where pressures rise towards it, its own is the mean
+  !! over that, and short of the pressure at the end itself: of a straight rise by half of what it is above
+  !! the next pair, and of a steeper one by more.
   real(wp), parameter :: beyond_mean = 0.625_wp
-  !> Where flattening the waves of the gap takes so much of the largest pressure, that is a pressure of the waves.
+  !> Where flattening the waves of the gap takes so much of the largest pressure, that is a pressure of the
+  !! waves.
   real(wp), parameter :: waves_alone = 0.5_wp
 
   type :: zone_error
@@ -58,7 +62,8 @@ module epcont_accuracy_zone_error
 
 contains
 
-  !> `stress_pressure` is the pressure at each pair that the smooth strains give, `energy` what is missing of the energy.
+  !> `stress_pressure` is the pressure at each pair that the smooth strains give, `energy` what is missing of
+  !! the energy.
   pure function estimate_zone(model, table, line, answer, stress_pressure, energy, zone) result(error)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
@@ -150,7 +155,8 @@ contains
     if (degree > 1) enough = enough .and. pairs > one_side
   end function enough
 
-  !> How far the elements at a pair that can be strained reach into their bodies; of six-node ones half [length].
+  !> How far the elements at a pair that can be strained reach into their bodies; of six-node ones half
+  !! [length].
   pure real(wp) function depth_behind(model, table, pair) result(depth)
     type(model_type), intent(in) :: model
     type(patch_table), intent(in) :: table
@@ -179,7 +185,8 @@ contains
     is_closed = size(pairs) > 2 .and. any(line%neighbour(:, pairs(1)) == pairs(size(pairs)))
   end function is_closed
 
-  !> The largest pressure; of equal ones, but for rounding, that on the largest area: a corner on the axis may have its neighbour's.
+  !> The largest pressure; of equal ones, but for rounding, that on the largest area: a corner on the axis may
+  !! have its neighbour's.
   pure integer function peak_of(pressure, area) result(peak)
     real(wp), intent(in) :: pressure(:), area(:)
 
@@ -229,7 +236,8 @@ contains
     end do
   end function to_first_open
 
-  !> How far beyond an end the pressure vanishes, where p**2 is linear: by the last two pairs, not beyond the first open one.
+  !> How far beyond an end the pressure vanishes, where p**2 is linear: by the last two pairs, not beyond the
+  !! first open one.
   pure real(wp) function vanishes(pressure, inward, limit)
     real(wp), intent(in) :: pressure(:)
     real(wp), intent(in) :: inward(:)   !! distance of each pair from the end, which is the first [length]
@@ -243,8 +251,8 @@ contains
     if (drop > 0.0_wp) vanishes = min(limit, inward(2)*pressure(1)**2/drop)
   end function vanishes
 
-  !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, mirrored ones too. Of too few pairs
-  !! for one: what Hertz's pressure falls by over half a spacing.
+  !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, mirrored ones
+  !! too. Of too few pairs for one: what Hertz's pressure falls by over half a spacing.
   pure real(wp) function off_parabola(s, p, mirrored, peak, spacing, resolution) result(off)
     real(wp), intent(in) :: s(:), p(:)
     logical, intent(in) :: mirrored(2)

@@ -1,7 +1,8 @@
-!> What is the same in all elements of one kind. `element_kinds.f90` has a row for each, and a file of its own says what is in it.
+!> What is the same in all elements of one kind. `element_kinds.f90` has a row for each, and a file of its own
+!> says what is in it.
 !>
-!> Corners come first, counter-clockwise; then the middles of the sides, the first behind the first corner. Sides are straight, or
-!> parabolas through their middle nodes.
+!> Corners come first, counter-clockwise; then the middles of the sides, the first behind the first corner.
+!> Sides are straight, or parabolas through their middle nodes.
 module epcont_element_element_kind
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
@@ -32,13 +33,13 @@ module epcont_element_element_kind
     real(wp) :: slopes(directions, most_nodes, most_points) = 0.0_wp   !! and their derivatives by the local coordinates
     ! For the estimate of the error (accuracy/):
     integer :: estimated_as = by_linear_triangles       !! which weights it has
-    !> Smooth strains are fitted to samples: strain(points) sample_of, where the shape functions are sample_values. Of degree 1
-    !! it is the mean, in the middle.
+    !> Smooth strains are fitted to samples: strain(points) sample_of, where the shape functions are
+    !! sample_values. Of degree 1 it is the mean, in the middle.
     integer :: samples = 1
     real(wp) :: sample_values(most_nodes, most_points) = 0.0_wp
     real(wp) :: sample_of(most_points, most_points) = 0.0_wp
-    !> Strains are compared at places. There the smooth one is smooth(nodes) n, the element's own strain(points) p, and the place
-    !! has the parts v of the points' volumes.
+    !> Strains are compared at places. There the smooth one is smooth(nodes) n, the element's own
+    !! strain(points) p, and the place has the parts v of the points' volumes.
     integer :: places = 0
     logical :: sees_points = .true.   !! its own strain at a place is that of the only point, or of the one with the same number
     real(wp) :: n(most_nodes, most_places) = 0.0_wp
@@ -66,7 +67,8 @@ module epcont_element_element_kind
 
 contains
 
-  !> A kind by its nodes, shape functions and integration points; its strains are sampled and compared at these.
+  !> A kind by its nodes, shape functions and integration points; its strains are sampled and compared at
+  !! these.
   pure function new_kind(corners, nodes, shape, slope, point, weight) result(kind)
     integer, intent(in) :: corners, nodes      !! how many
     procedure(shape_functions) :: shape        !! of the nodes, at a local place

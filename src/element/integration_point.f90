@@ -1,8 +1,8 @@
 !> Strains of an element at its integration points, and the volume that belongs to each.
 !>
-!> A strain is xx, yy, zz, xy (engineering). In a ring x is the radius and zz the hoop: u_x/x. Some kinds have their volume
-!> change averaged over the element (B-bar), so that they do not lock where the material cannot change its volume; in plane
-!> stress, where the sheet gives way, there is no need.
+!> A strain is xx, yy, zz, xy (engineering). In a ring x is the radius and zz the hoop: u_x/x. Some kinds have
+!> their volume change averaged over the element (B-bar), so that they do not lock where the material cannot
+!> change its volume; in plane stress, where the sheet gives way, there is no need.
 module epcont_element_integration_point
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes

@@ -1,5 +1,5 @@
-!> Eight-node quadrilateral, serendipity: corners in turn at (-1, -1), (1, -1), (1, 1), (-1, 1), then the middles of the sides
-!> behind each.
+!> Eight-node quadrilateral, serendipity: corners in turn at (-1, -1), (1, -1), (1, 1), (-1, 1), then the
+!> middles of the sides behind each.
 module epcont_element_quad8
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: by_quadratics, element_kind, most_nodes, new_kind
@@ -11,8 +11,8 @@ module epcont_element_quad8
   real(wp), parameter :: node(directions, 8) = &
     reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, &
              0.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, -1.0_wp, 0.0_wp], [directions, 8])
-  !> Places and weights of Gauss along a line. Three by three points integrate the stiffness; two by two would leave a motion
-  !! without energy, but there the strains are best (Barlow 1976), and there they are sampled.
+  !> Places and weights of Gauss along a line. Three by three points integrate the stiffness; two by two would
+  !! leave a motion without energy, but there the strains are best (Barlow 1976), and there they are sampled.
   real(wp), parameter :: three(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)], part(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
   real(wp), parameter :: two(2) = [-1.0_wp, 1.0_wp]/sqrt(3.0_wp)
 

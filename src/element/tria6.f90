@@ -1,4 +1,5 @@
-!> Six-node triangle, quadratic: corners in turn at (0, 0), (1, 0), (0, 1), then the middles of the sides behind each.
+!> Six-node triangle, quadratic: corners in turn at (0, 0), (1, 0), (0, 1), then the middles of the sides
+!> behind each.
 module epcont_element_tria6
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: by_quadratics, element_kind, most_nodes, new_kind
@@ -7,12 +8,13 @@ module epcont_element_tria6
   private
   public :: tria6
 
-  !> Integration points and weights: exact for quadratics, that is for the stiffness of a straight-sided element.
+  !> Integration points and weights: exact for quadratics, that is for the stiffness of a straight-sided
+  !! element.
   real(wp), parameter :: point(directions, 3) = &
     reshape([1.0_wp, 1.0_wp, 4.0_wp, 1.0_wp, 1.0_wp, 4.0_wp]/6.0_wp, [directions, 3])
   real(wp), parameter :: weight(3) = 1.0_wp/6.0_wp
-  !> Where strains are compared, and with which parts of the volume. The integration points would flatter, the error there is
-  !! least; these are exact for polynomials of the fourth degree (Dunavant 1985).
+  !> Where strains are compared, and with which parts of the volume. The integration points would flatter, the
+  !! error there is least; these are exact for polynomials of the fourth degree (Dunavant 1985).
   real(wp), parameter :: near = 0.091576213509771_wp, far = 0.445948490915965_wp
   real(wp), parameter :: place(directions, 6) = &
     reshape([near, near, 1.0_wp - 2.0_wp*near, near, near, 1.0_wp - 2.0_wp*near, &

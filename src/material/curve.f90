@@ -1,9 +1,9 @@
 !> Equivalent stress over deviatoric equivalent strain, of a material with a piecewise linear uniaxial curve.
 !>
-!> With e = sqrt(2/3 e_ij e_ij) and the mean stress elastic, a uniaxial state of total strain eps and stress sigma has
-!> e = eps - (1 - 2 nu) sigma/(3E): its points, so shifted, give sigma_i = curve(e) for every kind of deformation
-!> (MUP EXACT). MUP PAPER takes Poisson's ratio (2-4) in the equivalent strain eps_i instead, which makes
-!> e = eps_i (1 - (1 - 2 nu) sigma_s/(3 sigma_i)): a quadratic for eps_i on each segment.
+!> With e = sqrt(2/3 e_ij e_ij) and the mean stress elastic, a uniaxial state of total strain eps and stress
+!> sigma has e = eps - (1 - 2 nu) sigma/(3E): its points, so shifted, give sigma_i = curve(e) for every kind
+!> of deformation (MUP EXACT). MUP PAPER takes Poisson's ratio (2-4) in the equivalent strain eps_i instead,
+!> which makes e = eps_i (1 - (1 - 2 nu) sigma_s/(3 sigma_i)): a quadratic for eps_i on each segment.
 module epcont_material_curve
   use epcont_base_kinds, only: wp
   use epcont_model_controls, only: uniaxial_curve
@@ -113,7 +113,8 @@ contains
     end do
   end function segment
 
-  !> eps_i, and E' = sigma_i/eps_i, with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 + (a - c - b e) eps = e a.
+  !> eps_i, and E' = sigma_i/eps_i, with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 + (a -
+  !! c - b e) eps = e a.
   pure subroutine find_paper_secant(self, k, e, strain, secant)
     class(deviatoric_curve), intent(in) :: self
     integer, intent(in) :: k

@@ -21,7 +21,8 @@ contains
     shear_modulus = young/(2.0_wp*(1.0_wp + poisson))
   end function shear_modulus
 
-  !> What a normal strain adds to the normal stress across: K - 2/3 G, less in a sheet, where the stress zz vanishes [stress].
+  !> What a normal strain adds to the normal stress across: K - 2/3 G, less in a sheet, where the stress zz
+  !! vanishes [stress].
   pure real(wp) function cross_modulus(bulk, shear, sheet) result(cross)
     real(wp), intent(in) :: bulk, shear
     logical, intent(in) :: sheet   !! plane stress
@@ -30,8 +31,9 @@ contains
     if (sheet) cross = 2.0_wp*shear*cross/(cross + 2.0_wp*shear)
   end function cross_modulus
 
-  !> D of stress = D strain, components xx, yy, zz, xy (engineering shear strain) [stress] [4, 4]. With G = E_D/3 it is
-  !! the secant matrix (2-8). In a sheet the stress zz vanishes, and the strain zz is what that takes.
+  !> D of stress = D strain, components xx, yy, zz, xy (engineering shear strain) [stress] [4, 4]. With G =
+  !! E_D/3 it is the secant matrix (2-8). In a sheet the stress zz vanishes, and the strain zz is what that
+  !! takes.
   pure function isotropic_matrix(bulk, shear, sheet) result(d)
     real(wp), intent(in) :: bulk, shear
     logical, intent(in) :: sheet   !! plane stress

@@ -1,8 +1,9 @@
-!> What a material is asked: from a strain, and the state that it committed itself to before, the trial state there, with the
-!> stress; and how the stress changes about it. A law is one file that extends this type, and a line in `scene_materials.f90`.
+!> What a material is asked: from a strain, and the state that it committed itself to before, the trial state
+!> there, with the stress; and how the stress changes about it. A law is one file that extends this type, and
+!> a line in `scene_materials.f90`.
 !>
-!> Strains and stresses are xx, yy, zz, xy (engineering shear strain). In a sheet (plane stress) the strain zz is found, whatever is
-!> given.
+!> Strains and stresses are xx, yy, zz, xy (engineering shear strain). In a sheet (plane stress) the strain zz
+!> is found, whatever is given.
 module epcont_material_material_law
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components
@@ -70,8 +71,8 @@ contains
     d = isotropic_matrix(self%bulk, state%modulus/3.0_wp, self%sheet)
   end function secant_matrix
 
-  !> How far a stress is from that of the material: von Mises stress of the difference, over that of the curve there, or the yield
-  !! stress below yield. (The mean parts are elastic in every law.)
+  !> How far a stress is from that of the material: von Mises stress of the difference, over that of the curve
+  !! there, or the yield stress below yield. (The mean parts are elastic in every law.)
   pure real(wp) function distance(self, state, stress)
     class(material_law), intent(in) :: self      !! one that yields
     type(point_state), intent(in) :: state

@@ -68,8 +68,8 @@ contains
     deviator = [strain(:3) - sum(strain(:3))/3.0_wp, 0.5_wp*strain(4)]
   end function deviator_of
 
-  !> The strain across a sheet in plane stress, where the stress across vanishes. That stress rises with the strain,
-  !! and has its zero between that of the elastic sheet and that of constant volume.
+  !> The strain across a sheet in plane stress, where the stress across vanishes. That stress rises with the
+  !! strain, and has its zero between that of the elastic sheet and that of constant volume.
   pure real(wp) function strain_across(self, strain) result(across)
     class(total_theory), intent(in) :: self
     real(wp), intent(in) :: strain(components)

@@ -1,6 +1,7 @@
-!> Anderson's acceleration of a fixed-point iteration x -> g(x): from the last steps the mixture of g whose g - x is
-!> least, in the norm of the elastic energy of strains. A mixture after which g - x has grown has misled: twice as many steps
-!> as after the last such one are then taken as they are, so that where mixing does harm it is the plain iteration.
+!> Anderson's acceleration of a fixed-point iteration x -> g(x): from the last steps the mixture of g whose g
+!> - x is least, in the norm of the elastic energy of strains. A mixture after which g - x has grown has
+!> misled: twice as many steps as after the last such one are then taken as they are, so that where mixing
+!> does harm it is the plain iteration.
 module epcont_plasticity_anderson
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type

@@ -31,8 +31,9 @@ contains
     call measure_gaps(scene%model, problem, part, state)
   end subroutine complete_state
 
-  !> Gaps of the pairs without force as the displacements have them. Where a rigid stop takes the load, what the flexibility says
-  !! of the others is rounding of two deformations that cancel: a pair that seemed to touch may be open.
+  !> Gaps of the pairs without force as the displacements have them. Where a rigid stop takes the load, what
+  !! the flexibility says of the others is rounding of two deformations that cancel: a pair that seemed to
+  !! touch may be open.
   pure subroutine measure_gaps(model, problem, part, state)
     type(model_type), intent(in) :: model
     type(contact_problem), intent(in) :: problem

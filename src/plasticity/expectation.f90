@@ -1,5 +1,5 @@
-!> How long a run will take in all: by the plan's operations before the first solve, by the clock and by how fast the iteration
-!> comes to its end after it.
+!> How long a run will take in all: by the plan's operations before the first solve, by the clock and by how
+!> fast the iteration comes to its end after it.
 module epcont_plasticity_expectation
   use epcont_base_kinds, only: wp
   use epcont_model_controls, only: method_newton
@@ -9,14 +9,15 @@ module epcont_plasticity_expectation
   private
   public :: expectation_type, new_expectation, solves_to_come
 
-  !> Operations in a second, before any were measured: of one core with AVX2, assembly and what the system takes to give memory
-  !! included (40 000 and 120 000 nodes: 1.0e10 to 2.4e10).
+  !> Operations in a second, before any were measured: of one core with AVX2, assembly and what the system
+  !! takes to give memory included (40 000 and 120 000 nodes: 1.0e10 to 2.4e10).
   real(wp), parameter :: likely_rate = 1.0e10_wp
   !> What comes after the last solve, over what comes before the first: both grow with the mesh alone.
   real(wp), parameter :: end_part = 1.0_wp
-  !> How much longer each step of NEWTON is than the one before, in digits. All decks in input that yield, and others, from the
-  !! second solve on: 92 % of the numbers of solves expected are right within a factor 1.5; of the other methods, whose steps are
-  !! even, 77 %. The order that the last two steps show serves worse (70 %): NEWTON is slow before it is fast.
+  !> How much longer each step of NEWTON is than the one before, in digits. All decks in input that yield, and
+  !! others, from the second solve on: 92 % of the numbers of solves expected are right within a factor 1.5;
+  !! of the other methods, whose steps are even, 77 %. The order that the last two steps show serves worse (70
+  !! %): NEWTON is slow before it is fast.
   real(wp), parameter :: newton_order = 1.5_wp
   !> A tolerance up to this is none, as of a scene that cannot yield.
   real(wp), parameter :: least = 1.0e-30_wp
@@ -39,7 +40,8 @@ module epcont_plasticity_expectation
 
 contains
 
-  !> Before the first solve, where `begun` seconds have gone. With yielding it is not known how many solves there will be.
+  !> Before the first solve, where `begun` seconds have gone. With yielding it is not known how many solves
+  !! there will be.
   pure function new_expectation(plan, most_iterations, operations, begun) result(expected)
     type(iteration_plan), intent(in) :: plan
     integer, intent(in) :: most_iterations   !! at a load
@@ -56,7 +58,8 @@ contains
     allocate (expected%distance(0))
   end function new_expectation
 
-  !> A solve was done at `seconds`; `over` if it was the last one at its load. The next will take as long as it did.
+  !> A solve was done at `seconds`; `over` if it was the last one at its load. The next will take as long as
+  !! it did.
   pure subroutine learn(self, now, over, seconds)
     class(expectation_type), intent(inout) :: self
     type(iteration_record), intent(in) :: now
@@ -93,8 +96,8 @@ contains
     later_solves = later_solves*max(0, self%plan%load_steps - self%load_steps - merge(0, 1, over))
   end function later_solves
 
-  !> Solves to come at a load, if the logarithm of the distance from the end goes on to fall as it did in the last one, each
-  !! time `order` times as far; negative where it does not fall.
+  !> Solves to come at a load, if the logarithm of the distance from the end goes on to fall as it did in the
+  !! last one, each time `order` times as far; negative where it does not fall.
   pure integer function solves_to_come(distance, order, most) result(solves)
     real(wp), intent(in) :: distance(:)   !! of each solve so far; at 1 the iteration is over
     real(wp), intent(in) :: order

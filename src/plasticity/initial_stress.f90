@@ -1,5 +1,5 @@
-!> METHOD INISTR: the stiffness stays elastic and is factored once; what the elastic stress is off the curve goes to
-!> the right-hand side. Accelerated as MODSEC is.
+!> METHOD INISTR: the stiffness stays elastic and is factored once; what the elastic stress is off the curve
+!> goes to the right-hand side. Accelerated as MODSEC is.
 module epcont_plasticity_initial_stress
   use epcont_base_kinds, only: wp
   use epcont_material_linear_law, only: linear_law

@@ -24,16 +24,17 @@ module epcont_plasticity_iteration
   real(wp), parameter :: far_away = 1.0e4_wp
   !> Stresses this near to their curves are on them but for rounding.
   real(wp), parameter :: rounding = 1.0e-10_wp
-  !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times the last change,
-  !! it is a slow one. Few, slow or mixed steps say too little of what is to come, and prescribed displacements hide it in the
-  !! largest: the estimate is tested.
+  !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times
+  !! the last change, it is a slow one. Few, slow or mixed steps say too little of what is to come, and
+  !! prescribed displacements hide it in the largest: the estimate is tested.
   integer, parameter :: few_solves = 4, many_solves = 8
   real(wp), parameter :: slow = 3.0_wp
   !> A tangent step that shows more than so many times what was estimated is no measure of it.
   real(wp), parameter :: most_doubt = 1.0e2_wp
   !> A tangent with this part of the secant matrix in it, or more, tests nothing.
   real(wp), parameter :: too_stiff = 1.0e-3_wp
-  !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, it has lost the answer.
+  !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, it has lost
+  !! the answer.
   real(wp), parameter :: stagnant = 1.0e-3_wp
   !> A strain that falls by less than this part of it stays.
   real(wp), parameter :: least_fall = 1.0e-6_wp
@@ -154,7 +155,8 @@ contains
       if (answer%singular > 0) return
       call loop%linear%solve(scene, loop%part, loop%touching, found, watch)
       if (found%contact%state /= contact_solved) then
-        ! Not found about a later state, such as one beyond the limit load: what was found before is not converged.
+        ! Not found about a later state, such as one beyond the limit load: what was found before is not
+        ! converged.
         if (iteration == 1 .or. found%contact%state /= contact_stalled) call move_alloc(found, state)
         return
       end if
@@ -196,7 +198,8 @@ contains
     end do
   end subroutine iterate
 
-  !> The law about the last state, and the stiffness for it. `singular` is a body without any that can be factored.
+  !> The law about the last state, and the stiffness for it. `singular` is a body without any that can be
+  !! factored.
   subroutine set_law(scene, method, loop, singular, watch)
     type(planned_scene), intent(in) :: scene
     class(plastic_method), intent(inout) :: method
@@ -219,8 +222,8 @@ contains
     end do
   end subroutine set_law
 
-  !> How far the state found is from the last, and its stresses from the curve. Equilibrium and contact are exact in
-  !! each solve: that distance is all that is left of the scene's equations.
+  !> How far the state found is from the last, and its stresses from the curve. Equilibrium and contact are
+  !! exact in each solve: that distance is all that is left of the scene's equations.
   pure subroutine measure(model, loop, found, now)
     type(model_type), intent(in) :: model
     type(loop_type), intent(in) :: loop
@@ -249,9 +252,9 @@ contains
     now%yielded = count(yielded)
   end subroutine measure
 
-  !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than the tolerance.
-  !! Where nothing has yielded, the first solve was exact; and where stresses are on their curves
-  !! to rounding while the changes fall no more, rounding allows no smaller ones.
+  !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than
+  !! the tolerance. Where nothing has yielded, the first solve was exact; and where stresses are on their
+  !! curves to rounding while the changes fall no more, rounding allows no smaller ones.
   pure logical function is_over(loop, history)
     type(loop_type), intent(in) :: loop
     type(iteration_record), intent(in) :: history(:)   !! to this iteration

@@ -1,8 +1,9 @@
 !> How far an iteration still is from where it goes, from what its last steps were worth.
 !>
-!> An iteration takes x to g(x). To first order a step dx changes g by J dx and the rest g - x by (J - 1) dx, so that of a rest r
-!> there is J/(1 - J) r to come in g. How much that is at most, the steps behind tell: |dg|/|d(g - x)|. In an iteration
-!> without mixing it is the sum of the changes to come, each the last times the rate at which they fall.
+!> An iteration takes x to g(x). To first order a step dx changes g by J dx and the rest g - x by (J - 1) dx,
+!> so that of a rest r there is J/(1 - J) r to come in g. How much that is at most, the steps behind tell:
+!> |dg|/|d(g - x)|. In an iteration without mixing it is the sum of the changes to come, each the last times
+!> the rate at which they fall.
 module epcont_plasticity_iteration_error
   use epcont_base_kinds, only: wp
   use epcont_plasticity_onlooker, only: iteration_record
@@ -51,7 +52,8 @@ contains
       self%gain = [self%gain, ratio(maxval(abs(found%displacement - self%displacement)), step)]
       self%force_gain = [self%force_gain, ratio(maxval([0.0_wp, abs(found%contact%force - self%force)]), step)]
       falls = largest < maxval(abs(self%rest)) .or. largest == 0.0_wp
-      ! A step may by chance be short where much is to come: as long as stresses are off their curves, no less than the last change.
+      ! A step may by chance be short where much is to come: as long as stresses are off their curves, no less
+      ! than the last change.
       if (falls) now%error = max(ratio(self%largest_gain(steps)*largest, maxval(abs(found%displacement))), &
                                  min(now%change, now%residual))
       if (falls .and. any(found%contact%force > 0.0_wp)) then

@@ -1,5 +1,5 @@
-!> The scene with a linear law of the material, its contact solved exactly: one step of every iteration, and all of
-!> an elastic analysis.
+!> The scene with a linear law of the material, its contact solved exactly: one step of every iteration, and
+!> all of an elastic analysis.
 module epcont_plasticity_linear_scene
   use epcont_assembly_bodies, only: factored_bodies, half_solution, new_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
@@ -23,8 +23,9 @@ module epcont_plasticity_linear_scene
   private
   public :: linear_scene, new_linear_scene
 
-  !> Refinement is over when a step changes no strain by more than this part of the largest: the next would change it by
-  !! much less. Where two steps no longer halve it, rounding is reached, or single precision leaves too little to begin with.
+  !> Refinement is over when a step changes no strain by more than this part of the largest: the next would
+  !! change it by much less. Where two steps no longer halve it, rounding is reached, or single precision
+  !! leaves too little to begin with.
   real(wp), parameter :: small_step = 1.0e-11_wp, rounding_step = 1.0e-10_wp, slowest_rate = 0.5_wp
 
   type :: linear_scene
@@ -73,8 +74,9 @@ contains
     linear%resultant = motion_resultants(scene%model, scene%motions)
   end subroutine new_linear_scene
 
-  !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far as the
-  !! law of their elements has changed. `singular` is a body whose stiffness could not be factored, 0 where all could.
+  !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far
+  !! as the law of their elements has changed. `singular` is a body whose stiffness could not be factored, 0
+  !! where all could.
   subroutine set_stiffness(self, scene, singular, watch)
     class(linear_scene), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
@@ -104,7 +106,8 @@ contains
     call watch%lap(stage_flexibility)
   end subroutine set_stiffness
 
-  !> Assemble and factor some bodies, side by side where that pays. `singular` is the first that could not be factored, or 0.
+  !> Assemble and factor some bodies, side by side where that pays. `singular` is the first that could not be
+  !! factored, or 0.
   subroutine factor_bodies(self, scene, changed, chosen, singular)
     class(linear_scene), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
@@ -128,8 +131,8 @@ contains
     singular = findloc([(chosen(i) .and. .not. self%bodies%body(i)%is_sound(), i=1, size(chosen))], .true., dim=1)
   end subroutine factor_bodies
 
-  !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are the same on any
-  !! number of threads.
+  !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are
+  !! the same on any number of threads.
   subroutine add_flexibilities(self, scene, chosen, flexibility)
     class(linear_scene), intent(in) :: self
     type(planned_scene), intent(in) :: scene
@@ -164,8 +167,8 @@ contains
     end do
   end function changed_elements
 
-  !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without contact
-  !! equilibrium (`state%contact%state`) there are no displacements.
+  !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without
+  !! contact equilibrium (`state%contact%state`) there are no displacements.
   subroutine solve(self, scene, part, start, state, watch)
     class(linear_scene), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
@@ -184,8 +187,9 @@ contains
     call watch%lap(stage_displacements)
   end subroutine solve
 
-  !> One step of refinement of what `solve` has found: where a body is long and its elements fine, rounding leaves forces out of
-  !! balance though the factors are in double. The contact follows the deformation, and that the contact.
+  !> One step of refinement of what `solve` has found: where a body is long and its elements fine, rounding
+  !! leaves forces out of balance though the factors are in double. The contact follows the deformation, and
+  !! that the contact.
   subroutine sharpen(self, scene, part, state, change, watch)
     class(linear_scene), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
@@ -249,8 +253,8 @@ contains
     state%strain = self%operator%strains(scene%model, state%deformation)
   end subroutine solve_once
 
-  !> The same to double precision with factors in single: step by step the forces out of balance, in double, are solved for,
-  !! and the contact with them. `contact_stalled` where that does not converge.
+  !> The same to double precision with factors in single: step by step the forces out of balance, in double,
+  !! are solved for, and the contact with them. `contact_stalled` where that does not converge.
   subroutine refine(self, scene, part, start, state, watch)
     type(linear_scene), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
@@ -277,7 +281,8 @@ contains
       call correct(self, scene, part, state, change)
       call watch%lap(stage_displacements)
       if (step > 1 .and. change <= small_step) exit
-      ! Steps come in pairs: what one has refined moves the contact forces, and those the next; the first brings them in.
+      ! Steps come in pairs: what one has refined moves the contact forces, and those the next; the first
+      ! brings them in.
       if (step > 4 .and. .not. change <= slowest_rate*before(1)) then
         if (change <= rounding_step) exit
         state%contact%state = contact_stalled
@@ -324,8 +329,9 @@ contains
     call solve_contact(self%problem, state%contact, touching, self%by_blocks)
   end subroutine solve_contact_about
 
-  !> What single precision has left: the change of displacements, strains and contact forces, of the largest of each, by
-  !! two steps of refinement, of which the second must change less: else the factors do not tell the error either, and it is 1.
+  !> What single precision has left: the change of displacements, strains and contact forces, of the largest
+  !! of each, by two steps of refinement, of which the second must change less: else the factors do not tell
+  !! the error either, and it is 1.
   pure subroutine rounding_error(self, scene, part, state, error)
     class(linear_scene), intent(inout) :: self
     type(planned_scene), intent(in) :: scene

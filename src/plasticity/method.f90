@@ -1,4 +1,5 @@
-!> What the loop asks of an iteration method: a linear law about a state, and from what that law finds the next state.
+!> What the loop asks of an iteration method: a linear law about a state, and from what that law finds the
+!> next state.
 module epcont_plasticity_method
   use epcont_base_kinds, only: wp
   use epcont_material_linear_law, only: linear_law

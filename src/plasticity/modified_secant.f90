@@ -1,4 +1,5 @@
-!> METHOD MODSEC: SECANT, accelerated. The moduli come from a mixture of the last strains (Anderson), not from the last.
+!> METHOD MODSEC: SECANT, accelerated. The moduli come from a mixture of the last strains (Anderson), not from
+!> the last.
 module epcont_plasticity_modified_secant
   use epcont_base_kinds, only: wp
   use epcont_material_linear_law, only: linear_law

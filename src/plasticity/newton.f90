@@ -1,8 +1,8 @@
 !> METHOD NEWTON: consistent tangent, contact exact in each step, line search on the energy.
 !>
-!> Total theory makes the scene a convex minimisation: each step is a direction in which the energy falls, and all
-!> points along it satisfy supports and contact, since both its ends do. The search looks for the zero of the slope
-!> (f_int - f).d, since differences of the energy itself drown in rounding.
+!> Total theory makes the scene a convex minimisation: each step is a direction in which the energy falls, and
+!> all points along it satisfy supports and contact, since both its ends do. The search looks for the zero of
+!> the slope (f_int - f).d, since differences of the energy itself drown in rounding.
 module epcont_plasticity_newton
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components

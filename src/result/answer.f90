@@ -12,8 +12,8 @@ module epcont_result_answer
   private
   public :: answer_type
 
-  !> Largest part that rounding may take of a valid answer. The certificate need not see it: rigid motions of a
-  !! stiff part upon a soft one are wrong by 1 to 30 times what is lost of a pivot, in equilibrium.
+  !> Largest part that rounding may take of a valid answer. The certificate need not see it: rigid motions of
+  !! a stiff part upon a soft one are wrong by 1 to 30 times what is lost of a pivot, in equilibrium.
   real(wp), parameter, public :: largest_loss = 1.0e-8_wp
   !> Where more of a pivot is lost, the factors may be too stiff to tell what is wrong.
   real(wp), parameter :: largest_mended = 1.0e-4_wp
@@ -51,7 +51,8 @@ module epcont_result_answer
 
 contains
 
-  !> The largest pressure of all pairs; negative where those that touch have none, since no boundary belongs to them [stress].
+  !> The largest pressure of all pairs; negative where those that touch have none, since no boundary belongs
+  !! to them [stress].
   pure real(wp) function largest_pressure(self)
     class(answer_type), intent(in) :: self
 
@@ -59,7 +60,8 @@ contains
     if (any(self%contact%touching)) largest_pressure = maxval(self%pressure, mask=self%contact%touching)
   end function largest_pressure
 
-  !> What rounding has taken of the weakest pivot; or, where the answer was refined by factors that tell the error, of the answer.
+  !> What rounding has taken of the weakest pivot; or, where the answer was refined by factors that tell the
+  !! error, of the answer.
   pure real(wp) function lost(self)
     class(answer_type), intent(in) :: self
 
@@ -67,7 +69,8 @@ contains
     if (lost <= largest_mended) lost = min(lost, self%last_correction)
   end function lost
 
-  !> What rounding may have taken of displacements and forces, at most: by the condition, or by what a step of refinement changed.
+  !> What rounding may have taken of displacements and forces, at most: by the condition, or by what a step of
+  !! refinement changed.
   pure real(wp) function rounding(self)
     class(answer_type), intent(in) :: self
 

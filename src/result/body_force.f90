@@ -10,7 +10,8 @@ module epcont_result_body_force
   !> Part of all forces that rounding leaves of sums that should cancel.
   real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
 
-  !> The resultant of contact on a body that has elements. In rings it has no x: hoops take what acts along radii.
+  !> The resultant of contact on a body that has elements. In rings it has no x: hoops take what acts along
+  !! radii.
   type :: body_force
     integer :: body = 0                    !! number of the body
     integer :: node = 0                    !! its first

@@ -12,27 +12,30 @@ module epcont_result_contact_line
   private
   public :: contact_line, find_contact_line, distance, shared, in_contact
 
-  !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's corner's too.
+  !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's
+  !! corner's too.
   real(wp), parameter :: along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp)
 
-  !> A pair of the master stands at the place of one that is nearer than this part of the way from node to node.
+  !> A pair of the master stands at the place of one that is nearer than this part of the way from node to
+  !! node.
   real(wp), parameter :: close = 0.22_wp
 
-  !> A corner of a curved ring on the axis has no area but for rounding and curvature: less than this part of its side's.
+  !> A corner of a curved ring on the axis has no area but for rounding and curvature: less than this part of
+  !! its side's.
   real(wp), parameter, public :: no_area = 1.0e-3_wp
 
   !> The pairs as a line along the boundary.
   type :: contact_line
-    !> Area of each pair: half of its edges, as seen along the normal, times thickness; 0: no edges. A pressure on
-    !! the edges exerts along the normal what it would on that area. [pairs]
+    !> Area of each pair: half of its edges, as seen along the normal, times thickness; 0: no edges. A
+    !! pressure on the edges exerts along the normal what it would on that area. [pairs]
     real(wp), allocatable :: tributary(:)
     integer, allocatable :: neighbour(:, :) !! pairs at the other ends of its edges, 0: none [2, pairs]
     real(wp), allocatable :: part(:, :)     !! of the area, towards each neighbour; of a middle node not set [2, pairs]
     logical, allocatable :: middle(:)       !! the middle node of an edge [pairs]
     integer, allocatable :: node(:)         !! of the boundary at each pair: B, or A where B has no elements [pairs]
     logical, allocatable :: mirrored(:)     !! the line ends at the pair, on a line of symmetry [pairs]
-    !> The place that a pair stands at: one for those so near to each other that the force is divided between them by chance. Not
-    !! allocated where none are. [pairs]
+    !> The place that a pair stands at: one for those so near to each other that the force is divided between
+    !! them by chance. Not allocated where none are. [pairs]
     integer, allocatable :: place(:)
   end type contact_line
 
@@ -69,7 +72,8 @@ contains
     if (last == model%pairs) deallocate (line%place)
   end function find_contact_line
 
-  !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with them.
+  !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
+  !! them.
   pure subroutine insert_masters(model, contact, line, places)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
@@ -104,7 +108,8 @@ contains
     at = new_incidence(reshape(line%node(first:last), [1, last - first + 1]), model%nodes)
   end function pairs_at_nodes
 
-  !> The pair that a side has at one of its nodes: of several there the one that presses on it the most squarely; 0: none.
+  !> The pair that a side has at one of its nodes: of several there the one that presses on it the most
+  !! squarely; 0: none.
   pure integer function pair_of_side(model, at, first, side, node) result(pair)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: at
@@ -176,8 +181,8 @@ contains
     end function away
   end function run_on
 
-  !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of the side has no pair,
-  !! the pieces at its end belong to none.
+  !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of
+  !! the side has no pair, the pieces at its end belong to none.
   pure subroutine link(model, contact, segment, run, line, places)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
@@ -290,7 +295,8 @@ contains
     end associate
   end function is_along
 
-  !> What a uniform pressure on a side gives to one of its nodes along the normal, over that pressure [length**2].
+  !> What a uniform pressure on a side gives to one of its nodes along the normal, over that pressure
+  !! [length**2].
   pure real(wp) function share(model, element, side, node, n)
     type(model_type), intent(in) :: model
     integer, intent(in) :: element, side(3), node
@@ -347,8 +353,8 @@ contains
     shared = found > 1
   end function shared
 
-  !> Pairs that touch, and those without an area beside them: a corner on the axis of rings, which bears nothing that would tell
-  !! whether it touches. [pairs]
+  !> Pairs that touch, and those without an area beside them: a corner on the axis of rings, which bears
+  !! nothing that would tell whether it touches. [pairs]
   pure function in_contact(line, touching) result(within)
     type(contact_line), intent(in) :: line
     logical, intent(in) :: touching(:)

@@ -1,5 +1,5 @@
-!> How far displacements are from small: what of the bodies turns or stretches so much that equilibrium and contact on the
-!> undeformed shape are no longer those of the deformed one.
+!> How far displacements are from small: what of the bodies turns or stretches so much that equilibrium and
+!> contact on the undeformed shape are no longer those of the deformed one.
 module epcont_result_displacement_gradient
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: axisymmetric
@@ -10,7 +10,8 @@ module epcont_result_displacement_gradient
 
   !> Norm of the displacement gradient that is no longer small: a turn by 4 degrees, a stretch by 10 %.
   real(wp), parameter, public :: large_gradient = 0.1_wp
-  !> Part of the volume that may be beyond it: at a corner, or at the end of a contact, some element always is.
+  !> Part of the volume that may be beyond it: at a corner, or at the end of a contact, some element always
+  !! is.
   real(wp), parameter :: negligible_part = 0.01_wp
 
   type :: gradient_type
@@ -41,7 +42,8 @@ contains
     if (found%part < negligible_part) found%part = 0.0_wp
   end function find_gradients
 
-  !> Norm (Frobenius) of the displacement gradient, by the corners of an element; of rings the stretch around, if that is more.
+  !> Norm (Frobenius) of the displacement gradient, by the corners of an element; of rings the stretch around,
+  !! if that is more.
   pure real(wp) function norm(model, e, displacement)
     type(model_type), intent(in) :: model
     integer, intent(in) :: e

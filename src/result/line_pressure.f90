@@ -1,5 +1,6 @@
-!> Contact of two lines seen from both sides: the pressure on the slave line, and on the master line what its nodes
-!> receive, over the boundary that belongs to them. How far one is from the other tells what the two meshes make of it.
+!> Contact of two lines seen from both sides: the pressure on the slave line, and on the master line what its
+!> nodes receive, over the boundary that belongs to them. How far one is from the other tells what the two
+!> meshes make of it.
 module epcont_result_line_pressure
   use epcont_base_kinds, only: wp
   use epcont_geometry_boundary_line, only: boundary_line
@@ -89,8 +90,8 @@ contains
     end do
   end subroutine complete
 
-  !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it, 0 where that is rounding or
-  !! curvature [length**2] [nodes].
+  !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it, 0 where
+  !! that is rounding or curvature [length**2] [nodes].
   pure function node_areas(model, line) result(area)
     type(model_type), intent(in) :: model
     class(boundary_line), intent(in) :: line

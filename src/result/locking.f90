@@ -1,5 +1,6 @@
-!> Three-node elements in a material that hardly changes its volume: elastic with Poisson's ratio near one half, or far
-!> beyond yield. They cannot follow and are too stiff; their mean stresses scatter from element to element.
+!> Three-node elements in a material that hardly changes its volume: elastic with Poisson's ratio near one
+!> half, or far beyond yield. They cannot follow and are too stiff; their mean stresses scatter from element
+!> to element.
 module epcont_result_locking
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_stress

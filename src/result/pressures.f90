@@ -1,9 +1,10 @@
 !> Pressures at the pairs.
 !>
-!> A pair's force over its area is exact enough where sides are straight from node to node. Along sides with a node
-!> between, it swings: low at corners, high at middles, by a per cent or two. What the whole of each side carries does not,
-!> so that there the force is summed along the line up to each corner, and the pressure is the derivative of that sum by the
-!> area, of the polynomial through the corners around. (As finite volumes recover point values from means.)
+!> A pair's force over its area is exact enough where sides are straight from node to node. Along sides with a
+!> node between, it swings: low at corners, high at middles, by a per cent or two. What the whole of each side
+!> carries does not, so that there the force is summed along the line up to each corner, and the pressure is
+!> the derivative of that sum by the area, of the polynomial through the corners around. (As finite volumes
+!> recover point values from means.)
 module epcont_result_pressures
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
@@ -16,14 +17,15 @@ module epcont_result_pressures
   integer, parameter :: around_middle = 4, around_corner = 5
   !> Of the latter, those before it.
   integer, parameter :: before = 2
-  !> Corners of the least run of sides for which this is done; for a corner without an area, of which force over area says nothing.
+  !> Corners of the least run of sides for which this is done; for a corner without an area, of which force
+  !! over area says nothing.
   integer, parameter :: least_corners = 4, least_at_axis = 3
 
   !> A run of sides that touch all along, in their order.
   type :: run_type
     integer, allocatable :: corner(:), middle(:)    !! pairs [sides + 1], [sides]
-    !> Summed up to each corner, and beyond a line of symmetry as mirrored there; corner k has index k. A closed run goes on
-    !! with itself.
+    !> Summed up to each corner, and beyond a line of symmetry as mirrored there; corner k has index k. A
+    !! closed run goes on with itself.
     real(wp), allocatable :: area(:), force(:)
     logical :: even(2) = .false.                    !! the pressure goes on evenly beyond the end: symmetry, the axis of rings
   end type run_type
@@ -82,8 +84,8 @@ contains
     end do
   end subroutine level
 
-  !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is at most where the
-  !! corner has opened, which it does where pressures rise away from the axis.
+  !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is at
+  !! most where the corner has opened, which it does where pressures rise away from the axis.
   pure subroutine complete(line, touching, force, pair, pressure)
     type(contact_line), intent(in) :: line
     logical, intent(in) :: touching(:)
@@ -156,7 +158,8 @@ contains
     other = merge(both(2), both(1), both(1) == one)
   end function other_than
 
-  !> Area and force from the first corner on. What a corner bears goes to the sides that touch as its area does.
+  !> Area and force from the first corner on. What a corner bears goes to the sides that touch as its area
+  !! does.
   pure subroutine sum_up(model, line, touching, force, run)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
@@ -229,7 +232,8 @@ contains
     if (other > 0.0_wp) share = own/(own + other)
   end function share_of_side
 
-  !> Pressures of a run. At an end where contact ends, the last side's own are left: there the pressure has no polynomial.
+  !> Pressures of a run. At an end where contact ends, the last side's own are left: there the pressure has no
+  !! polynomial.
   pure subroutine derive(model, line, run, pressure)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line

@@ -15,7 +15,8 @@ module epcont_result_stresses
 
 contains
 
-  !> Fill in stresses, strains, moduli and reactions. `applied` are the nodal forces of loads and pairs [2, nodes].
+  !> Fill in stresses, strains, moduli and reactions. `applied` are the nodal forces of loads and pairs [2,
+  !! nodes].
   pure subroutine recover_stresses(model, linear, applied, answer)
     type(model_type), intent(in) :: model
     type(linear_scene), intent(in) :: linear

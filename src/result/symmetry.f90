@@ -13,9 +13,10 @@ module epcont_result_symmetry
 
 contains
 
-  !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there, and so is the other body
-  !! where it ends at the same line, or all over if it is rigid; a body that goes on beyond the line is not mirrored. One of the two
-  !! is held along the boundary alone: one held all over, or tied by RBE2, does not tell.
+  !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there, and
+  !! so is the other body where it ends at the same line, or all over if it is rigid; a body that goes on
+  !! beyond the line is not mirrored. One of the two is held along the boundary alone: one held all over, or
+  !! tied by RBE2, does not tell.
   pure logical function is_on_symmetry(model, pair, node, side)
     type(model_type), intent(in) :: model
     integer, intent(in) :: pair, node

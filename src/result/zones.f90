@@ -109,7 +109,8 @@ contains
   end function run_from
 
   !> How far beyond the last pair of a run the pressure vanishes: near the edge p**2 is linear. Not beyond the
-  !! first open pair; not at all where that end is the last candidate, or the pressure does not fall towards it.
+  !! first open pair; not at all where that end is the last candidate, or the pressure does not fall towards
+  !! it.
   pure subroutine extend(model, line, touching, pressure, run, beyond, falls)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line
