@@ -7,21 +7,17 @@
 module epcont_material_material_law
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components
+  use epcont_material_curve, only: curve_value
   use epcont_material_elasticity, only: equivalent_stress, isotropic_matrix
   implicit none
   private
   public :: material_law, point_state
 
   !> The material at an integration point.
-  type :: point_state
+  type, extends(curve_value) :: point_state
     real(wp) :: stress(components) = 0.0_wp   !! [stress]
     real(wp) :: across = 0.0_wp               !! strain zz
-    real(wp) :: deviatoric = 0.0_wp           !! equivalent deviatoric strain e
-    real(wp) :: total = 0.0_wp                !! equivalent strain eps_i (2-2)
-    real(wp) :: modulus = 1.0_wp              !! E_D = 3 G of a secant body: equivalent stress over e [stress]
-    real(wp) :: slope = 1.0_wp                !! d sigma_i/d e [stress]; not for MUP PAPER
-    logical :: yielded = .false.              !! beyond the yield point
-    logical :: beyond = .false.               !! beyond the last point of a table
+    real(wp) :: deviatoric = 0.0_wp           !! equivalent deviatoric strain e, at which the curve is taken
   end type point_state
 
   !> The law of a section, with its elastic part.

@@ -6,7 +6,7 @@
 module epcont_material_total_theory
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components
-  use epcont_material_curve, only: curve_value, deviatoric_curve
+  use epcont_material_curve, only: deviatoric_curve
   use epcont_material_elasticity, only: isotropic_matrix
   use epcont_material_material_law, only: material_law, point_state
   implicit none
@@ -44,18 +44,12 @@ contains
     class(total_theory), intent(in) :: self
     real(wp), intent(in) :: strain(components)
     type(point_state) :: state
-    type(curve_value) :: value
     real(wp) :: deviator(components)
 
     deviator = deviator_of(strain)
     state%across = strain(3)
     state%deviatoric = sqrt((sum(deviator**2) + deviator(4)**2)*2.0_wp/3.0_wp)
-    value = self%curve%at_strain(state%deviatoric)
-    state%modulus = value%modulus
-    state%slope = value%slope
-    state%total = value%total
-    state%yielded = value%yielded
-    state%beyond = value%beyond
+    state%curve_value = self%curve%at_strain(state%deviatoric)
     state%stress = 2.0_wp/3.0_wp*state%modulus*deviator
     state%stress(:3) = state%stress(:3) + 3.0_wp*self%bulk*(sum(strain(:3))/3.0_wp)
   end function state_in_space
