@@ -2,6 +2,7 @@
 module epcont_analysis
   use epcont_accuracy_accuracy, only: accuracy_type, assess
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: lost_digits
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_certificate_scene, only: look_through
   use epcont_contact_problem, only: contact_solved
@@ -13,7 +14,7 @@ module epcont_analysis
   use epcont_plasticity_iteration, only: follow_loads, followed_loads
   use epcont_plasticity_linear_scene, only: linear_scene
   use epcont_plasticity_onlooker, only: onlooker
-  use epcont_result_answer, only: answer_type, largest_loss
+  use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: find_body_forces
   use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
   use epcont_result_displacement_gradient, only: find_gradients
@@ -57,8 +58,8 @@ contains
     line = find_contact_line(scene%model)
     call evaluate(scene%model, plan, linear, line, answer, certificate, watch)
     do step = 1, most_refinements
-      if (.not. answer%converged .or. certificate%balanced .and. answer%lost() <= largest_loss .and. &
-          (step == 1 .or. answer%last_correction <= largest_loss)) exit
+      if (.not. answer%converged .or. certificate%balanced .and. answer%lost() <= lost_digits .and. &
+          (step == 1 .or. answer%last_correction <= lost_digits)) exit
       if (step == 1) then
         found = answer
         found_certificate = certificate

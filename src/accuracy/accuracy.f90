@@ -12,6 +12,7 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_weights, only: estimate_weights, weights_of
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: alike, least_difference
   use epcont_contact_basis, only: contact_basis, new_basis
   use epcont_contact_problem, only: contact_problem
   use epcont_contact_scaling, only: scale_problem, scaled_problem
@@ -27,10 +28,6 @@ module epcont_accuracy_accuracy
 
   !> Elements that are named as the worst.
   integer, parameter, public :: worst_count = 5
-  !> Errors that differ by less than this part are equal.
-  real(wp), parameter :: equal = 1.0e-6_wp
-  !> An error in the energy norm up to this is rounding.
-  real(wp), parameter :: no_error = 1.0e-9_wp
   !> A part of the resultant at one node of the mesh from which on it is a point load.
   real(wp), parameter :: concentrated = 0.5_wp
 
@@ -106,7 +103,7 @@ contains
     accuracy%element = field%element
     accuracy%energy_norm = sqrt(part(sum(field%element), sum(field%element) + abs(field%energy)))
     allocate (accuracy%worst(0))
-    if (accuracy%energy_norm > no_error) then
+    if (accuracy%energy_norm > least_difference) then
       accuracy%worst = worst_of(accuracy%element)
     else
       accuracy%energy_norm = 0.0_wp
@@ -179,7 +176,8 @@ contains
       integer, intent(in) :: k
 
       summed = off(k)
-      if (off(k) > no_error*sum(answer%contact%force)) summed = summed + force_of_waves(answer, accuracy, share(:, k))
+      if (off(k) > least_difference*sum(answer%contact%force)) &
+        summed = summed + force_of_waves(answer, accuracy, share(:, k))
     end function summed
   end subroutine assess_forces
 
@@ -204,7 +202,7 @@ contains
     left = .true.
     do k = 1, min(worst_count, size(energy))
       largest = maxval(energy, mask=left)   ! by rounding it may be below zero
-      worst = [worst, findloc(left .and. energy >= largest - equal*abs(largest), .true., dim=1)]
+      worst = [worst, findloc(left .and. energy >= largest - alike*abs(largest), .true., dim=1)]
       left(worst(k)) = .false.
     end do
   end function worst_of

@@ -1,6 +1,7 @@
 !> Which resultants of contact on bodies an error of the mesh can change, and what each pair counts in them.
 module epcont_accuracy_body_shares
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: least_difference
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_result_body_force, only: body_force, shares_of_pairs
@@ -10,8 +11,6 @@ module epcont_accuracy_body_shares
 
   !> Bodies up to which errors are estimated of what each bears: one costs as much as two load cases.
   integer, parameter, public :: most_bodies = 12
-  !> Shares, and motions, that differ by less than this are equal.
-  real(wp), parameter :: equal = 1.0e-9_wp
 
 contains
 
@@ -36,12 +35,13 @@ contains
       do c = merge(2, 1, model%has_rings()), 2
         if (is_free(model, motions, bodies(i)%body, c)) cycle
         one = shares_of_pairs(model, bodies(i)%body, c)
-        if (any(abs(one) > equal) .and. all(bodies(i)%resultant == 0.0_wp) .and. .not. any(abs(one) > equal .and. touching)) then
+        if (any(abs(one) > least_difference) .and. all(bodies(i)%resultant == 0.0_wp) .and. &
+            .not. any(abs(one) > least_difference .and. touching)) then
           column(c, i) = -1
           cycle
         end if
         do k = 1, size(share, 2)
-          if (all(abs(share(:, k) - one) <= equal) .or. all(abs(share(:, k) + one) <= equal)) exit
+          if (all(abs(share(:, k) - one) <= least_difference) .or. all(abs(share(:, k) + one) <= least_difference)) exit
         end do
         if (k > size(share, 2)) share = reshape([share, one], [model%pairs, k])
         column(c, i) = k
@@ -66,10 +66,11 @@ contains
       if (motions%body(m) /= body) cycle
       basis = reshape([(motions%displacement(model, nodes(i), m), i=1, size(nodes))], [2, size(nodes)])
       rest = across(basis)
-      if (norm2(rest) > equal*norm2(basis)) moved = reshape([moved, rest/norm2(rest)], [2, size(nodes), size(moved, 3) + 1])
+      if (norm2(rest) > least_difference*norm2(basis)) &
+        moved = reshape([moved, rest/norm2(rest)], [2, size(nodes), size(moved, 3) + 1])
     end do
     basis = spread(merge(1.0_wp, 0.0_wp, [1, 2] == c), 2, size(nodes))
-    is_free = norm2(across(basis)) <= equal*norm2(basis)
+    is_free = norm2(across(basis)) <= least_difference*norm2(basis)
 
   contains
 

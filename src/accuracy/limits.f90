@@ -8,6 +8,7 @@ module epcont_accuracy_limits
   use epcont_accuracy_contact_stress, only: surface_compliance
   use epcont_accuracy_patches, only: patch_table
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: same_place
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
   use epcont_result_contact_line, only: contact_line, shared
@@ -28,8 +29,6 @@ module epcont_accuracy_limits
   real(wp), parameter :: flush = 1.0e-2_wp
   !> Where there is no line of symmetry.
   real(wp), parameter :: nowhere(2, 2) = huge(1.0_wp)
-  !> Nodes are on a line of symmetry within this part of a side.
-  real(wp), parameter :: on_line = 1.0e-6_wp
   !> Part of a row's weights that says where a side is.
   real(wp), parameter :: least_weight = 1.0e-3_wp
 
@@ -244,7 +243,7 @@ contains
     real(wp), intent(in) :: mirror(2)
     integer, intent(in) :: one, other
 
-    associate (x => model%x(c, [one, other]), tolerance => on_line*norm2(model%x(:, one) - model%x(:, other)))
+    associate (x => model%x(c, [one, other]), tolerance => same_place*norm2(model%x(:, one) - model%x(:, other)))
       along_symmetry = any(abs(mirror - x(1)) <= tolerance .and. abs(mirror - x(2)) <= tolerance)
       if (abs(x(1) - x(2)) > tolerance) return
       along_symmetry = along_symmetry .or. all(model%held(c, [one, other])) .and. .not. any(model%held(3 - c, [one, other])) &

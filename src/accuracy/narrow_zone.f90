@@ -6,6 +6,7 @@ module epcont_accuracy_narrow_zone
   use epcont_accuracy_patches, only: patch_table
   use epcont_accuracy_zone_error, only: zone_error
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: no_effect
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
@@ -26,8 +27,6 @@ module epcont_accuracy_narrow_zone
   real(wp), parameter :: askew = 1.25_wp
   !> A zone whose normals are across what stays the same, but for this part, does not bear it.
   real(wp), parameter :: bears_on = 0.3_wp
-  !> A force, or a resultant, below this part of all forces is none.
-  real(wp), parameter :: no_force = 1.0e-6_wp
 
 contains
 
@@ -57,7 +56,7 @@ contains
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)
 
-    bearing_pairs = count(force > no_force*sum(force))
+    bearing_pairs = count(force > no_effect*sum(force))
     if (.not. model%has_rings() .and. bearing_pairs > 0) bearing_pairs = nint(sum(force)**2/sum(force**2))
     bearing_pairs = max(bearing_pairs, 1)
   end function bearing_pairs
@@ -150,7 +149,7 @@ contains
         is_narrow = bearing_pairs(model, force(pairs)) <= narrow
         do i = 1, size(pairs)
           associate (k => pairs(i), a => model%body(model%pair_node(1, pairs(i))), b => model%body(model%pair_node(2, pairs(i))))
-            call turn_pair(model, k, kept(resultant(:, [a, b]), given(:, [a, b])), no_force*sum(force), &
+            call turn_pair(model, k, kept(resultant(:, [a, b]), given(:, [a, b])), no_effect*sum(force), &
                            merge(0.0_wp, bears_on, is_narrow), along, change)
             if (is_narrow) then
               total = total + askew*force(k)*abs(along)

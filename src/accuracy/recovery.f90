@@ -6,6 +6,7 @@
 module epcont_accuracy_recovery
   use epcont_accuracy_patches, only: patch_table, wide_patch
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: lost_digits
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -15,8 +16,6 @@ module epcont_accuracy_recovery
   integer, parameter :: quadratic = 6
   !> Samples that a patch must have for each number of terms, or it is widened.
   integer, parameter :: least_linear = 4, least_quadratic = 9
-  !> Part of a pivot that must be left for its term to be told from those before.
-  real(wp), parameter :: dependent = 1.0e-8_wp
 
 contains
 
@@ -145,7 +144,7 @@ contains
       mean = mean/size(patch)
       along = along - m(1)*mean
       across = across - m(2)*mean
-      if (determinant > dependent*(xx + yy)**2) &
+      if (determinant > lost_digits*(xx + yy)**2) &
         mean = mean - (m(1)*(yy*along - xy*across) + m(2)*(xx*across - xy*along))/(determinant*size(patch))
       value(:, f) = mean
     end do
@@ -219,7 +218,7 @@ contains
     n = size(matrix, 1)
     diagonal = [(matrix(i, i), i=1, n)]
     do i = 1, n
-      if (matrix(i, i) <= dependent*diagonal(i)) then
+      if (matrix(i, i) <= lost_digits*diagonal(i)) then
         matrix(i, :) = 0.0_wp
         matrix(:, i) = 0.0_wp
         matrix(i, i) = 1.0_wp

@@ -3,6 +3,7 @@
 !> contact forces.
 module epcont_accuracy_unit_motion
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: solved_to
   use epcont_contact_basis, only: contact_basis, respond
   use epcont_contact_scaling, only: scaled_problem
   use epcont_flexibility_flexibility, only: pair_forces
@@ -11,9 +12,6 @@ module epcont_accuracy_unit_motion
   implicit none
   private
   public :: closing_forces, unit_forces, unit_strains
-
-  !> Forces, in scaled units, of which rounding leaves less than this.
-  real(wp), parameter :: rounding = 1.0e-10_wp
 
 contains
 
@@ -52,7 +50,7 @@ contains
     allocate (load(size(problem%kept), size(weight, 2)), source=0.0_wp)
     call respond(basis, opening, load, carried, approach)
     do j = 1, size(weight, 2)
-      if (maxval(abs(carried(:, j))) > rounding*maxval(abs(opening(:, j)))) &
+      if (maxval(abs(carried(:, j))) > solved_to*maxval(abs(opening(:, j)))) &
         force(basis%pairs, j) = carried(:, j)*problem%force_unit
     end do
   end function closing_forces

@@ -10,6 +10,7 @@ module epcont_accuracy_waves
   use epcont_accuracy_limits, only: bend_at, beyond, corner
   use epcont_accuracy_patches, only: patch_table
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: alike
   use epcont_model_model, only: model_type
   use epcont_result_contact_line, only: contact_line, distance
   implicit none
@@ -19,8 +20,6 @@ module epcont_accuracy_waves
   real(wp), parameter :: flattened = acos(-1.0_wp)/16.0_wp
   !> Part of a zone's pairs at which the gap bends by turns from which on that is waves.
   real(wp), parameter :: common = 1.0_wp/3.0_wp
-  !> Curvatures that differ by less than this part of them are equal.
-  real(wp), parameter :: same = 1.0e-6_wp
 
 contains
 
@@ -114,7 +113,7 @@ contains
   pure logical function by_turns(x)
     real(wp), intent(in) :: x(4)
 
-    associate (odd => x([1, 3]), even => x([2, 4]), least => same*maxval(abs(x)))
+    associate (odd => x([1, 3]), even => x([2, 4]), least => alike*maxval(abs(x)))
       by_turns = minval(odd) - maxval(even) > least .or. minval(even) - maxval(odd) > least
     end associate
   end function by_turns

@@ -12,6 +12,7 @@ module epcont_accuracy_zone_error
   use epcont_accuracy_waves, only: find_waves
   use epcont_accuracy_weights, only: estimate_weights, weights_of
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: alike, dependent, least_difference
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line, distance
@@ -27,12 +28,6 @@ module epcont_accuracy_zone_error
   !> Pairs of a side with a middle node: a zone on one, mirrored or not, follows the pressure no better than
   !! one parabola.
   integer, parameter :: one_side = 3
-  !> Pressures that differ by less than this part are the same all over the zone.
-  real(wp), parameter :: uniform = 1.0e-6_wp
-  !> Part of the product of its diagonal that the determinant of the normal equations must be.
-  real(wp), parameter :: dependent = 1.0e-9_wp
-  !> Of the largest pressure: less is rounding.
-  real(wp), parameter :: rounding = 1.0e-9_wp
   !> A pressure that is not below this part of the largest at an end does not fall towards it.
   real(wp), parameter :: falls = 0.5_wp
 
@@ -119,7 +114,7 @@ contains
                                                       + weights%width_energy*energy*zone%half_width
     spacing = 0.0_wp
     if (n > 1) spacing = (s(min(n, peak + 1)) - s(max(1, peak - 1)))/(min(n, peak + 1) - max(1, peak - 1))
-    if (n > 1 .and. .not. ends .and. maxval(p) - minval(p) <= uniform*largest) then
+    if (n > 1 .and. .not. ends .and. maxval(p) - minval(p) <= alike*largest) then
       error%resolution = 0.0_wp
     else
       if (error%half_length > spacing .and. n > 1) error%resolution = spacing/error%half_length   ! of a single pair it stays 1
@@ -142,7 +137,7 @@ contains
                      + ((weights%spacing + weights%square*error%resolution)*error%resolution &
                         + weights%graded*max(0.0_wp, coarse - stretched*error%resolution) &
                         + weights%pressure_energy*energy)*largest
-    if (error%pressure <= rounding*largest) error%pressure = 0.0_wp
+    if (error%pressure <= least_difference*largest) error%pressure = 0.0_wp
   end function estimate_zone
 
   !> Are so many pairs enough to see where the pressure is largest?
@@ -190,7 +185,7 @@ contains
   pure integer function peak_of(pressure, area) result(peak)
     real(wp), intent(in) :: pressure(:), area(:)
 
-    peak = maxloc(area, mask=pressure >= maxval(pressure) - rounding*abs(maxval(pressure)), dim=1)
+    peak = maxloc(area, mask=pressure >= maxval(pressure) - least_difference*abs(maxval(pressure)), dim=1)
   end function peak_of
 
   !> The kind of the first element at a node; of none: the first.

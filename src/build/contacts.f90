@@ -2,6 +2,7 @@
 module epcont_build_contacts
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
+  use epcont_base_tolerances, only: lost_digits
   use epcont_build_reference, only: card_index, check_unique, index_of, resolve
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_pgap
   use epcont_deck_deck, only: deck_type
@@ -13,8 +14,6 @@ module epcont_build_contacts
   private
   public :: build_pairs, build_lines
 
-  !> A system's x-axis out of the plane by more than this is a fault.
-  real(wp), parameter :: flat = 1.0e-8_wp
   integer, parameter :: first_room = 16   !! nodes that a line holds before its array first grows
 
 contains
@@ -73,10 +72,10 @@ contains
         to_c = card%value(a + 6:a + 8, i) - card%value(a:a + 2, i)
         x = 0.0_wp
         if (norm2(z) > 0.0_wp) x = to_c - z*(dot_product(z, to_c)/dot_product(z, z))
-        if (norm2(x) <= flat*norm2(to_c)) then
+        if (norm2(x) <= lost_digits*norm2(to_c)) then
           call found%add_error(card_cord2r, i, 1, ': points A, B and C lie on one line: no x-axis', &
                                'three points that span a plane')
-        else if (abs(x(3)) > flat*norm2(x)) then
+        else if (abs(x(3)) > lost_digits*norm2(x)) then
           call found%add_error(card_cord2r, i, 1, ': its x-axis points off the x-y plane', &
                                'point C in the plane, B - A along z')
         else

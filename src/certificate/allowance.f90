@@ -14,6 +14,7 @@
 !>                          left to speak of
 module epcont_certificate_allowance
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: same_place
   use epcont_geometry_outline_shape, only: outline_shape
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
@@ -24,8 +25,6 @@ module epcont_certificate_allowance
   real(wp), parameter :: factor = 3.0_wp
   !> Where no line says more, sides that turn by more than this meet at a corner.
   real(wp), parameter :: corner_angle = 35.0_wp*acos(-1.0_wp)/180.0_wp
-  !> Lengths that differ by this part are equal.
-  real(wp), parameter :: equal = 1.0e-6_wp
   !> Of a side's length: more than this a slide does not explain, however far it goes.
   real(wp), parameter :: most_by_slide = 0.1_wp
 
@@ -113,7 +112,7 @@ contains
         theta = max(theta, abs(turn))
         covered = covered + self%length(i)
         i = self%beside(way, i)
-        if (covered + self%length(i) > length*(1.0_wp + equal)) exit
+        if (covered + self%length(i) > length*(1.0_wp + same_place)) exit
         turn = turn + self%arch(i)
         theta = max(theta, abs(turn))
       end do

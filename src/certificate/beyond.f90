@@ -1,14 +1,12 @@
 !> Nodes displaced beyond a line at which their body ends: the axis of rings, or a line of symmetry.
 module epcont_certificate_beyond
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: same_place
   use epcont_certificate_findings, only: beyond_place, scene_type
   use epcont_model_model, only: model_type
   implicit none
   private
   public :: look_beyond
-
-  !> Nodes lie on one line within this part of their body.
-  real(wp), parameter :: on_line = 1.0e-6_wp
 
 contains
 
@@ -52,7 +50,7 @@ contains
                  next => outline%node(2, outline%first(part):outline%first(part + 1) - 1))
         x = way*model%x(c, node)
         u = way*displacement(c, node)
-        edge = minval(x) + on_line*(maxval(x) - minval(x))
+        edge = minval(x) + same_place*(maxval(x) - minval(x))
         if (.not. all(x > edge .or. is_held(c, node) .and. abs(u) <= least)) return
         if (all(x > edge .or. way*model%x(c, next) > edge &
                 .or. is_held(3 - c, node) .and. is_held(3 - c, next))) return

@@ -5,6 +5,7 @@
 !> (epcont_certificate_yielding), nodal forces from the work of the stresses on unit displacements.
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: valid_to
   use epcont_certificate_scene, only: scene_type
   use epcont_certificate_unit_strains, only: find_slopes, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
@@ -15,9 +16,6 @@ module epcont_certificate_certificate
   implicit none
   private
   public :: certificate_type, certify
-
-  !> Largest value of each relative figure for an answer to be valid.
-  real(wp), parameter :: exact_tolerance = 1.0e-9_wp
 
   !> The same where factors of single precision have left an error, as a part of that.
   real(wp), parameter :: rounding_errors = 10.0_wp
@@ -49,9 +47,9 @@ module epcont_certificate_certificate
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
     real(wp) :: gap_rounding = 0.0_wp     !! rounding of the gaps of pressed pairs, from their travel [length]
-    real(wp) :: tolerance = exact_tolerance  !! largest value of each relative figure but `off_curve`
-    real(wp) :: curve_tolerance = exact_tolerance  !! largest `off_curve` that the iteration was asked for
-    real(wp) :: off_curve_limit = exact_tolerance  !! of a valid answer: rounding may add as much again
+    real(wp) :: tolerance = valid_to  !! largest value of each relative figure but `off_curve`
+    real(wp) :: curve_tolerance = valid_to  !! largest `off_curve` that the iteration was asked for
+    real(wp) :: off_curve_limit = valid_to  !! of a valid answer: rounding may add as much again
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
     logical :: valid = .false.            !! that one too
     type(scene_type) :: scene             !! whether bodies pass through each other, where all else is right
@@ -92,7 +90,7 @@ contains
     real(wp), allocatable :: load(:, :)
     real(wp) :: forces, largest_force, length
 
-    certificate%tolerance = max(exact_tolerance, rounding_errors*answer%rounding_error)
+    certificate%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
     load = answer%load_factor*model%load
     allocate (balance%residual(2, model%nodes), balance%element_force(model%nodes), source=0.0_wp)
     call add_elements(model, answer, balance, certificate)

@@ -2,6 +2,7 @@
 !> the other body the node stands, and how far the two sides have slid along each other.
 module epcont_certificate_pressed
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: no_effect
   use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_if
   use epcont_certificate_meeting, only: keep, meet, motion_at, part_along, point_on, point_type, search_type
   use epcont_geometry_outline_shape, only: near_place
@@ -11,8 +12,6 @@ module epcont_certificate_pressed
   private
   public :: look_at_pairs
 
-  !> A pair presses if its force is more than this part of the largest.
-  real(wp), parameter :: pressing = 1.0e-6_wp
   !> Sides that slide by less than this part of the longer one carry what they carried where they were drawn;
   !! so do bodies that slide by less than that part of the smaller one. A node may stand as far beside the
   !! other body as that.
@@ -31,7 +30,7 @@ contains
     integer :: k, side, side_of(model%nodes)
 
     if (model%pairs == 0) return
-    least = pressing*maxval(force)
+    least = no_effect*maxval(force)
     side_of = 0
     do side = 1, model%body_outline%sides
       associate (node => model%body_outline%node(:, side))

@@ -7,16 +7,13 @@
 !> motion: q comes out larger by gamma p.
 module epcont_contact_basis
   use epcont_base_kinds, only: wp
-  use epcont_contact_scaling, only: negligible, scaled_problem
+  use epcont_base_tolerances, only: lost_digits, negligible
+  use epcont_contact_scaling, only: scaled_problem
   use epcont_linalg_dense, only: add_product, cholesky_factor, cholesky_solve, pivoted_cholesky
   implicit none
   private
   public :: contact_basis, new_basis, hold_motions, respond
   public :: regular_flexibility, rank_tolerance, weight_of_motions
-
-  !> Pivots of F_g, as parts of the largest flexibility, from which on no force depends on the others whatever
-  !! the order. It chooses between two factors of one set alone: tests/contact pass from 1e-10 to 1e-6.
-  real(wp), parameter :: clearly_definite = 1.0e-8_wp
 
   !> A set of pairs in contact whose forces are unique, and the factors that give them.
   type :: contact_basis
@@ -44,7 +41,7 @@ contains
     call cholesky_factor(basis%factor, info)
     if (info == 0) then
       associate (pivots => [(basis%factor(k, k)**2, k=1, size(basis%pairs))])
-        if (any(pivots < clearly_definite*largest_flexibility(problem))) info = 1
+        if (any(pivots < lost_digits*largest_flexibility(problem))) info = 1
       end associate
     end if
     if (info /= 0) then   ! the order of pivots, which takes longer, tells who depends on whom

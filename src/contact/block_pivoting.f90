@@ -11,9 +11,10 @@
 !> used up, it says so, and RULE CONRY has the problem.
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: solved_to
   use epcont_contact_block_factor, only: begin_blocks, change_set
-  use epcont_contact_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, &
-    sign_tolerance, solve_set
+  use epcont_contact_contact_state, only: contact_state, fresh_state, guess_tolerance, &
+                                          has_right_signs, solve_set
   use epcont_contact_problem, only: contact_solution, contact_solved
   use epcont_contact_scaling, only: scaled_problem
   implicit none
@@ -62,7 +63,7 @@ contains
     end if
     if (.not. found) then
       closed = scaled%first_touching
-      call exchange_blocks(scaled, first_stride(size(closed)), sign_tolerance, solution, closed, state, found)
+      call exchange_blocks(scaled, first_stride(size(closed)), solved_to, solution, closed, state, found)
     end if
     if (found) solution%state = contact_solved
   end subroutine find_by_blocks

@@ -1,6 +1,7 @@
 !> A set of contacts with its solution at full load, fresh from F and A, and the test of its signs.
 module epcont_contact_contact_state
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: cancelled, solved_to
   use epcont_contact_basis, only: contact_basis, new_basis, respond
   use epcont_contact_scaling, only: scaled_problem
   implicit none
@@ -10,11 +11,7 @@ module epcont_contact_contact_state
   !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can
   !! be asked where the flexibility is badly conditioned (1e10: tests/contact/hard_problem), and what is asked
   !! of a guess, from which better sets may be found.
-  real(wp), parameter, public :: sign_tolerance = 1.0e-10_wp, guess_tolerance = 1.0e-12_wp
-  !> Part of the magnitudes that a sum is made of that rounding leaves where it should cancel: some hundred
-  !! terms, each rounded once (`rounding` of the flexibility is the same). One rounding is too little
-  !! (tests/contact/test_random).
-  real(wp), parameter, public :: noise = 100*epsilon(1.0_wp)
+  real(wp), parameter, public :: guess_tolerance = 1.0e-12_wp
 
   !> Without forces where the basis is not sound.
   type :: contact_state
@@ -97,7 +94,7 @@ contains
     real(wp) :: force_tolerance, gap_noise
 
     force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
-    gap_noise = noise*maxval([abs(scaled%gap), 0.0_wp])
+    gap_noise = cancelled*maxval([abs(scaled%gap), 0.0_wp])
     right = state%basis%sound .and. all(state%force >= -force_tolerance) .and. &
         all(state%gap >= -(force_tolerance + gap_noise))
     if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return

@@ -8,7 +8,8 @@
 !> the second, bounded since g^ >= 0, the statically determinate set of pairs that closes first.
 module epcont_contact_equilibrium
   use epcont_base_kinds, only: wp
-  use epcont_contact_scaling, only: negligible, scaled_problem
+  use epcont_base_tolerances, only: dependent, negligible
+  use epcont_contact_scaling, only: scaled_problem
   implicit none
   private
   public :: rigid_start, find_rigid_start, can_carry
@@ -20,12 +21,6 @@ module epcont_contact_equilibrium
     logical, allocatable :: redundant(:)   !! motions neither resisted nor loaded [m]
     real(wp), allocatable :: escape(:)     !! y with P'y > 0, A y <= 0, if not balanced [m]
   end type rigid_start
-
-  !> Part of the largest load along a motion that phase 1 may leave uncarried: its rounding, far below what a
-  !! deck's digits leave (tests/contact pass from 1e-11 to 1e-7, as they do with the next).
-  real(wp), parameter :: balance_tolerance = 1.0e-9_wp
-  !> A row whose entries are all below this, with A and P of size one, depends on the others.
-  real(wp), parameter :: dependence_tolerance = 1.0e-9_wp
 
   !> Rows: equations of equilibrium, with the signs that make P >= 0. Columns: forces 1..n, then one
   !! artificial force a row.
@@ -75,7 +70,7 @@ contains
   pure logical function is_balanced(lp) result(balanced)
     type(programme), intent(in) :: lp
 
-    balanced = sum(lp%value, mask=lp%basic > lp%n) <= balance_tolerance
+    balanced = sum(lp%value, mask=lp%basic > lp%n) <= dependent
   end function is_balanced
 
   !> Phase 1: the artificial forces carry all of the load and cost one a unit.
@@ -211,7 +206,7 @@ contains
     do i = 1, size(lp%basic)
       if (lp%basic(i) <= lp%n) cycle
       lp%value(i) = 0.0_wp
-      column = first_largest(abs(lp%entry(i, :lp%n)), dependence_tolerance)
+      column = first_largest(abs(lp%entry(i, :lp%n)), dependent)
       if (column > 0) then
         call exchange(lp, i, column)
       else

@@ -1,9 +1,9 @@
 !> The simplex on the load not carried yet: follow the contact as the load factor t grows from 0 to 1.
 module epcont_contact_loading
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: negligible, solved_to
   use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
   use epcont_contact_ratio_test, only: step_type, test_ratios
-  use epcont_contact_scaling, only: negligible
   use epcont_contact_tableau, only: contact_tableau, load_factor, pivot
   implicit none
   private
@@ -13,9 +13,6 @@ module epcont_contact_loading
   integer, parameter, public :: path_complete = 0  !! all of the load is carried
   integer, parameter, public :: path_ray = 1       !! the load cannot grow and nothing gives way
   integer, parameter, public :: path_endless = 2   !! too many pivots: rounding has broken the order of ties
-
-  !> A load factor this near to 1 is all of the load: as near as signs can be asked for (`sign_tolerance`).
-  real(wp), parameter :: load_tolerance = 1.0e-10_wp
 
 contains
 
@@ -60,9 +57,9 @@ contains
     type(contact_tableau), intent(in) :: tableau
     type(step_type), intent(in) :: step
 
-    complete = step%load_rate > 0.0_wp .and. step%full_load*(1.0_wp - load_tolerance) <= step%ratio
+    complete = step%load_rate > 0.0_wp .and. step%full_load*(1.0_wp - solved_to) <= step%ratio
     associate (row => tableau%place(load_factor))
-      if (row > 0) complete = complete .or. tableau%value(row) >= 1.0_wp - load_tolerance
+      if (row > 0) complete = complete .or. tableau%value(row) >= 1.0_wp - solved_to
     end associate
   end function is_complete
 

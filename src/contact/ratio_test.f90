@@ -1,7 +1,7 @@
 !> How far the entering variable can grow, and which basic variable stops it.
 module epcont_contact_ratio_test
   use epcont_base_kinds, only: wp
-  use epcont_contact_scaling, only: negligible
+  use epcont_base_tolerances, only: negligible
   use epcont_contact_tableau, only: contact_tableau, entries_of_column, entries_of_rows, load_factor
   implicit none
   private

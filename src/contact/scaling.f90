@@ -10,15 +10,11 @@
 !> because translations and rotations have different units.
 module epcont_contact_scaling
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: negligible
   use epcont_contact_problem, only: contact_problem, contact_solution
   implicit none
   private
   public :: scaled_problem, scale_problem, drop_motions, restore_units
-
-  !> In scaled units, where what drives the contact is of size one, an entry up to this is zero, and ratios
-  !! this near are tied. Between 1e-9, which takes forces for unique that are not (tests/contact/
-  !! test_uniqueness), and 1e-13, which takes rounding for forces (test_answers).
-  real(wp), parameter, public :: negligible = 1.0e-11_wp
 
   !> The problem in its own units, over the motions that are kept.
   type :: scaled_problem

@@ -10,25 +10,23 @@
 !> flexibility of its own.
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: cancelled, negligible, null_component, solved_to
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, &
-    has_right_signs, noise, sign_tolerance, solve_set
+                                          has_right_signs, solve_set
   use epcont_contact_loading, only: follow_load, path_complete, path_ray
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
-  use epcont_contact_scaling, only: negligible, scaled_problem
+  use epcont_contact_scaling, only: scaled_problem
   use epcont_contact_tableau, only: contact_tableau, new_tableau
   implicit none
   private
   public :: find_contacts
 
-  !> Part of its largest force by which a ray may miss F z = 0 and A'z = 0: it comes off the end of a long
-  !! path (tests/contact pass from 1e-9 to 1e-5).
-  real(wp), parameter, public :: ray_tolerance = 1.0e-7_wp
   !> Pivots allowed for each unknown before rounding is taken to have broken the path; sound ones were seen to
   !! take up to 2.
   integer, parameter :: pivots_per_unknown = 4
   !> Flexibility of its own, as a part of the largest, that tells pairs apart whose forces depend on each
-  !! other; it opens gaps by less than `sign_tolerance` (tests/contact pass from 1e-12 to 1e-8).
+  !! other; it opens gaps by less than `solved_to` (tests/contact pass from 1e-12 to 1e-8).
   real(wp), parameter :: own_flexibility = 1.0e-10_wp
   !> Fresh starts before the problem is given up.
   integer, parameter :: restart_limit = 10
@@ -54,7 +52,7 @@ contains
     do attempt = 0, restart_limit
       if (.not. state%basis%sound) exit   ! the motions are held too badly to be computed
       solution%state = contact_solved
-      if (has_right_signs(scaled, state, merge(guess_tolerance, sign_tolerance, attempt == 0))) return
+      if (has_right_signs(scaled, state, merge(guess_tolerance, solved_to, attempt == 0))) return
       solution%restarts = attempt
       call follow_load_from(scaled, state, lifted, solution, outcome, closed, ray)
       if (outcome == path_ray .and. is_overlap(scaled, ray)) then
@@ -64,7 +62,7 @@ contains
       if (outcome == path_complete .and. mod(attempt, 2) == 0) then
         state = fresh_state(scaled, closed)
         lifted = max(basic_values(state), 0.0_wp)
-        if (has_right_signs(scaled, state, sign_tolerance)) return
+        if (has_right_signs(scaled, state, solved_to)) return
       else
         state = fresh_state(scaled, scaled%first_touching)
         lifted = lifted_apart(state, attempt)
@@ -73,7 +71,7 @@ contains
       call exchange_afresh(scaled, attempt*own_flexibility, solution, state, found)
       if (found) return
     end do
-    if (.not. has_right_signs(scaled, state, sign_tolerance)) solution%state = contact_stalled
+    if (.not. has_right_signs(scaled, state, solved_to)) solution%state = contact_stalled
   end subroutine find_contacts
 
   !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless
@@ -101,7 +99,7 @@ contains
     closed = scaled%first_touching
     closed(better%basis%pairs) = .true.
     better = fresh_state(scaled, closed)
-    found = has_right_signs(scaled, better, sign_tolerance)
+    found = has_right_signs(scaled, better, solved_to)
     if (.not. found) return
     solution%pivots = trial%pivots
     solution%state = contact_solved
@@ -157,12 +155,12 @@ contains
     real(wp) :: largest
 
     largest = maxval([abs(ray), 0.0_wp])
-    overlap = largest > 0.0_wp .and. all(ray >= -ray_tolerance*largest)
+    overlap = largest > 0.0_wp .and. all(ray >= -null_component*largest)
     if (.not. overlap) return
     ! A little flexibility is some, too, where it is no rounding.
-    nothing = max(ray_tolerance*matmul(abs(scaled%flexibility), abs(ray)), noise*largest)
+    nothing = max(null_component*matmul(abs(scaled%flexibility), abs(ray)), cancelled*largest)
     overlap = all(abs(matmul(scaled%flexibility, ray)) <= nothing) &
-              .and. all(abs(matmul(ray, scaled%motion)) <= ray_tolerance*largest) &
+              .and. all(abs(matmul(ray, scaled%motion)) <= null_component*largest) &
               .and. dot_product(scaled%gap, ray) < -negligible*largest
   end function is_overlap
 end module epcont_contact_simplex

@@ -2,22 +2,19 @@
 !> units.
 module epcont_contact_solver
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component
   use epcont_contact_basis, only: new_basis
   use epcont_contact_block_pivoting, only: find_by_blocks
-  use epcont_contact_contact_state, only: contact_state, gaps_under, noise, solve_set, terms_of_gaps
+  use epcont_contact_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
     contact_solution, contact_stalled
-  use epcont_contact_scaling, only: drop_motions, negligible, restore_units, scale_problem, scaled_problem
-  use epcont_contact_simplex, only: find_contacts, ray_tolerance
+  use epcont_contact_scaling, only: drop_motions, restore_units, scale_problem, scaled_problem
+  use epcont_contact_simplex, only: find_contacts
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
   implicit none
   private
   public :: solve_contact
-
-  !> What holds a motion by less than this part of the largest force, the digits of a deck do: eight in its
-  !! short fields (1e-10 takes them for a support: tests/contact/test_answers).
-  real(wp), parameter :: weak = 1.0e-8_wp
 
 contains
 
@@ -82,7 +79,7 @@ contains
     if (solution%by_blocks) return
     solution = trial
     if (solution%state == contact_overlap) then
-      solution%overlapping = ray > ray_tolerance*maxval(ray)
+      solution%overlapping = ray > null_component*maxval(ray)
     else
       call settle(scaled, state, solution)
     end if
@@ -121,7 +118,7 @@ contains
     pressed = state%force > zero
     solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
     call share_equally(scaled, solution%indeterminate, state%force)
-    pressed = state%force > weak*maxval([state%force, 1.0_wp])
+    pressed = state%force > lost_digits*maxval([state%force, 1.0_wp])
     solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)
     call restore_units(scaled, state%force, state%gap, state%approach, solution)
   end subroutine settle
@@ -137,10 +134,10 @@ contains
     logical, allocatable :: moving(:), pressed(:)
 
     do
-      pressed = state%force > noise
+      pressed = state%force > cancelled
       where (.not. pressed) state%force = 0.0_wp
       terms = terms_of_gaps(scaled, state)
-      moving = abs(state%approach) > noise*maxval([terms(state%basis%pairs), noise])
+      moving = abs(state%approach) > cancelled*maxval([terms(state%basis%pairs), cancelled])
       if (all(moving) .and. all(pressed(state%basis%pairs))) return
       where (.not. moving) state%approach = 0.0_wp
       terms = terms_of_gaps(scaled, state)

@@ -1,17 +1,15 @@
 !> What the contact conditions leave open: forces that can be shared in many ways, motions that nothing holds.
 module epcont_contact_uniqueness
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: negligible, null_component
   use epcont_contact_basis, only: contact_basis, new_basis, rank_tolerance, regular_flexibility
   use epcont_contact_equilibrium, only: can_carry
-  use epcont_contact_scaling, only: negligible, scaled_problem
+  use epcont_contact_scaling, only: scaled_problem
   use epcont_linalg_dense, only: add_product, cholesky_solve, null_space, pivoted_cholesky
   implicit none
   private
   public :: find_indeterminate_forces, share_equally, find_free_motions
 
-  !> Components of a null vector (largest about 1) up to this are zero: below 1e-9 rounding counts as a force
-  !! that can change (tests/contact/test_uniqueness).
-  real(wp), parameter :: null_tolerance = 1.0e-7_wp
   !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this is
   !! allowed for.
   real(wp), parameter :: amplification = 100.0_wp
@@ -49,7 +47,7 @@ contains
     indeterminate(idle(growing)) = .true.
     loose = null_space(coupling(growing, growing), zero)
     change = matmul(answer(:, growing), loose)
-    indeterminate(basis%pairs) = [(any(abs(change(k, :)) > null_tolerance), k=1, size(change, 1))]
+    indeterminate(basis%pairs) = [(any(abs(change(k, :)) > null_component), k=1, size(change, 1))]
   end function find_indeterminate_forces
 
   !> The j for which some z >= 0 with M z = 0 has z_j > 0.
@@ -116,10 +114,10 @@ contains
     allocate (free(size(problem%resultant)), source=.false.)
     holding = pack([(k, k=1, size(pressed))], pressed)
     idle = pack([(k, k=1, size(pressed))], touching .and. .not. pressed)
-    loose = null_space(problem%motion(holding, :), null_tolerance)
+    loose = null_space(problem%motion(holding, :), null_component)
     closing = matmul(problem%motion(idle, :), loose)
     do j = 1, size(free)
-      if (all(abs(loose(j, :)) <= null_tolerance)) cycle
+      if (all(abs(loose(j, :)) <= null_component)) cycle
       free(j) = .not. can_carry(closing, loose(j, :))
       if (.not. free(j)) free(j) = .not. can_carry(closing, -loose(j, :))
     end do

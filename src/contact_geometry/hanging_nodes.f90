@@ -4,15 +4,13 @@
 module epcont_contact_geometry_hanging_nodes
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
+  use epcont_base_tolerances, only: coincident
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
   use epcont_model_finding, only: and_more, findings, of_element, of_node
   use epcont_model_model, only: model_type
   implicit none
   private
   public :: warn_of_hanging_nodes
-
-  !> Nodes closer to a side than this part of it are on it.
-  real(wp), parameter :: coincident = 1.0e-4_wp
 
 contains
 

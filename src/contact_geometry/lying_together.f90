@@ -2,6 +2,7 @@
 !> these: a contact, or a common node, that was forgotten.
 module epcont_contact_geometry_lying_together
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: coincident
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
   use epcont_model_finding, only: and_more, findings, of_node
@@ -9,9 +10,6 @@ module epcont_contact_geometry_lying_together
   implicit none
   private
   public :: warn_of_lying_together
-
-  !> Nodes closer than this part of a side are at one place.
-  real(wp), parameter :: coincident = 1.0e-4_wp
 
   !> A node and the one of another body at its place.
   type :: twin_type

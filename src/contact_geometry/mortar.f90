@@ -10,6 +10,7 @@
 module epcont_contact_geometry_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
+  use epcont_base_tolerances, only: no_area, rounded_off
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_geometry_boundary_line, only: beyond
   use epcont_geometry_boxed_line, only: boxed_line
@@ -33,8 +34,6 @@ module epcont_contact_geometry_mortar
   integer, parameter :: gauss_points = 3
   real(wp), parameter :: gauss_place(3) = 0.5_wp + 0.5_wp*[-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
   real(wp), parameter :: gauss_weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/18.0_wp
-  !> Weights below this are rounding.
-  real(wp), parameter :: rounding = 1.0e-12_wp
   !> Normals that differ by less (cosine) along a side may be those of one curve: 35 degrees.
   real(wp), parameter :: one_curve = 0.816_wp
 
@@ -44,9 +43,6 @@ module epcont_contact_geometry_mortar
   real(wp), parameter :: parallel = 0.94_wp
   !> Normals whose cosine is less, on either side of a node, meet at a corner there: more than 9 degrees.
   real(wp), parameter :: smooth = 0.988_wp
-  !> A corner of rings' curved side on the axis has no area but for rounding and curvature; its weights do not
-  !! need one.
-  real(wp), parameter :: no_area = 1.0e-3_wp
 
   !> A part of the weight of a node in a row.
   type :: weight_part
@@ -376,9 +372,9 @@ contains
           i = i + 1
         end do
         k = n
-        n = first - 1 + count(abs(weight(first:k)) > rounding)
-        node(first:n) = pack(node(first:k), abs(weight(first:k)) > rounding)
-        weight(first:n) = pack(weight(first:k), abs(weight(first:k)) > rounding)
+        n = first - 1 + count(abs(weight(first:k)) > rounded_off)
+        node(first:n) = pack(node(first:k), abs(weight(first:k)) > rounded_off)
+        weight(first:n) = pack(weight(first:k), abs(weight(first:k)) > rounded_off)
       end do
     end associate
     rows%start(size(rows%start)) = n + 1

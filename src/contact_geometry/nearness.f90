@@ -5,6 +5,7 @@
 !> displacements.
 module epcont_contact_geometry_nearness
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: no_gap
   use epcont_contact_geometry_faces, only: faces_type, find_faces
   use epcont_contact_geometry_line_pairs, only: add_pairs, forget_pairs
   use epcont_geometry_boundary_line, only: boundary_line
@@ -16,8 +17,6 @@ module epcont_contact_geometry_nearness
   private
   public :: enter_nodes_that_came_near
 
-  !> A gap below this part of the scene is none.
-  real(wp), parameter :: least = 1.0e-8_wp
   !> A node between those of the other line that stand on its own may pass through by so many times what
   !! chords of curves and
   !> of bent sides make.
@@ -121,7 +120,7 @@ contains
         face = find_nearest(contact%master, obstacles, node_of(contact%slave, side, which), moved%size)
         if (.not. face%place%found) cycle
         call find_gap(contact%slave%segment(which, side), contact%master, face, moved%displacement, gap, slip)
-        if (gap < -least*moved%size .or. any(moved%holds(contact%slave%segment(:, side)))) &
+        if (gap < -no_gap*moved%size .or. any(moved%holds(contact%slave%segment(:, side)))) &
           search = max(search, further*abs(face%place%gap))
       end associate
     end do
@@ -167,7 +166,7 @@ contains
     logical :: smooth
     real(wp) :: angle
 
-    left_open = least*moved%size
+    left_open = no_gap*moved%size
     associate (slave => contact%slave, master => contact%master, displacement => moved%displacement)
       smooth = which == 3 .or. .not. master%corner(min(which, 2), side)
       if (smooth .and. all(moved%holds(slave%segment(:, face%segment)) .or. &

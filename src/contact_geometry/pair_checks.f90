@@ -3,6 +3,7 @@ module epcont_contact_geometry_pair_checks
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
+  use epcont_base_tolerances, only: least_difference, no_effect
   use epcont_geometry_plane, only: cross_product
   use epcont_model_finding, only: and_more, findings, of_couple, of_element, of_node, of_pair
   use epcont_model_model, only: model_type
@@ -12,10 +13,6 @@ module epcont_contact_geometry_pair_checks
 
   !> A normal within 60 degrees of a boundary's own goes its way.
   real(wp), parameter :: same_way = 0.5_wp
-  !> Sides around a node whose normals cancel to this part of their lengths are all round it.
-  real(wp), parameter :: closed = 1.0e-6_wp
-  !> A component of a normal below this is rounding.
-  real(wp), parameter :: no_component = 1.0e-9_wp
 
 contains
 
@@ -199,7 +196,7 @@ contains
       end associate
     end do
     do k = 1, model%nodes
-      if (norm2(normal(:, k)) <= closed*length(k)) normal(:, k) = 0.0_wp
+      if (norm2(normal(:, k)) <= no_effect*length(k)) normal(:, k) = 0.0_wp
       normal(:, k) = normal(:, k)/max(norm2(normal(:, k)), tiny(1.0_wp))
     end do
   end function boundary_normals
@@ -237,7 +234,7 @@ contains
     is_held = .false.
     do i = model%row_start(pair), model%row_start(pair + 1) - 1
       do c = 1, 2
-        if (abs(model%normal(c, pair)) <= no_component) cycle
+        if (abs(model%normal(c, pair)) <= least_difference) cycle
         associate (leader => model%leader(c, model%row_node(i)))
           if (.not. model%held(c, leader)) return
           gap = gap + model%row_weight(i)*model%normal(c, pair)*model%prescribed(c, leader)

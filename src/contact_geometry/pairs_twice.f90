@@ -3,6 +3,7 @@
 module epcont_contact_geometry_pairs_twice
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: rounded_off
   use epcont_model_finding, only: and_more, findings, of_couple, of_pair
   use epcont_model_model, only: model_type
   implicit none
@@ -14,8 +15,6 @@ module epcont_contact_geometry_pairs_twice
   real(wp), parameter :: parallel = 0.999_wp
   !> The normal of a CGAP is that of a line, which bends from node to node, within 45 degrees.
   real(wp), parameter :: one_face = sqrt(0.5_wp)
-  !> Gaps that differ by less than this part of them, and of how far apart the nodes are, differ by rounding.
-  real(wp), parameter :: equal = 1.0e-12_wp
   character(len=*), parameter :: shared = ': forces would be shared between the two'
 
 contains
@@ -83,7 +82,7 @@ contains
         if (all(model%pair_node(:, other) == [b, a])) way = -1
         if (way*dot_product(model%normal(:, other), model%normal(:, k)) < parallel) cycle
         apart = norm2(model%x(:, b) - model%x(:, a)) + abs(model%initial_gap(k))
-        if (abs(model%initial_gap(other) - model%initial_gap(k)) <= equal*apart) return
+        if (abs(model%initial_gap(other) - model%initial_gap(k)) <= rounded_off*apart) return
       end do
     end associate
     other = 0

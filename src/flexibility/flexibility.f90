@@ -2,6 +2,7 @@
 module epcont_flexibility_flexibility
   use epcont_assembly_stiffness, only: body_stiffness
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: cancelled
   use epcont_linalg_assembled, only: sparse_rows
   use epcont_linalg_dense, only: cholesky_solve
   use epcont_model_model, only: model_type
@@ -11,10 +12,6 @@ module epcont_flexibility_flexibility
   private
   public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
     motion_resultants, pair_forces
-
-  !> Part of the magnitudes that a sum is made of that rounding leaves where it should cancel: some hundred
-  !! terms, each rounded once (`noise` of the contact is the same).
-  real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
 
   !> One body's part of F, between the pairs that it gives way at.
   type :: body_flexibility
@@ -165,7 +162,7 @@ contains
         end do
         columns(k, m) = -model%opening(k, moved)
         associate (weight => model%row_weight(first:model%row_start(k + 1) - 1))
-          if (abs(columns(k, m)) <= rounding*sum(abs(weight)*norm2(moved, dim=1))) columns(k, m) = 0.0_wp
+          if (abs(columns(k, m)) <= cancelled*sum(abs(weight)*norm2(moved, dim=1))) columns(k, m) = 0.0_wp
         end associate
         deallocate (moved)
       end do
@@ -193,7 +190,7 @@ contains
         resultant(m) = resultant(m) + dot_product(moved, load)
         all_loads = all_loads + norm2(moved)*norm2(load)
       end do
-      if (abs(resultant(m)) <= rounding*all_loads) resultant(m) = 0.0_wp
+      if (abs(resultant(m)) <= cancelled*all_loads) resultant(m) = 0.0_wp
     end do
   end function motion_resultants
 end module epcont_flexibility_flexibility

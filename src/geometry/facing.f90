@@ -5,6 +5,7 @@
 !> one too.
 module epcont_geometry_facing
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: coordinate_rounding, least_difference
   use epcont_geometry_boundary_line, only: boundary_line, facing_place
   use epcont_geometry_boxed_line, only: boxed_line
   use epcont_geometry_plane, only: cross_product
@@ -18,10 +19,6 @@ module epcont_geometry_facing
   real(wp), parameter :: against = -0.05_wp
   !> Normals that differ by less (cosine) are those of one face: 10 degrees.
   real(wp), parameter, public :: same_face = 0.985_wp
-  !> Gaps that differ by less than this part of the search are equal: at a corner the better normal decides.
-  real(wp), parameter :: equal = 1.0e-9_wp
-  !> A gap below so many roundings of the coordinates is none.
-  real(wp), parameter :: roundings = 16.0_wp*epsilon(1.0_wp)
   !> Most points have the line before their eyes: it is looked for within search/widening**rounds first.
   real(wp), parameter :: widening = 8.0_wp
   integer, parameter :: rounds = 3
@@ -101,11 +98,11 @@ contains
       within = search/widening**round
       call look_at(line, line%in_box(from%x - within, from%x + within), obstacles, who, best, second)
       ! Sides that were left out are farther than `within`.
-      if (best%place%found .and. abs(best%place%gap) + more < within - 2.0_wp*equal*search) exit
+      if (best%place%found .and. abs(best%place%gap) + more < within - 2.0_wp*least_difference*search) exit
     end do
     if (second%place%found .and. abs(second%place%gap) > abs(best%place%gap) + more) second = facing_type()
-    if (abs(best%place%gap) <= roundings*maxval(abs(from%x))) best%place%gap = 0.0_wp
-    if (abs(second%place%gap) <= roundings*maxval(abs(from%x))) second%place%gap = 0.0_wp
+    if (abs(best%place%gap) <= coordinate_rounding*maxval(abs(from%x))) best%place%gap = 0.0_wp
+    if (abs(second%place%gap) <= coordinate_rounding*maxval(abs(from%x))) second%place%gap = 0.0_wp
     best%same_way = best%same_way .and. .not. best%place%found
   end subroutine find_facing
 
@@ -129,13 +126,13 @@ contains
       associate (found => faces(n + 1))
         found%segment = sides(k)
         found%place = line%face(sides(k), from%x)
-        if (.not. found%place%found .or. abs(found%place%gap) > from%search*(1.0_wp + equal)) cycle
+        if (.not. found%place%found .or. abs(found%place%gap) > from%search*(1.0_wp + least_difference)) cycle
         if (dot_product(found%place%normal, from%outward) >= against) then
           same_way = same_way .or. dot_product(found%place%normal, from%outward) > -against
           cycle
         end if
         if (found%place%at_corner .and. .not. from%at_tip) call press_corner(from, found%place)
-        if (found%place%gap < -max(equal*from%search, roundings*maxval(abs(from%x)))) then
+        if (found%place%gap < -max(least_difference*from%search, coordinate_rounding*maxval(abs(from%x)))) then
           if (.not. goes_on(line, sides(k), from)) cycle
         end if
         if (is_blocked(obstacles, from, found%place, line%chord_length(sides(k)), rise_of(line, sides(k)))) &
@@ -200,11 +197,11 @@ contains
 
     by = abs(other%place%gap) - abs(one%place%gap)
     is_better = by > 0.0_wp
-    if (abs(by) > equal*from%search) return
+    if (abs(by) > least_difference*from%search) return
     by = dot_product(other%place%normal, from%outward) - dot_product(one%place%normal, from%outward)
     is_better = by > 0.0_wp
-    if (abs(by) > equal) return
-    is_better = away(one) < away(other)*(1.0_wp - equal)
+    if (abs(by) > least_difference) return
+    is_better = away(one) < away(other)*(1.0_wp - least_difference)
 
   contains
 
@@ -220,8 +217,8 @@ contains
     type(looking_point), intent(in) :: from
     type(facing_type), intent(in) :: one, other
 
-    are_equal = abs(abs(one%place%gap) - abs(other%place%gap)) <= equal*from%search .and. &
-                abs(dot_product(one%place%normal - other%place%normal, from%outward)) <= equal
+    are_equal = abs(abs(one%place%gap) - abs(other%place%gap)) <= least_difference*from%search .and. &
+                abs(dot_product(one%place%normal - other%place%normal, from%outward)) <= least_difference
   end function are_equal
 
   !> Of two sides that a corner faces equally well at their corner none is the better one: between their

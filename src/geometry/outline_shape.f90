@@ -2,6 +2,7 @@
 !> has it inside. Sides of six-node elements are the parabolas that they are.
 module epcont_geometry_outline_shape
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: least_difference
   use epcont_geometry_box_tree, only: box_tree, most_waiting, new_box_tree
   use epcont_geometry_edge, only: edge_tangent
   use epcont_geometry_outline, only: outline_type
@@ -9,10 +10,6 @@ module epcont_geometry_outline_shape
   private
   public :: outline_shape, near_place, new_outline_shape
 
-  !> Distances that differ by less than this part are equal: of two edges of a slit, either may be met.
-  real(wp), parameter :: equal = 1.0e-9_wp
-  !> A place nearer to a node than this part of its side is at the node.
-  real(wp), parameter :: at_node = 1.0e-9_wp
   !> Places of a curved side that are tried first, and steps of Newton's method from the nearest of them.
   integer, parameter :: tried = 4, most_steps = 8
 
@@ -137,8 +134,8 @@ contains
         if (tree%item(i) > 0) then
           place = self%near_side(self%outline%first(part) + tree%item(i) - 1, point)
           if (place%side == best%side) cycle
-          if (place%distance > best%distance*(1.0_wp + equal)) cycle
-          if (place%distance >= best%distance*(1.0_wp - equal)) then
+          if (place%distance > best%distance*(1.0_wp + least_difference)) cycle
+          if (place%distance >= best%distance*(1.0_wp - least_difference)) then
             if (is_inside(self, best, point) .or. .not. is_inside(self, place, point)) cycle
           end if
           best = place
@@ -174,8 +171,8 @@ contains
       place%s = min(1.0_wp, max(0.0_wp, place%s))
     end associate
     if (self%outline%node(3, side) > 0) place%s = near_curve(self, side, point)
-    if (place%s < at_node) place%s = 0.0_wp
-    if (1.0_wp - place%s < at_node) place%s = 1.0_wp
+    if (place%s < least_difference) place%s = 0.0_wp
+    if (1.0_wp - place%s < least_difference) place%s = 1.0_wp
     place%x = self%at(side, place%s)
     place%distance = norm2(point - place%x)
   end function near_side

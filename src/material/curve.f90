@@ -6,13 +6,11 @@
 !> which makes e = eps_i (1 - (1 - 2 nu) sigma_s/(3 sigma_i)): a quadratic for eps_i on each segment.
 module epcont_material_curve
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: least_difference
   use epcont_model_controls, only: uniaxial_curve
   implicit none
   private
   public :: curve_value, deviatoric_curve, new_curve
-
-  !> A strain is beyond the last point of a table by more than this part of it.
-  real(wp), parameter :: rounding = 1.0e-9_wp
 
   type :: deviatoric_curve
     real(wp) :: young = 1.0_wp              !! E [stress]
@@ -85,7 +83,7 @@ contains
     if (e <= self%deviatoric(1)) return
     point%yielded = .true.
     k = segment(self%deviatoric, e)
-    if (self%ends) point%beyond = e > self%deviatoric(size(self%deviatoric))*(1.0_wp + rounding)
+    if (self%ends) point%beyond = e > self%deviatoric(size(self%deviatoric))*(1.0_wp + least_difference)
     if (self%paper_ratio) then
       call find_paper_secant(self, k, e, point%total, secant)
       point%modulus = self%young/(self%young/secant - self%young*self%shift)  ! (2-5)

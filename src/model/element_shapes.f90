@@ -3,6 +3,7 @@ module epcont_model_element_shapes
   use epcont_base_incidence, only: new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
+  use epcont_base_tolerances, only: rounded_off
   use epcont_element_kinematics, only: axisymmetric
   use epcont_geometry_plane, only: cross_product, polygon_area
   use epcont_model_finding, only: and_more, findings, of_element, of_node
@@ -11,8 +12,6 @@ module epcont_model_element_shapes
   private
   public :: complete_elements, check_axis, warn_of_elements_twice
 
-  !> An area up to this part of the square of the longest side is rounding: the corners lie on one line.
-  real(wp), parameter :: sliver = 1.0e-12_wp
   !> Shorter sides have areas and stiffnesses that are hardly numbers.
   real(wp), parameter :: shortest_side = 1.0e-30_wp
 
@@ -62,10 +61,10 @@ contains
     if (extent > 0.0_wp .and. extent < shortest_side) then
       call found%add_error(of_element, e, 3, ': its sides are shorter than '//short_real(shortest_side), &
                            'other units')
-    else if (n == 3 .and. abs(area) <= sliver*longest) then
+    else if (n == 3 .and. abs(area) <= rounded_off*longest) then
       call found%add_error(of_element, e, 4, ': its corners '//corner_ids(model, e)//' lie on one line', &
                            'corners that span an area')
-    else if (n == 4 .and. .not. bends_one_way(x, sign(1.0_wp, area), sliver*longest)) then
+    else if (n == 4 .and. .not. bends_one_way(x, sign(1.0_wp, area), rounded_off*longest)) then
       call found%add_error(of_element, e, 3, ': its corners '//corner_ids(model, e)// &
                            ' cross over, bend inwards or lie on one line', &
                            'four corners in turn, each bending the same way')

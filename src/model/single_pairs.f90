@@ -2,14 +2,12 @@
 module epcont_model_single_pairs
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
+  use epcont_base_tolerances, only: coincident
   use epcont_model_finding, only: findings, of_pair
   use epcont_model_model, only: model_type
   implicit none
   private
   public :: complete_pairs
-
-  !> Nodes closer than this part of the nearest edge are at one place: they give no direction.
-  real(wp), parameter :: coincident = 1.0e-4_wp
 
 contains
 

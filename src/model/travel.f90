@@ -3,6 +3,7 @@
 !> lose their digits in it.
 module epcont_model_travel
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: same_place, travel_rounding
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -11,10 +12,6 @@ module epcont_model_travel
   !> A motion is taken off where all supports of a body follow it but for this part of the largest prescribed
   !! displacement.
   real(wp), parameter :: follows = 1.0e-2_wp
-  !> Of that displacement: what is left by a motion that they follow exactly.
-  real(wp), parameter :: rounding = 64.0_wp*epsilon(1.0_wp)
-  !> Supports nearer to each other than this part of the body's size tell nothing of how it turns.
-  real(wp), parameter :: nearness = 1.0e-6_wp
 
 contains
 
@@ -55,14 +52,14 @@ contains
     turn = 0.0_wp   ! freedoms that an RBE2 makes equal are not those of a body that turns
     if (model%has_rings()) then
       shift(1) = 0.0_wp
-    else if (sum(arm**2, mask=known) > nearness**2*maxval(arm**2) .and. .not. model%is_tied(node)) then
+    else if (sum(arm**2, mask=known) > same_place**2*maxval(arm**2) .and. .not. model%is_tied(node)) then
       turn = sum(arm*(u - spread(shift, 2, size(node))), mask=known)/sum(arm**2, mask=known)
     end if
     travel = spread(shift, 2, size(node)) + turn*arm
     if (maxval(abs(u - travel), mask=known) > follows*maxval(abs(u), mask=known)) return
     model%travel(:, node) = travel
     model%beyond_travel(:, node) = merge(u - travel, 0.0_wp, known .and. &
-                                         abs(u - travel) > rounding*maxval(abs(u)))
+                                         abs(u - travel) > travel_rounding*maxval(abs(u)))
   end subroutine find_travel
 
   !> Mean of those values that are known, exact where they are all the same; 0 of none.

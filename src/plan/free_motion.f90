@@ -6,6 +6,7 @@
 module epcont_plan_free_motion
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: dependent, no_effect
   use epcont_linalg_dense, only: lu_solve, null_space
   use epcont_model_model, only: model_type
   use epcont_plan_rigid_parts, only: find_rigid_parts, rigid_parts
@@ -13,15 +14,9 @@ module epcont_plan_free_motion
   private
   public :: free_motions, find_free_motions, motion_fault
 
-  !> A singular value up to this is a free motion; rows are displacements by unit motions, of size one, known
-  !! to the digits of the coordinates.
-  real(wp), parameter :: free_tolerance = 1.0e-9_wp
   !> SUPORT freedoms that measure the motions with a condition above this are too close to each other: six
   !! digits of the displacements would be lost.
   real(wp), parameter :: largest_condition = 1.0e6_wp
-
-  !> A part of a body that moves by less than this part of what moves most does not move.
-  real(wp), parameter :: moves = 1.0e-6_wp
 
   !> Freedoms that move by this part of the largest motion may take its place.
   real(wp), parameter :: nearly = 0.999_wp
@@ -100,11 +95,11 @@ contains
     allocate (column(motions%parts%count), source=0)
     column(part_list) = [(3*i - 3, i=1, size(part_list))]
     call collect_rows(model, motions%parts, nodes, column, held, measured, freedom)
-    basis = null_space(held, free_tolerance)
+    basis = null_space(held, dependent)
     m = size(basis, 2)
     fault = motion_fault(body=model%body(nodes(1)), node=nodes(1), motions=m, references=size(measured, 1))
     square = matmul(measured, basis)
-    loose = matmul(basis, null_space(square, free_tolerance))
+    loose = matmul(basis, null_space(square, dependent))
     if (size(loose, 2) > 0) then
       fault%kind = motion_not_held
       call suggest(model, motions%parts, nodes, column, loose, fault)
@@ -241,7 +236,7 @@ contains
       k = column(parts%of_node(nodes(i)))
       motion(2*i - 1, :) = matmul(parts%row(model, nodes(i), 1), loose(k + 1:k + 3, :))
       motion(2*i, :) = matmul(parts%row(model, nodes(i), 2), loose(k + 1:k + 3, :))
-      if (fault%moving == 0 .and. any(abs(loose(k + 1:k + 3, :)) > moves*maxval(abs(loose)))) then
+      if (fault%moving == 0 .and. any(abs(loose(k + 1:k + 3, :)) > no_effect*maxval(abs(loose)))) then
         fault%moving = nodes(i)
       end if
     end do

@@ -1,6 +1,7 @@
 !> What follows from the deformation, the strains and the contact that a solve has found.
 module epcont_plasticity_completion
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: no_effect
   use epcont_contact_problem, only: contact_problem
   use epcont_flexibility_flexibility, only: gap_opening
   use epcont_material_linear_law, only: linear_law
@@ -11,9 +12,6 @@ module epcont_plasticity_completion
   implicit none
   private
   public :: complete_state
-
-  !> Part of what a gap is the sum of from which on it is open, though the flexibility has it touch.
-  real(wp), parameter :: clearly_open = 1.0e-6_wp
 
 contains
 
@@ -53,7 +51,7 @@ contains
         do i = model%row_start(k), model%row_start(k + 1) - 1
           terms = terms + abs(model%row_weight(i))*maxval(abs(state%deformation(:, model%row_node(i))))
         end do
-        if (contact%touching(k) .and. gap <= clearly_open*terms) cycle
+        if (contact%touching(k) .and. gap <= no_effect*terms) cycle
         contact%touching(k) = .false.
         contact%gap(k) = max(gap, 0.0_wp)
       end do

@@ -2,6 +2,7 @@
 module epcont_plasticity_iteration
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: solved_to
   use epcont_contact_problem, only: contact_solved, contact_stalled
   use epcont_material_linear_law, only: elastic_law
   use epcont_model_controls, only: method_newton, method_secant, precision_single
@@ -22,8 +23,6 @@ module epcont_plasticity_iteration
 
   !> Displacements so many times those of the first solve, with a flat curve: nothing carries the load.
   real(wp), parameter :: far_away = 1.0e4_wp
-  !> Stresses this near to their curves are on them but for rounding.
-  real(wp), parameter :: rounding = 1.0e-10_wp
   !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times
   !! the last change, it is a slow one. Few, slow or mixed steps say too little of what is to come, and
   !! prescribed displacements hide it in the largest: the estimate is tested.
@@ -165,7 +164,7 @@ contains
       if (loop%linear%materials%yields) found%point = loop%linear%materials%states(found%strain)
       call measure(scene%model, loop, found, now)
       call loop%estimator%estimate(loop%method%telling_steps, loop%about, found, now)
-      if (now%yielded + loop%yielded == 0 .or. now%residual <= rounding .and. now%error < 0.0_wp) then
+      if (now%yielded + loop%yielded == 0 .or. now%residual <= solved_to .and. now%error < 0.0_wp) then
         ! What changes is rounding, if anything.
         now%error = merge(now%change, 0.0_wp, iteration > 1)
         now%force_error = merge(now%force_change, 0.0_wp, iteration > 1)
@@ -264,8 +263,9 @@ contains
     associate (now => history(n))
       is_over = now%yielded + loop%yielded == 0
       if (now%change <= loop%plan%tolerance .and. now%residual <= loop%plan%off_curve) &
-        is_over = is_over .or. now%residual <= rounding .or. now%error >= 0.0_wp .and. loop%doubt*now%error <= loop%plan%tolerance
-      if (now%iteration > 3 .and. now%residual <= rounding .and. now%change <= stagnant) &
+        is_over = is_over .or. now%residual <= solved_to .or. &
+                  now%error >= 0.0_wp .and. loop%doubt*now%error <= loop%plan%tolerance
+      if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
         is_over = is_over .or. now%change >= history(n - 2)%change
     end associate
   end function is_over
@@ -278,7 +278,7 @@ contains
 
     wants_test = loop%plan%method /= method_secant .or. now%iteration <= few_solves .or. now%iteration > many_solves &
                  .or. now%error > slow*now%change .or. any(model%prescribed /= 0.0_wp)
-    wants_test = wants_test .and. now%residual > rounding
+    wants_test = wants_test .and. now%residual > solved_to
     wants_test = wants_test .and. loop%plan%method /= method_newton .and. .not. model%controls%paper_ratio
   end function wants_test
 

@@ -4,6 +4,7 @@ module epcont_plasticity_linear_scene
   use epcont_assembly_bodies, only: factored_bodies, half_solution, new_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: negligible, solved_to
   use epcont_contact_problem, only: contact_problem, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
@@ -23,10 +24,9 @@ module epcont_plasticity_linear_scene
   private
   public :: linear_scene, new_linear_scene
 
-  !> Refinement is over when a step changes no strain by more than this part of the largest: the next would
-  !! change it by much less. Where two steps no longer halve it, rounding is reached, or single precision
-  !! leaves too little to begin with.
-  real(wp), parameter :: small_step = 1.0e-11_wp, rounding_step = 1.0e-10_wp, slowest_rate = 0.5_wp
+  !> Where two steps of refinement change the strains by more than this part of what the two before did,
+  !! rounding is reached, or single precision leaves too little to begin with.
+  real(wp), parameter :: slowest_rate = 0.5_wp
 
   type :: linear_scene
     type(strain_operator) :: operator
@@ -280,11 +280,11 @@ contains
       step = step + 1
       call correct(self, scene, part, state, change)
       call watch%lap(stage_displacements)
-      if (step > 1 .and. change <= small_step) exit
+      if (step > 1 .and. change <= negligible) exit
       ! Steps come in pairs: what one has refined moves the contact forces, and those the next; the first
       ! brings them in.
       if (step > 4 .and. .not. change <= slowest_rate*before(1)) then
-        if (change <= rounding_step) exit
+        if (change <= solved_to) exit
         state%contact%state = contact_stalled
         return
       end if
@@ -345,7 +345,7 @@ contains
     refined = state
     call correct(self, scene, part, refined, error)
     call correct(self, scene, part, refined, second)
-    if (second > max(slowest_rate*error, rounding_step)) error = 1.0_wp
+    if (second > max(slowest_rate*error, solved_to)) error = 1.0_wp
     error = max(error, maxval(abs(refined%deformation - state%deformation)) &
                 /max(maxval(abs(state%deformation)), tiny(1.0_wp)))
     if (scene%model%pairs == 0) return

@@ -5,6 +5,7 @@
 !> the slope (f_int - f).d, since differences of the energy itself drown in rounding.
 module epcont_plasticity_newton
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: slope_rounding
   use epcont_element_kinematics, only: components
   use epcont_material_linear_law, only: linear_law
   use epcont_material_material_law, only: point_state
@@ -24,8 +25,6 @@ module epcont_plasticity_newton
   real(wp), parameter :: found_enough = 0.1_wp
   !> Slopes evaluated in one search.
   integer, parameter :: most_slopes = 30
-  !> A slope below this part of the sum of its terms is rounding.
-  real(wp), parameter :: noise = 1.0e3_wp*epsilon(1.0_wp)
 
   type, extends(plastic_method) :: newton_method
     logical :: takes_full_step = .true.   !! prescribed displacements and overlaps go in with the first step
@@ -145,7 +144,7 @@ contains
     travel = found%displacement - about%displacement
     call find_slope(about%point, begin, terms)
     call find_slope(found%point, slope_high, terms)
-    if (begin >= -noise*terms .or. slope_high <= -flat_enough*begin) return
+    if (begin >= -slope_rounding*terms .or. slope_high <= -flat_enough*begin) return
     low = 0.0_wp
     high = 1.0_wp
     slope_low = begin

@@ -2,6 +2,7 @@
 module epcont_report_motions
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
+  use epcont_base_tolerances, only: no_effect
   use epcont_deck_card_kinds, only: card_grid
   use epcont_deck_deck, only: deck_type
   use epcont_deck_diagnostic, only: diagnostics, place_type
@@ -11,9 +12,6 @@ module epcont_report_motions
   implicit none
   private
   public :: report_motion_faults
-
-  !> A part that turns by less than this, against its largest displacement, only shifts.
-  real(wp), parameter :: no_turn = 1.0e-6_wp
 
 contains
 
@@ -60,7 +58,7 @@ contains
     text = ''
     do k = 1, size(fault%freedom, 2)
       if (k > 1) text = text//', '
-      if (fault%turn(k) > no_turn) then
+      if (fault%turn(k) > no_effect) then
         text = text//'it turns, '//grid_name(model, fault%freedom(1, k))//' moving along ('
       else
         text = text//'it shifts along ('

@@ -2,6 +2,7 @@
 module epcont_report_number
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
+  use epcont_base_tolerances, only: least_difference, rounded_off
   use epcont_report_layout, only: right
   implicit none
   private
@@ -19,10 +20,6 @@ module epcont_report_number
   integer, parameter, public :: part = 8       !! per cent
   integer, parameter, public :: no_number = 9  !! there is none in this scene
 
-  !> A value below this part of its column's scale is rounding and prints as 0.0.
-  real(wp), parameter :: noise = 1.0e-12_wp
-  !> An error below this part is rounding and prints as 0.0.
-  real(wp), parameter :: no_error = 1.0e-9_wp
   !> Beyond these rounding has a say in the number itself.
   real(wp), parameter :: largest_off_curve = 10.0_wp, largest_factor = 1.0e6_wp
 
@@ -43,7 +40,7 @@ contains
       if (value >= 0.0_wp) text = column_number(value, scale)
     case (estimate)
       if (value >= 0.0_wp) text = '0.0'
-      if (value > no_error*scale) text = estimate_number(value)
+      if (value > least_difference*scale) text = estimate_number(value)
     case (size_of)
       text = short_real(value)
     case (rounding)
@@ -85,7 +82,7 @@ contains
     real(wp), intent(in) :: scale  !! of the column: its largest magnitude
     character(len=13) :: text
 
-    if (abs(value) <= noise*scale .or. value == 0.0_wp) then
+    if (abs(value) <= rounded_off*scale .or. value == 0.0_wp) then
       text = '          0.0'
     else if (abs(value) >= 0.999999e100_wp .or. abs(value) < 1.0e-99_wp) then
       write (text, '(es13.5e3)') value
@@ -99,11 +96,10 @@ contains
   pure function rounding_number(value) result(text)
     real(wp), intent(in) :: value   !! the number
     character(len=:), allocatable :: text
-    real(wp), parameter :: no_rounding = 1.0e-9_wp
     character(len=12) :: buffer
 
-    if (value < no_rounding) then
-      write (buffer, '(a, i0)') '< 1E', ceiling(log10(max(value, 0.999_wp*noise)))
+    if (value < least_difference) then
+      write (buffer, '(a, i0)') '< 1E', ceiling(log10(max(value, 0.999_wp*rounded_off)))
     else
       write (buffer, '(es9.1e3)') value
     end if

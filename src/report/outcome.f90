@@ -3,6 +3,7 @@ module epcont_report_outcome
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real
+  use epcont_base_tolerances, only: lost_digits
   use epcont_certificate_certificate, only: figure_name
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_controls, only: precision_name
@@ -10,7 +11,7 @@ module epcont_report_outcome
   use epcont_report_names, only: first_grid, grid_name, joined
   use epcont_report_run, only: outcome_type, run_results
   use epcont_report_scene_text, only: scene_fault
-  use epcont_result_answer, only: answer_type, largest_loss
+  use epcont_result_answer, only: answer_type
   implicit none
   private
   public :: judge
@@ -65,7 +66,7 @@ contains
     logical :: is_exact
 
     associate (answer => run%answer, certificate => run%certificate)
-      is_exact = answer%lost() <= largest_loss
+      is_exact = answer%lost() <= lost_digits
       if (answer%converged .and. certificate%valid .and. is_exact) then
         outcome = new_outcome(status_valid, 'valid', '')
         if (.not. certificate%scene%sound()) &

@@ -3,6 +3,7 @@
 module epcont_report_remarks
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
+  use epcont_base_tolerances, only: alike
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: render_notes
   use epcont_deck_source, only: source
@@ -18,8 +19,6 @@ module epcont_report_remarks
   public :: remarks_of_deck, remark_answer, list_remarks, poisson_text
 
   character(len=*), parameter :: warning = 'warning: '
-  !> Gaps that differ by less than this part are equally near.
-  real(wp), parameter :: as_good = 1.0e-6_wp
 
 contains
 
@@ -107,7 +106,7 @@ contains
     associate (model => run%model, contact => run%answer%contact)
       if (model%pairs == 0 .or. any(contact%touching)) return
       ! Of gaps that are as good as equal the first: rounding chooses no pair.
-      associate (nearest => findloc(contact%gap <= (1.0_wp + as_good)*minval(contact%gap), .true., dim=1))
+      associate (nearest => findloc(contact%gap <= (1.0_wp + alike)*minval(contact%gap), .true., dim=1))
         text = 'nothing touches: no pair carries a force; nearest is '// &
                grid_name(model, model%pair_node(1, nearest))// &
                ', '//short_real(contact%gap(nearest))//' away'

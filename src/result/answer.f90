@@ -1,6 +1,7 @@
 !> The answer to a scene: displacements, contact and stresses, and how they were found.
 module epcont_result_answer
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: lost_digits
   use epcont_model_controls, only: precision_double
   use epcont_plasticity_iteration, only: followed_loads
   use epcont_result_body_force, only: body_force
@@ -12,9 +13,6 @@ module epcont_result_answer
   private
   public :: answer_type
 
-  !> Largest part that rounding may take of a valid answer. The certificate need not see it: rigid motions of
-  !! a stiff part upon a soft one are wrong by 1 to 30 times what is lost of a pivot, in equilibrium.
-  real(wp), parameter, public :: largest_loss = 1.0e-8_wp
   !> Where more of a pivot is lost, the factors may be too stiff to tell what is wrong.
   real(wp), parameter :: largest_mended = 1.0e-4_wp
 

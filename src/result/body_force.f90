@@ -1,14 +1,12 @@
 !> What contact exerts on each body as a whole, and what each pair counts in it.
 module epcont_result_body_force
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: cancelled
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_model_model, only: model_type
   implicit none
   private
   public :: body_force, find_body_forces, resultants, shares_of_pairs
-
-  !> Part of all forces that rounding leaves of sums that should cancel.
-  real(wp), parameter :: rounding = 100*epsilon(1.0_wp)
 
   !> The resultant of contact on a body that has elements. In rings it has no x: hoops take what acts along
   !! radii.
@@ -32,7 +30,7 @@ contains
     has_elements = .false.
     has_elements(model%body(model%connectivity(1, :))) = .true.
     sums = resultants(model, force)
-    where (abs(sums) <= rounding*sum(force)) sums = 0.0_wp
+    where (abs(sums) <= cancelled*sum(force)) sums = 0.0_wp
     if (model%has_rings()) sums(1, :) = 0.0_wp
     allocate (found(count(has_elements)))
     found%body = pack([(b, b=1, model%bodies)], has_elements)

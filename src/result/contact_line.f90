@@ -4,6 +4,7 @@ module epcont_result_contact_line
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_sorting, only: sorted_order
+  use epcont_base_tolerances, only: no_area
   use epcont_geometry_edge, only: edge_point, edge_point_count, edge_points
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: line_contact, model_type
@@ -19,10 +20,6 @@ module epcont_result_contact_line
   !> A pair of the master stands at the place of one that is nearer than this part of the way from node to
   !! node.
   real(wp), parameter :: close = 0.22_wp
-
-  !> A corner of a curved ring on the axis has no area but for rounding and curvature: less than this part of
-  !! its side's.
-  real(wp), parameter, public :: no_area = 1.0e-3_wp
 
   !> The pairs as a line along the boundary.
   type :: contact_line

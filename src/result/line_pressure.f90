@@ -3,10 +3,10 @@
 !> meshes make of it.
 module epcont_result_line_pressure
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: no_area
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_edge, only: edge_point, edge_point_count, edge_points
   use epcont_model_model, only: line_contact, model_type
-  use epcont_result_contact_line, only: no_area
   implicit none
   private
   public :: line_pressure, compare_sides

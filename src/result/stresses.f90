@@ -1,6 +1,7 @@
 !> Stresses of the elements and reactions of the supports.
 module epcont_result_stresses
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: least_difference
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_material_material_law, only: point_state
   use epcont_model_model, only: model_type
@@ -9,9 +10,6 @@ module epcont_result_stresses
   implicit none
   private
   public :: recover_stresses, place_of_point, first_largest
-
-  !> Stresses that differ by less than this part are the same.
-  real(wp), parameter :: same = 1.0e-9_wp
 
 contains
 
@@ -78,7 +76,7 @@ contains
   pure integer function first_largest(stress) result(k)
     real(wp), intent(in) :: stress(:)
 
-    k = findloc(stress >= maxval(stress)*(1.0_wp - same), .true., dim=1)
+    k = findloc(stress >= maxval(stress)*(1.0_wp - least_difference), .true., dim=1)
   end function first_largest
 
   !> Coordinates of an integration point [length].
