@@ -1,25 +1,18 @@
 !> One deck from file to results.
 module epcont_app_driver
-  use epcont_analysis, only: analyse
   use epcont_app_arguments, only: arguments_type, stem_of
   use epcont_app_console, only: newline, print_error, print_text
   use epcont_app_progress_display, only: progress_type
   use epcont_base_error, only: error_type, status_deck, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: shown
-  use epcont_build_build, only: build_model
-  use epcont_contact_geometry_nearness, only: enter_nodes_that_came_near
+  use epcont_build_build, only: build_model, tell
   use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render
-  use epcont_plan_forecast, only: check_memory, forecast, forecast_type
-  use epcont_plan_free_motion, only: find_free_motions, motion_fault
-  use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
-  use epcont_plan_numbering, only: number_equations
-  use epcont_plan_side_by_side, only: plan_threads
+  use epcont_model_finding, only: findings
   use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_layout, only: right
   use epcont_report_limit, only: limit_of_largest, reason_of
-  use epcont_report_motions, only: report_motion_faults
   use epcont_report_number, only: known, listed_number, number
   use epcont_report_outcome, only: judge
   use epcont_report_plan_text, only: plan_text
@@ -28,21 +21,10 @@ module epcont_app_driver
   use epcont_report_run, only: run_results
   use epcont_report_timing, only: timing_text
   use epcont_system_memory, only: peak_memory
-  use epcont_system_stopwatch, only: stage_model, stage_numbering, stage_plan, stage_reading, stage_writing, &
-                                     stopwatch
-  use epcont_system_threads, only: granted_threads
+  use epcont_system_stopwatch, only: stage_model, stage_plan, stage_reading, stage_writing, stopwatch
   implicit none
   private
   public :: run_deck
-
-  !> A scene is solved again while nodes come near that had no pair, but not more often.
-  integer, parameter :: most_solves = 8
-
-  !> What will be solved, and how.
-  type :: scene_plan
-    type(iteration_plan) :: iteration
-    type(forecast_type) :: expected
-  end type scene_plan
 
 contains
 
@@ -78,7 +60,6 @@ contains
     logical, intent(out) :: written   !! results, as far as that could be done
     type(error_type), allocatable :: error
     type(run_results) :: run
-    type(scene_plan) :: plan
     character(len=:), allocatable :: name
 
     name = shown(stem_of(path))
@@ -95,15 +76,19 @@ contains
       if (arguments%asks('--check')) then
         call say(arguments, name//'  checked', status)
       else
-        call make_plan(run, plan, watch)
-        if (arguments%asks('--plan')) call print_text(name//run%plan, status)
+        call run%make_plan(watch)
+        if (arguments%asks('--plan')) call print_text(name//plan_text(run%planned_scene), status)
       end if
       call print_error(render(run%faults, run%deck%source))
       if (arguments%asks('--check') .or. arguments%asks('--plan')) return
-      call solve(run, plan, arguments%memory, watch, error)
+      run%remarks = remarks_of_deck(run%faults, run%deck%source)
+      call run%deck%forget_text()
+      call run%solve(arguments%memory, watch, error)
       if (allocated(error)) error%message = path//': '//error%message
     end if
     if (.not. allocated(error)) then
+      run%outcome = judge(run)
+      if (run%outcome%has_answer) call remark_answer(run)
       status = run%outcome%status
       call write_results(run, output_stem(path, arguments), arguments%asks('--tables'), &
                          arguments%asks('--vtk'), error)
@@ -114,42 +99,11 @@ contains
     if (allocated(error)) then
       call refuse(error, status)
     else
-      call tell(shown(path)//': ', run%remarks%of_answer)
-      if (len(run%outcome%sentence) > 0) call tell(shown(path)//': ', run%outcome%sentence//newline)
+      call say_lines(shown(path)//': ', run%remarks%of_answer)
+      if (len(run%outcome%sentence) > 0) call say_lines(shown(path)//': ', run%outcome%sentence//newline)
       call say(arguments, one_line(name, run), status)
     end if
   end subroutine solve_deck
-
-  !> Solve, anew with more pairs while nodes come near that had none, and judge the answer.
-  subroutine solve(run, plan, limit, watch, error)
-    type(run_results), intent(inout) :: run
-    type(scene_plan), intent(inout) :: plan
-    real(wp), intent(in) :: limit   !! of memory [GB]
-    type(progress_type), intent(inout) :: watch
-    type(error_type), allocatable, intent(out) :: error
-    type(error_type), allocatable :: in_double
-    integer :: count
-    logical :: entered
-
-    run%remarks = remarks_of_deck(run%faults, run%deck%source)
-    call run%deck%forget_text()
-    do count = 1, most_solves
-      call check_memory(plan%expected%bytes, limit, error)
-      if (allocated(error)) return
-      call check_memory(plan%expected%double_bytes, limit, in_double)
-      if (allocated(in_double)) plan%iteration%against_double = in_double%message
-      plan%iteration%threads = plan_threads(run%numbering, plan%expected%bytes, granted_threads())
-      call watch%expect(plan%iteration, run%model%controls%most_iterations, plan%expected%operations)
-      call analyse(run%planned_scene, plan%iteration, run%answer, run%certificate, run%accuracy, watch)
-      if (run%answer%singular > 0 .or. count == most_solves) exit
-      call enter_nodes_that_came_near(run%model, run%answer%displacement, &
-                                      run%answer%contact%touching, entered)
-      if (.not. entered) exit
-      call make_plan(run, plan, watch)
-    end do
-    run%outcome = judge(run)
-    if (run%outcome%has_answer) call remark_answer(run)
-  end subroutine solve
 
   !> Say what is wrong.
   subroutine refuse(error, status)
@@ -161,7 +115,7 @@ contains
   end subroutine refuse
 
   !> Lines on standard error, each behind the name of the deck.
-  subroutine tell(name, text)
+  subroutine say_lines(name, text)
     character(len=*), intent(in) :: name, text
     integer :: from, to
 
@@ -171,7 +125,7 @@ contains
       call print_error(name//text(from:to + 1))
       from = to + 2
     end do
-  end subroutine tell
+  end subroutine say_lines
 
   !> Path of the result files, without their suffixes.
   pure function output_stem(path, arguments) result(stem)
@@ -189,7 +143,7 @@ contains
     type(run_results), intent(inout) :: run
     class(stopwatch), intent(inout) :: watch
     type(error_type), allocatable, intent(out) :: error
-    type(motion_fault), allocatable :: loose(:)
+    type(findings) :: loose
 
     call read_deck(path, run%deck, run%faults, error)
     call watch%lap(stage_reading)
@@ -197,24 +151,10 @@ contains
     call build_model(run%deck, run%model, run%faults)
     call watch%lap(stage_model)
     if (run%faults%error_count() > 0) return
-    call find_free_motions(run%model, run%motions, loose)
-    call report_motion_faults(run%deck, run%model, loose, run%faults)
+    call run%find_motions(loose)
+    call tell(run%deck, loose, run%faults)
     call watch%lap(stage_plan)
   end subroutine prepare
-
-  !> What will be solved, and how; in words, too.
-  subroutine make_plan(run, plan, watch)
-    type(run_results), intent(inout) :: run
-    type(scene_plan), intent(out) :: plan
-    class(stopwatch), intent(inout) :: watch
-
-    run%numbering = number_equations(run%model)
-    call watch%lap(stage_numbering)
-    plan%iteration = plan_iteration(run%model)
-    plan%expected = forecast(run%model, run%motions, run%numbering, plan%iteration)
-    run%plan = plan_text(run%planned_scene, plan%iteration, plan%expected)
-    call watch%lap(stage_plan)
-  end subroutine make_plan
 
   !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh
   !! shows, that too.

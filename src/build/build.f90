@@ -16,12 +16,12 @@ module epcont_build_build
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_entry, only: least_cause
   use epcont_model_element_shapes, only: check_axis
-  use epcont_model_finding, only: finding, findings, found_error, found_warning, of_couple, of_element, &
+  use epcont_model_finding, only: finding, findings, found_error, found_warning, of_body, of_couple, of_element, &
                                   of_line, of_node, of_pair, of_paper_ratio, of_scene
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: build_model
+  public :: build_model, tell
 
 contains
 
@@ -32,16 +32,13 @@ contains
     type(model_type), intent(out) :: model   !! the scene
     type(diagnostics), intent(inout) :: faults   !! of the deck; they are added to
     type(findings) :: found
-    integer :: i
 
     found%errors = faults%error_count()
     call read_cards(deck, model, found)
     if (model%elements == 0 .and. found%errors == 0) &
       call found%add_error(of_scene, 0, 0, 'the deck has no elements', 'CTRIA3 cards')
     if (found%errors == 0) call finish_model(model, found)
-    do i = 1, found%count
-      call tell(deck, found%list(i), faults)
-    end do
+    call tell(deck, found, faults)
   end subroutine build_model
 
   !> The scene but for what is looked at as a whole.
@@ -72,8 +69,19 @@ contains
     call check_controls(model, found)
   end subroutine read_cards
 
-  !> A finding as a message: with its card, and where that stands.
+  !> What was found as messages: with the cards, and where these stand.
   subroutine tell(deck, found, faults)
+    type(deck_type), intent(in) :: deck          !! its cards
+    type(findings), intent(in) :: found          !! of the scene that they make
+    type(diagnostics), intent(inout) :: faults   !! of the deck; they are added to
+    integer :: i
+
+    do i = 1, found%count
+      call tell_one(deck, found%list(i), faults)
+    end do
+  end subroutine tell
+
+  subroutine tell_one(deck, found, faults)
     type(deck_type), intent(in) :: deck
     type(finding), intent(in) :: found
     type(diagnostics), intent(inout) :: faults
@@ -88,7 +96,7 @@ contains
     card = card_of(deck, found)
     if (found%of /= of_scene) then
       place = place_of(deck, card)
-      what = deck%identity(card(1), card(2))//what
+      if (found%of /= of_body) what = deck%identity(card(1), card(2))//what
     else if (found%which > 0) then
       place = deck%load_place
       if (found%which == card_spc) place = deck%spc_place
@@ -101,7 +109,7 @@ contains
     case default
       call faults%add_note(place, what)
     end select
-  end subroutine tell
+  end subroutine tell_one
 
   !> The table, the card and the column, or the negative item of a list, that a finding is about.
   pure function card_of(deck, found) result(card)
@@ -113,7 +121,7 @@ contains
 
     card = [found%of, found%which, found%item]
     select case (found%of)
-    case (of_node)
+    case (of_node, of_body)
       card(1) = card_grid
     case (of_element)
       cards = element_cards(deck)

@@ -8,9 +8,9 @@ module epcont_model_finding
   public :: finding, findings, and_more
 
   !> What a finding is of, by its position in the model; above zero are cards of a deck. PARAM MUP is one of
-  !! its own.
+  !! its own; a body, by one of its nodes, is named in what is said of it.
   integer, parameter, public :: of_scene = 0, of_node = -1, of_element = -2, of_section = -3, of_pair = -4, &
-    of_line = -5, of_couple = -6, of_paper_ratio = -7
+    of_line = -5, of_couple = -6, of_paper_ratio = -7, of_body = -8
 
   !> How grave it is.
   integer, parameter, public :: found_error = 1, found_warning = 2, found_note = 3

@@ -1,8 +1,13 @@
-!> What every room behind the plan reads and none changes.
+!> What every room behind the plan reads and none changes: the scene, and how it will be solved.
 module epcont_plan_planned_scene
+  use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
-  use epcont_plan_free_motion, only: free_motions
-  use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_forecast, only: forecast, forecast_type
+  use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
+  use epcont_plan_loose_bodies, only: find_loose_bodies
+  use epcont_plan_numbering, only: number_equations, numbering_type
+  use epcont_system_stopwatch, only: stage_numbering, stage_plan, stopwatch
   implicit none
   private
   public :: planned_scene
@@ -11,5 +16,34 @@ module epcont_plan_planned_scene
     type(model_type) :: model
     type(free_motions) :: motions          !! of its bodies
     type(numbering_type) :: numbering      !! of its equations
+    type(iteration_plan) :: iteration      !! how contact and yielding are found
+    type(forecast_type) :: expected        !! memory and work
+  contains
+    procedure :: find_motions
+    procedure :: make_plan
   end type planned_scene
+
+contains
+
+  !> Find the free motions of the model's bodies.
+  subroutine find_motions(self, found)
+    class(planned_scene), intent(inout) :: self
+    type(findings), intent(inout) :: found   !! bodies that cannot be solved for are added
+    type(motion_fault), allocatable :: fault(:)
+
+    call find_free_motions(self%model, self%motions, fault)
+    call find_loose_bodies(self%model, fault, found)
+  end subroutine find_motions
+
+  !> Plan how the model, whose free motions are known, is solved.
+  subroutine make_plan(self, watch)
+    class(planned_scene), intent(inout) :: self
+    class(stopwatch), intent(inout) :: watch   !! takes the time
+
+    self%numbering = number_equations(self%model)
+    call watch%lap(stage_numbering)
+    self%iteration = plan_iteration(self%model)
+    self%expected = forecast(self%model, self%motions, self%numbering, self%iteration)
+    call watch%lap(stage_plan)
+  end subroutine make_plan
 end module epcont_plan_planned_scene

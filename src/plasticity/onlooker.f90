@@ -2,6 +2,7 @@
 !> changes nothing.
 module epcont_plasticity_onlooker
   use epcont_base_kinds, only: wp
+  use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_system_stopwatch, only: stopwatch
   implicit none
   private
@@ -25,10 +26,19 @@ module epcont_plasticity_onlooker
   !> One that says nothing.
   type, extends(stopwatch) :: onlooker
   contains
+    procedure :: expect
     procedure :: solved
   end type onlooker
 
 contains
+
+  !> The plan is made; solves begin.
+  subroutine expect(self, plan, most_iterations, operations)
+    class(onlooker), intent(inout) :: self
+    type(iteration_plan), intent(in) :: plan   !! how yielding is iterated
+    integer, intent(in) :: most_iterations     !! at a load
+    real(wp), intent(in) :: operations         !! of a solve
+  end subroutine expect
 
   !> A solve has been done; `over` if it was the last at its load.
   subroutine solved(self, now, over)

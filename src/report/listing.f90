@@ -13,8 +13,9 @@ module epcont_report_listing
   use epcont_report_layout, only: figure, heading, right, wrap
   use epcont_report_names, only: centre_name, joined
   use epcont_report_number, only: estimate_number, listed_number, number, percent, rounding_number
+  use epcont_report_outcome, only: outcome_type
   use epcont_report_remarks, only: poisson_text
-  use epcont_report_run, only: outcome_type, run_results
+  use epcont_report_run, only: run_results
   use epcont_report_scene_text, only: list_scene
   use epcont_report_summary, only: summary_type
   use epcont_report_tables, only: put_contact, put_history, put_pivots

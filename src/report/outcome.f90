@@ -9,12 +9,20 @@ module epcont_report_outcome
   use epcont_model_controls, only: precision_name
   use epcont_model_model, only: model_type
   use epcont_report_names, only: first_grid, grid_name, joined
-  use epcont_report_run, only: outcome_type, run_results
   use epcont_report_scene_text, only: scene_fault
   use epcont_result_answer, only: answer_type
+  use epcont_solution, only: solution_type
   implicit none
   private
-  public :: judge
+  public :: judge, outcome_type
+
+  !> What came of a run.
+  type :: outcome_type
+    integer :: status = status_valid            !! exit status
+    character(len=:), allocatable :: word       !! valid, no equilibrium, ...
+    character(len=:), allocatable :: sentence   !! empty where the answer is valid
+    logical :: has_answer = .false.             !! displacements and forces were found
+  end type outcome_type
 
   character(len=*), parameter :: reason = &
     'elements differ too much in size or stiffness, hardly anything resists a motion, '// &
@@ -27,7 +35,7 @@ contains
 
   !> Judge a run.
   pure function judge(run) result(outcome)
-    type(run_results), intent(in) :: run   !! all of it but its outcome
+    class(solution_type), intent(in) :: run   !! a scene with its answer
     type(outcome_type) :: outcome
 
     associate (model => run%model, answer => run%answer)
@@ -61,7 +69,7 @@ contains
 
   !> Judge an answer, where there is one.
   pure function outcome_of_answer(run) result(outcome)
-    type(run_results), intent(in) :: run
+    class(solution_type), intent(in) :: run
     type(outcome_type) :: outcome
     logical :: is_exact
 
@@ -95,7 +103,7 @@ contains
 
   !> Which body moves off, and how.
   pure function escaping(run) result(text)
-    type(run_results), intent(in) :: run
+    class(solution_type), intent(in) :: run
     character(len=:), allocatable :: text
     integer :: k
 
@@ -110,7 +118,7 @@ contains
   !> What speaks against an answer: the figure of the certificate that is farthest beyond its tolerance, and
   !! lost digits.
   pure function doubts(run) result(text)
-    type(run_results), intent(in) :: run
+    class(solution_type), intent(in) :: run
     character(len=:), allocatable :: text
     real(wp), parameter :: least = 1.0e-200_wp   ! a figure over a limit of no size stays a number
     real(wp) :: figure(size(figure_name)), largest(size(figure_name)), taken

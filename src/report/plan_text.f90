@@ -7,7 +7,6 @@ module epcont_report_plan_text
                                    precision_double, precision_name, precision_open, precision_single, &
                                    solver_auto, solver_band, solver_frontal, solver_name
   use epcont_model_model, only: line_contact, model_type
-  use epcont_plan_forecast, only: forecast_type
   use epcont_plan_iteration_plan, only: contact_plan, iteration_plan, many_pairs
   use epcont_plan_numbering, only: many_operations, numbering_type
   use epcont_plan_planned_scene, only: planned_scene
@@ -30,14 +29,12 @@ module epcont_report_plan_text
 contains
 
   !> The plan of a scene, in lines.
-  pure function plan_text(scene, iteration, expected) result(text)
-    type(planned_scene), intent(in) :: scene        !! what is to be solved
-    type(iteration_plan), intent(in) :: iteration   !! how contact and yielding are found
-    type(forecast_type), intent(in) :: expected     !! memory and work
+  pure function plan_text(scene) result(text)
+    type(planned_scene), intent(in) :: scene   !! what is to be solved, and how
     character(len=:), allocatable :: text
     integer :: k
 
-    associate (model => scene%model, motions => scene%motions%count)
+    associate (model => scene%model, motions => scene%motions%count, iteration => scene%iteration)
       text = newline//'PLAN'//newline// &
              '  '//plural(model%nodes, 'node')//', '//plural(model%elements, 'element')//', '// &
              plural(model%pairs, 'pair')//'; bodies: '//text_of(model%bodies)//newline// &
@@ -55,12 +52,14 @@ contains
       text = text//solver_text(model, scene%numbering, iteration%precision)
       if (model%controls%accuracy > 0.0_wp) text = text//accuracy_text(model, iteration)
     end associate
-    text = text//newline//body_table(iteration, scene%numbering)
-    text = text//newline//'  memory '//megabytes(expected%bytes)
-    if (iteration%precision /= precision_double) &
-      text = text//' (in double '//megabytes(expected%double_bytes)//')'
-    text = text//', operations '//short_real(expected%operations)// &
-           trim(merge(' a solve', '        ', iteration%yields))//newline
+    associate (iteration => scene%iteration, expected => scene%expected)
+      text = text//newline//body_table(iteration, scene%numbering)
+      text = text//newline//'  memory '//megabytes(expected%bytes)
+      if (iteration%precision /= precision_double) &
+        text = text//' (in double '//megabytes(expected%double_bytes)//')'
+      text = text//', operations '//short_real(expected%operations)// &
+             trim(merge(' a solve', '        ', iteration%yields))//newline
+    end associate
   end function plan_text
 
   !> A row a body: what its matrix is like, how often that is factored, and how its flexibility follows from

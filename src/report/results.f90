@@ -5,6 +5,7 @@ module epcont_report_results
   use epcont_report_file, only: new_text_file, remove_file
   use epcont_report_listing, only: list_accuracy, list_contact, list_deck, list_iterations, &
                                    list_outcome, list_summary
+  use epcont_report_plan_text, only: plan_text
   use epcont_report_remarks, only: list_remarks
   use epcont_report_run, only: run_results
   use epcont_report_summary, only: summarise, summary_type
@@ -99,12 +100,14 @@ contains
     character(len=*), intent(in) :: path
     type(error_type), allocatable, intent(out) :: error
     type(table_type) :: listing
+    character(len=:), allocatable :: plan
 
     call new_text_file(path, listing%file, error)
     if (allocated(error)) return
     call list_deck(listing%file, run%deck)
     call list_remarks(listing%file, run%remarks)
-    call listing%file%line(run%plan(:len(run%plan) - 1))
+    plan = plan_text(run%planned_scene)
+    call listing%file%line(plan(:len(plan) - 1))
     call list_outcome(listing%file, run%outcome)
     if (run%outcome%has_answer) then
       call list_iterations(listing, run)

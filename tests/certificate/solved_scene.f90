@@ -1,30 +1,20 @@
 !> Scenes solved from decks that are written in a line.
 module solved_scene
-  use epcont_accuracy_accuracy, only: accuracy_type
-  use epcont_analysis, only: analyse
   use epcont_base_error, only: error_type
-  use epcont_certificate_certificate, only: certificate_type
+  use epcont_base_kinds, only: wp
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_build_build, only: build_model
-  use epcont_model_model, only: model_type
-  use epcont_plan_free_motion, only: find_free_motions, motion_fault
-  use epcont_plan_iteration_plan, only: plan_iteration
-  use epcont_plan_numbering, only: number_equations
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_model_finding, only: findings
   use epcont_plasticity_onlooker, only: onlooker
-  use epcont_result_answer, only: answer_type
+  use epcont_solution, only: solution_type
   implicit none
   private
   public :: scene, solve, solve_file
 
   character(len=*), parameter :: path = 'scene.dat'
 
-  type :: scene
-    type(model_type) :: model
-    type(answer_type) :: answer
-    type(certificate_type) :: certificate
-    type(accuracy_type) :: accuracy
+  type, extends(solution_type) :: scene
     integer :: singular = 0
   end type scene
 
@@ -54,18 +44,16 @@ contains
     type(deck_type) :: deck
     type(diagnostics) :: faults
     type(error_type), allocatable :: error
-    type(planned_scene) :: planned
-    type(motion_fault), allocatable :: loose(:)
+    type(findings) :: loose
     type(onlooker) :: watch
 
     call read_deck(path, deck, faults, error)
     call build_model(deck, solved%model, faults)
     if (faults%error_count() > 0) error stop 'solved_scene: the deck is not sound'
-    planned%model = solved%model
-    call find_free_motions(planned%model, planned%motions, loose)
-    planned%numbering = number_equations(planned%model)
-    if (size(loose) > 0) error stop 'solved_scene: a body is loose'
-    call analyse(planned, plan_iteration(planned%model), solved%answer, solved%certificate, solved%accuracy, watch)
+    call solved%find_motions(loose)
+    if (loose%errors > 0) error stop 'solved_scene: a body is loose'
+    call solved%make_plan(watch)
+    call solved%solve(huge(1.0_wp), watch, error)
     solved%singular = solved%answer%singular
   end subroutine solve_file
 end module solved_scene

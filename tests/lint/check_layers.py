@@ -10,8 +10,8 @@ import subprocess
 import sys
 
 LAYERS = ["base", "system", "deck", "element", "geometry", "model", "contact_geometry", "build", "material", "linalg", "plan",
-          "assembly", "flexibility", "contact", "plasticity", "result", "certificate", "accuracy", "report", "analysis",
-          "app"]   # analysis: src/analysis.f90
+          "assembly", "flexibility", "contact", "plasticity", "result", "certificate", "accuracy", "solution", "report",
+          "app"]   # solution: src/solution.f90
 # A certificate computed by the code it certifies is worth nothing.
 SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "plasticity"}}
 VERSION = "src/base/version.f90"

@@ -4,10 +4,10 @@ module deck_faults
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: render
-  use epcont_build_build, only: build_model
+  use epcont_build_build, only: build_model, tell
+  use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
-  use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
-  use epcont_report_motions, only: report_motion_faults
+  use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
   public :: faults_of, model_of
@@ -37,17 +37,14 @@ contains
     type(deck_type) :: deck
     type(diagnostics) :: faults
     type(error_type), allocatable :: error
-    type(model_type) :: model
-    type(free_motions) :: motions
-    type(motion_fault), allocatable :: loose(:)
+    type(planned_scene) :: scene
+    type(findings) :: loose
 
     call write_deck(cards)
     call read_deck(path, deck, faults, error)
-    call build_model(deck, model, faults)
-    if (faults%error_count() == 0) then
-      call find_free_motions(model, motions, loose)
-      call report_motion_faults(deck, model, loose, faults)
-    end if
+    call build_model(deck, scene%model, faults)
+    if (faults%error_count() == 0) call scene%find_motions(loose)
+    call tell(deck, loose, faults)
     words = replaced(render(faults, deck%source), newline, '|')
   end function faults_of
 

@@ -1,0 +1,198 @@
+!> The story of one scene: from the model to a certified answer.
+module epcont_solution
+  use epcont_accuracy_accuracy, only: accuracy_type, assess
+  use epcont_base_error, only: error_type
+  use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: lost_digits
+  use epcont_certificate_certificate, only: certificate_type, certify
+  use epcont_certificate_scene, only: look_through
+  use epcont_contact_geometry_nearness, only: enter_nodes_that_came_near
+  use epcont_contact_problem, only: contact_solved
+  use epcont_flexibility_flexibility, only: pair_forces
+  use epcont_model_controls, only: precision_double
+  use epcont_plan_forecast, only: check_memory
+  use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_side_by_side, only: plan_threads
+  use epcont_plasticity_iteration, only: follow_loads, followed_loads
+  use epcont_plasticity_linear_scene, only: linear_scene
+  use epcont_plasticity_onlooker, only: onlooker
+  use epcont_result_answer, only: answer_type
+  use epcont_result_body_force, only: find_body_forces
+  use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
+  use epcont_result_displacement_gradient, only: find_gradients
+  use epcont_result_line_pressure, only: compare_sides
+  use epcont_result_locking, only: find_locking
+  use epcont_result_pressures, only: pair_pressures
+  use epcont_result_stresses, only: recover_stresses
+  use epcont_result_zones, only: find_zones
+  use epcont_system_stopwatch, only: stage_accuracy, stage_certificate, stage_stresses
+  use epcont_system_threads, only: granted_threads
+  implicit none
+  private
+  public :: solution_type
+
+  !> A scene is solved again while nodes come near that had no pair, but not more often.
+  integer, parameter :: most_solves = 8
+  !> Steps of refinement where forces, gaps or the energy are out of balance, or rounding has taken too much
+  !! of a pivot; each gains as many digits as the factors have.
+  integer, parameter :: most_refinements = 3
+  !> So many times the load steps, where those asked for did not lead to an answer.
+  integer, parameter :: more_steps = 5
+
+  !> A scene with its answer, and what that is worth. Where a body's stiffness could not be factored
+  !! (`answer%singular`), or without contact equilibrium (`answer%contact%state`), there are no displacements.
+  type, extends(planned_scene) :: solution_type
+    type(answer_type) :: answer
+    type(certificate_type) :: certificate
+    type(accuracy_type) :: accuracy
+  contains
+    procedure :: solve
+  end type solution_type
+
+contains
+
+  !> Solve a scene whose plan is made, anew with more pairs while nodes come near that had none.
+  subroutine solve(self, limit, watch, error)
+    class(solution_type), intent(inout) :: self
+    real(wp), intent(in) :: limit                         !! of memory [GB]
+    class(onlooker), intent(inout) :: watch               !! takes the time, and is told of each solve
+    type(error_type), allocatable, intent(out) :: error   !! there is not enough memory
+    type(error_type), allocatable :: in_double
+    integer :: count
+    logical :: entered
+
+    do count = 1, most_solves
+      call check_memory(self%expected%bytes, limit, error)
+      if (allocated(error)) return
+      call check_memory(self%expected%double_bytes, limit, in_double)
+      if (allocated(in_double)) self%iteration%against_double = in_double%message
+      self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
+      call watch%expect(self%iteration, self%model%controls%most_iterations, self%expected%operations)
+      call analyse(self%planned_scene, self%answer, self%certificate, self%accuracy, watch)
+      if (self%answer%singular > 0 .or. count == most_solves) exit
+      call enter_nodes_that_came_near(self%model, self%answer%displacement, &
+                                      self%answer%contact%touching, entered)
+      if (.not. entered) exit
+      call self%make_plan(watch)
+    end do
+  end subroutine solve
+
+  !> Solve the scene as it is.
+  subroutine analyse(scene, answer, certificate, accuracy, watch)
+    type(planned_scene), intent(in) :: scene
+    type(answer_type), intent(out) :: answer
+    type(certificate_type), intent(out) :: certificate
+    type(accuracy_type), intent(out) :: accuracy
+    class(onlooker), intent(inout) :: watch
+    type(linear_scene), allocatable :: linear
+    type(contact_line) :: line
+    type(answer_type) :: found                      ! before refinement
+    type(certificate_type) :: found_certificate
+    integer :: step
+
+    call solve_in_precision(scene, linear, answer, watch)
+    if (answer%singular > 0 .or. allocated(answer%against_double)) return
+    if (answer%contact%state /= contact_solved) return
+
+    line = find_contact_line(scene%model)
+    call evaluate(scene, linear, line, answer, certificate, watch)
+    do step = 1, most_refinements
+      if (.not. answer%converged .or. certificate%balanced .and. answer%lost() <= lost_digits .and. &
+          (step == 1 .or. answer%last_correction <= lost_digits)) exit
+      if (step == 1) then
+        found = answer
+        found_certificate = certificate
+      end if
+      call linear%sharpen(scene, answer%load_factor, answer%scene_state, answer%last_correction, watch)
+      call evaluate(scene, linear, line, answer, certificate, watch)
+    end do
+    ! Gaps far below a travel are rounding, and contact found from them is out of balance.
+    if (step > 1 .and. certificate%has_spoilt(found_certificate)) then
+      answer = found
+      certificate = found_certificate
+    end if
+    call assess(scene, linear, line, answer, accuracy)
+    ! An open pair does not press.
+    where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
+    call watch%lap(stage_accuracy)
+  end subroutine analyse
+
+  !> Stresses, pressures and zones of the state that was found, and their certificate.
+  subroutine evaluate(scene, linear, line, answer, certificate, watch)
+    type(planned_scene), intent(in) :: scene
+    type(linear_scene), intent(in) :: linear
+    type(contact_line), intent(in) :: line
+    type(answer_type), intent(inout) :: answer
+    type(certificate_type), intent(out) :: certificate
+    class(onlooker), intent(inout) :: watch
+    logical, allocatable :: touching(:)
+
+    if (linear%materials%yields .and. .not. allocated(answer%point)) &
+      answer%point = linear%materials%states(answer%strain)
+    associate (model => scene%model, force => answer%contact%force, volume => linear%operator%volume)
+      call recover_stresses(model, linear, answer%load_factor*model%load + pair_forces(model, force), answer)
+      answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
+                                    answer%secant_modulus)
+      answer%gradient = find_gradients(model, volume, answer%displacement)
+      touching = in_contact(line, answer%contact%touching)
+      answer%pressure = pair_pressures(model, line, touching, force)
+      answer%zones = find_zones(model, line, touching, force, answer%pressure)
+      answer%lines = compare_sides(model, answer%contact%touching, force, answer%pressure)
+      answer%bodies = find_body_forces(model, force)
+      call watch%lap(stage_stresses)
+      call certify(model, answer, scene%iteration%off_curve, certificate)
+      if (answer%converged .and. certificate%valid) &
+        certificate%scene = look_through(model, answer%displacement, force)
+    end associate
+    call watch%lap(stage_certificate)
+  end subroutine evaluate
+
+  !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved
+  !! by others in double.
+  subroutine solve_in_precision(scene, linear, answer, watch)
+    type(planned_scene), intent(in) :: scene
+    type(linear_scene), allocatable, intent(out) :: linear
+    type(answer_type), intent(inout) :: answer
+    class(onlooker), intent(inout) :: watch
+    type(iteration_plan) :: now
+
+    now = scene%iteration
+    associate (plan => scene%iteration)
+      answer%asked_precision = plan%precision
+      answer%largest_rounding_error = plan%rounding_error
+      answer%asked_load_steps = plan%load_steps
+      call follow_or_step(scene, now, linear, answer%followed_loads, watch)
+      if (plan%precision /= precision_double .and. &
+          .not. (answer%converged .and. answer%rounding_error <= plan%rounding_error)) then
+        if (allocated(plan%against_double)) then
+          answer%against_double = plan%against_double
+          return
+        end if
+        now%precision = precision_double
+        now%load_steps = plan%load_steps
+        call follow_or_step(scene, now, linear, answer%followed_loads, watch)
+      end if
+    end associate
+    answer%precision = now%precision
+    answer%load_steps = now%load_steps
+  end subroutine solve_in_precision
+
+  !> Follow the loads; where the method was chosen here and has found neither an answer nor a limit load, in
+  !! more steps.
+  subroutine follow_or_step(scene, plan, linear, answer, watch)
+    type(planned_scene), intent(in) :: scene
+    type(iteration_plan), intent(inout) :: plan   !! its load steps become those that were taken
+    type(linear_scene), allocatable, intent(out) :: linear
+    type(followed_loads), intent(out) :: answer
+    class(onlooker), intent(inout) :: watch
+
+    call follow_loads(scene, plan, linear, answer, watch)
+    if (.not. (plan%chosen_here .and. plan%yields)) return
+    if (answer%converged .or. answer%runs_away .or. answer%lacks_memory) return
+    ! What the first solve does not find, steps do not; single precision is followed by double.
+    if (size(answer%history) <= 1 .or. plan%precision /= precision_double) return
+    plan%load_steps = more_steps*plan%load_steps
+    call follow_loads(scene, plan, linear, answer, watch)
+  end subroutine follow_or_step
+end module epcont_solution
