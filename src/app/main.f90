@@ -1,5 +1,5 @@
 !> epcont: contact of plane bodies and rings, from card decks. The only place that sets the exit status.
-program epcont
+program epcont_main
   use, intrinsic :: iso_c_binding, only: c_bool
   use epcont_app_arguments, only: arguments_type, command_line, read_arguments
   use epcont_app_console, only: newline, print_error, print_text
@@ -82,4 +82,4 @@ contains
     call print_error(program_name//': '//shown(error%message)//newline)
     status = error%status
   end subroutine refuse
-end program epcont
+end program epcont_main

@@ -35,7 +35,7 @@ module epcont_base_error
 contains
 
   !> Set `error`.
-  subroutine raise(error, status, message)
+  pure subroutine raise(error, status, message)
     type(error_type), allocatable, intent(out) :: error   !! allocated afterwards
     integer, intent(in) :: status            !! one of the exit statuses above
     character(len=*), intent(in) :: message  !! what is wrong, where, and what would be right

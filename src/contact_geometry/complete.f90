@@ -25,7 +25,7 @@ module epcont_contact_geometry_complete
   use epcont_model_travel, only: find_travels
   implicit none
   private
-  public :: complete_model, check_controls, find_contacts, finish_model
+  public :: complete_model, raise_first, check_controls, find_contacts, finish_model
 
 contains
 
@@ -35,7 +35,6 @@ contains
     type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
     !> The first thing that is wrong: the model does not serve
     type(error_type), allocatable, intent(out) :: error
-    integer :: i
 
     call check_given(model, found)
     if (found%errors == 0) then
@@ -47,11 +46,7 @@ contains
       call check_controls(model, found)
     end if
     if (found%errors == 0) call finish_model(model, found)
-    do i = 1, found%count
-      if (found%list(i)%severity /= found_error) cycle
-      call raise(error, status_deck, sentence(model, found, i))
-      return
-    end do
+    call raise_first(model, found, error)
   end subroutine complete_model
 
   !> Ties and reference freedoms, one by one: each is checked against those before it.
@@ -78,17 +73,23 @@ contains
     end do
   end subroutine complete_freedoms
 
-  !> A finding as a sentence: `CTRIA3 5: its corners 1, 2 and 3 lie on one line; corners that span an area`.
-  pure function sentence(model, found, i) result(text)
-    type(model_type), intent(in) :: model
-    type(findings), intent(in) :: found
-    integer, intent(in) :: i
-    character(len=:), allocatable :: text
+  !> The first error of what was found, as a sentence: `CTRIA3 5: its corners 1, 2 and 3 lie on one line
+  !! (wanted: corners that span an area)`.
+  pure subroutine raise_first(model, found, error)
+    type(model_type), intent(in) :: model                 !! the scene
+    type(findings), intent(in) :: found                   !! what is wrong with it
+    type(error_type), allocatable, intent(out) :: error   !! there is one
+    integer :: i
 
-    associate (one => found%list(i))
-      text = model%name_of(one%of, one%which)//one%what//' (wanted: '//one%remedy//')'
-    end associate
-  end function sentence
+    do i = 1, found%count
+      associate (one => found%list(i))
+        if (one%severity /= found_error) cycle
+        call raise(error, status_deck, model%name_of(one%of, one%which)//one%what// &
+                                       ' (wanted: '//one%remedy//')')
+        return
+      end associate
+    end do
+  end subroutine raise_first
 
   !> Bodies, their outlines, and the contacts of lines: after elements, supports, ties and single pairs.
   pure subroutine find_contacts(model, found)

@@ -11,7 +11,7 @@ import sys
 
 LAYERS = ["base", "system", "deck", "element", "geometry", "model", "contact_geometry", "build", "material", "linalg", "plan",
           "assembly", "flexibility", "contact", "plasticity", "result", "certificate", "accuracy", "solution", "report",
-          "app"]   # solution: src/solution.f90
+          "epcont", "app"]   # solution, epcont: src/solution.f90, src/epcont.f90
 # A certificate computed by the code it certifies is worth nothing.
 SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "plasticity"}}
 VERSION = "src/base/version.f90"
@@ -67,7 +67,7 @@ def check_habits(lines):
 def check_module(path, source, lines):
     """Name, and uses of other layers."""
     parts = path.relative_to(source).with_suffix("").parts
-    name, layer = "_".join(("epcont",) + parts), parts[0]
+    name, layer = "_".join(("epcont",) + parts) if parts != ("epcont",) else "epcont", parts[0]
     if layer not in LAYERS:
         yield 1, f"{layer} is not a layer"
         return

@@ -21,7 +21,11 @@ TOOLS = [CPACK, "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file", "gzip", "uns
 DECK = "share/doc/epcont/examples/hertz44.dat"
 MANUAL = {"share/doc/epcont/input/README.md", "share/doc/epcont/input/coming_from.md"}
 INSTALLED = {"bin/epcont", "share/man/man1/epcont.1", "share/doc/epcont/README.md", "share/doc/epcont/CHANGELOG.md",
-             "share/doc/epcont/copyright", DECK} | MANUAL | MANUAL
+             "share/doc/epcont/copyright", DECK} | MANUAL
+EXAMPLE = "share/doc/epcont/examples/library"
+LIBRARY = {"lib/libepcont.a", "lib/fortran/epcont/epcont.mod", "lib/cmake/epcont/epcontConfig.cmake",
+           "lib/cmake/epcont/epcontConfigVersion.cmake", "lib/cmake/epcont/epcontTargets.cmake",
+           "lib/cmake/epcont/epcontTargets-release.cmake"} | {f"{EXAMPLE}/{name}" for name in ("CMakeLists.txt", "README.md", "two_blocks.f90")}
 PACKED = {"bin/epcont", "share/man/man1/epcont.1.gz", "share/doc/epcont/README.md", "share/doc/epcont/changelog.gz",
           "share/doc/epcont/copyright", DECK} | MANUAL
 
@@ -111,10 +115,29 @@ class Installed(unittest.TestCase):
             place = pathlib.Path(name)
             done = run(CMAKE, "--install", BUILD, "--prefix", place)
             self.assertEqual(0, done.returncode, done.stderr)
-            self.assertEqual(INSTALLED, files(place))
+            self.assertEqual(INSTALLED | LIBRARY, files(place))
             self.assertEqual(run(PROGRAM, "--man").stdout, (place / "share/man/man1/epcont.1").read_text())
             done = run(place / "bin/epcont", place / DECK, cwd=place, env={})
             self.assertEqual((0, ""), (done.returncode, done.stderr))
+
+    def test_library(self):
+        """The example, outside of the project: built on installed files alone, and its forces."""
+        with tempfile.TemporaryDirectory() as name:
+            place = pathlib.Path(name)
+            self.assertEqual(0, run(CMAKE, "--install", BUILD, "--prefix", place / "epcont").returncode)
+            done = run(CMAKE, "-S", place / "epcont" / EXAMPLE, "-B", place / "build", f"-DCMAKE_PREFIX_PATH={place / 'epcont'}", cwd=place)
+            self.assertEqual(0, done.returncode, done.stdout + done.stderr)
+            done = run(CMAKE, "--build", place / "build", cwd=place)
+            self.assertEqual(0, done.returncode, done.stdout + done.stderr)
+            done = run(place / "build/two_blocks", cwd=place)
+            self.assertEqual((0, ""), (done.returncode, done.stderr))
+            forces = [float(force) for force in re.findall(r"force +([\d.]+), gap +0.00E\+00", done.stdout)]
+            self.assertRegex(done.stdout, r"^answer: valid\n")
+            self.assertEqual(5, len(forces))
+            for force, mirrored in zip(forces, reversed(forces)):
+                self.assertAlmostEqual(mirrored, force, delta=1e-3)
+            # A strip of E' = E/(1 - nu^2) in each block, 4 long and 1 high, gives 4 times 0.001/(1/E1' + 1/E2') where nothing bulges.
+            self.assertAlmostEqual(4e-3/(0.91/2.1e5 + 0.8911/7e4), sum(forces), delta=0.25*sum(forces))
 
 
 class Package(unittest.TestCase):

@@ -1,6 +1,6 @@
 # What `cmake --install` puts where, and the Debian package that `cpack -G DEB` makes of it.
 include(GNUInstallDirs)
-# What is installed is the program and its page: tests need not be built for it.
+# What is installed is the program with its pages, and the library (tools/cmake/library.cmake): tests need not be built for it.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
 # The program prints its own manual page, from the table of options that it reads by.
@@ -22,6 +22,7 @@ install(FILES "${PROJECT_BINARY_DIR}/copyright" DESTINATION "${CMAKE_INSTALL_DOC
 install(FILES input/hertz/hertz44.dat DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples")
 
 set(CPACK_GENERATOR DEB)
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};Unspecified;/")   # the program, not the library
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "elastoplastic contact of plane bodies and rings")
