@@ -48,9 +48,11 @@ def check_size(lines, most=FILE_LINES):
     for n, line in enumerate(lines, 1):
         if len(line) > COLUMNS:
             yield n, f"longer than {COLUMNS} columns"
-    for name, first, last in procedures(lines):
-        if last - first > PROCEDURE_LINES:
-            yield first + 1, f"{name} has more than {PROCEDURE_LINES} lines"
+    found = list(procedures(lines))
+    for name, first, last in found:
+        internal = sum(end - begin for _, begin, end in found if first < begin and end < last)
+        if last - first - internal > PROCEDURE_LINES:
+            yield first + 1, f"{name} has more than {PROCEDURE_LINES} lines, without its internal procedures"
 
 
 def check_habits(lines):
