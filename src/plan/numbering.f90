@@ -62,7 +62,7 @@ contains
     type(numbering_type) :: numbering
     type(incidence) :: elements, nodes
     integer, allocatable :: own(:)             ! nodes of the body that is being numbered
-    logical :: fixed(directions, model%nodes)  ! the freedom has a support, or SUPORT
+    logical, allocatable :: fixed(:, :)        ! the freedom has a support, or SUPORT [directions, nodes]
     integer :: b
 
     allocate (numbering%at_contact(model%nodes), source=.false.)
