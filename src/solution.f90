@@ -15,7 +15,7 @@ module epcont_solution
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_plasticity_iteration, only: follow_loads, followed_loads
-  use epcont_plasticity_linear_scene, only: linear_scene
+  use epcont_linear_linear_problem, only: linear_problem
   use epcont_plasticity_onlooker, only: onlooker
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: find_body_forces
@@ -85,7 +85,7 @@ contains
     type(certificate_type), intent(out) :: certificate
     type(accuracy_type), intent(out) :: accuracy
     class(onlooker), intent(inout) :: watch
-    type(linear_scene), allocatable :: linear
+    type(linear_problem), allocatable :: linear
     type(contact_line) :: line
     type(answer_type) :: found                      ! before refinement
     type(certificate_type) :: found_certificate
@@ -121,7 +121,7 @@ contains
   !> Stresses, pressures and zones of the state that was found, and their certificate.
   subroutine evaluate(scene, linear, line, answer, certificate, watch)
     type(planned_scene), intent(in) :: scene
-    type(linear_scene), intent(in) :: linear
+    type(linear_problem), intent(in) :: linear
     type(contact_line), intent(in) :: line
     type(answer_type), intent(inout) :: answer
     type(certificate_type), intent(out) :: certificate
@@ -152,7 +152,7 @@ contains
   !! by others in double.
   subroutine solve_in_precision(scene, linear, answer, watch)
     type(planned_scene), intent(in) :: scene
-    type(linear_scene), allocatable, intent(out) :: linear
+    type(linear_problem), allocatable, intent(out) :: linear
     type(answer_type), intent(inout) :: answer
     class(onlooker), intent(inout) :: watch
     type(iteration_plan) :: now
@@ -183,7 +183,7 @@ contains
   subroutine follow_or_step(scene, plan, linear, answer, watch)
     type(planned_scene), intent(in) :: scene
     type(iteration_plan), intent(inout) :: plan   !! its load steps become those that were taken
-    type(linear_scene), allocatable, intent(out) :: linear
+    type(linear_problem), allocatable, intent(out) :: linear
     type(followed_loads), intent(out) :: answer
     class(onlooker), intent(inout) :: watch
 

@@ -19,7 +19,7 @@ module epcont_accuracy_accuracy
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_planned_scene, only: planned_scene
-  use epcont_plasticity_linear_scene, only: linear_scene
+  use epcont_linear_linear_problem, only: linear_problem
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line
   implicit none
@@ -68,7 +68,7 @@ contains
 
   pure subroutine assess(scene, linear, line, answer, accuracy)
     type(planned_scene), intent(in) :: scene
-    type(linear_scene), intent(in) :: linear   !! of the last solve
+    type(linear_problem), intent(in) :: linear   !! of the last solve
     type(contact_line), intent(in) :: line
     type(answer_type), intent(in) :: answer
     type(accuracy_type), intent(out) :: accuracy

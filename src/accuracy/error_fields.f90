@@ -7,8 +7,8 @@ module epcont_accuracy_error_fields
   use epcont_base_kinds, only: wp
   use epcont_plan_forecast, only: loads_at_once
   use epcont_plan_planned_scene, only: planned_scene
-  use epcont_plasticity_linear_scene, only: linear_scene
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_linear_linear_problem, only: linear_problem
+  use epcont_linear_scene_state, only: scene_state
   implicit none
   private
   public :: compare_fields, error_fields
@@ -27,7 +27,7 @@ contains
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
   pure subroutine compare_fields(scene, linear, answer, table, unit_force, field)
     type(planned_scene), intent(in) :: scene
-    type(linear_scene), intent(in) :: linear   !! of the last solve
+    type(linear_problem), intent(in) :: linear   !! of the last solve
     class(scene_state), intent(in) :: answer
     type(patch_table), intent(in) :: table
     real(wp), intent(in) :: unit_force(:, :)   !! contact forces under each unit load [pairs, loads]

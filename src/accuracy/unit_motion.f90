@@ -8,7 +8,7 @@ module epcont_accuracy_unit_motion
   use epcont_contact_scaling, only: scaled_problem
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_plan_planned_scene, only: planned_scene
-  use epcont_plasticity_linear_scene, only: linear_scene
+  use epcont_linear_linear_problem, only: linear_problem
   implicit none
   private
   public :: closing_forces, unit_forces, unit_strains
@@ -58,7 +58,7 @@ contains
   !> Strains of such forces [4, points].
   pure function unit_strains(scene, linear, force) result(strain)
     type(planned_scene), intent(in) :: scene
-    type(linear_scene), intent(in) :: linear
+    type(linear_problem), intent(in) :: linear
     real(wp), intent(in) :: force(:)   !! [pairs]
     real(wp), allocatable :: strain(:, :)
 

@@ -4,6 +4,7 @@ module epcont_plan_numbering
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_element_element_kind, only: most_nodes
+  use epcont_element_kinematics, only: directions
   use epcont_linalg_front_layout, only: front_layout, new_front_layout
   use epcont_linalg_panel_layout, only: new_panel_layout, panel_layout
   use epcont_model_controls, only: solver_auto, solver_band, solver_frontal
@@ -35,13 +36,17 @@ module epcont_plan_numbering
   end type body_numbering
 
   type :: numbering_type
-    !> Equation of each freedom in its body: positive in the band, negative in the border, 0 held. [2, nodes]
+    !> Equation of each freedom in its body: positive in the band, negative in the border, 0 held; that of a
+    !! tied freedom is its leader's, and never positive. [directions, nodes]
     integer, allocatable :: equation(:, :)
     logical, allocatable :: at_contact(:)  !! the node is one of a pair [nodes]
     type(body_numbering), allocatable :: body(:)
   contains
     procedure :: of_element
   end type numbering_type
+
+  !> Freedoms of an element.
+  integer, parameter, public :: most_freedoms = directions*most_nodes
 
   !> Nodes in levels: each level has the neighbours of the one before.
   type :: level_order
@@ -52,235 +57,233 @@ module epcont_plan_numbering
 contains
 
   !> Number all bodies, each for the solver that the deck asks for, or that which is faster.
-  pure function number_equations(model) result(numbering)
+  function number_equations(model) result(numbering)
     type(model_type), intent(in) :: model   !! the scene
     type(numbering_type) :: numbering
     type(incidence) :: elements, nodes
+    integer, allocatable :: own(:)             ! nodes of the body that is being numbered
+    logical, allocatable :: fixed(:, :)        ! the freedom has a support, or SUPORT [directions, nodes]
     integer :: b
 
     allocate (numbering%at_contact(model%nodes), source=.false.)
     numbering%at_contact(model%row_node) = .true.
-    allocate (numbering%equation(2, model%nodes), source=0)
+    allocate (numbering%equation(directions, model%nodes), source=0)
+    fixed = model%held .or. model%reference
     nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
     elements = new_incidence(reshape(model%body(model%connectivity(1, :)), [1, model%elements]), model%bodies)
     allocate (numbering%body(model%bodies))
     do b = 1, model%bodies
+      own = nodes%group(nodes%start(b):nodes%start(b + 1) - 1)
       associate (body => numbering%body(b))
-        body%node = nodes%group(nodes%start(b):nodes%start(b + 1) - 1)
         body%element = elements%group(elements%start(b):elements%start(b + 1) - 1)
         body%can_yield = any(model%can_yield(body%element))
         if (size(body%element) == 0) then
-          call number_nodes(model, (body%node), numbering, b)
-          call find_panels(model, numbering, b)
+          call number_panels(own, body)
         else if (model%controls%solver == solver_frontal) then
-          call number_fronts(model, numbering, b)
+          call number_fronts(body)
         else
-          call number_band(model, numbering, b)
+          call number_band(body)
         end if
       end associate
     end do
-  end function number_equations
 
-  !> Number a body for nested fronts, the contact nodes in the last of them. It is parted along x, along y and
-  !! along the distance from the contact, in elements: there they are the smallest, mostly, and what lies
-  !! around it has the shortest edge.
-  pure subroutine number_fronts(model, numbering, b)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(inout) :: numbering
-    integer, intent(in) :: b
-    type(level_order) :: outward
-    type(dissection) :: found
-    real(wp) :: distance(model%nodes)
-    integer, allocatable :: first(:), roots(:)
-    integer :: i, p
+  contains
 
-    associate (body => numbering%body(b))
-      roots = pack(body%node, numbering%at_contact(body%node))
-      if (size(roots) == 0) roots = body%node(:1)
-      outward = sweep(model, roots, body%node)
-      do i = 1, size(outward%node)
-        distance(outward%node(i)) = i
-      end do
-      found = dissect(model, distance, body%element, body%node, numbering%at_contact)
-      call number_nodes(model, found%node, numbering, b)
+    !> Number a body for nested fronts, the contact nodes in the last of them. It is parted along x, along y
+    !! and along the distance from the contact, in elements: there they are the smallest, mostly, and what lies
+    !! around it has the shortest edge.
+    subroutine number_fronts(body)
+      type(body_numbering), intent(inout) :: body
+      type(level_order) :: outward
+      type(dissection) :: found
+      real(wp) :: distance(model%nodes)
+      integer, allocatable :: first(:), numbers(:, :), roots(:)
+      integer :: i, number(most_freedoms)
+
+      roots = pack(own, numbering%at_contact(own))
+      if (size(roots) == 0) roots = own(:1)
+      outward = sweep(roots)
+      distance(outward%node) = [(real(i, wp), i=1, size(own))]
+      found = dissect(model, distance, body%element, own, numbering%at_contact)
+      call number_nodes(found%node, body)
       if (body%equations == 0) then
-        call find_panels(model, numbering, b)
+        call number_panels(found%node, body)
         return
       end if
       body%solver = solver_frontal
       body%contact_last = .true.
       ! A front's equations follow on one another, and some fronts have none.
       allocate (first(size(found%first)), source=1)
-      do p = 1, size(first) - 1
-        associate (node => found%node(found%first(p):found%first(p + 1) - 1))
-          first(p + 1) = first(p) + count(numbering%equation(:, node) > 0 .and. &
-                                          model%leader(:, node) == spread(node, 1, 2))
+      do i = 2, size(first)
+        associate (equation => numbering%equation(:, found%node(found%first(i - 1):found%first(i) - 1)))
+          first(i) = max(first(i - 1), maxval(equation) + 1)
         end associate
       end do
-      body%fronts = new_front_layout(pack(first, [first(2:) > first(:size(first) - 1), .true.]), &
-                                     element_numbers(model, numbering, b))
+      allocate (numbers(directions*maxval(model%order(body%element)), size(body%element)))
+      do i = 1, size(body%element)
+        number = numbering%of_element(model, body%element(i))
+        numbers(:, i) = number(:size(numbers, 1))
+      end do
+      body%fronts = new_front_layout(pack(first, [first(2:) > first(:size(first) - 1), .true.]), numbers)
       body%operations = body%fronts%operations() + real(body%contact_equations, wp)**3
       ! What is assembled together stands together in memory.
       body%element = body%element(body%fronts%element)
-    end associate
-  end subroutine number_fronts
+    end subroutine number_fronts
 
-  !> Equations of an element, x and y of its nodes in turn, zeros behind.
-  pure function of_element(self, model, element) result(number)
-    class(numbering_type), intent(in) :: self
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: element             !! its number
-    integer :: number(2*most_nodes)
-    integer :: i
+    !> Number a body for a band, in reverse Cuthill-McKee order. Its levels are rooted at the contact nodes so
+    !! that these come last: then the trailing block of the factor alone gives the flexibility. Or, where that
+    !! widens the band by more than forward substitution of all pairs costs, they are rooted at the body's far
+    !! end. Where even that band is a wide one, fronts are taken.
+    subroutine number_band(body)
+      type(body_numbering), intent(inout) :: body
+      type(level_order) :: order
+      logical :: may_choose
+      integer :: i, n
 
-    number = 0
-    do i = 1, model%order(element)
-      number(2*i - 1:2*i) = self%equation(:, model%connectivity(i, element))
-    end do
-  end function of_element
-
-  !> The same of all elements of a body [any, elements].
-  pure function element_numbers(model, numbering, b) result(numbers)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    integer, intent(in) :: b
-    integer, allocatable :: numbers(:, :)
-    integer :: e, number(2*most_nodes)
-
-    associate (element => numbering%body(b)%element)
-      allocate (numbers(2*maxval(model%order(element)), size(element)))
-      do e = 1, size(element)
-        number = numbering%of_element(model, element(e))
-        numbers(:, e) = number(:size(numbers, 1))
-      end do
-    end associate
-  end function element_numbers
-
-  !> Reverse Cuthill-McKee order of a body. Its levels are rooted at the contact nodes so that these come
-  !! last: then the trailing block of the factor alone gives the flexibility. Or, where that widens the band
-  !! by more than forward substitution of all pairs costs, they are rooted at the body's far end. Where even
-  !! that band is a wide one, fronts are taken.
-  pure subroutine number_band(model, numbering, b)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(inout) :: numbering
-    integer, intent(in) :: b
-    type(level_order) :: order
-    integer, allocatable :: nodes(:)
-
-    nodes = numbering%body(b)%node
-    order = sweep(model, nodes(:1), nodes)
-    if (model%controls%solver == solver_auto .and. least_operations(order) > many_operations) then
-      call number_fronts(model, numbering, b)
-      return
-    end if
-    order = sweep(model, order%node(size(nodes):), nodes)
-    order = sweep(model, order%node(size(nodes):), nodes)
-    ! The contact comes late in the reversed order, and with it what yields: what stands before is factored
-    ! once.
-    if (mean_place(order%node, numbering%at_contact) > 0.5_wp) then
-      order = sweep(model, order%node(size(nodes):), nodes)
-    end if
-    call number_nodes(model, order%node(size(nodes):1:-1), numbering, b)
-    call find_panels(model, numbering, b)
-    associate (body => numbering%body(b))
+      n = size(own)
+      may_choose = model%controls%solver == solver_auto
+      order = sweep(own(:1))
+      ! All levels of the same width: no band of a body so deep is narrower.
+      if (may_choose .and. 2.0_wp*n*(2.0_wp*n/order%levels)**2 > many_operations) then
+        call number_fronts(body)
+        return
+      end if
+      order = sweep(order%node(n:))
+      order = sweep(order%node(n:))
+      ! The contact comes late in the reversed order, and with it what yields: what stands before is factored
+      ! once.
+      associate (place => pack([(real(i, wp), i=1, n)], numbering%at_contact(order%node)))
+        if (sum(place) > 0.5_wp*size(place)*n) order = sweep(order%node(n:))
+      end associate
+      call number_panels(order%node(n:1:-1), body)
       body%contact_last = .false.
       body%operations = body%panels%operations()
-      if (model%controls%solver == solver_auto .and. body%operations > many_operations) then
-        body%node = nodes
-        call number_fronts(model, numbering, b)
-      else if (any(numbering%at_contact(nodes))) then
+      if (may_choose .and. body%operations > many_operations) then
+        call number_fronts(body)
+      else if (any(numbering%at_contact(own))) then
         ! The roots stand in the order of the sweep from the far end, which runs along the contact.
-        call root_at_contact(model, nodes, pack(order%node, numbering%at_contact(order%node)), numbering, b)
+        call root_at_contact(pack(order%node, numbering%at_contact(order%node)), body)
       end if
-    end associate
-  end subroutine number_band
+    end subroutine number_band
 
-  !> Number a body anew so that the contact comes last, if that takes fewer operations.
-  pure subroutine root_at_contact(model, nodes, roots, numbering, b)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: nodes(:)       !! of the body
-    integer, intent(in) :: roots(:)       !! of these at contact
-    type(numbering_type), intent(inout) :: numbering
-    integer, intent(in) :: b
-    type(body_numbering) :: plain
-    type(level_order) :: order
-    integer, allocatable :: begins(:), equation(:, :)
+    !> Number a body anew so that the contact comes last, if that takes fewer operations.
+    subroutine root_at_contact(roots, body)
+      integer, intent(in) :: roots(:)       !! nodes at contact
+      type(body_numbering), intent(inout) :: body
+      type(body_numbering) :: plain
+      type(level_order) :: order
+      integer, allocatable :: begins(:), equation(:, :)
 
-    associate (body => numbering%body(b))
       begins = maxval(numbering%equation(:, roots), dim=1)
       body%operations = body%operations + body%panels%compliance_operations(pack(begins, begins > 0))
       plain = body
-      equation = numbering%equation(:, nodes)
-      order = sweep(model, roots, nodes)
-      call number_nodes(model, order%node(size(nodes):1:-1), numbering, b)
-      call find_panels(model, numbering, b)
+      equation = numbering%equation(:, own)
+      order = sweep(roots)
+      call number_panels(order%node(size(own):1:-1), body)
       body%contact_last = .true.
       body%operations = body%panels%operations() + real(body%contact_equations, wp)**3
       if (body%operations <= plain%operations) return
-      numbering%equation(:, nodes) = equation
+      numbering%equation(:, own) = equation
       body = plain
-    end associate
-  end subroutine root_at_contact
+    end subroutine root_at_contact
 
-  !> Operations of a band that is as narrow as it can be for a body so deep: all levels of the same width.
-  pure real(wp) function least_operations(order)
-    type(level_order), intent(in) :: order
+    !> Breadth-first order of a body's nodes from `roots`, at each node its new neighbours by their number of
+    !! elements. Nodes that elements do not join to the roots (an RBE2 does) start sweeps of their own.
+    pure type(level_order) function sweep(roots) result(order)
+      integer, intent(in) :: roots(:)
+      integer, allocatable :: found(:)
+      logical :: seen(model%nodes)
+      integer :: at, end_of_level, filled, first, k, next
 
-    least_operations = 2.0_wp*size(order%node)*(2.0_wp*size(order%node)/max(1, order%levels))**2
-  end function least_operations
-
-  !> Mean place of the marked nodes in an order, from 0 to 1; 0 where there is none.
-  pure real(wp) function mean_place(order, marked)
-    integer, intent(in) :: order(:)
-    logical, intent(in) :: marked(:)
-    integer :: i
-
-    associate (places => pack([(real(i, wp), i=1, size(order))], marked(order)))
-      mean_place = sum(places)/(max(1, size(places))*real(size(order), wp))
-    end associate
-  end function mean_place
-
-  !> Breadth-first order from `roots`, at each node its new neighbours by their number of elements. Nodes that
-  !! elements do not join to the roots (an RBE2 does) start sweeps of their own.
-  pure type(level_order) function sweep(model, roots, nodes) result(order)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: roots(:), nodes(:)
-    integer, allocatable :: found(:)
-    logical :: seen(model%nodes)
-    integer :: at, end_of_level, filled, first, k, next
-
-    allocate (order%node(size(nodes)))
-    seen = .false.
-    filled = size(roots)
-    order%node(:filled) = roots
-    seen(roots) = .true.
-    end_of_level = 0
-    next = 1
-    do at = 1, size(nodes)
-      if (at > filled) then
-        do while (seen(nodes(next)))
-          next = next + 1
+      allocate (order%node(size(own)))
+      seen = .false.
+      filled = size(roots)
+      order%node(:filled) = roots
+      seen(roots) = .true.
+      end_of_level = 0
+      next = 1
+      do at = 1, size(own)
+        if (at > filled) then
+          do while (seen(own(next)))
+            next = next + 1
+          end do
+          call add_new(own(next:next), seen, order%node, filled)
+        end if
+        if (at > end_of_level) then
+          order%levels = order%levels + 1
+          end_of_level = filled
+        end if
+        first = filled + 1
+        do k = model%around%start(order%node(at)), model%around%start(order%node(at) + 1) - 1
+          associate (e => model%around%group(k))
+            call add_new(model%connectivity(:model%order(e), e), seen, order%node, filled)
+          end associate
         end do
-        call add_new(nodes(next:next), seen, order%node, filled)
-      end if
-      if (at > end_of_level) then
-        order%levels = order%levels + 1
-        end_of_level = filled
-      end if
-      first = filled + 1
-      do k = model%around%start(order%node(at)), model%around%start(order%node(at) + 1) - 1
-        associate (e => model%around%group(k))
-          call add_new(model%connectivity(:model%order(e), e), seen, order%node, filled)
+        if (filled > first) then
+          found = order%node(first:filled)
+          order%node(first:filled) = found(sorted_order(model%around%start(found + 1) - model%around%start(found)))
+        end if
+      end do
+    end function sweep
+
+    !> Number the freedoms of a body along an order of its nodes. A leader of ties that is free goes to the
+    !! border, so that the band never sees a whole line of nodes on one freedom.
+    subroutine number_nodes(order, body)
+      integer, intent(in) :: order(:)
+      type(body_numbering), intent(inout) :: body
+      integer :: c, i
+
+      body%node = order
+      body%equations = 0
+      body%contact_equations = 0
+      body%border = 0
+      associate (equation => numbering%equation)
+        equation(:, order) = 0
+        do i = 1, size(order)
+          do c = 1, directions
+            associate (leader => model%leader(c, order(i)))
+              if (leader == order(i) .or. fixed(c, leader) .or. equation(c, leader) < 0) cycle
+              body%border = body%border + 1
+              equation(c, leader) = -body%border
+            end associate
+          end do
+        end do
+        do i = 1, size(order)
+          do c = 1, directions
+            associate (leader => model%leader(c, order(i)), own => equation(c, order(i)))
+              own = equation(c, leader)
+              if (leader /= order(i) .or. own < 0 .or. fixed(c, leader)) cycle
+              body%equations = body%equations + 1
+              own = body%equations
+              if (.not. numbering%at_contact(leader)) cycle
+              body%contact_equations = body%contact_equations + 1
+              if (body%contact_equations == 1) body%first_contact = own
+            end associate
+          end do
+        end do
+      end associate
+      if (body%contact_equations == 0) body%first_contact = body%equations + 1
+    end subroutine number_nodes
+
+    !> The same for a band, with its panels, as far down as each equation is coupled.
+    subroutine number_panels(order, body)
+      integer, intent(in) :: order(:)
+      type(body_numbering), intent(inout) :: body
+      integer, allocatable :: profile(:)
+      integer :: e, i, number(most_freedoms)
+
+      call number_nodes(order, body)
+      profile = [(i, i=1, body%equations)]
+      do e = 1, size(body%element)
+        number = numbering%of_element(model, body%element(e))
+        associate (coupled => pack(number, number > 0))
+          profile(coupled) = max(profile(coupled), maxval(number))
         end associate
       end do
-      if (filled > first) then
-        found = order%node(first:filled)
-        associate (elements => model%around%start(found + 1) - model%around%start(found))
-          order%node(first:filled) = found(sorted_order(elements))
-        end associate
-      end if
-    end do
-  end function sweep
+      body%half_bandwidth = maxval([profile - [(i, i=1, body%equations)], 0])
+      body%panels = new_panel_layout(profile)
+    end subroutine number_panels
+  end function number_equations
 
   !> Put the nodes not seen yet at the end of the order.
   pure subroutine add_new(node, seen, order, filled)
@@ -297,87 +300,17 @@ contains
     end do
   end subroutine add_new
 
-  !> Number the freedoms of one body along the order of its nodes. A tied freedom has its leader's number; a
-  !! leader that is free goes to the border, so that the band never sees a whole line of nodes on one freedom.
-  pure subroutine number_nodes(model, order, numbering, b)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: order(:)                      !! of its nodes
-    type(numbering_type), intent(inout) :: numbering
-    integer, intent(in) :: b
-    integer :: c, i
+  !> Equations of an element, x and y of its nodes in turn, zeros behind.
+  pure function of_element(self, model, element) result(number)
+    class(numbering_type), intent(in) :: self
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: element             !! its number
+    integer :: number(most_freedoms)
+    integer :: i
 
-    associate (body => numbering%body(b), equation => numbering%equation)
-      body%node = order
-      body%equations = 0
-      body%contact_equations = 0
-      equation(:, body%node) = 0
-      call number_border(model, body, equation)
-      do i = 1, size(body%node)
-        associate (node => body%node(i))
-          do c = 1, 2
-            if (model%leader(c, node) /= node) then
-              equation(c, node) = equation(c, model%leader(c, node))
-            else if (equation(c, node) == 0 .and. .not. is_fixed(model, c, node)) then
-              body%equations = body%equations + 1
-              equation(c, node) = body%equations
-              if (.not. numbering%at_contact(node)) cycle
-              body%contact_equations = body%contact_equations + 1
-              if (body%contact_equations == 1) body%first_contact = body%equations
-            end if
-          end do
-        end associate
-      end do
-      if (body%contact_equations == 0) body%first_contact = body%equations + 1
-    end associate
-  end subroutine number_nodes
-
-  !> Number the free leaders of ties.
-  pure subroutine number_border(model, body, equation)
-    type(model_type), intent(in) :: model
-    type(body_numbering), intent(inout) :: body
-    integer, intent(inout) :: equation(:, :)
-    integer :: c, i
-
-    body%border = 0
-    do i = 1, size(body%node)
-      do c = 1, 2
-        associate (leader => model%leader(c, body%node(i)))
-          if (leader == body%node(i) .or. is_fixed(model, c, leader) .or. equation(c, leader) < 0) cycle
-          body%border = body%border + 1
-          equation(c, leader) = -body%border
-        end associate
-      end do
+    number = 0
+    do i = 1, model%order(element)
+      number(directions*(i - 1) + 1:directions*i) = self%equation(:, model%connectivity(i, element))
     end do
-  end subroutine number_border
-
-  !> Has a freedom a support, or SUPORT?
-  pure logical function is_fixed(model, c, node)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: c, node
-
-    is_fixed = model%held(c, node) .or. model%reference(c, node)
-  end function is_fixed
-
-  !> The panels of a body, as far down as each equation is coupled.
-  pure subroutine find_panels(model, numbering, b)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(inout) :: numbering
-    integer, intent(in) :: b
-    integer, allocatable :: profile(:)
-    integer :: e, i, number(2*most_nodes)
-
-    associate (body => numbering%body(b))
-      profile = [(i, i=1, body%equations)]
-      do e = 1, size(body%element)
-        number = numbering%of_element(model, body%element(e))
-        associate (highest => maxval(number))
-          do i = 1, size(number)
-            if (number(i) > 0) profile(number(i)) = max(profile(number(i)), highest)
-          end do
-        end associate
-      end do
-      body%half_bandwidth = maxval([profile - [(i, i=1, body%equations)], 0])
-      body%panels = new_panel_layout(profile)
-    end associate
-  end subroutine find_panels
+  end function of_element
 end module epcont_plan_numbering

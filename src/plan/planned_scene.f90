@@ -3,9 +3,8 @@ module epcont_plan_planned_scene
   use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
   use epcont_plan_forecast, only: forecast, forecast_type
-  use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_plan_free_motion, only: find_free_motions, free_motions
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
-  use epcont_plan_loose_bodies, only: find_loose_bodies
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_system_stopwatch, only: stage_numbering, stage_plan, stopwatch
   implicit none
@@ -29,10 +28,8 @@ contains
   subroutine find_motions(self, found)
     class(planned_scene), intent(inout) :: self
     type(findings), intent(inout) :: found   !! bodies that cannot be solved for are added
-    type(motion_fault), allocatable :: fault(:)
 
-    call find_free_motions(self%model, self%motions, fault)
-    call find_loose_bodies(self%model, fault, found)
+    call find_free_motions(self%model, self%motions, found)
   end subroutine find_motions
 
   !> Plan how the model, whose free motions are known, is solved.

@@ -5,11 +5,14 @@
 module epcont_plan_rigid_parts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
-  use epcont_element_kinematics, only: axisymmetric
+  use epcont_element_kinematics, only: axisymmetric, directions
   use epcont_model_model, only: model_type
   implicit none
   private
   public :: rigid_parts, find_rigid_parts
+
+  !> Free motions of a part by itself: along x, along y, turn.
+  integer, parameter, public :: part_motions = directions + 1
 
   type :: rigid_parts
     integer :: count = 0
@@ -18,23 +21,23 @@ module epcont_plan_rigid_parts
     logical, allocatable :: turns(:)        !! the part can turn [count]
     logical, allocatable :: ring(:)         !! the part can move along y alone [count]
     integer, allocatable :: hinge(:, :)     !! node, part, other part of each hinge [3, hinges]
-    real(wp), allocatable :: centre(:, :)   !! of each body [length] [2, bodies]
+    real(wp), allocatable :: centre(:, :)   !! of each body [length] [directions, bodies]
     real(wp), allocatable :: extent(:)      !! of each body, largest half width [length] [bodies]
   contains
-    procedure :: row
+    procedure :: rows
     procedure :: turn
   end type rigid_parts
 
 contains
 
   !> The rigid parts of all bodies, with their hinges.
-  pure function find_rigid_parts(model) result(parts)
+  function find_rigid_parts(model) result(parts)
     type(model_type), intent(in) :: model   !! the scene
     type(rigid_parts) :: parts
-    integer, allocatable :: of_element(:)
+    integer, allocatable :: of_element(:)   ! the part of each element
     integer :: e, i, solid
 
-    call join_elements(model, of_element, solid)
+    call join_elements()
     parts%count = solid
     allocate (parts%of_node(model%nodes))
     do i = 1, model%nodes
@@ -53,96 +56,89 @@ contains
       parts%body(of_element(e)) = model%body(model%connectivity(1, e))
       parts%ring(of_element(e)) = model%kinematics(model%section(e)) == axisymmetric
     end do
-    call find_hinges(model, of_element, parts)
-    call measure(model, parts)
-  end function find_rigid_parts
+    call find_hinges()
+    call measure()
 
-  !> Where parts share a single node.
-  pure subroutine find_hinges(model, of_element, parts)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: of_element(:)    !! the part of each element
-    type(rigid_parts), intent(inout) :: parts
-    integer :: hinges, i, k
+  contains
 
-    allocate (parts%hinge(3, size(model%around%group)))
-    hinges = 0
-    do i = 1, model%nodes
-      associate (around => model%around%group, first => model%around%start(i))
-        do k = first, model%around%start(i + 1) - 1
-          if (of_element(around(k)) == parts%of_node(i)) cycle
-          if (any(of_element(around(first:k - 1)) == of_element(around(k)))) cycle
-          hinges = hinges + 1
-          parts%hinge(:, hinges) = [i, parts%of_node(i), of_element(around(k))]
+    !> Number the sets of elements that share two nodes.
+    subroutine join_elements()
+      type(partition) :: sets
+      integer, allocatable :: met_by(:)   ! the last element with which each was found to share a node
+      integer :: j, k
+
+      sets = new_partition(model%elements)
+      allocate (met_by(model%elements), source=0)
+      do e = 1, model%elements
+        do k = 1, model%order(e)
+          associate (node => model%connectivity(k, e))
+            do j = model%around%start(node), model%around%start(node + 1) - 1
+              associate (neighbour => model%around%group(j))
+                if (neighbour >= e) exit
+                if (met_by(neighbour) == e) call sets%join(e, neighbour)
+                met_by(neighbour) = e
+              end associate
+            end do
+          end associate
         end do
-      end associate
-    end do
-    parts%hinge = parts%hinge(:, :hinges)
-  end subroutine find_hinges
+      end do
+      call sets%numbers(of_element, solid)
+    end subroutine join_elements
 
-  !> Number the sets of elements that share two nodes.
-  pure subroutine join_elements(model, of_element, count)
-    type(model_type), intent(in) :: model
-    integer, allocatable, intent(out) :: of_element(:)
-    integer, intent(out) :: count
-    type(partition) :: sets
-    !> The last element with which each was found to share a node [elements]
-    integer, allocatable :: met_by(:)
-    integer :: e, j, k, neighbour
+    !> Where parts share a single node.
+    subroutine find_hinges()
+      integer :: hinges, k
 
-    sets = new_partition(model%elements)
-    allocate (met_by(model%elements), source=0)
-    do e = 1, model%elements
-      do k = 1, model%order(e)
-        associate (node => model%connectivity(k, e))
-          do j = model%around%start(node), model%around%start(node + 1) - 1
-            neighbour = model%around%group(j)
-            if (neighbour >= e) exit
-            if (met_by(neighbour) == e) call sets%join(e, neighbour)
-            met_by(neighbour) = e
+      allocate (parts%hinge(3, size(model%around%group)))
+      hinges = 0
+      do i = 1, model%nodes
+        associate (first => model%around%start(i), here => parts%of_node(i))
+          do k = first, model%around%start(i + 1) - 1
+            associate (other => of_element(model%around%group(k)))
+              if (other == here .or. any(of_element(model%around%group(first:k - 1)) == other)) cycle
+              hinges = hinges + 1
+              parts%hinge(:, hinges) = [i, here, other]
+            end associate
           end do
         end associate
       end do
-    end do
-    call sets%numbers(of_element, count)
-  end subroutine join_elements
+      parts%hinge = parts%hinge(:, :hinges)
+    end subroutine find_hinges
 
-  !> Centre and extent of each body.
-  pure subroutine measure(model, parts)
-    type(model_type), intent(in) :: model
-    type(rigid_parts), intent(inout) :: parts
-    real(wp), allocatable :: low(:, :), high(:, :)
-    integer :: i
+    !> Centre and extent of each body.
+    subroutine measure()
+      real(wp), dimension(directions, model%bodies) :: low, high
 
-    allocate (low(2, model%bodies), source=huge(1.0_wp))
-    allocate (high(2, model%bodies), source=-huge(1.0_wp))
-    do i = 1, model%nodes
-      low(:, model%body(i)) = min(low(:, model%body(i)), model%x(:, i))
-      high(:, model%body(i)) = max(high(:, model%body(i)), model%x(:, i))
-    end do
-    parts%centre = 0.5_wp*low + 0.5_wp*high
-    parts%extent = maxval(0.5_wp*high - 0.5_wp*low, dim=1)
-    where (parts%extent <= 0.0_wp) parts%extent = 1.0_wp
-  end subroutine measure
+      low = huge(1.0_wp)
+      high = -huge(1.0_wp)
+      do i = 1, model%nodes
+        associate (b => model%body(i))
+          low(:, b) = min(low(:, b), model%x(:, i))
+          high(:, b) = max(high(:, b), model%x(:, i))
+        end associate
+      end do
+      parts%centre = 0.5_wp*low + 0.5_wp*high
+      parts%extent = maxval(0.5_wp*high - 0.5_wp*low, dim=1)
+      where (parts%extent <= 0.0_wp) parts%extent = 1.0_wp
+    end subroutine measure
+  end function find_rigid_parts
 
-  !> Displacement of component c at a place of a body by unit motions of the part it belongs to: along x,
-  !! along y, and a turn that moves the body's extent by one.
-  pure function row(self, model, node, c)
+  !> Displacement of a place of a body by the unit motions of the part it belongs to [directions, motions].
+  pure function rows(self, model, node)
     class(rigid_parts), intent(in) :: self
     type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: node, c   !! the place, and component
-    real(wp) :: row(3)
+    integer, intent(in) :: node   !! the place
+    real(wp) :: rows(directions, part_motions)
 
-    associate (turned => self%turn(model, node))
-      row = [merge(1.0_wp, 0.0_wp, c == 1), merge(0.0_wp, 1.0_wp, c == 1), turned(c)]
-    end associate
-  end function row
+    rows = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, self%turn(model, node)], shape(rows))
+  end function rows
 
   !> Displacement of a place of a body by the turn that moves the body's extent by one.
   pure function turn(self, model, node)
     class(rigid_parts), intent(in) :: self
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: node   !! the place
-    real(wp) :: turn(2)
+    real(wp) :: turn(directions)
 
     associate (b => model%body(node))
       turn = [-(model%x(2, node) - self%centre(2, b)), model%x(1, node) - self%centre(1, b)]/self%extent(b)

@@ -5,7 +5,7 @@
 module epcont_plasticity_anderson
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_linear_scene_state, only: scene_state
   implicit none
   private
   public :: anderson_mixer

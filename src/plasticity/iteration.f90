@@ -10,12 +10,12 @@ module epcont_plasticity_iteration
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_iteration_error, only: error_estimator, ratio
-  use epcont_plasticity_linear_scene, only: linear_scene, new_linear_scene
+  use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
   use epcont_plasticity_method, only: plastic_method
   use epcont_plasticity_methods, only: choose_method
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_onlooker, only: iteration_record, onlooker
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_linear_scene_state, only: scene_state
   use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
   implicit none
   private
@@ -58,7 +58,7 @@ module epcont_plasticity_iteration
   type :: loop_type
     type(iteration_plan) :: plan
     class(plastic_method), allocatable :: method
-    type(linear_scene), allocatable :: linear
+    type(linear_problem), allocatable :: linear
     real(wp) :: part = 0.0_wp                         !! of the loads
     type(scene_state) :: about                        !! the state that the law is about
     integer :: yielded = 0                            !! elements that yield there
@@ -76,7 +76,7 @@ contains
   subroutine follow_loads(scene, plan, linear, answer, watch)
     type(planned_scene), intent(in) :: scene
     type(iteration_plan), intent(in) :: plan
-    type(linear_scene), allocatable, intent(out) :: linear   !! as the last solve left it, if there is an answer
+    type(linear_problem), allocatable, intent(out) :: linear   !! as the last solve left it, if there is an answer
     type(followed_loads), intent(out) :: answer
     class(onlooker), intent(inout) :: watch
     type(loop_type) :: loop
@@ -121,7 +121,7 @@ contains
 
     loop%plan = plan
     allocate (loop%linear)
-    call new_linear_scene(scene, plan, loop%linear)
+    call new_linear_problem(scene, plan, loop%linear)
     call choose_method(plan%method, loop%method)
     loop%method%volume = loop%linear%operator%volume
     allocate (loop%about%displacement(2, scene%model%nodes), loop%about%strain(4, scene%model%points), source=0.0_wp)

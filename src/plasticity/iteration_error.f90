@@ -7,7 +7,7 @@
 module epcont_plasticity_iteration_error
   use epcont_base_kinds, only: wp
   use epcont_plasticity_onlooker, only: iteration_record
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_linear_scene_state, only: scene_state
   implicit none
   private
   public :: error_estimator, ratio

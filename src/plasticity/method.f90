@@ -5,7 +5,7 @@ module epcont_plasticity_method
   use epcont_material_linear_law, only: linear_law
   use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_linear_scene_state, only: scene_state
   implicit none
   private
   public :: plastic_method

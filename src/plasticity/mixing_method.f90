@@ -5,7 +5,7 @@ module epcont_plasticity_mixing_method
   use epcont_model_model, only: model_type
   use epcont_plasticity_anderson, only: anderson_mixer
   use epcont_plasticity_method, only: plastic_method
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_linear_scene_state, only: scene_state
   implicit none
   private
   public :: mixing_method

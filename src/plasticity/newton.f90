@@ -12,7 +12,7 @@ module epcont_plasticity_newton
   use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
   use epcont_plasticity_method, only: plastic_method
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_linear_scene_state, only: scene_state
   implicit none
   private
   public :: newton_method

@@ -5,7 +5,7 @@ module epcont_result_stresses
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_material_material_law, only: point_state
   use epcont_model_model, only: model_type
-  use epcont_plasticity_linear_scene, only: linear_scene
+  use epcont_linear_linear_problem, only: linear_problem
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -17,7 +17,7 @@ contains
   !! nodes].
   pure subroutine recover_stresses(model, linear, applied, answer)
     type(model_type), intent(in) :: model
-    type(linear_scene), intent(in) :: linear
+    type(linear_problem), intent(in) :: linear
     real(wp), intent(in) :: applied(:, :)
     type(answer_type), intent(inout) :: answer
     type(point_state) :: point

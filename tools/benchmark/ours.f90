@@ -23,9 +23,10 @@ program bench_ours
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_build_build, only: build_model
   use epcont_model_controls, only: solver_frontal
+  use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
   use epcont_element_element_kind, only: most_nodes
-  use epcont_plan_free_motion, only: find_free_motions, free_motions, motion_fault
+  use epcont_plan_free_motion, only: find_free_motions, free_motions
   use epcont_plan_iteration_plan, only: contact_plan, plan_contact
   use epcont_plan_numbering, only: number_equations, numbering_type
   use statistics, only: median
@@ -81,7 +82,7 @@ contains
     type(deck_type) :: deck
     type(diagnostics) :: faults
     type(error_type), allocatable :: error
-    type(motion_fault), allocatable :: loose(:)
+    type(findings) :: loose
 
     call read_deck(path, deck, faults, error)
     if (allocated(error)) error stop 'this deck cannot be read'

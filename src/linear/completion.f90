@@ -1,5 +1,5 @@
 !> What follows from the deformation, the strains and the contact that a solve has found.
-module epcont_plasticity_completion
+module epcont_linear_completion
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
   use epcont_contact_problem, only: contact_problem
@@ -8,7 +8,7 @@ module epcont_plasticity_completion
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_planned_scene, only: planned_scene
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_linear_scene_state, only: scene_state
   implicit none
   private
   public :: complete_state
@@ -72,4 +72,4 @@ contains
       end do
     end do
   end subroutine add_motions
-end module epcont_plasticity_completion
+end module epcont_linear_completion

@@ -1,6 +1,6 @@
-!> The scene with a linear law of the material, its contact solved exactly: one step of every iteration, and
-!> all of an elastic analysis.
-module epcont_plasticity_linear_scene
+!> The bodies of a scene with a linear law of the material, their contact solved exactly: one step of every
+!> iteration, and all of an elastic analysis.
+module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solution, new_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
@@ -16,19 +16,19 @@ module epcont_plasticity_linear_scene
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
-  use epcont_plasticity_completion, only: complete_state
-  use epcont_plasticity_scene_state, only: scene_state
+  use epcont_linear_completion, only: complete_state
+  use epcont_linear_scene_state, only: scene_state
   use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, stage_stiffness, &
                                    stopwatch
   implicit none
   private
-  public :: linear_scene, new_linear_scene
+  public :: linear_problem, new_linear_problem
 
   !> Where two steps of refinement change the strains by more than this part of what the two before did,
   !! rounding is reached, or single precision leaves too little to begin with.
   real(wp), parameter :: slowest_rate = 0.5_wp
 
-  type :: linear_scene
+  type :: linear_problem
     type(strain_operator) :: operator
     type(scene_materials) :: materials
     type(linear_law) :: law                          !! of the next solve, or the last
@@ -50,15 +50,15 @@ module epcont_plasticity_linear_scene
     procedure :: estimate_condition
     procedure, private :: factor_bodies
     procedure, private :: add_flexibilities
-  end type linear_scene
+  end type linear_problem
 
 contains
 
   !> What does not change with the law.
-  pure subroutine new_linear_scene(scene, plan, linear)
+  pure subroutine new_linear_problem(scene, plan, linear)
     type(planned_scene), intent(in) :: scene
     type(iteration_plan), intent(in) :: plan
-    type(linear_scene), intent(out) :: linear
+    type(linear_problem), intent(out) :: linear
 
     linear%operator = new_strain_operator(scene%model)
     call find_materials(scene%model, linear%materials)
@@ -72,13 +72,13 @@ contains
     linear%travel_gap = gap_opening(scene%model, scene%model%travel)
     linear%problem%motion = motion_columns(scene%model, scene%motions)
     linear%resultant = motion_resultants(scene%model, scene%motions)
-  end subroutine new_linear_scene
+  end subroutine new_linear_problem
 
   !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far
   !! as the law of their elements has changed. `singular` is a body whose stiffness could not be factored, 0
   !! where all could.
   subroutine set_stiffness(self, scene, singular, watch)
-    class(linear_scene), intent(inout) :: self
+    class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     integer, intent(out) :: singular
     class(stopwatch), intent(inout) :: watch
@@ -109,7 +109,7 @@ contains
   !> Assemble and factor some bodies, side by side where that pays. `singular` is the first that could not be
   !! factored, or 0.
   subroutine factor_bodies(self, scene, changed, chosen, singular)
-    class(linear_scene), intent(inout) :: self
+    class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     logical, intent(in) :: changed(:)    !! [elements]
     logical, intent(in) :: chosen(:)     !! [bodies]
@@ -134,7 +134,7 @@ contains
   !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are
   !! the same on any number of threads.
   subroutine add_flexibilities(self, scene, chosen, flexibility)
-    class(linear_scene), intent(in) :: self
+    class(linear_problem), intent(in) :: self
     type(planned_scene), intent(in) :: scene
     logical, intent(in) :: chosen(:)     !! [bodies]
     real(wp), intent(inout) :: flexibility(:, :)
@@ -170,7 +170,7 @@ contains
   !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without
   !! contact equilibrium (`state%contact%state`) there are no displacements.
   subroutine solve(self, scene, part, start, state, watch)
-    class(linear_scene), intent(inout) :: self
+    class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
@@ -191,7 +191,7 @@ contains
   !! leaves forces out of balance though the factors are in double. The contact follows the deformation, and
   !! that the contact.
   subroutine sharpen(self, scene, part, state, change, watch)
-    class(linear_scene), intent(inout) :: self
+    class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     type(scene_state), intent(inout) :: state   !! as it was where the contact is not found again
@@ -228,7 +228,7 @@ contains
 
   !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
   subroutine solve_once(self, scene, part, start, state, watch)
-    type(linear_scene), intent(inout) :: self
+    type(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)
@@ -256,7 +256,7 @@ contains
   !> The same to double precision with factors in single: step by step the forces out of balance, in double,
   !! are solved for, and the contact with them. `contact_stalled` where that does not converge.
   subroutine refine(self, scene, part, start, state, watch)
-    type(linear_scene), intent(inout) :: self
+    type(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: start(:)
@@ -299,7 +299,7 @@ contains
 
   !> One step of refinement: the deformation under the forces that are out of balance is added.
   pure subroutine correct(self, scene, part, state, change)
-    type(linear_scene), intent(in) :: self
+    type(linear_problem), intent(in) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     type(scene_state), intent(inout) :: state   !! deformation, strain, contact forces
@@ -317,7 +317,7 @@ contains
 
   !> Contact with the gaps of a deformation, of which the contact forces' part goes by the flexibility.
   pure subroutine solve_contact_about(self, model, part, touching, state)
-    type(linear_scene), intent(inout) :: self
+    type(linear_problem), intent(inout) :: self
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: part
     logical, allocatable, intent(in) :: touching(:)   !! guess of the pairs in contact, if allocated [pairs]
@@ -333,7 +333,7 @@ contains
   !! of each, by two steps of refinement, of which the second must change less: else the factors do not tell
   !! the error either, and it is 1.
   pure subroutine rounding_error(self, scene, part, state, error)
-    class(linear_scene), intent(inout) :: self
+    class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     type(scene_state), intent(in) :: state
@@ -358,10 +358,10 @@ contains
 
   !> Estimate of the condition of the stiffness in the 1-norm.
   pure subroutine estimate_condition(self, scene, condition)
-    class(linear_scene), intent(inout) :: self
+    class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(out) :: condition
 
     call self%bodies%estimate_condition(scene%model, self%operator, self%law, scene%numbering, condition)
   end subroutine estimate_condition
-end module epcont_plasticity_linear_scene
+end module epcont_linear_linear_problem

@@ -1,5 +1,5 @@
 !> What a linear step finds: displacements, stresses in equilibrium, contact.
-module epcont_plasticity_scene_state
+module epcont_linear_scene_state
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solution
   use epcont_material_material_law, only: point_state
@@ -33,4 +33,4 @@ contains
     call move_alloc(from%point, self%point)
     self%contact = from%contact
   end subroutine take
-end module epcont_plasticity_scene_state
+end module epcont_linear_scene_state
