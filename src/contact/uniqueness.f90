@@ -21,7 +21,7 @@ contains
   !>
   !> With the gaps of the pressed pairs held closed, an idle touching pair j feels the forces z of the idle
   !> ones through the Schur complement M of F_g, and M z = 0 is asked of z.
-  pure function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
+  function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:)      !! gap zero [n]
     logical, intent(in) :: pressed(:)       !! force beyond rounding; of a basis, so unique by themselves [n]
@@ -51,7 +51,7 @@ contains
   end function find_indeterminate_forces
 
   !> The j for which some z >= 0 with M z = 0 has z_j > 0.
-  pure function forces_that_can_grow(coupling, zero) result(growing)
+  function forces_that_can_grow(coupling, zero) result(growing)
     real(wp), intent(in) :: coupling(:, :)   !! M, semidefinite [e, e]
     real(wp), intent(in) :: zero             !! an entry up to this is rounding
     integer, allocatable :: growing(:)
@@ -103,7 +103,7 @@ contains
 
   !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions:
   !! they do where their forces, none of them a pull, would carry a load along the motion either way.
-  pure function find_free_motions(problem, touching, pressed) result(free)
+  function find_free_motions(problem, touching, pressed) result(free)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]
