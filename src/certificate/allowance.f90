@@ -15,6 +15,7 @@
 module epcont_certificate_allowance
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: same_place
+  use epcont_element_kinematics, only: directions
   use epcont_geometry_outline_shape, only: outline_shape
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
@@ -134,82 +135,76 @@ contains
     type(model_type), intent(in) :: model           !! the scene
     type(outline_shape), intent(in) :: drawn, now   !! the outlines as drawn, and displaced
     type(allowance_type) :: allowance
-    real(wp), allocatable :: joint(:)   !! turn of the outline as drawn where a side ends, 0 at corners [rad]
-    real(wp) :: arch
-    integer :: n, s
+    real(wp), dimension(drawn%outline%sides) :: length, sag, bend, arch, turn, change, curvature
+    real(wp) :: joint(drawn%outline%sides)   ! turn as drawn where a side ends, 0 at corners [rad]
+    logical :: smooth(drawn%outline%sides)
+    real(wp) :: curve
+    integer :: s
 
-    n = drawn%outline%sides
-    allocate (allowance%length(n), allowance%bend(n), allowance%arch(n), allowance%turn(n), &
-              allowance%change(n), allowance%curvature(n), joint(n), source=0.0_wp)
-    do s = 1, n
-      associate (length => allowance%length(s), next => drawn%outline%after(s))
-        length = norm2(drawn%chord(s))
-        allowance%turn(s) = abs(angle(drawn%chord(s), now%chord(s)))
-        allowance%change(s) = max(allowance%turn(s), abs(norm2(now%chord(s))/length - 1.0_wp))
-        arch = angle(drawn%tangent(s, 0.0_wp), drawn%tangent(s, 1.0_wp))
-        allowance%curvature(s) = abs(arch)/length
-        allowance%arch(s) = angle(now%tangent(s, 0.0_wp), now%tangent(s, 1.0_wp)) - arch
-        joint(s) = angle(drawn%tangent(s, 1.0_wp), drawn%tangent(next, 0.0_wp))
-        allowance%bend(s) = angle(now%tangent(s, 1.0_wp), now%tangent(next, 0.0_wp)) - joint(s)
-      end associate
-    end do
-    allowance%smooth = abs(joint) <= corner_angle
-    where (.not. allowance%smooth)
-      joint = 0.0_wp
-      allowance%bend = 0.0_wp
-    end where
-    associate (before => drawn%outline%before, length => allowance%length)
-      allowance%beside = transpose(reshape([before, drawn%outline%after], [n, 2]))
-      allowance%hollow = min(joint, joint(before)) < 0.0_wp
-      allowance%sag = length*max(abs(joint), abs(joint(before)))/8.0_wp
-      if (allocated(model%boundary%element)) allowance%sag = length*turns_of_lines(model, drawn)/8.0_wp
-      allowance%curvature = allowance%curvature + 8.0_wp*allowance%sag/length**2
+    associate (before => drawn%outline%before, after => drawn%outline%after)
+      do s = 1, size(length)
+        length(s) = norm2(drawn%chord(s))
+        turn(s) = abs(angle(drawn%chord(s), now%chord(s)))
+        change(s) = max(turn(s), abs(norm2(now%chord(s))/length(s) - 1.0_wp))
+        curve = angle(drawn%tangent(s, 0.0_wp), drawn%tangent(s, 1.0_wp))
+        curvature(s) = abs(curve)/length(s)
+        arch(s) = angle(now%tangent(s, 0.0_wp), now%tangent(s, 1.0_wp)) - curve
+        joint(s) = angle(drawn%tangent(s, 1.0_wp), drawn%tangent(after(s), 0.0_wp))
+        bend(s) = angle(now%tangent(s, 1.0_wp), now%tangent(after(s), 0.0_wp)) - joint(s)
+      end do
+      smooth = abs(joint) <= corner_angle
+      joint = merge(joint, 0.0_wp, smooth)
+      bend = merge(bend, 0.0_wp, smooth)
+      sag = length*max(abs(joint), abs(joint(before)))/8.0_wp
+      if (allocated(model%boundary%element)) sag = length*turns_of_lines()/8.0_wp
+      curvature = curvature + 8.0_wp*sag/length**2
+      allowance = allowance_type(length, sag, gaps_of_cards(), min(joint, joint(before)) < 0.0_wp, smooth, &
+                                 bend, arch, turn, change, curvature)
+      allowance%beside = transpose(reshape([before, after], [size(length), 2]))
     end associate
-    allowance%gap = gaps_of_cards(model)
+
+  contains
+
+    !> Where lines are in contact: over its chord each side has the curve with the normals of contact at its
+    !! ends. The angle between normal and side is half the turn [rad] [sides].
+    pure function turns_of_lines() result(turn)
+      real(wp) :: turn(size(length)), along(directions)
+      integer :: k, s
+
+      turn = 0.0_wp
+      do s = 1, size(turn)
+        do k = 1, 2
+          along = drawn%tangent(s, real(k - 1, wp))
+          turn(s) = max(turn(s), 2.0_wp*abs(angle([along(2), -along(1)], model%boundary%normal(:, k, s))))
+        end do
+      end do
+    end function turns_of_lines
+
+    !> By how much the gaps of CGAPs between two bodies differ from those of the coordinates [length] [sides].
+    pure function gaps_of_cards() result(gap)
+      real(wp) :: gap(size(length)), at_node(model%nodes), gap_drawn
+      integer :: k, s
+
+      at_node = 0.0_wp
+      do k = 1, model%pairs - sum(model%line_contact%last - model%line_contact%first + 1)
+        associate (pair => model%pair_node(:, k))
+          if (any(model%body_outline%part_of(pair) == 0)) cycle
+          gap_drawn = dot_product(model%normal(:, k), model%x(:, pair(2)) - model%x(:, pair(1)))
+          at_node(pair) = max(at_node(pair), abs(model%initial_gap(k) - gap_drawn))
+        end associate
+      end do
+      do s = 1, size(gap)
+        associate (node => model%body_outline%node(:, s))
+          gap(s) = maxval(at_node(pack(node, node > 0)))
+        end associate
+      end do
+    end function gaps_of_cards
   end function new_allowance
 
   !> From one direction to another, counter-clockwise [rad].
   pure real(wp) function angle(from, to)
-    real(wp), intent(in) :: from(2), to(2)
+    real(wp), intent(in) :: from(directions), to(directions)
 
     angle = atan2(cross_product(from, to), dot_product(from, to))
   end function angle
-
-  !> Where lines are in contact: over its chord each side has the curve with the normals of contact at its
-  !! ends. The angle between normal and side is half the turn [rad] [sides].
-  pure function turns_of_lines(model, drawn) result(turn)
-    type(model_type), intent(in) :: model
-    type(outline_shape), intent(in) :: drawn
-    real(wp) :: turn(drawn%outline%sides), along(2)
-    integer :: k, s
-
-    turn = 0.0_wp
-    do s = 1, size(turn)
-      do k = 1, 2
-        along = drawn%tangent(s, real(k - 1, wp))
-        turn(s) = max(turn(s), 2.0_wp*abs(angle([along(2), -along(1)], model%boundary%normal(:, k, s))))
-      end do
-    end do
-  end function turns_of_lines
-
-  !> By how much the gaps of CGAPs between two bodies differ from those of the coordinates [length] [sides].
-  pure function gaps_of_cards(model) result(gap)
-    type(model_type), intent(in) :: model
-    real(wp) :: gap(model%body_outline%sides), at_node(model%nodes), drawn
-    integer :: k, s
-
-    at_node = 0.0_wp
-    do k = 1, model%pairs - sum(model%line_contact%last - model%line_contact%first + 1)
-      associate (pair => model%pair_node(:, k))
-        if (any(model%body_outline%part_of(pair) == 0)) cycle
-        drawn = dot_product(model%normal(:, k), model%x(:, pair(2)) - model%x(:, pair(1)))
-        at_node(pair) = max(at_node(pair), abs(model%initial_gap(k) - drawn))
-      end associate
-    end do
-    do s = 1, size(gap)
-      associate (node => model%body_outline%node(:, s))
-        gap(s) = maxval(at_node(pack(node, node > 0)))
-      end associate
-    end do
-  end function gaps_of_cards
 end module epcont_certificate_allowance

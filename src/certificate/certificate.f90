@@ -10,7 +10,7 @@ module epcont_certificate_certificate
   use epcont_certificate_unit_strains, only: find_slopes, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
   use epcont_element_element_kind, only: most_nodes, most_points
-  use epcont_element_kinematics, only: axisymmetric, plane_stress
+  use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
   implicit none
@@ -66,60 +66,208 @@ module epcont_certificate_certificate
     'the rounding of gaps and travels is, of what the bodies give way,', &
     'rigid motions strain the bodies; their roundings are']
 
-  !> What is summed over elements and pairs.
-  type :: balance_type
-    real(wp), allocatable :: residual(:, :)   !! of each node, out of balance [force] [2, nodes]
-    real(wp), allocatable :: element_force(:)   !! sum of the sizes of the elements' forces there [force]
-    real(wp) :: stored = 0.0_wp                 !! work of the stresses
-    real(wp) :: work = 0.0_wp                   !! of the forces
-    real(wp) :: terms = 0.0_wp                  !! sum of the sizes of all that these two are sums of
-    real(wp) :: largest_stress = 0.0_wp         !! largest component of any [stress]
-  end type balance_type
-
 contains
 
   !> Of an answer the certificate takes the displacements, with rigid motions and without, the reactions, the
   !! stresses at the points, the contact forces, the part of the loads, and what single precision may have
   !! left.
-  pure subroutine certify(model, answer, curve_tolerance, certificate)
+  subroutine certify(model, answer, curve_tolerance, certificate)
     type(model_type), intent(in) :: model   !! the scene
     type(answer_type), intent(in) :: answer   !! what is to be checked
     real(wp), intent(in) :: curve_tolerance   !! how far off its curve the iteration may leave a stress
     type(certificate_type), intent(out) :: certificate   !! without its scene
-    type(balance_type) :: balance
-    real(wp), allocatable :: load(:, :)
-    real(wp) :: forces, largest_force, length
+    real(wp), dimension(directions, model%nodes) :: load, residual   ! the latter: out of balance [force]
+    real(wp) :: element_force(model%nodes)   ! sum of the sizes of the elements' forces at each node
+    real(wp) :: stored, work                 ! work of the stresses, and of the forces
+    real(wp) :: terms                        ! sum of the sizes of all that these two are sums of
+    real(wp) :: forces, largest_force, largest_stress, length
 
     certificate%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
     load = answer%load_factor*model%load
-    allocate (balance%residual(2, model%nodes), balance%element_force(model%nodes), source=0.0_wp)
-    call add_elements(model, answer, balance, certificate)
-    balance%residual = balance%residual - load - answer%reaction
+    largest_stress = maxval(abs(answer%point_stress))
+    residual = 0.0_wp
+    element_force = 0.0_wp
+    stored = 0.0_wp
+    call add_elements()
+    residual = residual - load - answer%reaction
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
     forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
-    length = ratio(abs(balance%stored), forces)
+    length = ratio(abs(stored), forces)
     associate (u => answer%displacement, reaction => answer%reaction)
       ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there
       ! is.
       if (forces == 0.0_wp) length = maxval(abs(u))
       certificate%length_scale = max(length, least_length)
-      balance%work = sum(load*u) + sum(reaction*u)
-      balance%terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(balance%stored)
+      work = sum(load*u) + sum(reaction*u)
+      terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(stored)
     end associate
-    call add_pairs(model, answer, maxval(abs(load)), balance, certificate)
-    call gather_ties(model, balance%residual)
-    largest_force = max(maxval(balance%element_force), maxval(abs(load)))
+    if (model%pairs > 0) call add_pairs()
+    call gather_ties()
+    largest_force = max(maxval(element_force), maxval(abs(load)))
     if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, certificate%force_scale)
-    certificate%equilibrium = ratio(maxval(abs(balance%residual)), largest_force)
+    certificate%equilibrium = ratio(maxval(abs(residual)), largest_force)
     ! On its curve no stress does less than no work; as far off it as the iteration may leave it, it can.
-    certificate%energy = ratio(max(abs(balance%work - balance%stored), -balance%stored), balance%terms)
+    certificate%energy = ratio(max(abs(work - stored), -stored), terms)
     certificate%curve_tolerance = max(certificate%tolerance, curve_tolerance)
     certificate%off_curve_limit = certificate%curve_tolerance &
                                   + min(several*certificate%lost_stress, certificate%curve_tolerance)
     certificate%valid = all(within_limits(certificate))
     certificate%balanced = all(within_limits(certificate) .or. figure_name == off_the_curve)
+
+  contains
+
+    !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance
+    !! from the curve and what roundings and rigid motions strain go into the certificate.
+    subroutine add_elements()
+      real(wp) :: slope(directions, most_nodes, most_points, size(model%kinds))
+      real(wp) :: unit(components, directions, most_nodes, most_points), volume(most_points)
+      real(wp) :: force(directions)
+      integer :: c, e, k, node, p
+
+      do k = 1, size(model%kinds)
+        call find_slopes(model%kinds(k), slope(:, :, :, k))
+      end do
+      do e = 1, model%elements
+        call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
+        associate (stress => answer%point_stress(:, model%first_point(e):model%first_point(e + 1) - 1))
+          call check_points(e, stress, unit, volume)
+          do k = 1, model%order(e)
+            force = 0.0_wp
+            do p = 1, size(stress, 2)
+              do c = 1, directions
+                force(c) = force(c) + volume(p)*dot_product(stress(:, p), unit(:, c, k, p))
+              end do
+            end do
+            node = model%connectivity(k, e)
+            residual(:, node) = residual(:, node) + force
+            element_force(node) = element_force(node) + maxval(abs(force))
+          end do
+        end associate
+      end do
+    end subroutine add_elements
+
+    !> The integration points of an element.
+    subroutine check_points(e, stress, unit, volume)
+      integer, intent(in) :: e
+      real(wp), intent(in) :: stress(:, :), volume(:)
+      real(wp), intent(in) :: unit(:, :, :, :)      !! strains by unit displacements
+      real(wp), dimension(directions, most_nodes) :: motion, u
+      real(wp) :: rounding, strain(components)
+      integer :: n, p
+      logical :: ring
+
+      n = model%order(e)
+      ring = model%kinematics(model%section(e)) == axisymmetric
+      u(:, :n) = answer%deformation(:, model%connectivity(:n, e))
+      motion(:, :n) = answer%displacement(:, model%connectivity(:n, e)) - u(:, :n)
+      do p = 1, size(stress, 2)
+        rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :n, p)))   ! of a strain by unit displacements
+        strain = strain_by(u(:, :n), unit(:, :, :, p), ring)
+        stored = stored + volume(p)*dot_product(stress(:, p), strain)
+        call check_stress(model%section(e), strain, stress(:, p), rounding*maxval(abs(u(:, :n))))
+        if (all(motion(:, :n) == 0.0_wp)) cycle
+        strain = strain_by(motion(:, :n), unit(:, :, :, p), ring)
+        rounding = rounding*maxval(abs(motion(:, :n)) + abs(u(:, :n)))
+        certificate%motion_strain = max(certificate%motion_strain, ratio(maxval(abs(strain)), rounding))
+      end do
+    end subroutine check_points
+
+    !> How far a stress is off its curve. Of a material that yields: von Mises stress of the difference over
+    !! the curve's stress there, or below yield the yield stress (a larger one than any stress is no measure),
+    !! and the difference of the mean parts, which are elastic, over the largest stress: hydrostatic stress
+    !! says nothing of the curve. Of an elastic one: the largest difference over the largest stress. What
+    !! rounding strains makes a stress that is compared with the same.
+    subroutine check_stress(section, strain, stress, rounding)
+      integer, intent(in) :: section
+      real(wp), intent(in) :: strain(components), stress(components)
+      real(wp), intent(in) :: rounding         !! of the strain
+      real(wp) :: apart(components), off, on_curve(components), scale, stiffest
+
+      on_curve = stress_on_curve(model, section, strain)
+      apart = stress - on_curve
+      scale = largest_stress
+      off = ratio(maxval(abs(apart)), largest_stress)
+      if (allocated(model%curve(section)%strain)) then
+        scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
+        off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
+      end if
+      certificate%off_curve = max(certificate%off_curve, off)
+      ! Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5
+      ! far above E.
+      associate (young => model%young(section), nu => model%poisson(section))
+        stiffest = young
+        if (model%kinematics(section) /= plane_stress) &
+          stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
+        certificate%lost_stress = max(certificate%lost_stress, ratio(young*rounding, scale), &
+                                      ratio(stiffest*rounding, largest_stress))
+      end associate
+    end subroutine check_stress
+
+    !> Smallest force and gap, largest product; the work of the pairs' forces, which are taken off the
+    !! residual.
+    subroutine add_pairs()
+      real(wp) :: apart(directions), gap, opening, rounding, travel
+      integer :: i, k
+
+      certificate%smallest_force = minval(answer%contact%force)
+      certificate%smallest_gap = huge(1.0_wp)
+      certificate%force_scale = max(maxval(abs(answer%contact%force)), maxval(abs(load)), tiny(1.0_wp))
+      do k = 1, model%pairs
+        associate (force => answer%contact%force(k), normal => model%normal(:, k))
+          apart = 0.0_wp
+          travel = 0.0_wp
+          do i = model%row_start(k), model%row_start(k + 1) - 1
+            associate (node => model%row_node(i))
+              apart = apart + model%row_weight(i)*answer%displacement(:, node)
+              travel = max(travel, maxval(abs(answer%displacement(:, node))))
+              residual(:, node) = residual(:, node) - model%row_weight(i)*force*normal
+            end associate
+          end do
+          opening = sum(normal*apart)
+          work = work + force*opening
+          terms = terms + abs(force*opening)
+          rounding = roundings*epsilon(1.0_wp)*max(abs(model%initial_gap(k)), travel)
+          if (force > 0.0_wp) certificate%gap_rounding = max(certificate%gap_rounding, rounding)
+          gap = model%initial_gap(k) + opening
+          certificate%smallest_gap = min(certificate%smallest_gap, gap)
+          certificate%overlap = max(certificate%overlap, -gap - rounding)
+          certificate%force_gap = max(certificate%force_gap, abs(gap*force))
+        end associate
+      end do
+    end subroutine add_pairs
+
+    !> A tied freedom hands its forces to its leader.
+    subroutine gather_ties()
+      integer :: c, node
+
+      do node = 1, model%nodes
+        do c = 1, directions
+          associate (leader => model%leader(c, node))
+            if (leader == node) cycle
+            residual(c, leader) = residual(c, leader) + residual(c, node)
+            residual(c, node) = 0.0_wp
+          end associate
+        end do
+      end do
+    end subroutine gather_ties
   end subroutine certify
+
+  !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel
+  !! without strain, and comes off first so that it leaves no rounding.
+  pure function strain_by(displacement, unit, ring) result(strain)
+    real(wp), intent(in) :: displacement(:, :), unit(:, :, :)   !! of its nodes, by a unit of each
+    logical, intent(in) :: ring
+    real(wp) :: strain(components), apart(directions)
+    integer :: k
+
+    strain = 0.0_wp
+    do k = 1, size(displacement, 2)
+      apart = displacement(:, k) - displacement(:, 1)
+      if (ring) apart(1) = displacement(1, k)
+      strain = strain + apart(1)*unit(:, 1, k) + apart(2)*unit(:, 2, k)
+    end do
+  end function strain_by
 
   !> All figures and the largest of each in a valid answer, as `figure_name` has them.
   pure subroutine figures(self, figure, largest)
@@ -160,191 +308,4 @@ contains
     ratio = 0.0_wp
     if (.not. a <= 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
   end function ratio
-
-  !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance from
-  !! the curve and what roundings and rigid motions strain go into the certificate.
-  pure subroutine add_elements(model, answer, balance, certificate)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    type(balance_type), intent(inout) :: balance
-    type(certificate_type), intent(inout) :: certificate
-    real(wp) :: slope(2, most_nodes, most_points, size(model%kinds))
-    real(wp) :: unit(4, 2, most_nodes, most_points), volume(most_points), force(2), stress(4)
-    integer :: e, k, node, p, places
-
-    do k = 1, size(model%kinds)
-      call find_slopes(model%kinds(k), slope(:, :, :, k))
-    end do
-    balance%largest_stress = maxval(abs(answer%point_stress))
-    do e = 1, model%elements
-      places = model%kinds(model%kind(e))%points
-      call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
-      call check_points(model, answer, e, unit, volume(:places), balance, certificate)
-      do k = 1, model%order(e)
-        force = 0.0_wp
-        do p = 1, places
-          stress = answer%point_stress(:, model%first_point(e) + p - 1)
-          force(1) = force(1) + volume(p)*dot_product(stress, unit(:, 1, k, p))
-          force(2) = force(2) + volume(p)*dot_product(stress, unit(:, 2, k, p))
-        end do
-        node = model%connectivity(k, e)
-        balance%residual(:, node) = balance%residual(:, node) + force
-        balance%element_force(node) = balance%element_force(node) + max(abs(force(1)), abs(force(2)))
-      end do
-    end do
-  end subroutine add_elements
-
-  !> The integration points of an element.
-  pure subroutine check_points(model, answer, e, unit, volume, balance, certificate)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    integer, intent(in) :: e
-    real(wp), intent(in) :: unit(4, 2, most_nodes, most_points), volume(:)
-    type(balance_type), intent(inout) :: balance
-    type(certificate_type), intent(inout) :: certificate
-    real(wp), dimension(2, most_nodes) :: motion, u
-    real(wp) :: rounding, steepest(4), strain(4)
-    integer :: k, n, p
-    logical :: moves, ring
-
-    n = model%order(e)
-    ring = model%kinematics(model%section(e)) == axisymmetric
-    associate (node => model%connectivity(:n, e))
-      u(:, :n) = answer%deformation(:, node)
-      motion(:, :n) = answer%displacement(:, node) - u(:, :n)
-    end associate
-    moves = any(motion(:, :n) /= 0.0_wp)
-    do p = 1, size(volume)
-      associate (stress => answer%point_stress(:, model%first_point(e) + p - 1))
-        strain = strain_at(n, ring, u, unit(:, :, :, p))
-        balance%stored = balance%stored + volume(p)*dot_product(stress, strain)
-        steepest = 0.0_wp
-        do k = 1, n
-          steepest = max(steepest, abs(unit(:, 1, k, p)), abs(unit(:, 2, k, p)))
-        end do
-        rounding = epsilon(1.0_wp)*largest(steepest)   ! of a strain by unit displacements
-        call check_stress(model, model%section(e), balance%largest_stress, strain, stress, &
-                          rounding*maxval(abs(u(:, :n))), certificate)
-      end associate
-      if (.not. moves) cycle
-      strain = strain_at(n, ring, motion, unit(:, :, :, p))
-      rounding = rounding*maxval(abs(motion(:, :n)) + abs(u(:, :n)))
-      certificate%motion_strain = max(certificate%motion_strain, ratio(largest(strain), rounding))
-    end do
-  end subroutine check_points
-
-  !> How far a stress is off its curve. Of a material that yields: von Mises stress of the difference over the
-  !! curve's stress there, or below yield the yield stress (a larger one than any stress is no measure), and
-  !! the difference of the mean parts, which are elastic, over the largest stress: hydrostatic stress says
-  !! nothing of the curve. Of an elastic one: the largest difference over the largest stress. What rounding
-  !! strains makes a stress that is compared with the same.
-  pure subroutine check_stress(model, section, largest_stress, strain, stress, rounding, certificate)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: section
-    real(wp), intent(in) :: largest_stress   !! in the scene
-    real(wp), intent(in) :: strain(4), stress(4)
-    real(wp), intent(in) :: rounding         !! of the strain
-    type(certificate_type), intent(inout) :: certificate
-    real(wp) :: apart(4), off, on_curve(4), scale, stiffest
-
-    on_curve = stress_on_curve(model, section, strain)
-    apart = stress - on_curve
-    scale = largest_stress
-    off = ratio(largest(apart), largest_stress)
-    if (allocated(model%curve(section)%strain)) then
-      scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
-      off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
-    end if
-    certificate%off_curve = max(certificate%off_curve, off)
-    ! Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5 far
-    ! above E.
-    associate (young => model%young(section), nu => model%poisson(section))
-      stiffest = young
-      if (model%kinematics(section) /= plane_stress) &
-        stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
-      certificate%lost_stress = max(certificate%lost_stress, ratio(young*rounding, scale), &
-                                    ratio(stiffest*rounding, largest_stress))
-    end associate
-  end subroutine check_stress
-
-  !> Largest component, whatever its sign.
-  pure real(wp) function largest(vector)
-    real(wp), intent(in) :: vector(4)
-
-    largest = max(abs(vector(1)), abs(vector(2)), abs(vector(3)), abs(vector(4)))
-  end function largest
-
-  !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel
-  !! without strain, and comes off first so that it leaves no rounding.
-  pure function strain_at(nodes, ring, displacement, unit) result(strain)
-    integer, intent(in) :: nodes
-    logical, intent(in) :: ring
-    real(wp), intent(in) :: displacement(2, most_nodes), unit(4, 2, most_nodes)
-    real(wp) :: strain(4), apart(2)
-    integer :: k
-
-    strain = 0.0_wp
-    do k = 1, nodes
-      apart = displacement(:, k) - displacement(:, 1)
-      if (ring) apart(1) = displacement(1, k)
-      strain = strain + apart(1)*unit(:, 1, k) + apart(2)*unit(:, 2, k)
-    end do
-  end function strain_at
-
-  !> Smallest force and gap, largest product; the work of the pairs' forces, which are taken off the residual.
-  pure subroutine add_pairs(model, answer, largest_load, balance, certificate)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    real(wp), intent(in) :: largest_load
-    type(balance_type), intent(inout) :: balance
-    type(certificate_type), intent(inout) :: certificate
-    real(wp) :: apart(2), opening, rounding, travel
-    integer :: i, k
-
-    if (model%pairs == 0) return
-    certificate%smallest_force = minval(answer%contact%force)
-    certificate%smallest_gap = huge(1.0_wp)
-    certificate%force_scale = max(maxval(abs(answer%contact%force)), largest_load, tiny(1.0_wp))
-    do k = 1, model%pairs
-      associate (force => answer%contact%force(k), normal => model%normal(:, k), &
-                 initial_gap => model%initial_gap(k))
-        apart = 0.0_wp
-        travel = 0.0_wp
-        do i = model%row_start(k), model%row_start(k + 1) - 1
-          associate (node => model%row_node(i))
-            apart = apart + model%row_weight(i)*answer%displacement(:, node)
-            travel = max(travel, maxval(abs(answer%displacement(:, node))))
-            balance%residual(:, node) = balance%residual(:, node) - model%row_weight(i)*force*normal
-          end associate
-        end do
-        opening = sum(normal*apart)
-        balance%work = balance%work + force*opening
-        balance%terms = balance%terms + abs(force*opening)
-        rounding = roundings*epsilon(1.0_wp)*max(abs(initial_gap), travel)
-        if (force > 0.0_wp) certificate%gap_rounding = max(certificate%gap_rounding, rounding)
-        associate (gap => initial_gap + opening)
-          certificate%smallest_gap = min(certificate%smallest_gap, gap)
-          certificate%overlap = max(certificate%overlap, -gap - rounding)
-          certificate%force_gap = max(certificate%force_gap, abs(gap*force))
-        end associate
-      end associate
-    end do
-  end subroutine add_pairs
-
-  !> A tied freedom hands its forces to its leader.
-  pure subroutine gather_ties(model, residual)
-    type(model_type), intent(in) :: model
-    real(wp), intent(inout) :: residual(2, model%nodes)
-    integer :: c, node
-
-    do node = 1, model%nodes
-      do c = 1, 2
-        associate (leader => model%leader(c, node))
-          if (leader == node) cycle
-          residual(c, leader) = residual(c, leader) + residual(c, node)
-          residual(c, node) = 0.0_wp
-        end associate
-      end do
-    end do
-  end subroutine gather_ties
 end module epcont_certificate_certificate

@@ -3,11 +3,10 @@
 module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_gap
-  use epcont_certificate_allowance, only: allowance_type, new_allowance
+  use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
   use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, take_if
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_box_tree, only: box_tree
-  use epcont_geometry_outline, only: outline_type
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
   use epcont_model_model, only: model_type
   implicit none
@@ -46,7 +45,6 @@ module epcont_certificate_meeting
     integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
     real(wp) :: least = 0.0_wp             !! what is allowed between any two sides [length]
     real(wp) :: moved = 0.0_wp             !! largest displacement [length]
-    integer :: last = 1                    !! the side that was nearest to the point before: near to the next
   end type search_type
 
 contains
@@ -76,26 +74,26 @@ contains
       end if
       associate (first => outline%first, length => search%allowance%length)
         search%width = [(sum(length(first(k):first(k + 1) - 1))/acos(-1.0_wp), k=1, outline%parts)]
-        search%middle = [(middle_of(model, first(k), displacement), k=1, outline%parts)]
+        search%middle = [(middle_of(first(k)), k=1, outline%parts)]
       end associate
     end associate
+
+  contains
+
+    !> The middle of the element that a side is of.
+    pure type(point_type) function middle_of(side) result(point)
+      integer, intent(in) :: side
+
+      point = point_type(side=side, in_element=.true.)
+      associate (element => model%body_outline%element(side))
+        associate (corner => model%connectivity(:model%corners(element), element))
+          point%drawn = sum(model%x(:, corner), dim=2)/size(corner)
+          point%motion = sum(displacement(:, corner), dim=2)/size(corner)
+          point%x = point%drawn + point%motion
+        end associate
+      end associate
+    end function middle_of
   end function new_search
-
-  !> The middle of the element that a side is of.
-  pure type(point_type) function middle_of(model, side, displacement) result(point)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: side
-    real(wp), intent(in) :: displacement(:, :)
-
-    point = point_type(side=side, in_element=.true.)
-    associate (element => model%body_outline%element(side))
-      associate (corner => model%connectivity(:model%corners(element), element))
-        point%drawn = sum(model%x(:, corner), dim=2)/size(corner)
-        point%motion = sum(displacement(:, corner), dim=2)/size(corner)
-        point%x = point%drawn + point%motion
-      end associate
-    end associate
-  end function middle_of
 
   !> A point of the outlines.
   pure type(point_type) function point_on(search, side, s) result(point)
@@ -162,56 +160,63 @@ contains
     type(search_type), intent(in) :: search   !! the outlines
     type(point_type), intent(in) :: point     !! displaced
     type(near_place), intent(in) :: place     !! the nearest one of the other outline
-    integer :: i, side(2, 2)
-    real(wp) :: longest(2), moved(2), own(2), s(2), slide(2)
+    integer, allocatable :: own(:), other(:)   ! sides
+    real(wp) :: longest(2), moved(2)
 
     found = overlap_place(depth=place%distance, distance=place%distance, x=point%x, drawn=point%drawn, &
                           side=point%side, other=place%side)
-    found%meeting%joined = is_joined(search, point%side, place%side)
-    s = [point%s, place%s]
-    side(:, 1) = sides_at(search%now%outline, point%side, point%s)
-    side(:, 2) = sides_at(search%now%outline, place%side, place%s)
     moved = motion_at(search, point%side, point%s) - motion_at(search, place%side, place%s)
-    do i = 1, 2
-      ! Along a side as drawn, from which gaps are measured, either way. At a node it is the lesser of those
-      ! along its two sides: on which of them a point is, rounding decides.
-      slide(i) = part_along(search%drawn, side(1, i), s(i), moved)
-      if (side(2, i) > 0) slide(i) = min(slide(i), part_along(search%drawn, side(2, i), 1.0_wp - s(i), moved))
-      longest(i) = maxval(search%line_length(side(:count(side(:, i) > 0), i)))
-    end do
-    found%meeting%slide = maxval(slide)
-    if (all(longest > 0.0_wp)) found%meeting%longest = maxval(longest)
-    do i = 1, 2
-      own(i) = search%allowance%of(side(1, i), found%meeting)
-      if (side(2, i) > 0) own(i) = max(own(i), search%allowance%of(side(2, i), found%meeting))
-    end do
-    found%allowed = search%least + own(1) + own(2)
+    own = sides_at(point%side, point%s)
+    other = sides_at(place%side, place%s)
+    longest = [maxval(search%line_length(own)), maxval(search%line_length(other))]
+    found%meeting = meeting_type(max(slide_along(own, point%s), slide_along(other, place%s)), &
+                                 merge(maxval(longest), 0.0_wp, all(longest > 0.0_wp)), &
+                                 is_joined(point%side, place%side))
+    found%allowed = search%least + most_allowed(own) + most_allowed(other)
+
+  contains
+
+    !> A side, and at a node the one with which it shares that.
+    pure function sides_at(side, s) result(sides)
+      integer, intent(in) :: side
+      real(wp), intent(in) :: s
+      integer, allocatable :: sides(:)
+
+      sides = [side]
+      if (s <= 0.0_wp) sides = [side, search%now%outline%before(side)]
+      if (s >= 1.0_wp) sides = [side, search%now%outline%after(side)]
+    end function sides_at
+
+    !> Along a side as drawn, from which gaps are measured, either way. At a node it is the lesser of those
+    !! along its two sides: on which of them a point is, rounding decides.
+    pure real(wp) function slide_along(sides, s) result(slide)
+      integer, intent(in) :: sides(:)
+      real(wp), intent(in) :: s         !! on the first
+
+      slide = part_along(search%drawn, sides(1), s, moved)
+      if (size(sides) > 1) slide = min(slide, part_along(search%drawn, sides(2), 1.0_wp - s, moved))
+    end function slide_along
+
+    !> What the one of these sides that allows more does.
+    pure real(wp) function most_allowed(sides) result(allowed)
+      integer, intent(in) :: sides(:)
+      integer :: k
+
+      allowed = maxval([(search%allowance%of(sides(k), found%meeting), k=1, size(sides))])
+    end function most_allowed
+
+    !> Does a pair join the two bodies at one of two sides, or of the sides beside them? Pairs end with lines,
+    !! the smooth curve one side later. A body is joined with itself.
+    pure logical function is_joined(side, other)
+      integer, intent(in) :: side, other
+
+      associate (outline => search%now%outline)
+        is_joined = outline%part(side) == outline%part(other) .or. is_paired(search, side, other) .or. &
+                    is_paired(search, outline%before(side), outline%before(other)) .or. &
+                    is_paired(search, outline%after(side), outline%after(other))
+      end associate
+    end function is_joined
   end function meet
-
-  !> A side, and at a node the one with which it shares that; else 0.
-  pure function sides_at(outline, side, s) result(sides)
-    type(outline_type), intent(in) :: outline
-    integer, intent(in) :: side
-    real(wp), intent(in) :: s
-    integer :: sides(2)
-
-    sides = [side, 0]
-    if (s <= 0.0_wp) sides(2) = outline%before(side)
-    if (s >= 1.0_wp) sides(2) = outline%after(side)
-  end function sides_at
-
-  !> Does a pair join the two bodies at one of two sides, or of the sides beside them? Pairs end with lines,
-  !! the smooth curve one side later. A body is joined with itself.
-  pure logical function is_joined(search, side, other)
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side, other
-
-    associate (outline => search%now%outline)
-      is_joined = outline%part(side) == outline%part(other) .or. is_paired(search, side, other) .or. &
-                  is_paired(search, outline%before(side), outline%before(other)) .or. &
-                  is_paired(search, outline%after(side), outline%after(other))
-    end associate
-  end function is_joined
 
   !> Does a pair join the two bodies at one of two sides?
   pure logical function is_paired(search, side, other)
@@ -226,70 +231,67 @@ contains
 
   !> Keep a place if it is the worst by what is allowed, the deepest, or the worst by what is not told.
   !! Allowed is what sides about it allow, where more was found than the nearest two do. Where bodies may have
-  !! overlapped as drawn, that is taken off, and the deepest such overlap kept too.
+  !! overlapped as drawn, that is taken off, if no pair is to close it, and the deepest such overlap kept too.
   pure subroutine keep(search, found, worst, deepest, not_told, drawn)
     type(search_type), intent(in) :: search                          !! the outlines
     type(overlap_place), intent(in) :: found                         !! from `meet`; its depth may be another
     type(overlap_place), intent(inout) :: worst, deepest, not_told   !! those kept so far
     type(overlap_place), intent(inout), optional :: drawn            !! the deepest as drawn
-    type(overlap_place) :: place, telling
+    type(overlap_place) :: place, telling, was
 
+    place = found
     telling = found
     associate (allowance => search%allowance, a => found%side, b => found%other, meeting => found%meeting)
       telling%moving = allowance%of_motion(a, meeting) + allowance%of_motion(b, meeting) &
                        > 0.5_wp*found%allowed
       telling%allowed = search%least + told*search%moved &
                         + allowance%of_drawing(a, meeting) + allowance%of_drawing(b, meeting)
+      if (.not. (is_worse(found, worst) .or. is_deeper(found, deepest) .or. &
+                 is_worse(telling, not_told))) return
+      if (found%depth > found%allowed) place%allowed = search%least + allowance_about(a) + allowance_about(b)
+      if (present(drawn)) then
+        if (found%distance > min(place%allowed, telling%allowed)) then
+          was = overlap_as_drawn()
+          call take_if(was%depth > was%allowed .and. is_deeper(was, drawn), was, drawn)
+          place%depth = found%depth - was%depth
+          telling%depth = place%depth
+        end if
+      end if
     end associate
-    if (.not. (is_worse(found, worst) .or. is_deeper(found, deepest) .or. is_worse(telling, not_told))) return
-    place = found
-    if (place%depth > place%allowed) &
-      place%allowed = search%least + allowance_about(search, place, place%side) &
-                      + allowance_about(search, place, place%other)
-    if (present(drawn)) then
-      if (place%distance > min(place%allowed, telling%allowed)) call take_drawn(search, place, drawn)
-      telling%depth = place%depth
-    end if
     call take_if(is_worse(place, worst), place, worst)
     call take_if(is_deeper(place, deepest), place, deepest)
     call take_if(is_worse(telling, not_told), telling, not_told)
+
+  contains
+
+    !> The most that a side at the place allows, or others of its part that are about as near to that as the
+    !! two there to each other [length].
+    pure real(wp) function allowance_about(side) result(allowed)
+      integer, intent(in) :: side
+      type(near_place) :: near
+      integer, allocatable :: others(:)
+      integer :: k
+
+      allowed = search%allowance%of(side, found%meeting)
+      associate (within => about*found%distance)
+        others = sides_meeting(search%now, search%now%outline%part(side), found%x - within, found%x + within)
+        do k = 1, size(others)
+          near = search%now%near_side(others(k), found%x)
+          if (near%distance <= within) allowed = max(allowed, search%allowance%of(others(k), found%meeting))
+        end do
+      end associate
+    end function allowance_about
+
+    !> What the bodies overlapped there as drawn, if no pair is to close that; else nothing.
+    pure type(overlap_place) function overlap_as_drawn() result(overlap)
+      type(near_place) :: before
+
+      if (is_paired(search, found%side, found%other)) return
+      before = search%drawn%nearest_place(search%drawn%outline%part(found%other), found%drawn)
+      if (before%inside) overlap = overlap_place(depth=before%distance, allowed=place%allowed, &
+                                                 x=found%drawn, side=found%side, other=before%side)
+    end function overlap_as_drawn
   end subroutine keep
-
-  !> The most that a side at a place allows, or others of its part that are about as near to that as the two
-  !! there to each other [length].
-  pure real(wp) function allowance_about(search, place, side) result(allowed)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(in) :: place
-    integer, intent(in) :: side
-    type(near_place) :: near
-    integer, allocatable :: others(:)
-    integer :: k
-
-    allowed = search%allowance%of(side, place%meeting)
-    associate (within => about*place%distance)
-      others = sides_meeting(search%now, search%now%outline%part(side), place%x - within, place%x + within)
-      do k = 1, size(others)
-        near = search%now%near_side(others(k), place%x)
-        if (near%distance <= within) allowed = max(allowed, search%allowance%of(others(k), place%meeting))
-      end do
-    end associate
-  end function allowance_about
-
-  !> Take off the depth at a place what the bodies overlapped as drawn, if no pair is to close that.
-  pure subroutine take_drawn(search, place, drawn)
-    type(search_type), intent(in) :: search
-    type(overlap_place), intent(inout) :: place, drawn   !! the latter is the deepest such overlap
-    type(overlap_place) :: found
-    type(near_place) :: before
-
-    if (is_paired(search, place%side, place%other)) return
-    before = search%drawn%nearest_place(search%drawn%outline%part(place%other), place%drawn)
-    if (.not. before%inside) return
-    found = overlap_place(depth=before%distance, allowed=place%allowed, x=place%drawn, side=place%side, &
-                          other=before%side)
-    call take_if(found%depth > found%allowed .and. is_deeper(found, drawn), found, drawn)
-    place%depth = place%depth - before%distance
-  end subroutine take_drawn
 
   !> Put a number into an ascending list.
   pure subroutine insert(number, list)

@@ -20,63 +20,59 @@ module epcont_certificate_pressed
 contains
 
   !> All pressed pairs of two bodies.
-  pure subroutine look_at_pairs(model, search, force, scene)
+  subroutine look_at_pairs(model, search, force, scene)
     type(model_type), intent(in) :: model      !! the scene
     type(search_type), intent(in) :: search    !! its outlines
     real(wp), intent(in) :: force(:)           !! contact forces [pairs]
     type(scene_type), intent(inout) :: scene   !! what is found is added
-    type(point_type) :: point
     real(wp) :: least
     integer :: k, side, side_of(model%nodes)
 
-    if (model%pairs == 0) return
     least = no_effect*maxval(force)
-    side_of = 0
-    do side = 1, model%body_outline%sides
-      associate (node => model%body_outline%node(:, side))
-        if (node(3) > 0) side_of(node(3)) = side
-        side_of(node(1)) = side
-      end associate
-    end do
-    do k = 1, model%pairs
-      associate (a => model%pair_node(1, k), b => model%pair_node(2, k), part => model%body_outline%part_of, &
-                 node => model%body_outline%node)
-        if (force(k) <= least .or. side_of(b) == 0 .or. part(a) == 0 .or. part(a) == part(b)) cycle
-        point = point_on(search, side_of(b), merge(0.0_wp, 0.5_wp, node(1, side_of(b)) == b))
-        call look_at_pair(search, k, model%normal(:, k), point, part(a), scene)
-      end associate
-    end do
+    associate (node => model%body_outline%node, part_of => model%body_outline%part_of)
+      side_of = 0
+      do side = 1, size(node, 2)
+        if (node(3, side) > 0) side_of(node(3, side)) = side
+        side_of(node(1, side)) = side
+      end do
+      do k = 1, model%pairs
+        associate (part => part_of(model%pair_node(1, k)), b => model%pair_node(2, k))
+          if (force(k) <= least .or. side_of(b) == 0 .or. part == 0 .or. part == part_of(b)) cycle
+          side = side_of(b)
+          call look_at_pair(k, point_on(search, side, merge(0.0_wp, 0.5_wp, node(1, side) == b)), part)
+        end associate
+      end do
+    end associate
+
+  contains
+
+    !> One pressed pair: its node B, at the part that A is of.
+    subroutine look_at_pair(pair, point, part)
+      integer, intent(in) :: pair, part
+      type(point_type), intent(in) :: point
+      type(near_place) :: place
+      type(overlap_place) :: found, slid
+      real(wp) :: off
+
+      place = search%now%nearest_place(part, point%x)
+      found = meet(search, point, place)
+      found%pair = pair
+      slid = found
+      slid%depth = part_along(search%now, place%side, place%s, &
+                              point%motion - motion_at(search, place%side, place%s))
+      slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
+                         part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
+      call take_if(is_worse(slid, scene%slid), slid, scene%slid)
+      if (place%inside) return
+      found%depth = abs(dot_product(point%x - place%x, model%normal(:, pair)))
+      off = abs(cross_product(point%x - place%x, model%normal(:, pair)))
+      if (off <= found%depth) then
+        call keep(search, found, scene%apart, scene%widest, scene%wide)
+      else   ! the other body ends before it
+        found%depth = off
+        found%allowed = found%allowed + slid%allowed
+        call take_if(is_worse(found, scene%beside), found, scene%beside)
+      end if
+    end subroutine look_at_pair
   end subroutine look_at_pairs
-
-  !> One pressed pair: its node B, at the part that A is of.
-  pure subroutine look_at_pair(search, pair, normal, point, part, scene)
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: pair, part
-    real(wp), intent(in) :: normal(2)
-    type(point_type), intent(in) :: point
-    type(scene_type), intent(inout) :: scene
-    type(near_place) :: place
-    type(overlap_place) :: found, slid
-    real(wp) :: off
-
-    place = search%now%nearest_place(part, point%x)
-    found = meet(search, point, place)
-    found%pair = pair
-    slid = found
-    slid%depth = part_along(search%now, place%side, place%s, &
-                            point%motion - motion_at(search, place%side, place%s))
-    slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
-                       part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
-    call take_if(is_worse(slid, scene%slid), slid, scene%slid)
-    if (place%inside) return
-    found%depth = abs(dot_product(point%x - place%x, normal))
-    off = abs(cross_product(point%x - place%x, normal))
-    if (off <= found%depth) then
-      call keep(search, found, scene%apart, scene%widest, scene%wide)
-    else   ! the other body ends before it
-      found%depth = off
-      found%allowed = found%allowed + slid%allowed
-      call take_if(is_worse(found, scene%beside), found, scene%beside)
-    end if
-  end subroutine look_at_pair
 end module epcont_certificate_pressed

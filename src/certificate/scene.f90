@@ -29,91 +29,113 @@ module epcont_certificate_scene
 contains
 
   !> Look through the whole scene.
-  pure function look_through(model, displacement, force) result(scene)
+  function look_through(model, displacement, force) result(scene)
     type(model_type), intent(in) :: model        !! what is looked through
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
     type(scene_type) :: scene
     type(search_type) :: search
+    integer :: near   ! the side that was nearest to the point before: near to the next
     integer :: part, side
 
     scene%looked_through = .true.
     if (model%body_outline%sides == 0) return
     search = new_search(model, displacement)
     scene%moved = search%moved
+    near = 1
     do side = 1, model%body_outline%sides
-      call look_at_side(search, side, scene)
+      call look_at_side(side)
     end do
     do part = 1, model%body_outline%parts
-      call look_at_middle(search, part, scene)
+      call look_at_middle(part)
     end do
     call look_at_pairs(model, search, force, scene)
     call look_at_ways(search, scene)
     call look_beyond(model, displacement, search%least, scene)
     scene%changed_side = maxloc(search%allowance%change, dim=1)
     scene%change = search%allowance%change(scene%changed_side)
-  end function look_through
 
-  !> The points of a side, in the bodies whose boxes it meets.
-  pure subroutine look_at_side(search, side, scene)
-    type(search_type), intent(inout) :: search
-    integer, intent(in) :: side
-    type(scene_type), intent(inout) :: scene
-    real(wp), allocatable :: crossing(:), s(:)
-    integer, allocatable :: others(:), parts(:)
-    integer :: b, k
-    real(wp) :: h
+  contains
 
-    associate (low => search%now%low(:, side), high => search%now%high(:, side), &
-               part => search%now%outline%part(side))
-      parts = boxes_meeting(search%now%part_tree, low, high)
-      do b = 1, size(parts)
-        if (parts(b) == part) cycle
-        crossing = crossings(search%now, side, parts(b))
-        s = [quarters, 0.5_wp*(crossing(:size(crossing) - 1) + crossing(2:))]
-        do k = 1, size(s)
-          call look_at_point(search, point_on(search, side, s(k)), parts(b), scene)
+    !> The points of a side, in the bodies whose boxes it meets.
+    subroutine look_at_side(side)
+      integer, intent(in) :: side
+      real(wp), allocatable :: crossing(:), s(:)
+      integer, allocatable :: others(:), parts(:)
+      integer :: b, k
+      real(wp) :: h
+
+      associate (low => search%now%low(:, side), high => search%now%high(:, side), &
+                 part => search%now%outline%part(side))
+        parts = boxes_meeting(search%now%part_tree, low, high)
+        do b = 1, size(parts)
+          if (parts(b) == part) cycle
+          crossing = crossings(search%now, side, parts(b))
+          s = [quarters, 0.5_wp*(crossing(:size(crossing) - 1) + crossing(2:))]
+          do k = 1, size(s)
+            call look_at_point(point_on(search, side, s(k)), parts(b))
+          end do
         end do
+        h = 0.5_wp*norm2(search%now%chord(side))
+        others = sides_meeting(search%now, part, low - h, high + h)
+      end associate
+      do b = 1, size(others)
+        call look_at_itself(side, others(b))
       end do
-      h = 0.5_wp*norm2(search%now%chord(side))
-      others = sides_meeting(search%now, part, low - h, high + h)
-    end associate
-    do b = 1, size(others)
-      call look_at_itself(search, side, others(b), scene)
-    end do
-  end subroutine look_at_side
+    end subroutine look_at_side
 
-  !> A point within a part, in the others whose boxes it meets: of bodies with one outline no point of that
-  !! lies inside.
-  pure subroutine look_at_middle(search, part, scene)
-    type(search_type), intent(inout) :: search
-    integer, intent(in) :: part
-    type(scene_type), intent(inout) :: scene
-    integer, allocatable :: parts(:)
-    integer :: b
+    !> A point within a part, in the others whose boxes it meets: of bodies with one outline no point of that
+    !! lies inside.
+    subroutine look_at_middle(part)
+      integer, intent(in) :: part
+      integer, allocatable :: parts(:)
+      integer :: b
 
-    associate (point => search%middle(part))
-      parts = boxes_meeting(search%now%part_tree, point%x, point%x)
-      do b = 1, size(parts)
-        if (parts(b) /= part) call look_at_point(search, point, parts(b), scene)
-      end do
-    end associate
-  end subroutine look_at_middle
+      associate (point => search%middle(part))
+        parts = boxes_meeting(search%now%part_tree, point%x, point%x)
+        do b = 1, size(parts)
+          if (parts(b) /= part) call look_at_point(point, parts(b))
+        end do
+      end associate
+    end subroutine look_at_middle
 
-  !> One point of a body, in another.
-  pure subroutine look_at_point(search, point, part, scene)
-    type(search_type), intent(inout) :: search
-    type(point_type), intent(in) :: point
-    integer, intent(in) :: part
-    type(scene_type), intent(inout) :: scene
-    type(near_place) :: place
+    !> One point of a body, in another.
+    subroutine look_at_point(point, part)
+      type(point_type), intent(in) :: point
+      integer, intent(in) :: part
+      type(near_place) :: place
 
-    if (search%now%side_tree(part)%away(1, point%x) > 0.0_wp) return
-    place = search%now%nearest_place(part, point%x, search%last)
-    search%last = place%side
-    if (place%inside) &
-      call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep, scene%drawn)
-  end subroutine look_at_point
+      if (search%now%side_tree(part)%away(1, point%x) > 0.0_wp) return
+      place = search%now%nearest_place(part, point%x, near)
+      near = place%side
+      if (place%inside) &
+        call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep, scene%drawn)
+    end subroutine look_at_point
+
+    !> The points of a side, behind another side of its own body, before which they were drawn.
+    subroutine look_at_itself(side, other)
+      integer, intent(in) :: side, other
+      type(near_place) :: place
+      type(point_type) :: point
+      type(overlap_place) :: found
+      real(wp) :: drawn
+      integer :: k
+
+      associate (node => search%now%outline%node, was => search%drawn)
+        if (any(node(1, side) == node(:2, other)) .or. any(node(2, side) == node(:2, other))) return
+        do k = 1, size(quarters)
+          point = point_on(search, side, quarters(k))
+          place = search%now%near_side(other, point%x)
+          if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. .not. search%now%is_inside(place, point%x)) cycle
+          if (2.0_wp*place%distance > norm2(search%now%chord(side))) cycle
+          found = meet(search, point, place)
+          ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
+          drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
+          if (drawn <= found%allowed) call take_if(is_worse(found, scene%itself), found, scene%itself)
+        end do
+      end associate
+    end subroutine look_at_itself
+  end function look_through
 
   !> Where the chord of a side crosses those of another part, ascending.
   pure function crossings(now, side, part) result(crossing)
@@ -137,30 +159,4 @@ contains
       if (min(s, t) >= 0.0_wp .and. max(s, t) <= 1.0_wp) call insert(s, crossing)
     end do
   end function crossings
-
-  !> The points of a side, behind another side of its own body, before which they were drawn.
-  pure subroutine look_at_itself(search, side, other, scene)
-    type(search_type), intent(in) :: search
-    integer, intent(in) :: side, other
-    type(scene_type), intent(inout) :: scene
-    type(near_place) :: place
-    type(point_type) :: point
-    type(overlap_place) :: found
-    real(wp) :: drawn
-    integer :: k
-
-    associate (node => search%now%outline%node, was => search%drawn)
-      if (any(node(1, side) == node(:2, other)) .or. any(node(2, side) == node(:2, other))) return
-      do k = 1, size(quarters)
-        point = point_on(search, side, quarters(k))
-        place = search%now%near_side(other, point%x)
-        if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. .not. search%now%is_inside(place, point%x)) cycle
-        if (2.0_wp*place%distance > norm2(search%now%chord(side))) cycle
-        found = meet(search, point, place)
-        ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
-        drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
-        if (drawn <= found%allowed) call take_if(is_worse(found, scene%itself), found, scene%itself)
-      end do
-    end associate
-  end subroutine look_at_itself
 end module epcont_certificate_scene

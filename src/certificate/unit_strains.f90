@@ -4,7 +4,7 @@
 module epcont_certificate_unit_strains
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes, most_points
-  use epcont_element_kinematics, only: axisymmetric, plane_stress
+  use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -19,12 +19,12 @@ contains
   !! coordinates.
   pure subroutine find_slopes(kind, slope)
     type(element_kind), intent(in) :: kind                       !! of elements
-    real(wp), intent(out) :: slope(2, most_nodes, most_points)   !! [local coordinates, nodes, points]
-    real(wp) :: step(2)
+    real(wp), intent(out) :: slope(directions, most_nodes, most_points)   !! [local directions, nodes, points]
+    real(wp) :: step(directions)
     integer :: c, p
 
     do p = 1, kind%points
-      do c = 1, 2
+      do c = 1, directions
         step = 0.0_wp
         step(c) = half_step
         slope(c, :, p) = kind%shape(kind%point(:, p) + step) - kind%shape(kind%point(:, p) - step)
@@ -35,38 +35,33 @@ contains
   !> Strains xx, yy, zz, xy (engineering) that a unit displacement of each freedom gives at the integration
   !! places of an element, and the volumes that belong to them.
   pure subroutine unit_strains(model, element, slope, strain, volume)
-    type(model_type), intent(in) :: model                            !! the scene
-    integer, intent(in) :: element                                   !! which of its elements
-    real(wp), intent(in) :: slope(2, most_nodes, most_points)        !! of its kind, from `find_slopes`
-    real(wp), intent(out) :: strain(4, 2, most_nodes, most_points)   !! [1/length]
+    type(model_type), intent(in) :: model        !! the scene
+    integer, intent(in) :: element               !! which of its elements
+    real(wp), intent(in) :: slope(:, :, :)       !! of its kind, from `find_slopes`
+    !> [1/length] [components, directions, nodes, points]
+    real(wp), intent(out) :: strain(components, directions, most_nodes, most_points)
     real(wp), intent(out) :: volume(most_points)                     !! [length**3]
-    real(wp) :: x(2, most_nodes), side(2, 2), away(2), gradient(2), determinant, radius
+    real(wp) :: x(directions, most_nodes), side(directions, directions), determinant, radius
     integer :: k, n, p
 
     n = model%order(element)
-    do k = 1, n
-      x(:, k) = model%x(:, model%connectivity(k, element))
-    end do
+    x(:, :n) = model%x(:, model%connectivity(:n, element))
     associate (s => model%section(element), kind => model%kinds(model%kind(element)))
       do p = 1, kind%points
         ! d x/d local, one column each; from the first node, so that a place far from the origin takes no
         ! digits.
         side = 0.0_wp
         do k = 2, n
-          away = x(:, k) - x(:, 1)
-          side(:, 1) = side(:, 1) + away*slope(1, k, p)
-          side(:, 2) = side(:, 2) + away*slope(2, k, p)
+          side(:, 1) = side(:, 1) + (x(:, k) - x(:, 1))*slope(1, k, p)
+          side(:, 2) = side(:, 2) + (x(:, k) - x(:, 1))*slope(2, k, p)
         end do
         determinant = side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1)
         volume(p) = kind%weight(p)*determinant*model%thickness(s)
         strain(:, :, :n, p) = 0.0_wp
-        do k = 1, n
-          gradient(1) = (slope(1, k, p)*side(2, 2) - slope(2, k, p)*side(2, 1))/determinant
-          gradient(2) = (slope(2, k, p)*side(1, 1) - slope(1, k, p)*side(1, 2))/determinant
-          strain(1, 1, k, p) = gradient(1)
-          strain(2, 2, k, p) = gradient(2)
-          strain(4, :, k, p) = gradient([2, 1])
-        end do
+        strain(1, 1, :n, p) = (slope(1, :n, p)*side(2, 2) - slope(2, :n, p)*side(2, 1))/determinant
+        strain(2, 2, :n, p) = (slope(2, :n, p)*side(1, 1) - slope(1, :n, p)*side(1, 2))/determinant
+        strain(4, 1, :n, p) = strain(2, 2, :n, p)
+        strain(4, 2, :n, p) = strain(1, 1, :n, p)
         if (model%kinematics(s) /= axisymmetric) cycle
         radius = dot_product(kind%values(:n, p), x(1, :n))
         strain(3, 1, :n, p) = kind%values(:n, p)/radius
@@ -85,7 +80,7 @@ contains
     integer :: c, k, p
 
     do k = 1, size(strain, 3)
-      do c = 1, 2
+      do c = 1, directions
         dilatation = dot_product(sum(strain(:3, c, k, :), dim=1), volume)/sum(volume)
         do p = 1, size(volume)
           strain(:3, c, k, p) = strain(:3, c, k, p) + (dilatation - sum(strain(:3, c, k, p)))/3.0_wp

@@ -10,6 +10,7 @@ module epcont_certificate_way
   use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_if
   use epcont_certificate_meeting, only: boxes_meeting, insert, meet, point_on, point_type, search_type, &
                                        sides_meeting
+  use epcont_element_kinematics, only: directions
   use epcont_geometry_box_tree, only: box_tree, new_box_tree
   use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_geometry_plane, only: cross_product
@@ -26,118 +27,152 @@ module epcont_certificate_way
   !! shape on it.
   real(wp), parameter :: shapeless = 1.0_wp
 
-  !> How each part moves as a whole, and the outlines on the way.
-  type :: ways_type
-    real(wp), allocatable :: mean(:, :)    !! displacement of each part [length] [2, parts]
-    real(wp), allocatable :: spread(:)     !! what its nodes' differ by from that [length] [parts]
-    logical, allocatable :: straight(:)    !! it keeps a shape on its way [parts]
-    type(box_tree) :: part_tree            !! where each part is on its way
-    type(outline_shape) :: between         !! some sides, as far on their way as was asked last
-  end type ways_type
-
-  !> A node, or the middle of an element, on its way past a part.
-  type :: walk_type
-    type(point_type) :: point
-    integer :: part = 0
-    real(wp) :: length = 0.0_wp            !! at most so far goes it along the other outline [length]
-  end type walk_type
-
 contains
 
   !> The paths of all nodes of the outlines, and of a point within each part: of two bodies with one outline
   !! no node goes inside.
-  pure subroutine look_at_ways(search, scene)
+  subroutine look_at_ways(search, scene)
     type(search_type), intent(in) :: search    !! the outlines
     type(scene_type), intent(inout) :: scene   !! what is found is added
-    type(ways_type) :: ways
+    real(wp) :: mean(directions, search%now%outline%parts)   ! displacement of each part [length]
+    real(wp) :: spread_of(search%now%outline%parts)          ! what its nodes' differ by from that [length]
+    logical :: straight(search%now%outline%parts)            ! it keeps a shape on its way
+    type(box_tree) :: part_tree                              ! where each part is on its way
+    type(outline_shape) :: between   ! some sides, as far on their way as was asked last
     integer :: part, side
 
     associate (outline => search%now%outline)
       if (outline%parts < 2) return
-      ways = new_ways(search)
+      call find_ways()
       do part = 1, outline%parts
-        if (.not. ways%straight(part)) cycle
+        if (.not. straight(part)) cycle
         do side = outline%first(part), outline%first(part + 1) - 1
-          call walk(search, ways, point_on(search, side, 0.0_wp), scene)
-          if (outline%node(3, side) > 0) call walk(search, ways, point_on(search, side, 0.5_wp), scene)
+          call walk(point_on(search, side, 0.0_wp))
+          if (outline%node(3, side) > 0) call walk(point_on(search, side, 0.5_wp))
         end do
-        call walk(search, ways, search%middle(part), scene)
+        call walk(search%middle(part))
       end do
     end associate
-  end subroutine look_at_ways
 
-  !> How the parts move.
-  pure function new_ways(search) result(ways)
-    type(search_type), intent(in) :: search
-    type(ways_type) :: ways
-    real(wp), allocatable :: high(:, :), low(:, :), u(:, :)
-    integer :: p
+  contains
 
-    associate (outline => search%now%outline)
-      allocate (ways%mean(2, outline%parts), ways%spread(outline%parts), ways%straight(outline%parts))
-      allocate (low(2, outline%parts), high(2, outline%parts))
-      do p = 1, outline%parts
-        associate (first => outline%first(p), last => outline%first(p + 1) - 1, &
+    !> How the parts move.
+    subroutine find_ways()
+      real(wp), dimension(directions, size(straight)) :: high, low
+      real(wp), allocatable :: u(:, :)
+      integer :: p
+
+      do p = 1, size(straight)
+        associate (first => search%now%outline%first(p), last => search%now%outline%first(p + 1) - 1, &
                    tree => search%now%side_tree(p))
-          ways%straight(p) = all(search%allowance%change(first:last) <= shapeless)
+          straight(p) = all(search%allowance%change(first:last) <= shapeless)
           u = search%motion(:, 1, first:last)   ! what middles bulge besides is allowed three times over
-          ways%mean(:, p) = 0.5_wp*(minval(u, dim=2) + maxval(u, dim=2))
-          ways%spread(p) = maxval(norm2(u - spread(ways%mean(:, p), 2, size(u, 2)), dim=1))
+          mean(:, p) = 0.5_wp*(minval(u, dim=2) + maxval(u, dim=2))
+          spread_of(p) = maxval(norm2(u - spread(mean(:, p), 2, size(u, 2)), dim=1))
           ! From where it was drawn to where it is.
           low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))
           high(:, p) = tree%high(:, 1) - min(0.0_wp, minval(u, dim=2))
         end associate
       end do
-      ways%part_tree = new_box_tree(low, high)
-      ways%between%outline = outline
-      allocate (ways%between%x, mold=search%now%x)
-    end associate
-  end function new_ways
+      part_tree = new_box_tree(low, high)
+      between%outline = search%now%outline
+      allocate (between%x, mold=search%now%x)
+    end subroutine find_ways
 
-  !> The path of one point, past all parts that it comes near to.
-  pure subroutine walk(search, ways, point, scene)
-    type(search_type), intent(in) :: search
-    type(ways_type), intent(inout) :: ways
-    type(point_type), intent(in) :: point
-    type(scene_type), intent(inout) :: scene
-    integer, allocatable :: parts(:)
-    integer :: b
+    !> The path of one point, past all parts that it comes near to.
+    subroutine walk(point)
+      type(point_type), intent(in) :: point   !! a node, or the middle of an element
+      integer, allocatable :: parts(:)
+      integer :: b
 
-    parts = boxes_meeting(ways%part_tree, min(point%drawn, point%x), max(point%drawn, point%x))
-    do b = 1, size(parts)
-      if (parts(b) /= search%now%outline%part(point%side) .and. ways%straight(parts(b))) &
-        call look_at_way(search, ways, point, parts(b), scene)
-    end do
-  end subroutine walk
+      parts = boxes_meeting(part_tree, min(point%drawn, point%x), max(point%drawn, point%x))
+      do b = 1, size(parts)
+        if (parts(b) /= search%now%outline%part(point%side) .and. straight(parts(b))) &
+          call look_at_way(point, parts(b))
+      end do
+    end subroutine walk
 
-  !> The path of one point past another part: between two crossings of its outline it may be inside.
-  pure subroutine look_at_way(search, ways, point, part, scene)
-    type(search_type), intent(in) :: search
-    type(ways_type), intent(inout) :: ways
-    type(point_type), intent(in) :: point
-    integer, intent(in) :: part
-    type(scene_type), intent(inout) :: scene
-    type(walk_type) :: walk
-    real(wp), allocatable :: time(:)
-    integer, allocatable :: sides(:)
-    integer :: k
+    !> The path of one point past another part: between two crossings of its outline it may be inside.
+    subroutine look_at_way(point, part)
+      type(point_type), intent(in) :: point
+      integer, intent(in) :: part
+      real(wp), allocatable :: time(:)
+      integer, allocatable :: sides(:)
+      real(wp) :: length   ! at most so far goes it along the other outline
+      integer :: k
 
-    associate (start => point%drawn + ways%mean(:, part), stop => point%x, wide => ways%spread(part))
-      walk = walk_type(point, part, norm2(stop - start) + wide)
-      if (walk%length <= search%least) return
-      sides = sides_meeting(search%now, part, min(start, stop) - wide, max(start, stop) + wide)
-    end associate
-    allocate (time(0))
-    do k = 1, size(sides)
-      call cross_side(search, point, sides(k), time)
-    end do
-    if (size(time) == 0) return
-    time = [0.0_wp, time, 1.0_wp]
-    do k = 2, size(time)
-      if ((time(k) - time(k - 1))*walk%length > search%least) &
-        call look_between(search, ways, walk, time(k - 1:k), scene)
-    end do
-  end subroutine look_at_way
+      associate (start => point%drawn + mean(:, part), stop => point%x, wide => spread_of(part))
+        length = norm2(stop - start) + wide
+        if (length <= search%least) return
+        sides = sides_meeting(search%now, part, min(start, stop) - wide, max(start, stop) + wide)
+      end associate
+      allocate (time(0))
+      do k = 1, size(sides)
+        call cross_side(search, point, sides(k), time)
+      end do
+      if (size(time) == 0) return
+      time = [0.0_wp, time, 1.0_wp]
+      do k = 2, size(time)
+        if ((time(k) - time(k - 1))*length > search%least) &
+          call look_between(point, part, time(k - 1:k), length)
+      end do
+    end subroutine look_at_way
+
+    !> Is a point inside a part between two times, deeper than at these, and than is allowed?
+    subroutine look_between(point, part, time, length)
+      type(point_type), intent(in) :: point
+      integer, intent(in) :: part
+      real(wp), intent(in) :: time(2), length
+      type(near_place) :: ends(2), place
+      type(overlap_place) :: found
+      real(wp) :: along(directions, 2), middle, within
+      integer :: i
+
+      middle = 0.5_wp*(time(1) + time(2))
+      within = (time(2) - time(1))*length
+      place = nearest(point, part, middle, 0.5_wp*within)   ! no farther is the crossing
+      if (place%side == 0 .or. .not. place%inside) return
+      found = meet(search, point, place)
+      if (found%depth <= found%allowed) return
+      do i = 1, 2
+        ends(i) = nearest(point, part, time(i), within + place%distance)
+        if (ends(i)%inside) found%depth = min(found%depth, place%distance - ends(i)%distance)
+        along(:, i) = search%now%tangent(ends(i)%side, ends(i)%s)   ! of the side where it enters, or leaves
+      end do
+      if (found%depth <= found%allowed) return
+      if (dot_product(along(:, 1), along(:, 2)) > opposite*norm2(along(:, 1))*norm2(along(:, 2)) .and. &
+          within <= maxval(search%allowance%length([found%side, found%other]))) return
+      found%x = point%drawn + middle*point%motion
+      if (.not. point%in_element) &
+        found%node = search%now%outline%node(merge(3, 1, point%s > 0.0_wp), found%side)
+      call take_if(is_worse(found, scene%passed), found, scene%passed)
+    end subroutine look_between
+
+    !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none.
+    type(near_place) function nearest(point, part, time, reach) result(best)
+      type(point_type), intent(in) :: point
+      integer, intent(in) :: part
+      real(wp), intent(in) :: time, reach     !! from 0 to 1; [length]
+      type(near_place) :: place
+      integer, allocatable :: near(:), sides(:)
+      real(wp) :: wide, x(directions), x_now(directions)
+      integer :: k
+
+      x = point%drawn + time*point%motion
+      x_now = x + (1.0_wp - time)*mean(:, part)
+      wide = reach + (1.0_wp - time)*spread_of(part)
+      near = sides_meeting(search%now, part, x_now - wide, x_now + wide)
+      associate (outline => search%now%outline)
+        sides = [near, outline%before(near), outline%after(near)]   ! at a node both say what is inside
+      end associate
+      between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
+      do k = 1, size(near)
+        place = between%near_side(near(k), x)
+        if (place%distance < best%distance) best = place
+      end do
+      if (best%side > 0) best%inside = between%is_inside(best, x)
+    end function nearest
+  end subroutine look_at_ways
 
   !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area
   !! between the point and a chord is a square function of time; on the chord it vanishes.
@@ -178,64 +213,4 @@ contains
     if (abs(a) <= abs(q) .and. q /= 0.0_wp) root(1) = a/q
     if (abs(q) <= abs(c) .and. c /= 0.0_wp) root(2) = q/c
   end function roots_of_square
-
-  !> Is a point inside between two times, deeper than at these, and than is allowed?
-  pure subroutine look_between(search, ways, walk, time, scene)
-    type(search_type), intent(in) :: search
-    type(ways_type), intent(inout) :: ways
-    type(walk_type), intent(in) :: walk
-    real(wp), intent(in) :: time(2)
-    type(scene_type), intent(inout) :: scene
-    type(near_place) :: ends(2), place
-    type(overlap_place) :: found
-    real(wp) :: along(2, 2), middle, within
-    integer :: i
-
-    middle = 0.5_wp*(time(1) + time(2))
-    within = (time(2) - time(1))*walk%length
-    call find_nearest(search, ways, walk, middle, 0.5_wp*within, place)   ! no farther is the crossing
-    if (place%side == 0 .or. .not. place%inside) return
-    found = meet(search, walk%point, place)
-    if (found%depth <= found%allowed) return
-    do i = 1, 2
-      call find_nearest(search, ways, walk, time(i), within + place%distance, ends(i))
-      if (ends(i)%inside) found%depth = min(found%depth, place%distance - ends(i)%distance)
-      along(:, i) = search%now%tangent(ends(i)%side, ends(i)%s)   ! of the side where it enters, or leaves
-    end do
-    if (found%depth <= found%allowed) return
-    if (dot_product(along(:, 1), along(:, 2)) > opposite*norm2(along(:, 1))*norm2(along(:, 2)) .and. &
-        within <= maxval(search%allowance%length([found%side, found%other]))) return
-    found%x = walk%point%drawn + middle*walk%point%motion
-    if (.not. walk%point%in_element) &
-      found%node = search%now%outline%node(merge(3, 1, walk%point%s > 0.0_wp), found%side)
-    call take_if(is_worse(found, scene%passed), found, scene%passed)
-  end subroutine look_between
-
-  !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none.
-  pure subroutine find_nearest(search, ways, walk, time, reach, best)
-    type(search_type), intent(in) :: search
-    type(ways_type), intent(inout) :: ways
-    type(walk_type), intent(in) :: walk
-    real(wp), intent(in) :: time
-    real(wp), intent(in) :: reach           !! [length]
-    type(near_place), intent(out) :: best
-    type(near_place) :: place
-    integer, allocatable :: near(:), sides(:)
-    real(wp) :: wide, x(2), x_now(2)
-    integer :: k
-
-    x = walk%point%drawn + time*walk%point%motion
-    x_now = x + (1.0_wp - time)*ways%mean(:, walk%part)
-    wide = reach + (1.0_wp - time)*ways%spread(walk%part)
-    near = sides_meeting(search%now, walk%part, x_now - wide, x_now + wide)
-    associate (outline => search%now%outline)
-      sides = [near, outline%before(near), outline%after(near)]   ! at a node both say what is inside
-    end associate
-    ways%between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
-    do k = 1, size(near)
-      place = ways%between%near_side(near(k), x)
-      if (place%distance < best%distance) best = place
-    end do
-    if (best%side > 0) best%inside = ways%between%is_inside(best, x)
-  end subroutine find_nearest
 end module epcont_certificate_way

@@ -3,7 +3,7 @@
 !> shifts the curve instead.
 module epcont_certificate_yielding
   use epcont_base_kinds, only: wp
-  use epcont_element_kinematics, only: plane_stress
+  use epcont_element_kinematics, only: components, plane_stress
   use epcont_model_controls, only: uniaxial_curve
   use epcont_model_model, only: model_type
   implicit none
@@ -19,15 +19,21 @@ contains
   pure function stress_on_curve(model, section, strain) result(stress)
     type(model_type), intent(in) :: model   !! its sections, their curves and PARAM MUP
     integer, intent(in) :: section          !! of the model
-    real(wp), intent(in) :: strain(4)       !! xx, yy, zz, xy (engineering)
-    real(wp) :: stress(4)
-    real(wp) :: across, lambda, mu, secant, shear
+    real(wp), intent(in) :: strain(components)       !! xx, yy, zz, xy (engineering)
+    real(wp) :: stress(components)
+    real(wp) :: across, lambda, mu, secant, shear, total
 
     associate (young => model%young(section), nu => model%poisson(section))
       secant = young
       mu = nu
-      if (allocated(model%curve(section)%strain)) call find_secant(model, section, strain, secant, mu)
-      across = strain_across(model%kinematics(section), mu, strain)
+      if (allocated(model%curve(section)%strain)) then
+        total = strain_on_curve()
+        if (total > model%curve(section)%strain(2)) then
+          secant = stress_at(model%curve(section), total)/total
+          mu = poisson_ratio(total)
+        end if
+      end if
+      across = strain_across(mu)
       ! E_D/3 of (2-5) is the shear modulus, E/(1 - 2 nu) of (2-6) three times the bulk modulus.
       shear = young/(3.0_wp*young/secant - (1.0_wp - 2.0_wp*nu))
       lambda = young/(3.0_wp*(1.0_wp - 2.0_wp*nu)) - 2.0_wp/3.0_wp*shear
@@ -35,56 +41,40 @@ contains
       if (model%kinematics(section) == plane_stress) stress(3) = 0.0_wp
       stress(4) = shear*strain(4)
     end associate
-  end function stress_on_curve
-
-  !> Equivalent stress (2-1), from the largest component: squares of very small or large ones are beyond the
-  !! range of numbers.
-  pure real(wp) function von_mises_stress(stress)
-    real(wp), intent(in) :: stress(4)   !! xx, yy, zz, xy
-    real(wp) :: part(4), largest
-
-    largest = maxval(abs(stress))
-    von_mises_stress = 0.0_wp
-    if (largest == 0.0_wp) return
-    part = stress/largest
-    von_mises_stress = largest*sqrt(0.5_wp*((part(1) - part(2))**2 + (part(2) - part(3))**2 &
-                                            + (part(3) - part(1))**2) + 3.0_wp*part(4)**2)
-  end function von_mises_stress
-
-  !> E' = sigma_i/eps_i of the curve, and mu: that with which eps_i of the strain is eps_i of the curve.
-  pure subroutine find_secant(model, section, strain, secant, mu)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: section
-    real(wp), intent(in) :: strain(4)
-    real(wp), intent(inout) :: secant, mu   !! the elastic ones, which stay below yield
-    real(wp) :: low, high, middle
-    integer :: k
-
-    low = model%curve(section)%strain(2)
-    high = low
-    if (.not. is_beyond(low)) return
-    do while (is_beyond(high))
-      high = 2.0_wp*high
-    end do
-    do k = 1, halvings
-      middle = 0.5_wp*(low + high)
-      if (is_beyond(middle)) then
-        low = middle
-      else
-        high = middle
-      end if
-    end do
-    secant = stress_at(model%curve(section), low)/low
-    mu = poisson_ratio(low)
 
   contains
 
-    !> Is the strain's eps_i, taken with the mu of a point of the curve, beyond that point?
+    !> The strain of the curve that eps_i of the strain is, taken with its own mu; that of yield stands for
+    !! all below.
+    pure real(wp) function strain_on_curve() result(low)
+      real(wp) :: high, middle
+      integer :: k
+
+      low = model%curve(section)%strain(2)
+      if (.not. is_beyond(low)) return
+      high = low
+      do while (is_beyond(high))
+        high = 2.0_wp*high
+      end do
+      do k = 1, halvings
+        middle = 0.5_wp*(low + high)
+        if (is_beyond(middle)) then
+          low = middle
+        else
+          high = middle
+        end if
+      end do
+    end function strain_on_curve
+
+    !> Is the strain's eps_i (2-2), taken with the mu of a point of the curve, beyond that point?
     pure logical function is_beyond(total)
       real(wp), intent(in) :: total
 
-      associate (mu => poisson_ratio(total), kinematics => model%kinematics(section))
-        is_beyond = equivalent_strain(strain, strain_across(kinematics, mu, strain), mu) > total
+      associate (mu => poisson_ratio(total))
+        associate (across => strain_across(mu))
+          is_beyond = sqrt(0.5_wp*((strain(1) - strain(2))**2 + (strain(2) - across)**2 &
+                                   + (across - strain(1))**2) + 0.75_wp*strain(4)**2)/(1.0_wp + mu) > total
+        end associate
       end associate
     end function is_beyond
 
@@ -100,24 +90,29 @@ contains
         end if
       end associate
     end function poisson_ratio
-  end subroutine find_secant
 
-  !> Equivalent strain (2-2).
-  pure real(wp) function equivalent_strain(strain, across, mu)
-    real(wp), intent(in) :: strain(4), across, mu
+    !> Strain across the plane: what it is, or in plane stress that of a secant body without stress there.
+    pure real(wp) function strain_across(mu)
+      real(wp), intent(in) :: mu
 
-    equivalent_strain = sqrt(0.5_wp*((strain(1) - strain(2))**2 + (strain(2) - across)**2 &
-                                     + (across - strain(1))**2) + 0.75_wp*strain(4)**2)/(1.0_wp + mu)
-  end function equivalent_strain
+      strain_across = strain(3)
+      if (model%kinematics(section) == plane_stress) strain_across = -mu/(1.0_wp - mu)*(strain(1) + strain(2))
+    end function strain_across
+  end function stress_on_curve
 
-  !> Strain across the plane: what it is, or in plane stress that of a secant body without stress there.
-  pure real(wp) function strain_across(kinematics, mu, strain)
-    integer, intent(in) :: kinematics
-    real(wp), intent(in) :: mu, strain(4)
+  !> Equivalent stress (2-1), from the largest component: squares of very small or large ones are beyond the
+  !! range of numbers.
+  pure real(wp) function von_mises_stress(stress)
+    real(wp), intent(in) :: stress(components)   !! xx, yy, zz, xy
+    real(wp) :: part(components), largest
 
-    strain_across = strain(3)
-    if (kinematics == plane_stress) strain_across = -mu/(1.0_wp - mu)*(strain(1) + strain(2))
-  end function strain_across
+    largest = maxval(abs(stress))
+    von_mises_stress = 0.0_wp
+    if (largest == 0.0_wp) return
+    part = stress/largest
+    von_mises_stress = largest*sqrt(0.5_wp*((part(1) - part(2))**2 + (part(2) - part(3))**2 &
+                                            + (part(3) - part(1))**2) + 3.0_wp*part(4)**2)
+  end function von_mises_stress
 
   !> Stress at a total strain; the last slope goes on. From the lower point up: nothing cancels.
   pure real(wp) function stress_at(curve, total)

@@ -1,19 +1,37 @@
-!> The contact equations for a given set S of pairs in contact, factored afresh from F and A.
+!> The contact equations for a given set S of pairs in contact, factored from F and A.
 !>
 !>     F_SS R_S - A_S q = -h,   A_S' R_S = p
 !>
 !> F_SS may be singular though the forces are unique (a pair between held nodes is a row of zeros).
 !> F_g = F + gamma A A' is definite whenever they are unique, and since A'R = p it changes only the
 !> motion: q comes out larger by gamma p.
+!>
+!> A set is factored afresh, or, where sets change by blocks, from the one before: pairs that are likely to
+!> stay stand first, the factor is kept up to the first pair that has gone, and only the rows below it are
+!> factored anew:
+!>
+!>     +------+
+!>     | kept |         pairs of large force
+!>     +------+------+
+!>     |     new     |  pairs at the edges of the contact, and those that came
+!>     +------+------+
 module epcont_contact_basis
   use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: sorted_order
   use epcont_base_tolerances, only: lost_digits, negligible
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_linalg_dense, only: add_product, cholesky_factor, cholesky_solve, pivoted_cholesky
+  use epcont_linalg_dense, only: add_product, cholesky_factor, cholesky_solve, extend_cholesky, &
+    pivoted_cholesky
   implicit none
   private
-  public :: contact_basis, new_basis, hold_motions, respond
-  public :: regular_flexibility, rank_tolerance, weight_of_motions
+  public :: contact_basis, new_basis, change_set, respond, regular_flexibility, rank_tolerance
+
+  !> Part of a set from which on its factor is kept. With 1/2, where pairs that come as the candidates are
+  !! doubled stand behind edges that go, block pivoting takes half as long again; without keeping anything it
+  !! does so too.
+  real(wp), parameter :: worth_keeping = 0.75_wp
+  !> Firmness is told apart to this part of the largest.
+  real(wp), parameter :: firmness_steps = 1.0e6_wp
 
   !> A set of pairs in contact whose forces are unique, and the factors that give them.
   type :: contact_basis
@@ -39,12 +57,8 @@ contains
     basis%gamma = weight_of_motions(problem)
     basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
     call cholesky_factor(basis%factor, info)
-    if (info == 0) then
-      associate (pivots => [(basis%factor(k, k)**2, k=1, size(basis%pairs))])
-        if (any(pivots < lost_digits*largest_flexibility(problem))) info = 1
-      end associate
-    end if
-    if (info /= 0) then   ! the order of pivots, which takes longer, tells who depends on whom
+    if (.not. has_pivots(basis, info, lost_digits*largest_flexibility(problem))) then
+      ! The order of pivots, which takes longer, tells who depends on whom.
       basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
       call pivoted_cholesky(basis%factor, rank_tolerance(problem), order, rank)
       basis%pairs = basis%pairs(order(:rank))
@@ -53,19 +67,61 @@ contains
     call hold_motions(basis, problem)
   end function new_basis
 
+  !> Go over to another set. Without unique forces the basis is not sound, and nothing is kept of its factor.
+  pure subroutine change_set(basis, problem, closed, firmness)
+    type(contact_basis), intent(inout) :: basis   !! none yet, or that of the set before
+    type(scaled_problem), intent(in) :: problem   !! in its own units
+    logical, intent(in) :: closed(:)      !! the set [n]
+    real(wp), intent(in) :: firmness(:)   !! how likely pairs are to stay, largest first [n]
+    integer, allocatable :: added(:)
+    logical :: missing(size(closed))
+    integer :: info, k, kept, n
+
+    n = count(closed)
+    if (.not. allocated(basis%factor)) then   ! room for all pairs
+      allocate (basis%pairs(0), basis%factor(size(closed), size(closed)))
+      basis%gamma = weight_of_motions(problem)
+    end if
+    kept = findloc([closed(basis%pairs), .false.], .false., dim=1) - 1
+    ! Where much is new, all are put into order, so that the next sets keep most of it.
+    if (kept < worth_keeping*n) kept = 0
+    missing = closed
+    missing(basis%pairs(:kept)) = .false.
+    added = pack([(k, k=1, size(closed))], missing)
+    added = added(sorted_order(nint(-firmness_steps*firmness(added))))
+    basis%pairs = [basis%pairs(:kept), added]
+    basis%factor(kept + 1:n, :n) = regular_flexibility(problem, basis%gamma, added, basis%pairs)
+    call extend_cholesky(size(closed), basis%factor, kept, n, info)
+    if (has_pivots(basis, info, rank_tolerance(problem))) then
+      call hold_motions(basis, problem)
+    else
+      basis%sound = .false.
+      basis%pairs = [integer ::]
+    end if
+  end subroutine change_set
+
+  !> Has a factorization come to its end, and no pivot below a limit?
+  pure logical function has_pivots(basis, info, least) result(has)
+    type(contact_basis), intent(in) :: basis
+    integer, intent(in) :: info     !! of the factorization
+    real(wp), intent(in) :: least
+    integer :: k
+
+    has = info == 0
+    if (has) has = all([(basis%factor(k, k)**2, k=1, size(basis%pairs))] >= least)
+  end function has_pivots
+
   !> What the motions do to a set whose F_g is factored; it is sound if it holds all of them.
   pure subroutine hold_motions(basis, problem)
-    type(contact_basis), intent(inout) :: basis   !! its pairs and the factor of F_g; the rest is found
-    type(scaled_problem), intent(in) :: problem   !! in its own units
+    type(contact_basis), intent(inout) :: basis
+    type(scaled_problem), intent(in) :: problem
     real(wp) :: resistance(size(problem%resultant), size(problem%resultant))
-    real(wp), allocatable :: transposed(:, :)
     integer :: info
 
     basis%carried = problem%motion(basis%pairs, :)
-    transposed = transpose(basis%carried)
     call cholesky_solve(basis%factor, basis%carried)
     resistance = 0.0_wp
-    call add_product(1.0_wp, transposed, basis%carried, resistance)
+    call add_product(1.0_wp, transpose(problem%motion(basis%pairs, :)), basis%carried, resistance)
     call cholesky_factor(resistance, info)
     basis%resistance = resistance
     basis%sound = info == 0
@@ -78,11 +134,9 @@ contains
     real(wp), intent(in) :: load(:, :)                     !! p [m, k]
     real(wp), allocatable, intent(out) :: force(:, :)      !! R_S [s, k]
     real(wp), allocatable, intent(out) :: approach(:, :)   !! q [m, k]
-    real(wp), allocatable :: transposed(:, :)
 
     approach = load
-    transposed = transpose(basis%carried)
-    call add_product(1.0_wp, transposed, opening, approach)
+    call add_product(1.0_wp, transpose(basis%carried), opening, approach)
     call cholesky_solve(basis%resistance, approach)
     force = -opening
     call cholesky_solve(basis%factor, force)
@@ -93,20 +147,17 @@ contains
   !> A block of F_g = F + gamma A A'.
   pure function regular_flexibility(problem, gamma, rows, columns) result(block)
     type(scaled_problem), intent(in) :: problem   !! in its own units
-    real(wp), intent(in) :: gamma                  !! from `weight_of_motions`
+    real(wp), intent(in) :: gamma                  !! that of a basis
     integer, intent(in) :: rows(:), columns(:)     !! pairs
     real(wp), allocatable :: block(:, :)
-    real(wp), allocatable :: left(:, :), right(:, :)
 
     block = problem%flexibility(rows, columns)
-    left = problem%motion(rows, :)
-    right = transpose(problem%motion(columns, :))
-    call add_product(gamma, left, right, block)
+    call add_product(gamma, problem%motion(rows, :), transpose(problem%motion(columns, :)), block)
   end function regular_flexibility
 
   !> gamma, such that F and gamma A A' are of one size.
   pure real(wp) function weight_of_motions(problem) result(gamma)
-    type(scaled_problem), intent(in) :: problem   !! in its own units
+    type(scaled_problem), intent(in) :: problem
     real(wp) :: largest
 
     largest = maxval([sum(problem%motion**2, dim=2), 0.0_wp])

@@ -12,7 +12,7 @@
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: solved_to
-  use epcont_contact_block_factor, only: begin_blocks, change_set
+  use epcont_contact_basis, only: change_set
   use epcont_contact_contact_state, only: contact_state, fresh_state, guess_tolerance, &
                                           has_right_signs, solve_set
   use epcont_contact_problem, only: contact_solution, contact_solved
@@ -36,92 +36,112 @@ module epcont_contact_block_pivoting
   !> Candidates of the first sets, at least.
   integer, parameter :: fewest_candidates = 32
 
-  !> How far the exchanges have come.
-  type :: progress_type
-    integer :: stride = 1                   !! of the candidates
-    integer :: fewest = huge(1)             !! wrong pairs, at best
-    integer :: patience = patience_limit    !! steps left to come below it
-  end type progress_type
-
 contains
 
   !> Look for the set of contacts. `found`: its fresh solution passes the test of signs and its forces are
   !! unique.
-  pure subroutine find_by_blocks(scaled, solution, state, found)
+  subroutine find_by_blocks(scaled, solution, state, found)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_solution), intent(inout) :: solution   !! steps, and pairs exchanged
     type(contact_state), intent(out) :: state   !! the set found, fresh
     logical, intent(out) :: found   !! else `state` is of no use
-    logical, allocatable :: closed(:)
+    logical, dimension(size(scaled%gap)) :: closed, wrong   ! the set; pairs of it and others of wrong sign
+    integer :: stride     ! of the candidates
+    integer :: fewest     ! wrong pairs among these, at best
+    integer :: patience   ! steps left to come below it
 
     found = .false.
     if (allocated(scaled%guess)) then
       closed = scaled%guess .or. scaled%first_touching
       solution%block_steps = solution%block_steps + 1
-      call test_afresh(scaled, closed, guess_tolerance, state, found)
-      if (.not. found) call exchange_blocks(scaled, 1, guess_tolerance, solution, closed, state, found)
+      call test_afresh(guess_tolerance)
+      stride = 1
+      if (.not. found) call exchange_blocks(guess_tolerance)
     end if
     if (.not. found) then
       closed = scaled%first_touching
-      call exchange_blocks(scaled, first_stride(size(closed)), solved_to, solution, closed, state, found)
+      stride = 1
+      do while (size(closed)/(2*stride) >= fewest_candidates)
+        stride = 2*stride
+      end do
+      call exchange_blocks(solved_to)
     end if
     if (found) solution%state = contact_solved
-  end subroutine find_by_blocks
 
-  !> The fresh solution of a set: are its forces unique and its signs right?
-  pure subroutine test_afresh(scaled, closed, tolerance, state, right)
-    type(scaled_problem), intent(in) :: scaled
-    logical, intent(in) :: closed(:)   !! [n]
-    real(wp), intent(in) :: tolerance
-    type(contact_state), intent(out) :: state
-    logical, intent(out) :: right
+  contains
 
-    state = fresh_state(scaled, closed)
-    right = size(state%basis%pairs) == count(closed)
-    if (right) right = has_right_signs(scaled, state, tolerance)
-  end subroutine test_afresh
+    !> The fresh solution of the set: are its forces unique and its signs right?
+    subroutine test_afresh(tolerance)
+      real(wp), intent(in) :: tolerance
 
-  !> Exchange until no pair is wrong, or no more steps are left, and test the set. Not if there were sets
-  !! without an own solution.
-  pure subroutine exchange_blocks(scaled, stride, tolerance, solution, closed, state, found)
-    type(scaled_problem), intent(in) :: scaled
-    integer, intent(in) :: stride                       !! of the first candidates
-    real(wp), intent(in) :: tolerance                   !! of the test
-    type(contact_solution), intent(inout) :: solution
-    logical, intent(inout) :: closed(:)                 !! the set [n]
-    type(contact_state), intent(inout) :: state
-    logical, intent(out) :: found
-    type(contact_state) :: trial
-    type(progress_type) :: progress
-    real(wp) :: firmness(size(closed))
-    logical :: wrong(size(closed))
-    integer :: repairs, step
+      state = fresh_state(scaled, closed)
+      found = size(state%basis%pairs) == count(closed)
+      if (found) found = has_right_signs(scaled, state, tolerance)
+    end subroutine test_afresh
 
-    call begin_blocks(trial%basis, scaled)
-    progress%stride = stride
-    firmness = 0.0_wp
-    repairs = 0
-    do step = 1, step_limit
-      if (repairs > repair_limit) exit
-      solution%block_steps = solution%block_steps + 1
-      call change_set(trial%basis, scaled, closed, firmness)
-      if (trial%basis%sound) then
-        call solve_set(trial, scaled, scaled%gap, scaled%resultant, refinements=0)
-        call find_wrong(scaled, closed, trial, progress, wrong)
-        if (.not. any(wrong)) exit
-        call choose_exchange(wrong, progress)
-        solution%pivots = solution%pivots + count(wrong)
-        firmness = part_of_largest(trial%force) + part_of_largest(-trial%gap)
-        closed = closed .neqv. wrong
+    !> Exchange until no pair is wrong, or no more steps are left, and test the set. Not if there were sets
+    !! without an own solution.
+    subroutine exchange_blocks(tolerance)
+      real(wp), intent(in) :: tolerance   !! of the test
+      type(contact_state) :: trial
+      real(wp) :: firmness(size(closed))
+      integer :: repairs, step
+
+      fewest = huge(fewest)
+      firmness = 0.0_wp
+      repairs = 0
+      do step = 1, step_limit
+        if (repairs > repair_limit) exit
+        solution%block_steps = solution%block_steps + 1
+        call change_set(trial%basis, scaled, closed, firmness)
+        if (trial%basis%sound) then
+          call solve_set(trial, scaled, scaled%gap, scaled%resultant, refinements=0)
+          call find_wrong(trial)
+          if (.not. any(wrong)) exit
+          call choose_exchange()
+          solution%pivots = solution%pivots + count(wrong)
+          firmness = part_of_largest(trial%force) + part_of_largest(-trial%gap)
+          closed = closed .neqv. wrong
+        else
+          ! More pairs may hold the motions; forces that depend on each other they do not mend.
+          repairs = merge(repair_limit, repairs, all(closed .or. .not. scaled%first_touching)) + 1
+          closed = closed .or. scaled%first_touching
+        end if
+      end do
+      if (repairs <= repair_limit) call test_afresh(tolerance)
+    end subroutine exchange_blocks
+
+    !> The wrong pairs among the candidates; where there is none, among more of them.
+    subroutine find_wrong(trial)
+      type(contact_state), intent(in) :: trial
+      logical :: all_wrong(size(closed))
+      real(wp) :: force_tolerance, gap_tolerance
+      integer :: k
+
+      force_tolerance = exchange_tolerance*maxval([abs(trial%force), 1.0_wp])
+      gap_tolerance = force_tolerance + exchange_tolerance*maxval([abs(scaled%gap), 0.0_wp])
+      all_wrong = merge(trial%force < -force_tolerance, trial%gap < -gap_tolerance, closed)
+      do
+        wrong = all_wrong .and. (closed .or. scaled%first_touching .or. &
+                                 [(mod(k - 1, stride) == 0, k=1, size(closed))])
+        if (any(wrong) .or. stride == 1) exit
+        stride = stride/2
+        fewest = huge(fewest)
+      end do
+    end subroutine find_wrong
+
+    !> All wrong pairs, or the last alone where exchanges of all have led nowhere.
+    subroutine choose_exchange()
+      if (count(wrong) < fewest) then
+        fewest = count(wrong)
+        patience = patience_limit
+      else if (patience > 0) then
+        patience = patience - 1
       else
-        ! More pairs may hold the motions; forces that depend on each other they do not mend.
-        repairs = merge(repair_limit, repairs, all(closed .or. .not. scaled%first_touching)) + 1
-        closed = closed .or. scaled%first_touching
+        wrong(:findloc(wrong, .true., dim=1, back=.true.) - 1) = .false.
       end if
-    end do
-    found = repairs <= repair_limit
-    if (found) call test_afresh(scaled, closed, tolerance, state, found)
-  end subroutine exchange_blocks
+    end subroutine choose_exchange
+  end subroutine find_by_blocks
 
   !> Positive values as parts of the largest.
   pure function part_of_largest(values) result(part)
@@ -130,53 +150,4 @@ contains
 
     part = max(values, 0.0_wp)/maxval([values, tiny(1.0_wp)])
   end function part_of_largest
-
-  !> Distance of the first candidates, a power of two.
-  pure integer function first_stride(n) result(stride)
-    integer, intent(in) :: n
-
-    stride = 1
-    do while (n/(2*stride) >= fewest_candidates)
-      stride = 2*stride
-    end do
-  end function first_stride
-
-  !> The wrong pairs among the candidates; where there is none, among more of them.
-  pure subroutine find_wrong(scaled, closed, trial, progress, wrong)
-    type(scaled_problem), intent(in) :: scaled
-    logical, intent(in) :: closed(:)                      !! [n]
-    type(contact_state), intent(in) :: trial
-    type(progress_type), intent(inout) :: progress
-    logical, intent(out) :: wrong(:)                      !! [n]
-    logical :: all_wrong(size(closed))
-    real(wp) :: force_tolerance, gap_tolerance
-    integer :: k
-
-    force_tolerance = exchange_tolerance*maxval([abs(trial%force), 1.0_wp])
-    gap_tolerance = force_tolerance + exchange_tolerance*maxval([abs(scaled%gap), 0.0_wp])
-    all_wrong = merge(trial%force < -force_tolerance, trial%gap < -gap_tolerance, closed)
-    do
-      wrong = all_wrong .and. (closed .or. scaled%first_touching .or. &
-                               [(mod(k - 1, progress%stride) == 0, k=1, size(closed))])
-      if (any(wrong) .or. progress%stride == 1) exit
-      progress = progress_type(stride=progress%stride/2)
-    end do
-  end subroutine find_wrong
-
-  !> All wrong pairs, or the last alone where exchanges of all have led nowhere.
-  pure subroutine choose_exchange(wrong, progress)
-    logical, intent(inout) :: wrong(:)   !! [n]
-    type(progress_type), intent(inout) :: progress
-    integer :: last
-
-    if (count(wrong) < progress%fewest) then
-      progress%fewest = count(wrong)
-      progress%patience = patience_limit
-    else if (progress%patience > 0) then
-      progress%patience = progress%patience - 1
-    else
-      last = findloc(wrong, .true., dim=1, back=.true.)
-      wrong(:last - 1) = .false.
-    end if
-  end subroutine choose_exchange
 end module epcont_contact_block_pivoting

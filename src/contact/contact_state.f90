@@ -42,23 +42,23 @@ contains
     real(wp), intent(in) :: load(:)               !! [m]
     integer, intent(in) :: refinements            !! steps that follow the solution
     real(wp), allocatable :: force(:, :), approach(:, :)
-    !> What is not closed or carried yet [s, 1], [m, 1]
-    real(wp), allocatable :: excess(:, :), unbalanced(:, :)
+    real(wp) :: unbalanced(size(load), 1)         ! what is not carried yet
     integer :: step
 
     state%gap = opening
     state%force = spread(0.0_wp, 1, size(opening))
     state%approach = spread(0.0_wp, 1, size(load))
     if (.not. state%basis%sound) return
-    unbalanced = reshape(load, [size(load), 1])
-    do step = 0, refinements
-      excess = reshape(state%gap(state%basis%pairs), [size(state%basis%pairs), 1])
-      call respond(state%basis, excess, unbalanced, force, approach)
-      state%force(state%basis%pairs) = state%force(state%basis%pairs) + force(:, 1)
-      state%approach = state%approach + approach(:, 1)
-      state%gap = gaps_under(scaled, opening, state%force, state%approach)
-      unbalanced(:, 1) = load - matmul(state%force, scaled%motion)
-    end do
+    unbalanced(:, 1) = load
+    associate (pairs => state%basis%pairs)
+      do step = 0, refinements
+        call respond(state%basis, reshape(state%gap(pairs), [size(pairs), 1]), unbalanced, force, approach)
+        state%force(pairs) = state%force(pairs) + force(:, 1)
+        state%approach = state%approach + approach(:, 1)
+        state%gap = gaps_under(scaled, opening, state%force, state%approach)
+        unbalanced(:, 1) = load - matmul(state%force, scaled%motion)
+      end do
+    end associate
   end subroutine solve_set
 
   !> w = g + F R - A q.

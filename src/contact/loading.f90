@@ -1,10 +1,29 @@
 !> The simplex on the load not carried yet: follow the contact as the load factor t grows from 0 to 1.
+!>
+!> The tableau has each basic variable as a linear function of the nonbasic ones:
+!>
+!>     basic(i) = value(i) + sum over j of entry(i, j) nonbasic(j)
+!>
+!> A variable is an integer: k is the force R_k, -k the gap w_k, 0 the load factor t; so -v is the partner
+!> of v. Nonbasic variables are zero, hence `value` is where the simplex stands. The motions q are free
+!> in sign: they are always basic, never block, and no other row needs theirs; so they have no rows.
+!>
+!>            partners 1..n      t                         n columns + 1
+!>          +---------------+--------+
+!>     R, w |     entry     |  x - c |  row k: the basic one of R_k, w_k, at first
+!>          +---------------+--------+
+!>
+!> A pivot adds a column times a row to the entries. These are kept apart until there are `panel` of them, and
+!> then added by one dgemm; a column or a row of the tableau is put together when it is asked for: entry =
+!> settled + pivot_columns pivot_rows.
 module epcont_contact_loading
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, solved_to
+  use epcont_contact_basis, only: respond
+  use epcont_contact_contact_state, only: basic_values, contact_state
   use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
-  use epcont_contact_ratio_test, only: step_type, test_ratios
-  use epcont_contact_tableau, only: contact_tableau, load_factor, pivot
+  use epcont_contact_scaling, only: scaled_problem
+  use epcont_linalg_dense, only: add_product
   implicit none
   private
   public :: follow_load
@@ -14,82 +33,216 @@ module epcont_contact_loading
   integer, parameter, public :: path_ray = 1       !! the load cannot grow and nothing gives way
   integer, parameter, public :: path_endless = 2   !! too many pivots: rounding has broken the order of ties
 
+  !> Pivots allowed for each unknown before rounding is taken to have broken the path; sound ones were seen to
+  !! take up to 2.
+  integer, parameter :: pivots_per_unknown = 4
+  !> The variable that carries the load from 0 to 1.
+  integer, parameter :: load_factor = 0
+  !> Pivots whose products are added together.
+  integer, parameter :: panel = 16
+
 contains
 
   !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The
   !! partner of the variable that left enters next (Conry and Seireg 1971).
-  pure subroutine follow_load(tableau, pivot_limit, solution, outcome, closed, ray)
-    type(contact_tableau), intent(inout) :: tableau   !! at its start, then where the load path ended
-    integer, intent(in) :: pivot_limit   !! pivots allowed
+  subroutine follow_load(scaled, state, start, solution, outcome, closed, ray)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    type(contact_state), intent(in) :: state     !! a sound set at t = 1: its forces are basic at first
+    real(wp), intent(in) :: start(:)             !! basic variable of each pair at t = 0, all >= 0 [n]
     type(contact_solution), intent(inout) :: solution   !! pivots are counted and recorded here
     integer, intent(out) :: outcome                     !! one of the above
     logical, allocatable, intent(out) :: closed(:)      !! pairs with a basic force at the end [n]
     real(wp), allocatable, intent(out) :: ray(:)        !! growth of the forces along a ray [n]
-    type(step_type) :: step
-    integer :: column, count, entering, left
+    real(wp) :: settled(size(start), size(start) + 1)   ! the entries but for the last pivots
+    integer :: pending                                  ! so many are these
+    real(wp) :: pivot_columns(size(start), panel), pivot_rows(panel, size(start) + 1)
+    real(wp) :: value(size(start))                      ! basic variables
+    !> Variable of each row, now and at the start; those are perturbed against ties
+    integer, dimension(size(start)) :: basic, first_basic
+    integer :: place(-size(start):size(start))          ! of each variable: its row, or minus its column
+    real(wp) :: slope(size(start))                      ! change of the basic variables with the entering one
+    real(wp) :: load_rate                               ! and of the load factor
+    integer :: column, count, entering, n, row
+    real(wp) :: ratio                                   ! increase of the entering variable up to the next event
 
-    allocate (ray(size(tableau%basic)), source=0.0_wp)
+    n = size(start)
+    call begin_tableau()
+    allocate (ray(n), source=0.0_wp)
     outcome = path_endless
     entering = load_factor
-    do count = 0, pivot_limit
-      column = -tableau%place(entering)
-      step = test_ratios(tableau, column)
-      if (is_complete(tableau, step)) then
+    do count = 0, pivots_per_unknown*(n + size(scaled%resultant))
+      column = -place(entering)
+      slope = entries_of_column(column)
+      call test_ratios()
+      if (is_complete()) then
         outcome = path_complete
-      else if (step%row == 0) then
+      else if (row == 0) then
         outcome = path_ray
-        ray = force_growth(tableau, column, step%slope)
+        ray(pack(basic, basic > 0)) = pack(slope, basic > 0)
+        if (entering > 0) ray(entering) = 1.0_wp
       end if
-      if (outcome /= path_endless .or. count == pivot_limit) exit
-      left = tableau%basic(step%row)
-      call pivot(tableau, step%row, column, step%slope)
-      call record(tableau, entering, left, step%ratio, solution)
-      ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
-      entering = -left
+      if (outcome /= path_endless .or. count == pivots_per_unknown*(n + size(scaled%resultant))) exit
+      call pivot()
     end do
-    closed = tableau%place(1:) > 0
+    closed = place(1:) > 0
     ! The force on its way in at full load is positive; where it moved no load it stays out.
-    if (entering > 0 .and. step%load_rate > 0.0_wp) closed(entering) = .true.
+    if (entering > 0 .and. load_rate > 0.0_wp) closed(entering) = .true.
+
+  contains
+
+    !> The tableau of the set, with the responses of the basic variables to unit nonbasic ones: gaps of the
+    !! pairs in contact, forces of the others.
+    subroutine begin_tableau()
+      real(wp), allocatable :: opening(:, :), load(:, :), force(:, :), approach(:, :)
+      integer :: i
+
+      associate (pairs => state%basis%pairs)
+        basic = [(-i, i=1, n)]
+        basic(pairs) = pairs
+        first_basic = basic
+        place(basic) = [(i, i=1, n)]
+        place([-basic, load_factor]) = [(-i, i=1, n + 1)]
+        value = start
+        pending = 0
+        opening = scaled%flexibility(pairs, :)
+        load = -transpose(scaled%motion)
+        settled(:, :n) = scaled%flexibility
+        do i = 1, size(pairs)
+          opening(:, pairs(i)) = 0.0_wp
+          opening(i, pairs(i)) = -1.0_wp
+        end do
+        load(:, pairs) = 0.0_wp
+        settled(:, pairs) = 0.0_wp
+        call respond(state%basis, opening, load, force, approach)
+        call add_product(1.0_wp, scaled%flexibility(:, pairs), force, settled(:, :n))
+        call add_product(-1.0_wp, scaled%motion, approach, settled(:, :n))
+        settled(pairs, :n) = force
+        settled(:, n + 1) = basic_values(state) - start
+      end associate
+    end subroutine begin_tableau
+
+    !> The entries of a column.
+    pure function entries_of_column(column) result(entry)
+      integer, intent(in) :: column
+      real(wp) :: entry(n)
+      integer :: i
+
+      entry = settled(:, column)
+      do i = 1, pending
+        if (pivot_rows(i, column) /= 0.0_wp) entry = entry + pivot_rows(i, column)*pivot_columns(:, i)
+      end do
+    end function entries_of_column
+
+    !> How far the entering variable can grow, and the row of the basic one that becomes zero first; 0: none.
+    subroutine test_ratios()
+      logical :: blocking(n)
+      real(wp) :: ratios(n)
+
+      associate (load_row => place(load_factor))
+        load_rate = merge(1.0_wp, 0.0_wp, entering == load_factor)
+        if (load_row > 0) load_rate = merge(slope(load_row), 0.0_wp, slope(load_row) > negligible)
+      end associate
+      row = 0
+      ratio = huge(ratio)
+      blocking = slope < -negligible .and. basic /= load_factor
+      if (.not. any(blocking)) return
+      ratios = huge(ratio)
+      where (blocking) ratios = max(value, 0.0_wp)/(-slope)
+      ratio = minval(ratios)
+      row = least_row(ratios <= ratio + negligible*max(ratio, 1.0_wp))
+      ratio = ratios(row)
+    end subroutine test_ratios
+
+    !> The one of the tied rows that would block first if the basic variables of the start were larger by e,
+    !! e^2, ... (lexicographic order). Without it ties could make the simplex go round in circles. Row i
+    !! changes with such a variable by 1 if it is basic in it, not at all if it is basic elsewhere, and else by
+    !! minus the entry of its column.
+    pure integer function least_row(tied) result(row)
+      logical, intent(in) :: tied(:)     !! [n]
+      logical :: left(size(tied))
+      integer, allocatable :: rows(:)
+      real(wp), allocatable :: ratio(:)
+      real(wp) :: least
+      integer :: i, j
+
+      left = tied
+      rows = pack([(i, i=1, n)], left)
+      do j = 1, n
+        if (size(rows) == 1) exit
+        row = place(first_basic(j))
+        if (row > 0) then
+          if (.not. left(row) .or. -negligible*slope(row) >= 1.0_wp) cycle
+          left(row) = .false.
+        else
+          ratio = entries_of_rows(rows, -row)/slope(rows)
+          least = minval(ratio)
+          left(rows) = ratio <= least + negligible*max(abs(least), 1.0_wp)
+        end if
+        rows = pack(rows, left(rows))
+      end do
+      row = rows(1)
+    end function least_row
+
+    !> Those of some rows in a column.
+    pure function entries_of_rows(rows, column) result(entry)
+      integer, intent(in) :: rows(:), column
+      real(wp) :: entry(size(rows))
+      integer :: i
+
+      entry = settled(rows, column)
+      do i = 1, pending
+        entry = entry + pivot_rows(i, column)*pivot_columns(rows, i)
+      end do
+    end function entries_of_rows
+
+    !> Is all of the load carried before another variable blocks, or together with it?
+    pure logical function is_complete() result(complete)
+      real(wp) :: carried   ! so far
+
+      carried = 0.0_wp
+      if (place(load_factor) > 0) carried = value(place(load_factor))
+      complete = carried >= 1.0_wp - solved_to
+      if (load_rate > 0.0_wp) &
+        complete = complete .or. max(1.0_wp - carried, 0.0_wp)/load_rate*(1.0_wp - solved_to) <= ratio
+    end function is_complete
+
+    !> Exchange the basic variable of `row` with the entering one, whose partner enters next; of the first
+    !! pivots, write down what happened.
+    subroutine pivot()
+      integer :: j, leaving
+
+      if (pending == panel) then
+        call add_product(1.0_wp, pivot_columns, pivot_rows, settled)
+        pending = 0
+      end if
+      ! The entering row and the leaving column are replaced as a whole by the product; the others change by it.
+      associate (p => pending + 1)
+        do j = 1, n + 1
+          pivot_rows(p, j) = -(settled(row, j) + dot_product(pivot_columns(row, :p - 1), pivot_rows(:p - 1, j))) &
+                             /slope(row)
+          settled(row, j) = 0.0_wp
+        end do
+        pivot_rows(:p - 1, column) = 0.0_wp
+        pivot_rows(p, column) = 1.0_wp/slope(row)
+        settled(:, column) = 0.0_wp
+        pivot_columns(row, :p - 1) = 0.0_wp
+        pivot_columns(:, p) = slope
+        pivot_columns(row, p) = 1.0_wp
+      end associate
+      pending = pending + 1
+      value = value + ratio*slope
+      value(row) = ratio
+
+      leaving = basic(row)
+      basic(row) = entering
+      place(entering) = row
+      place(leaving) = -column
+      solution%pivots = solution%pivots + 1
+      if (ratio <= negligible) solution%degenerate_pivots = solution%degenerate_pivots + 1
+      if (solution%pivots <= history_limit) solution%history = &
+        [solution%history, pivot_record(entering, leaving, value(place(load_factor)), ratio)]
+      ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
+      entering = -leaving
+    end subroutine pivot
   end subroutine follow_load
-
-  !> Is all of the load carried before another variable blocks, or together with it?
-  pure logical function is_complete(tableau, step) result(complete)
-    type(contact_tableau), intent(in) :: tableau
-    type(step_type), intent(in) :: step
-
-    complete = step%load_rate > 0.0_wp .and. step%full_load*(1.0_wp - solved_to) <= step%ratio
-    associate (row => tableau%place(load_factor))
-      if (row > 0) complete = complete .or. tableau%value(row) >= 1.0_wp - solved_to
-    end associate
-  end function is_complete
-
-  !> Growth of each force with the entering variable.
-  pure function force_growth(tableau, column, slope) result(growth)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: column
-    real(wp), intent(in) :: slope(:)   !! change of the basic variables [n]
-    real(wp), allocatable :: growth(:)
-    integer :: i
-
-    allocate (growth(size(tableau%basic)), source=0.0_wp)
-    do i = 1, size(tableau%basic)
-      if (tableau%basic(i) > 0) growth(tableau%basic(i)) = slope(i)
-    end do
-    if (tableau%nonbasic(column) > 0) growth(tableau%nonbasic(column)) = 1.0_wp
-  end function force_growth
-
-  !> Count the pivot and, of the first ones, write down what happened.
-  pure subroutine record(tableau, entered, left, ratio, solution)
-    type(contact_tableau), intent(in) :: tableau
-    integer, intent(in) :: entered, left
-    real(wp), intent(in) :: ratio
-    type(contact_solution), intent(inout) :: solution
-
-    solution%pivots = solution%pivots + 1
-    if (ratio <= negligible) solution%degenerate_pivots = solution%degenerate_pivots + 1
-    if (solution%pivots > history_limit) return
-    associate (load => tableau%value(tableau%place(load_factor)))
-      solution%history = [solution%history, pivot_record(entered, left, load, ratio)]
-    end associate
-  end subroutine record
 end module epcont_contact_loading

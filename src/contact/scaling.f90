@@ -10,7 +10,6 @@
 !> because translations and rotations have different units.
 module epcont_contact_scaling
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: negligible
   use epcont_contact_problem, only: contact_problem, contact_solution
   implicit none
   private
@@ -43,40 +42,45 @@ contains
 
     m = size(problem%resultant)
     scaled%kept = [(j, j=1, m)]
-    scaled%motion_size = maximum_of_columns(problem%motion)
+    scaled%motion_size = [(largest_of(problem%motion(:, j)), j=1, m)]
+    scaled%motion_size = or_else(or_else(scaled%motion_size, largest_of(scaled%motion_size)), 1.0_wp)
     scaled%gap = problem%initial_gap + problem%load_gap
     scaled%gap_terms = abs(problem%initial_gap) + abs(problem%load_gap)
     scaled%unloaded_gap = max(problem%initial_gap, 0.0_wp)
     largest = max(maxval(abs(problem%flexibility)), 0.0_wp)   ! maxval of nothing is negative
 
     driving = max(largest_of(min(scaled%gap, 0.0_wp)), largest_of(problem%load_gap))
-    scaled%force_unit = force_unit(largest, driving, largest_of(problem%resultant/scaled%motion_size))
-    if (scaled%force_unit <= 0.0_wp) scaled%force_unit = force_unit(largest, largest_of(scaled%gap), 0.0_wp)
-    if (scaled%force_unit <= 0.0_wp) scaled%force_unit = 1.0_wp
-    scaled%gap_unit = scaled%force_unit*largest
-    if (scaled%gap_unit <= 0.0_wp) then
-      scaled%gap_unit = max(largest_of(scaled%gap), largest_of(scaled%unloaded_gap))
-    end if
-    if (scaled%gap_unit <= 0.0_wp) scaled%gap_unit = 1.0_wp
+    associate (rho => scaled%force_unit, omega => scaled%gap_unit)
+      rho = max(largest_of(problem%resultant/scaled%motion_size), force_over(driving))
+      rho = or_else(or_else(rho, force_over(largest_of(scaled%gap))), 1.0_wp)
+      omega = or_else(rho*largest, max(largest_of(scaled%gap), largest_of(scaled%unloaded_gap)))
+      omega = or_else(omega, 1.0_wp)
 
-    scaled%flexibility = problem%flexibility*(scaled%force_unit/scaled%gap_unit)
-    scaled%gap = scaled%gap/scaled%gap_unit
-    scaled%gap_terms = scaled%gap_terms/scaled%gap_unit
-    scaled%unloaded_gap = scaled%unloaded_gap/scaled%gap_unit
-    scaled%resultant = problem%resultant/scaled%motion_size/scaled%force_unit
-    scaled%motion = problem%motion
-    do j = 1, m
-      scaled%motion(:, j) = scaled%motion(:, j)/scaled%motion_size(j)
-    end do
+      scaled%flexibility = problem%flexibility*(rho/omega)
+      scaled%gap = scaled%gap/omega
+      scaled%gap_terms = scaled%gap_terms/omega
+      scaled%unloaded_gap = scaled%unloaded_gap/omega
+      scaled%resultant = problem%resultant/scaled%motion_size/rho
+    end associate
+    scaled%motion = problem%motion/spread(scaled%motion_size, 1, size(scaled%gap))
+
+  contains
+
+    !> Force that opens a gap; 0 where nothing gives way.
+    pure real(wp) function force_over(gap) result(force)
+      real(wp), intent(in) :: gap
+
+      force = 0.0_wp
+      if (largest > 0.0_wp) force = gap/largest
+    end function force_over
   end function scale_problem
 
-  !> rho, from max|F|, the largest driving gap and the largest load; 0 if there is nothing to measure.
-  pure real(wp) function force_unit(flexibility, gap, load)
-    real(wp), intent(in) :: flexibility, gap, load
+  !> A size, or another where there is none.
+  elemental real(wp) function or_else(size, other) result(chosen)
+    real(wp), intent(in) :: size, other
 
-    force_unit = load
-    if (flexibility > 0.0_wp) force_unit = max(load, gap/flexibility)
-  end function force_unit
+    chosen = merge(other, size, size <= 0.0_wp)
+  end function or_else
 
   !> Hold the motions in `dropped` at zero: they leave the problem.
   pure subroutine drop_motions(scaled, dropped)
@@ -102,17 +106,6 @@ contains
     solution%gap = gap*scaled%gap_unit
     solution%approach(scaled%kept) = approach*scaled%gap_unit/scaled%motion_size(scaled%kept)
   end subroutine restore_units
-
-  !> Largest absolute entry of each column; that of the whole matrix (or 1) for a column of zeros.
-  pure function maximum_of_columns(matrix) result(largest)
-    real(wp), intent(in) :: matrix(:, :)
-    real(wp) :: largest(size(matrix, 2))
-    integer :: j
-
-    largest = [(largest_of(matrix(:, j)), j=1, size(largest))]
-    where (largest <= 0.0_wp) largest = largest_of(largest)
-    where (largest <= 0.0_wp) largest = 1.0_wp
-  end function maximum_of_columns
 
   !> Largest absolute value; 0 of none.
   pure real(wp) function largest_of(values)

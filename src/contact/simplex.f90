@@ -13,18 +13,14 @@ module epcont_contact_simplex
   use epcont_base_tolerances, only: cancelled, negligible, null_component, solved_to
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, &
-                                          has_right_signs, solve_set
+    has_right_signs, solve_set
   use epcont_contact_loading, only: follow_load, path_complete, path_ray
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_contact_tableau, only: contact_tableau, new_tableau
   implicit none
   private
   public :: find_contacts
 
-  !> Pivots allowed for each unknown before rounding is taken to have broken the path; sound ones were seen to
-  !! take up to 2.
-  integer, parameter :: pivots_per_unknown = 4
   !> Flexibility of its own, as a part of the largest, that tells pairs apart whose forces depend on each
   !! other; it opens gaps by less than `solved_to` (tests/contact pass from 1e-12 to 1e-8).
   real(wp), parameter :: own_flexibility = 1.0e-10_wp
@@ -34,133 +30,116 @@ module epcont_contact_simplex
 contains
 
   !> Follow the load from one set of contacts to the next until a fresh solution passes the test of signs.
-  pure subroutine find_contacts(scaled, solution, state, ray)
+  subroutine find_contacts(scaled, solution, state, ray)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_solution), intent(inout) :: solution   !! state, and the record of the pivots
     type(contact_state), intent(out) :: state   !! the set found, fresh
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
-    real(wp), allocatable :: lifted(:)
+    real(wp), allocatable :: lifted(:)   ! basic variable of each pair at t = 0 [n]
     logical, allocatable :: closed(:)
     integer :: attempt, outcome
     logical :: found
 
     closed = scaled%first_touching
     if (allocated(scaled%guess)) closed = closed .or. scaled%guess
-    state = fresh_state(scaled, closed)
-    lifted = max(basic_values(state), 0.0_wp)
-    if (state%basis%sound .and. .not. allocated(scaled%guess)) lifted = unloaded_values(scaled, state)
+    call take_set(closed)
+    if (state%basis%sound .and. .not. allocated(scaled%guess)) lifted = unloaded_values()
     do attempt = 0, restart_limit
       if (.not. state%basis%sound) exit   ! the motions are held too badly to be computed
       solution%state = contact_solved
       if (has_right_signs(scaled, state, merge(guess_tolerance, solved_to, attempt == 0))) return
       solution%restarts = attempt
-      call follow_load_from(scaled, state, lifted, solution, outcome, closed, ray)
-      if (outcome == path_ray .and. is_overlap(scaled, ray)) then
-        solution%state = contact_overlap
-        return
+      call follow_load(scaled, state, lifted, solution, outcome, closed, ray)
+      if (outcome == path_ray) then
+        if (is_overlap(ray)) then
+          solution%state = contact_overlap
+          return
+        end if
       end if
       if (outcome == path_complete .and. mod(attempt, 2) == 0) then
-        state = fresh_state(scaled, closed)
-        lifted = max(basic_values(state), 0.0_wp)
+        call take_set(closed)
         if (has_right_signs(scaled, state, solved_to)) return
       else
-        state = fresh_state(scaled, scaled%first_touching)
-        lifted = lifted_apart(state, attempt)
+        call take_set(scaled%first_touching)
+        lifted = lifted + apart(size(lifted))/2.0_wp**attempt
       end if
       if (attempt > 1) cycle
-      call exchange_afresh(scaled, attempt*own_flexibility, solution, state, found)
+      call exchange_afresh(attempt*own_flexibility, found)
       if (found) return
     end do
     if (.not. has_right_signs(scaled, state, solved_to)) solution%state = contact_stalled
+
+  contains
+
+    !> Go on from a set, without what is negative in its solution.
+    subroutine take_set(closed)
+      logical, intent(in) :: closed(:)   !! [n]
+
+      state = fresh_state(scaled, closed)
+      lifted = max(basic_values(state), 0.0_wp)
+    end subroutine take_set
+
+    !> The same before the load: rigid bodies that just touch, with gaps g^.
+    pure function unloaded_values() result(values)
+      real(wp) :: values(size(scaled%gap))
+      type(contact_state) :: rest
+
+      rest%basis = state%basis
+      call solve_set(rest, scaled, scaled%unloaded_gap, 0.0_wp*scaled%resultant, refinements=1)
+      values = max(basic_values(rest), 0.0_wp)
+    end function unloaded_values
+
+    !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless
+    !! the set is right without that too.
+    subroutine exchange_afresh(own, found)
+      real(wp), intent(in) :: own      !! part of the largest flexibility
+      logical, intent(out) :: found
+      type(scaled_problem) :: softer
+      type(contact_solution) :: trial
+      type(contact_state) :: better
+      integer :: k
+
+      softer = scaled
+      if (allocated(softer%guess)) deallocate (softer%guess)
+      do k = 1, size(scaled%gap)
+        softer%flexibility(k, k) = softer%flexibility(k, k) + own*maxval(abs(scaled%flexibility))
+      end do
+      trial%pivots = solution%pivots
+      call find_by_blocks(softer, trial, better, found)
+      if (.not. found) return
+      closed = scaled%first_touching
+      closed(better%basis%pairs) = .true.
+      better = fresh_state(scaled, closed)
+      found = has_right_signs(scaled, better, solved_to)
+      if (.not. found) return
+      solution%pivots = trial%pivots
+      solution%state = contact_solved
+      state = better
+    end subroutine exchange_afresh
+
+    !> Is z really a proof that no solution exists: F z = 0, A'z = 0, z >= 0 and g'z < 0?
+    pure logical function is_overlap(z) result(overlap)
+      real(wp), intent(in) :: z(:)
+      real(wp) :: nothing(size(z))   !! what of F z may be rounding [n]
+      real(wp) :: largest
+
+      largest = maxval([abs(z), 0.0_wp])
+      overlap = largest > 0.0_wp .and. all(z >= -null_component*largest)
+      if (.not. overlap) return
+      ! A little flexibility is some, too, where it is no rounding.
+      nothing = max(null_component*matmul(abs(scaled%flexibility), abs(z)), cancelled*largest)
+      overlap = all(abs(matmul(scaled%flexibility, z)) <= nothing) &
+                .and. all(abs(matmul(z, scaled%motion)) <= null_component*largest) &
+                .and. dot_product(scaled%gap, z) < -negligible*largest
+    end function is_overlap
   end subroutine find_contacts
 
-  !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless
-  !! the set is right without that too.
-  pure subroutine exchange_afresh(scaled, own, solution, state, found)
-    type(scaled_problem), intent(in) :: scaled
-    real(wp), intent(in) :: own                         !! part of the largest flexibility
-    type(contact_solution), intent(inout) :: solution
-    type(contact_state), intent(inout) :: state
-    logical, intent(out) :: found
-    type(scaled_problem) :: softer
-    type(contact_solution) :: trial
-    type(contact_state) :: better
-    logical, allocatable :: closed(:)
+  !> Values that are all apart from each other, against ties that rounding decides wrongly.
+  pure function apart(n) result(values)
+    integer, intent(in) :: n   !! of them
+    real(wp) :: values(n)
     integer :: k
 
-    softer = scaled
-    if (allocated(softer%guess)) deallocate (softer%guess)
-    do k = 1, size(scaled%gap)
-      softer%flexibility(k, k) = softer%flexibility(k, k) + own*maxval(abs(scaled%flexibility))
-    end do
-    trial%pivots = solution%pivots
-    call find_by_blocks(softer, trial, better, found)
-    if (.not. found) return
-    closed = scaled%first_touching
-    closed(better%basis%pairs) = .true.
-    better = fresh_state(scaled, closed)
-    found = has_right_signs(scaled, better, solved_to)
-    if (.not. found) return
-    solution%pivots = trial%pivots
-    solution%state = contact_solved
-    state = better
-  end subroutine exchange_afresh
-
-  !> One run of the simplex from `lifted` at no load to the state at full load.
-  pure subroutine follow_load_from(scaled, state, lifted, solution, outcome, closed, ray)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_state), intent(in) :: state
-    real(wp), intent(in) :: lifted(:)                   !! basic variable of each pair at t = 0 [n]
-    type(contact_solution), intent(inout) :: solution
-    integer, intent(out) :: outcome
-    logical, allocatable, intent(out) :: closed(:)
-    real(wp), allocatable, intent(out) :: ray(:)
-    type(contact_tableau) :: tableau
-    integer :: pivot_limit
-
-    pivot_limit = pivots_per_unknown*(size(scaled%gap) + size(scaled%resultant))
-    tableau = new_tableau(scaled, state%basis, lifted, basic_values(state))
-    call follow_load(tableau, pivot_limit, solution, outcome, closed, ray)
-  end subroutine follow_load_from
-
-  !> The same before the load: rigid bodies that just touch, with gaps g^.
-  pure function unloaded_values(scaled, state) result(values)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_state), intent(in) :: state
-    real(wp), allocatable :: values(:)
-    type(contact_state) :: rest
-
-    rest%basis = state%basis
-    call solve_set(rest, scaled, scaled%unloaded_gap, 0.0_wp*scaled%resultant, refinements=1)
-    values = max(basic_values(rest), 0.0_wp)
-  end function unloaded_values
-
-  !> Start values all apart from each other, against ties that rounding decides wrongly.
-  pure function lifted_apart(state, attempt) result(values)
-    type(contact_state), intent(in) :: state
-    integer, intent(in) :: attempt
-    real(wp), allocatable :: values(:)
-    integer :: k, n
-
-    values = basic_values(state)
-    n = size(values)
-    values = max(values, 0.0_wp) + [(1.0_wp + real(k, wp)/n, k=1, n)]/2.0_wp**attempt
-  end function lifted_apart
-
-  !> Is z = `ray` really a proof that no solution exists: F z = 0, A'z = 0, z >= 0 and g'z < 0?
-  pure logical function is_overlap(scaled, ray) result(overlap)
-    type(scaled_problem), intent(in) :: scaled
-    real(wp), intent(in) :: ray(:)
-    real(wp) :: nothing(size(ray))   !! what of F z may be rounding [n]
-    real(wp) :: largest
-
-    largest = maxval([abs(ray), 0.0_wp])
-    overlap = largest > 0.0_wp .and. all(ray >= -null_component*largest)
-    if (.not. overlap) return
-    ! A little flexibility is some, too, where it is no rounding.
-    nothing = max(null_component*matmul(abs(scaled%flexibility), abs(ray)), cancelled*largest)
-    overlap = all(abs(matmul(scaled%flexibility, ray)) <= nothing) &
-              .and. all(abs(matmul(ray, scaled%motion)) <= null_component*largest) &
-              .and. dot_product(scaled%gap, ray) < -negligible*largest
-  end function is_overlap
+    values = [(1.0_wp + real(k, wp)/n, k=1, n)]
+  end function apart
 end module epcont_contact_simplex

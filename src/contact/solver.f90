@@ -19,7 +19,7 @@ module epcont_contact_solver
 contains
 
   !> Find forces, gaps and motions of a contact problem, or why there are none.
-  pure subroutine solve_contact(problem, solution, start, by_blocks)
+  subroutine solve_contact(problem, solution, start, by_blocks)
     type(contact_problem), intent(in) :: problem   !! in the deck's units
     type(contact_solution), intent(out) :: solution   !! its state says whether there is one
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
@@ -30,7 +30,7 @@ contains
     scaled = scale_problem(problem)
     if (present(start)) scaled%guess = start
     call clear(scaled, solution)
-    call find_rigid_start(scaled, rigid)
+    call find_rigid_start(scaled%motion, scaled%resultant, scaled%unloaded_gap, rigid)
     if (.not. rigid%balanced) then
       solution%state = contact_no_equilibrium
       solution%escape = rigid%escape/scaled%motion_size
@@ -47,7 +47,7 @@ contains
 
   !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left of
   !! it.
-  pure subroutine solve_by_blocks(scaled, solution)
+  subroutine solve_by_blocks(scaled, solution)
     type(scaled_problem), intent(in) :: scaled
     type(contact_solution), intent(inout) :: solution
     type(contact_solution) :: trial
@@ -66,7 +66,7 @@ contains
   end subroutine solve_by_blocks
 
   !> RULE CONRY. Where ties may have led the path round in a circle blocks are tried, which know of no path.
-  pure subroutine solve_by_simplex(scaled, solution)
+  subroutine solve_by_simplex(scaled, solution)
     type(scaled_problem), intent(in) :: scaled
     type(contact_solution), intent(inout) :: solution
     type(contact_solution) :: trial
@@ -101,7 +101,7 @@ contains
   end subroutine clear
 
   !> The answer in the deck's units, and what the conditions leave open in it.
-  pure subroutine settle(scaled, state, solution)
+  subroutine settle(scaled, state, solution)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
     type(contact_solution), intent(inout) :: solution

@@ -21,7 +21,7 @@ contains
   !>
   !> With the gaps of the pressed pairs held closed, an idle touching pair j feels the forces z of the idle
   !> ones through the Schur complement M of F_g, and M z = 0 is asked of z.
-  pure function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
+  function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:)      !! gap zero [n]
     logical, intent(in) :: pressed(:)       !! force beyond rounding; of a basis, so unique by themselves [n]
@@ -51,7 +51,7 @@ contains
   end function find_indeterminate_forces
 
   !> The j for which some z >= 0 with M z = 0 has z_j > 0.
-  pure function forces_that_can_grow(coupling, zero) result(growing)
+  function forces_that_can_grow(coupling, zero) result(growing)
     real(wp), intent(in) :: coupling(:, :)   !! M, semidefinite [e, e]
     real(wp), intent(in) :: zero             !! an entry up to this is rounding
     integer, allocatable :: growing(:)
@@ -76,34 +76,32 @@ contains
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: indeterminate(:)    !! [n]
     real(wp), intent(inout) :: force(:)        !! [n]
-    integer, allocatable :: alike(:), pairs(:)
-    integer :: i, k
-    logical, allocatable :: shared(:)
+    integer, allocatable :: alike(:), left(:)
+    integer :: k
 
-    pairs = pack([(k, k=1, size(force))], indeterminate)
-    allocate (shared(size(pairs)), source=.false.)
-    do i = 1, size(pairs)
-      if (shared(i)) cycle
-      alike = pack([(k, k=i, size(pairs))], [(are_alike(problem, pairs(i), pairs(k)), k=i, size(pairs))])
-      force(pairs(alike)) = sum(force(pairs(alike)))/size(alike)
-      shared(alike) = .true.
+    left = pack([(k, k=1, size(force))], indeterminate)
+    do while (size(left) > 0)
+      alike = [left(1), pack(left(2:), [(are_alike(left(1), left(k)), k=2, size(left))])]
+      force(alike) = sum(force(alike))/size(alike)
+      left = pack(left, [(all(left(k) /= alike), k=1, size(left))])
     end do
+
+  contains
+
+    !> Have two pairs the same flexibility and the same motion?
+    pure logical function are_alike(i, k) result(alike)
+      integer, intent(in) :: i, k
+      real(wp) :: zero
+
+      zero = negligible*max(problem%flexibility(i, i), problem%flexibility(k, k))
+      alike = all(abs(problem%motion(i, :) - problem%motion(k, :)) <= negligible)
+      if (alike) alike = all(abs(problem%flexibility(:, i) - problem%flexibility(:, k)) <= zero)
+    end function are_alike
   end subroutine share_equally
-
-  !> Have two pairs the same flexibility and the same motion?
-  pure logical function are_alike(problem, i, k) result(alike)
-    type(scaled_problem), intent(in) :: problem
-    integer, intent(in) :: i, k
-    real(wp) :: zero
-
-    zero = negligible*max(problem%flexibility(i, i), problem%flexibility(k, k))
-    alike = all(abs(problem%motion(i, :) - problem%motion(k, :)) <= negligible)
-    if (alike) alike = all(abs(problem%flexibility(:, i) - problem%flexibility(:, k)) <= zero)
-  end function are_alike
 
   !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions:
   !! they do where their forces, none of them a pull, would carry a load along the motion either way.
-  pure function find_free_motions(problem, touching, pressed) result(free)
+  function find_free_motions(problem, touching, pressed) result(free)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]

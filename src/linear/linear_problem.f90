@@ -316,7 +316,7 @@ contains
   end subroutine correct
 
   !> Contact with the gaps of a deformation, of which the contact forces' part goes by the flexibility.
-  pure subroutine solve_contact_about(self, model, part, touching, state)
+  subroutine solve_contact_about(self, model, part, touching, state)
     type(linear_problem), intent(inout) :: self
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: part
@@ -332,7 +332,7 @@ contains
   !> What single precision has left: the change of displacements, strains and contact forces, of the largest
   !! of each, by two steps of refinement, of which the second must change less: else the factors do not tell
   !! the error either, and it is 1.
-  pure subroutine rounding_error(self, scene, part, state, error)
+  subroutine rounding_error(self, scene, part, state, error)
     class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
