@@ -16,7 +16,7 @@ module epcont_analysis
   use epcont_plasticity_onlooker, only: onlooker
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: find_body_forces
-  use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
+  use epcont_result_contact_line, only: contact_line, find_contact_line
   use epcont_result_displacement_gradient, only: find_gradients
   use epcont_result_line_pressure, only: compare_sides
   use epcont_result_locking, only: find_locking
@@ -94,9 +94,9 @@ contains
     call recover_stresses(model, linear, load + pair_forces(model, answer%contact%force), answer)
     answer%locking = find_locking(model, linear%operator%volume, answer%stress, answer%equivalent_stress, answer%secant_modulus)
     answer%gradient = find_gradients(model, linear%operator%volume, answer%displacement)
-    touching = in_contact(line, answer%contact%touching)
+    touching = line%in_contact(answer%contact%touching)
     answer%pressure = pair_pressures(model, line, touching, answer%contact%force)
-    answer%zones = find_zones(model, line, touching, answer%contact%force, answer%pressure)
+    answer%zones = find_zones(line, touching, answer%contact%force, answer%pressure)
     answer%lines = compare_sides(model, answer%contact%touching, answer%contact%force, answer%pressure)
     answer%bodies = find_body_forces(model, answer%contact%force)
     call watch%lap(stage_stresses)
