@@ -19,7 +19,7 @@ module epcont_solution
   use epcont_plasticity_onlooker, only: onlooker
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: find_body_forces
-  use epcont_result_contact_line, only: contact_line, find_contact_line, in_contact
+  use epcont_result_contact_line, only: contact_line, find_contact_line
   use epcont_result_displacement_gradient, only: find_gradients
   use epcont_result_line_pressure, only: compare_sides
   use epcont_result_locking, only: find_locking
@@ -135,9 +135,9 @@ contains
       answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
                                     answer%secant_modulus)
       answer%gradient = find_gradients(model, volume, answer%displacement)
-      touching = in_contact(line, answer%contact%touching)
+      touching = line%in_contact(answer%contact%touching)
       answer%pressure = pair_pressures(model, line, touching, force)
-      answer%zones = find_zones(model, line, touching, force, answer%pressure)
+      answer%zones = find_zones(line, touching, force, answer%pressure)
       answer%lines = compare_sides(model, answer%contact%touching, force, answer%pressure)
       answer%bodies = find_body_forces(model, force)
       call watch%lap(stage_stresses)

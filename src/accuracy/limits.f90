@@ -11,7 +11,7 @@ module epcont_accuracy_limits
   use epcont_base_tolerances, only: same_place
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
-  use epcont_result_contact_line, only: contact_line, shared
+  use epcont_result_contact_line, only: contact_line, outer_sides
   implicit none
   private
   public :: bend_at, beyond, corner, edge_pairs, gap_bulge, has_tip
@@ -256,19 +256,17 @@ contains
     type(model_type), intent(in) :: model
     integer, intent(in) :: node
     integer :: beside(2)
-    integer :: e, i, k, side(3)
+    integer, allocatable :: sides(:, :)
+    integer :: i
 
     beside = 0
-    do i = model%around%start(node), model%around%start(node + 1) - 1
-      e = model%around%group(i)
-      do k = 1, model%corners(e)
-        side = model%edge(e, k)
-        if (.not. any(side == node)) cycle
-        if (shared(model, side(1), side(2))) cycle
+    sides = outer_sides(model, node)
+    do i = 1, size(sides, 2)
+      associate (side => sides(:3, i))
         if (side(3) == node) beside = side(:2)
         if (side(1) == node) beside(2) = merge(side(3), side(2), side(3) > 0)
         if (side(2) == node) beside(1) = merge(side(3), side(1), side(3) > 0)
-      end do
+      end associate
     end do
   end function outline_beside
 

@@ -12,7 +12,7 @@ module epcont_accuracy_narrow_zone
   use epcont_plan_free_motion, only: free_motions
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: resultants
-  use epcont_result_contact_line, only: contact_line, distance
+  use epcont_result_contact_line, only: contact_line
   implicit none
   private
   public :: find_turned, shifted_loads, too_near
@@ -100,7 +100,7 @@ contains
         k = pairs(maxloc(force(pairs), dim=1))
         aside = 0.0_wp
         do i = 1, 2
-          if (line%neighbour(i, k) > 0) aside = max(aside, 0.5_wp*distance(model, line, k, line%neighbour(i, k))/bearing)
+          if (line%neighbour(i, k) > 0) aside = max(aside, 0.5_wp*line%distance(k, line%neighbour(i, k))/bearing)
         end do
         do i = 1, 2   ! A is pushed against the normal, B along it
           associate (node => model%pair_node(i, k))
@@ -126,7 +126,7 @@ contains
     total = 0.0_wp
     of_body = 0.0_wp
     call turn_zones(model, answer, given, total, of_body)
-    if (allocated(line%place)) call turn_shared_places(model, line%place, answer%contact%force, total, of_body)
+    call turn_shared_places(model, line, answer%contact%force, total, of_body)
   end subroutine find_turned
 
   !> Pairs may press along the node's own normal instead of that of what it faces: of smooth boundaries these
@@ -191,26 +191,23 @@ contains
 
   !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the
   !! strongest there does.
-  pure subroutine turn_shared_places(model, place, force, total, of_body)
+  pure subroutine turn_shared_places(model, line, force, total, of_body)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: place(:)    !! of each pair [pairs]
+    type(contact_line), intent(in) :: line
     real(wp), intent(in) :: force(:)   !! [pairs]
     real(wp), intent(inout) :: total, of_body(:, :)
     real(wp) :: change(2)
     integer :: k
-    integer :: strongest(maxval(place))   !! pair at each place; 0: none bears anything
+    integer :: strongest(size(force))   !! at the place of each pair
 
-    strongest = 0
-    do k = 1, size(force)
-      associate (first => strongest(place(k)))
-        if (force(k) <= 0.0_wp) cycle
-        if (first == 0) first = k
-        if (force(k) > force(first)) first = k
+    do k = 1, size(line%at_place%start) - 1
+      associate (pairs => line%at_place%group(line%at_place%start(k):line%at_place%start(k + 1) - 1))
+        strongest(pairs) = pairs(maxloc(force(pairs), dim=1))
       end associate
     end do
     do k = 1, size(force)
-      if (force(k) <= 0.0_wp .or. strongest(place(k)) == k) cycle
-      associate (first => strongest(place(k)), a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)))
+      if (force(k) <= 0.0_wp .or. strongest(k) == k) cycle
+      associate (first => strongest(k), a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)))
         change = force(k)*abs(model%normal(:, k) - merge(1.0_wp, -1.0_wp, model%body(model%pair_node(2, first)) == b) &
                                                    *model%normal(:, first))
         total = total + norm2(change)

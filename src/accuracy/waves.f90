@@ -12,7 +12,7 @@ module epcont_accuracy_waves
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: alike
   use epcont_model_model, only: model_type
-  use epcont_result_contact_line, only: contact_line, distance
+  use epcont_result_contact_line, only: contact_line
   implicit none
   private
   public :: find_waves
@@ -70,7 +70,7 @@ contains
     run(2:4) = [line%neighbour(1, pair), pair, line%neighbour(2, pair)]
     if (line%mirrored(pair)) run([2, 4]) = maxval(run([2, 4]))
     if (any(run([2, 4]) == 0)) return
-    spacing = 0.5_wp*(distance(model, line, pair, run(2)) + distance(model, line, pair, run(4)))
+    spacing = 0.5_wp*(line%distance(pair, run(2)) + line%distance(pair, run(4)))
     run(1) = behind(line, run(2), pair)
     run(5) = behind(line, run(4), pair)
     do k = 1, 5

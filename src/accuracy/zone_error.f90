@@ -15,7 +15,7 @@ module epcont_accuracy_zone_error
   use epcont_base_tolerances, only: alike, dependent, least_difference
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
-  use epcont_result_contact_line, only: contact_line, distance
+  use epcont_result_contact_line, only: contact_line
   use epcont_result_zones, only: contact_zone
   implicit none
   private
@@ -210,7 +210,7 @@ contains
     allocate (s(size(pairs)))
     s(1) = 0.0_wp
     do k = 2, size(pairs)
-      s(k) = s(k - 1) + distance(model, line, pairs(k), pairs(k - 1))
+      s(k) = s(k - 1) + line%distance(pairs(k), pairs(k - 1))
     end do
   end function places
 
@@ -226,7 +226,7 @@ contains
     do k = 1, 2
       associate (next => line%neighbour(k, last))
         if (next == 0) cycle
-        if (.not. touching(next)) far = distance(model, line, last, next)
+        if (.not. touching(next)) far = line%distance(last, next)
       end associate
     end do
   end function to_first_open

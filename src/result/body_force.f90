@@ -20,8 +20,8 @@ contains
 
   !> Those of all bodies that have elements.
   pure function find_body_forces(model, force) result(found)
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: force(:)   !! [pairs]
+    type(model_type), intent(in) :: model   !! the scene
+    real(wp), intent(in) :: force(:)        !! [force] [pairs]
     type(body_force), allocatable :: found(:)
     real(wp) :: sums(2, model%bodies)
     logical :: has_elements(model%bodies)
@@ -32,37 +32,33 @@ contains
     sums = resultants(model, force)
     where (abs(sums) <= cancelled*sum(force)) sums = 0.0_wp
     if (model%has_rings()) sums(1, :) = 0.0_wp
-    allocate (found(count(has_elements)))
-    found%body = pack([(b, b=1, model%bodies)], has_elements)
-    do i = 1, size(found)
-      found(i)%node = findloc(model%body, found(i)%body, dim=1)
-      found(i)%resultant = sums(:, found(i)%body)
-    end do
+    associate (bodies => pack([(b, b=1, model%bodies)], has_elements))
+      found = [(body_force(bodies(i), findloc(model%body, bodies(i), dim=1), sums(:, bodies(i))), i=1, size(bodies))]
+    end associate
   end function find_body_forces
 
   !> Of forces at the pairs on each body [force] [2, bodies].
   pure function resultants(model, force) result(sums)
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: force(:)   !! [pairs]
+    type(model_type), intent(in) :: model   !! the scene
+    real(wp), intent(in) :: force(:)        !! [force] [pairs]
     real(wp) :: sums(2, model%bodies)
-    real(wp), allocatable :: nodal(:, :)
     integer :: i
 
     sums = 0.0_wp
-    nodal = pair_forces(model, force)
-    do i = 1, model%nodes
-      sums(:, model%body(i)) = sums(:, model%body(i)) + nodal(:, i)
-    end do
+    associate (nodal => pair_forces(model, force))
+      do i = 1, model%nodes
+        sums(:, model%body(i)) = sums(:, model%body(i)) + nodal(:, i)
+      end do
+    end associate
   end function resultants
 
   !> What a unit force at each pair adds to one component of the resultant on a body [pairs].
   pure function shares_of_pairs(model, body, c) result(share)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: body, c
-    real(wp), allocatable :: share(:)
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: body, c          !! the body, the component
+    real(wp) :: share(model%pairs)
     integer :: k
 
-    allocate (share(model%pairs))
     do k = 1, model%pairs
       associate (first => model%row_start(k), last => model%row_start(k + 1) - 1)
         share(k) = model%normal(c, k)*sum(model%row_weight(first:last), mask=model%body(model%row_node(first:last)) == body)

@@ -3,7 +3,6 @@ module epcont_result_contact_line
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
-  use epcont_base_sorting, only: sorted_order
   use epcont_base_tolerances, only: no_area
   use epcont_geometry_edge, only: edge_point, edge_point_count, edge_points
   use epcont_geometry_plane, only: cross_product
@@ -11,7 +10,7 @@ module epcont_result_contact_line
   use epcont_result_symmetry, only: is_on_symmetry
   implicit none
   private
-  public :: contact_line, find_contact_line, distance, shared, in_contact
+  public :: contact_line, find_contact_line, outer_sides, shares_of_nodes
 
   !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's
   !! corner's too.
@@ -30,256 +29,127 @@ module epcont_result_contact_line
     real(wp), allocatable :: part(:, :)     !! of the area, towards each neighbour; of a middle node not set [2, pairs]
     logical, allocatable :: middle(:)       !! the middle node of an edge [pairs]
     integer, allocatable :: node(:)         !! of the boundary at each pair: B, or A where B has no elements [pairs]
+    real(wp), allocatable :: x(:, :)        !! where that is [length] [2, pairs]
     logical, allocatable :: mirrored(:)     !! the line ends at the pair, on a line of symmetry [pairs]
-    !> The place that a pair stands at: one for those so near to each other that the force is divided between
-    !! them by chance. Not allocated where none are. [pairs]
-    integer, allocatable :: place(:)
+    !> The pairs at each place: those so near to each other that the force is divided between them by chance.
+    type(incidence) :: at_place
+  contains
+    procedure :: distance
+    procedure :: in_contact
   end type contact_line
 
 contains
 
   !> Edges of the boundary at the pairs.
   pure function find_contact_line(model) result(line)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(contact_line) :: line
+    type(incidence) :: at
     type(partition) :: places
-    integer :: c, last, pair
+    integer, allocatable :: place(:)
+    integer :: c, count
 
-    allocate (line%tributary(model%pairs), source=0.0_wp)
-    allocate (line%neighbour(2, model%pairs), source=0)
-    allocate (line%part(2, model%pairs), source=0.0_wp)
-    allocate (line%middle(model%pairs), source=.false.)
-    allocate (line%node(model%pairs))
-    allocate (line%mirrored(model%pairs), source=.false.)
-    do pair = 1, model%pairs
-      associate (a => model%pair_node(1, pair), b => model%pair_node(2, pair))
-        line%node(pair) = merge(b, a, model%around%start(b + 1) > model%around%start(b))
+    associate (n => model%pairs, a => model%pair_node(1, :), b => model%pair_node(2, :))
+      line%node = merge(b, a, model%around%start(b + 1) > model%around%start(b))
+      line%x = model%x(:, line%node)
+      allocate (line%tributary(n), line%part(2, n), source=0.0_wp)
+      allocate (line%neighbour(2, n), source=0)
+      allocate (line%middle(n), line%mirrored(n), source=.false.)
+      places = new_partition(n)
+    end associate
+    ! A node may have a pair in each of several contacts: neighbours are of one.
+    at = pairs_at_nodes(1, model%single_pairs())
+    call find_edges(model, 1, model%single_pairs(), at, line)
+    do c = 1, size(model%line_contact)
+      associate (contact => model%line_contact(c))
+        at = pairs_at_nodes(contact%first, contact%first_of_master - 1)
+        call find_edges(model, contact%first, contact%first_of_master - 1, at, line)
+        call insert_masters(model, contact, at, line, places)
       end associate
     end do
-    ! A node may have a pair in each of several contacts: neighbours are of one.
-    last = model%pairs
-    if (size(model%line_contact) > 0) last = model%line_contact(1)%first - 1
-    call find_edges(model, 1, last, line)
-    places = new_partition(model%pairs)
-    do c = 1, size(model%line_contact)
-      call find_edges(model, model%line_contact(c)%first, model%line_contact(c)%first_of_master - 1, line)
-      call insert_masters(model, model%line_contact(c), line, places)
-    end do
-    call places%numbers(line%place, last)
-    if (last == model%pairs) deallocate (line%place)
+    call places%numbers(place, count)
+    line%at_place = new_incidence(reshape(place, [1, model%pairs]), count)
+
+  contains
+
+    !> Of a range of pairs those at each node.
+    pure function pairs_at_nodes(first, last) result(at)
+      integer, intent(in) :: first, last
+      type(incidence) :: at
+
+      at = new_incidence(reshape(line%node(first:last), [1, last - first + 1]), model%nodes)
+      at%group = first - 1 + at%group
+    end function pairs_at_nodes
   end function find_contact_line
 
-  !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
-  !! them.
-  pure subroutine insert_masters(model, contact, line, places)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    type(contact_line), intent(inout) :: line
-    type(partition), intent(inout) :: places
-    type(incidence) :: at
-    integer, allocatable :: order(:)
-    integer :: first, last
-
-    if (contact%last < contact%first_of_master) return
-    at = pairs_at_nodes(model, contact%first, contact%first_of_master - 1, line)
-    order = sorted_order(contact%stands_on)
-    last = 0
-    do while (last < size(order))
-      first = last + 1
-      associate (side => contact%stands_on(order(first)))
-        do last = first, size(order) - 1
-          if (contact%stands_on(order(last + 1)) /= side) exit
-        end do
-        call link(model, contact, side, run_on(model, contact, side, at, order(first:last), line), line, places)
-      end associate
-    end do
-  end subroutine insert_masters
-
-  !> Of a range of pairs those at each node, counted from the first of the range.
-  pure function pairs_at_nodes(model, first, last, line) result(at)
+  !> Edges at a range of pairs, and the neighbours among them.
+  pure subroutine find_edges(model, first, last, at, line)
     type(model_type), intent(in) :: model
     integer, intent(in) :: first, last
-    type(contact_line), intent(in) :: line
-    type(incidence) :: at
+    type(incidence), intent(in) :: at   !! these pairs at each node
+    type(contact_line), intent(inout) :: line
+    integer, allocatable :: sides(:, :)
+    real(wp) :: longest, share(3)
+    integer :: beside, end, i, k, pair, own
 
-    at = new_incidence(reshape(line%node(first:last), [1, last - first + 1]), model%nodes)
-  end function pairs_at_nodes
-
-  !> The pair that a side has at one of its nodes: of several there the one that presses on it the most
-  !! squarely; 0: none.
-  pure integer function pair_of_side(model, at, first, side, node) result(pair)
-    type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: at
-    integer, intent(in) :: first           !! of the range of pairs
-    integer, intent(in) :: side(3), node   !! 0: none
-
-    pair = 0
-    if (node == 0) return
-    associate (there => first - 1 + at%group(at%start(node):at%start(node + 1) - 1))
-      if (size(there) == 0) return
-      pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), model%normal(:, there))), dim=1))
-    end associate
-  end function pair_of_side
-
-  !> Between the places of two pairs [length].
-  pure real(wp) function distance(model, line, a, b)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    integer, intent(in) :: a, b
-
-    distance = norm2(model%x(:, line%node(a)) - model%x(:, line%node(b)))
-  end function distance
-
-  !> Where a pair stands on the slave [length].
-  pure function foot_of(model, contact, line, pair) result(x)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    type(contact_line), intent(in) :: line
-    integer, intent(in) :: pair
-    real(wp) :: x(2)
-
-    x = model%x(:, line%node(pair))
-    if (pair < contact%first_of_master) return
-    associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)   ! behind the node itself
-      x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
-    end associate
-  end function foot_of
-
-  !> The pairs along a side of the slave, of its nodes and of the master's, from its start on.
-  pure function run_on(model, contact, side, at, masters, line) result(run)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    integer, intent(in) :: side
-    type(incidence), intent(in) :: at    !! the slave's pairs
-    integer, intent(in) :: masters(:)    !! which of the master's pairs stand on the side
-    type(contact_line), intent(in) :: line
-    integer, allocatable :: pairs(:), run(:)
-    integer :: i, j
-
-    associate (node => contact%slave%segment(:, side))
-      pairs = [(pair_of_side(model, at, contact%first, node, node(i)), i=1, 3), contact%first_of_master - 1 + masters]
-    end associate
-    pairs = pack(pairs, pairs > 0)
-    allocate (run(0))
-    do i = 1, size(pairs)
-      do j = 1, size(run)
-        if (away(run(j)) > away(pairs(i))) exit
+    do pair = first, last
+      longest = 0.0_wp
+      sides = outer_sides(model, line%node(pair))
+      do i = 1, size(sides, 2)
+        associate (side => sides(:3, i), n => model%normal(:, pair))
+          longest = max(longest, norm2(model%x(:, side(2)) - model%x(:, side(1))))
+          if (.not. is_along(model, side, n)) cycle
+          own = findloc(side, line%node(pair), dim=1)
+          share = shares_of_nodes(model, sides(4, i), side, n)
+          if (abs(share(own)) <= no_area*sum(share)) share(own) = 0.0_wp
+          line%tributary(pair) = line%tributary(pair) + share(own)
+          line%middle(pair) = own == 3
+          if (own == 3) then
+            line%neighbour(:, pair) = [(pair_of_side(model, at, side, side(end)), end=1, 2)]
+          else
+            beside = merge(side(3), side(3 - own), side(3) > 0)
+            k = findloc(line%neighbour(:, pair), 0, dim=1)
+            if (k == 0) cycle
+            line%neighbour(k, pair) = pair_of_side(model, at, side, beside)
+            line%part(k, pair) = share(own)
+          end if
+        end associate
       end do
-      run = [run(:j - 1), pairs(i), run(j:)]
+      if (any(line%neighbour(:, pair) == 0)) &
+        line%mirrored(pair) = is_on_symmetry(model, pair, line%node(pair), longest)
+    end do
+  end subroutine find_edges
+
+  !> The sides of the outline at a node: nodes at their start, their end, and between or 0, and whose they are
+  !! [4, any].
+  pure function outer_sides(model, node) result(sides)
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: node             !! any
+    integer, allocatable :: sides(:, :)
+    integer :: i, k, side(3)
+
+    allocate (sides(4, 0))
+    do i = model%around%start(node), model%around%start(node + 1) - 1
+      associate (element => model%around%group(i))
+        do k = 1, model%corners(element)
+          side = model%edge(element, k)
+          if (.not. any(side == node) .or. elements_at(side(1), side(2)) > 1) cycle
+          sides = reshape([sides, side, element], [4, size(sides, 2) + 1])
+        end do
+      end associate
     end do
 
   contains
 
-    !> From the start of the side.
-    pure real(wp) function away(pair)
-      integer, intent(in) :: pair
+    !> How many elements have both of two nodes.
+    pure integer function elements_at(a, b)
+      integer, intent(in) :: a, b
+      integer :: i
 
-      away = norm2(foot_of(model, contact, line, pair) - model%x(:, contact%slave%segment(1, side)))
-    end function away
-  end function run_on
-
-  !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of
-  !! the side has no pair, the pieces at its end belong to none.
-  pure subroutine link(model, contact, segment, run, line, places)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    integer, intent(in) :: segment   !! the side
-    integer, intent(in) :: run(:)
-    type(contact_line), intent(inout) :: line
-    type(partition), intent(inout) :: places
-    real(wp) :: half, spacing, width
-    integer :: element, i, k, side(3)
-
-    element = contact%slave%element(segment)
-    side = contact%slave%segment(:, segment)
-    i = findloc(run >= contact%first_of_master, .true., dim=1)   ! whose normal is the side's
-    width = area(model, element, side, model%normal(:, run(i)))/norm2(model%x(:, side(2)) - model%x(:, side(1)))
-    do i = 1, size(run)
-      associate (pair => run(i))
-        if (pair >= contact%first_of_master) cycle
-        if (is_along(model, side, model%normal(:, pair))) &
-          line%tributary(pair) = line%tributary(pair) - share(model, element, side, line%node(pair), model%normal(:, pair))
-        if (line%middle(pair)) then
-          line%neighbour(:, pair) = 0
-          line%part(:, pair) = 0.0_wp
-          line%middle(pair) = .false.   ! no node between two others any more
-        else
-          do k = 1, 2
-            if (.not. any(run == line%neighbour(k, pair)) .or. line%neighbour(k, pair) == 0) cycle
-            line%neighbour(k, pair) = 0
-            line%part(k, pair) = 0.0_wp
-          end do
-        end if
-      end associate
-    end do
-    spacing = contact%slave%chord_length(segment)/merge(2, 1, side(3) > 0)
-    do i = 1, size(run) - 1
-      half = norm2(foot_of(model, contact, line, run(i + 1)) - foot_of(model, contact, line, run(i)))
-      if (half < close*spacing) call places%join(run(i), run(i + 1))
-      half = 0.5_wp*width*half
-      call add_piece(run(i), run(i + 1), half, line)
-      call add_piece(run(i + 1), run(i), half, line)
-    end do
-  end subroutine link
-
-  !> Where a pair stands among another's neighbours, or an empty place.
-  pure integer function slot_of(neighbour, pair) result(slot)
-    integer, intent(in) :: neighbour(2), pair
-
-    slot = findloc(neighbour, pair, dim=1)
-    if (slot == 0) slot = findloc(neighbour, 0, dim=1)
-    if (slot == 0) slot = 2
-  end function slot_of
-
-  !> A piece of the boundary between two pairs belongs to one of them.
-  pure subroutine add_piece(pair, towards, piece, line)
-    integer, intent(in) :: pair, towards
-    real(wp), intent(in) :: piece
-    type(contact_line), intent(inout) :: line
-    integer :: k
-
-    k = slot_of(line%neighbour(:, pair), towards)
-    line%neighbour(k, pair) = towards
-    line%part(k, pair) = line%part(k, pair) + piece
-    line%tributary(pair) = line%tributary(pair) + piece
-  end subroutine add_piece
-
-  !> Edges at a range of pairs, and the neighbours among them.
-  pure subroutine find_edges(model, first, last, line)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: first, last
-    type(contact_line), intent(inout) :: line
-    type(incidence) :: at
-    real(wp) :: longest, own
-    integer :: beside, e, end, i, k, pair, side(3)
-
-    at = pairs_at_nodes(model, first, last, line)
-    do pair = first, last
-      associate (node => line%node(pair), n => model%normal(:, pair))
-        longest = 0.0_wp
-        do i = model%around%start(node), model%around%start(node + 1) - 1
-          e = model%around%group(i)
-          do k = 1, model%corners(e)
-            side = model%edge(e, k)
-            if (.not. any(side == node) .or. shared(model, side(1), side(2))) cycle
-            longest = max(longest, norm2(model%x(:, side(2)) - model%x(:, side(1))))
-            if (.not. is_along(model, side, n)) cycle
-            own = share(model, e, side, node, n)
-            if (abs(own) <= no_area*area(model, e, side, n)) own = 0.0_wp
-            line%tributary(pair) = line%tributary(pair) + own
-            line%middle(pair) = side(3) == node
-            if (line%middle(pair)) then
-              line%neighbour(:, pair) = [(pair_of_side(model, at, first, side, side(end)), end=1, 2)]
-            else
-              beside = merge(side(3), sum(side(:2)) - node, side(3) > 0)
-              call add_neighbour(pair_of_side(model, at, first, side, beside), own, line%neighbour(:, pair), line%part(:, pair))
-            end if
-          end do
-        end do
-        if (any(line%neighbour(:, pair) == 0)) line%mirrored(pair) = is_on_symmetry(model, pair, node, longest)
-      end associate
-    end do
-  end subroutine find_edges
+      elements_at = count([(any(model%connectivity(:, model%around%group(i)) == b), &
+                            i=model%around%start(a), model%around%start(a + 1) - 1)])
+    end function elements_at
+  end function outer_sides
 
   !> Does a side lie along the tangent?
   pure logical function is_along(model, side, n)
@@ -292,78 +162,173 @@ contains
     end associate
   end function is_along
 
-  !> What a uniform pressure on a side gives to one of its nodes along the normal, over that pressure
-  !! [length**2].
-  pure real(wp) function share(model, element, side, node, n)
+  !> What a uniform pressure on a side gives to each of its nodes, along a normal or in all, over that
+  !! pressure: their parts of its area [length**2].
+  pure function shares_of_nodes(model, element, side, normal) result(share)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: element, side(3), node
-    real(wp), intent(in) :: n(2)
+    integer, intent(in) :: element, side(3)        !! the side's, and its nodes
+    real(wp), intent(in), optional :: normal(2)    !! from where it is seen
+    real(wp) :: share(3)
     type(edge_point) :: point(edge_point_count)
-    real(wp) :: depth
+    real(wp) :: seen
     integer :: p
 
     point = edge_points(model%edge_coordinates(side))
     share = 0.0_wp
     do p = 1, edge_point_count
-      depth = model%depth(element, point(p)%x(1))
-      share = share + depth*point(p)%values(findloc(side, node, dim=1))*abs(cross_product(point(p)%tangent, n))
+      seen = norm2(point(p)%tangent)
+      if (present(normal)) seen = abs(cross_product(point(p)%tangent, normal))
+      share = share + model%depth(element, point(p)%x(1))*point(p)%values*seen
     end do
-  end function share
+  end function shares_of_nodes
 
-  !> Area of a side, as seen along the normal [length**2].
-  pure real(wp) function area(model, element, side, n)
+  !> The pair that a side has at one of its nodes: of several there the one that presses on it the most
+  !! squarely; 0: none.
+  pure integer function pair_of_side(model, at, side, node) result(pair)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: element, side(3)
-    real(wp), intent(in) :: n(2)
-    integer :: k
+    type(incidence), intent(in) :: at      !! pairs at each node
+    integer, intent(in) :: side(3), node   !! 0: none
 
-    area = 0.0_wp
-    do k = 1, merge(3, 2, side(3) > 0)
-      area = area + share(model, element, side, side(k), n)
-    end do
-  end function area
+    pair = 0
+    if (node == 0) return
+    associate (there => at%group(at%start(node):at%start(node + 1) - 1))
+      if (size(there) == 0) return
+      pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), model%normal(:, there))), dim=1))
+    end associate
+  end function pair_of_side
 
-  !> The pair beside a node on one of its sides, with its share of the side's area.
-  pure subroutine add_neighbour(beside, share, neighbour, part)
-    integer, intent(in) :: beside
-    real(wp), intent(in) :: share
-    integer, intent(inout) :: neighbour(2)
-    real(wp), intent(inout) :: part(2)
-    integer :: k
-
-    k = findloc(neighbour, 0, dim=1)
-    if (k == 0) return
-    neighbour(k) = beside
-    part(k) = share
-  end subroutine add_neighbour
-
-  !> Whether two elements share the edge between two nodes.
-  pure logical function shared(model, a, b)
+  !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
+  !! them.
+  pure subroutine insert_masters(model, contact, at, line, places)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: a, b
-    integer :: i, found
+    type(line_contact), intent(in) :: contact
+    type(incidence), intent(in) :: at   !! the slave's pairs at each node
+    type(contact_line), intent(inout) :: line
+    type(partition), intent(inout) :: places
+    type(incidence) :: on_side
+    integer :: side
 
-    found = 0
-    do i = model%around%start(a), model%around%start(a + 1) - 1
-      if (any(model%connectivity(:, model%around%group(i)) == b)) found = found + 1
+    if (contact%last < contact%first_of_master) return
+    on_side = new_incidence(reshape(contact%stands_on, [1, size(contact%stands_on)]), size(contact%slave%element))
+    do side = 1, size(contact%slave%element)
+      associate (masters => on_side%group(on_side%start(side):on_side%start(side + 1) - 1))
+        if (size(masters) > 0) &
+          call link(side, run_on(side, contact%first_of_master - 1 + masters), line, places)
+      end associate
     end do
-    shared = found > 1
-  end function shared
+
+  contains
+
+    !> Where a pair stands on the slave [length].
+    pure function foot_of(pair) result(x)
+      integer, intent(in) :: pair
+      real(wp) :: x(2)
+
+      x = model%x(:, line%node(pair))
+      if (pair < contact%first_of_master) return
+      associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)   ! behind the node itself
+        x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
+      end associate
+    end function foot_of
+
+    !> The pairs along a side of the slave, of its nodes and of the master's, from its start on.
+    pure function run_on(side, masters) result(run)
+      integer, intent(in) :: side
+      integer, intent(in) :: masters(:)    !! the master's pairs that stand there
+      integer, allocatable :: pairs(:), run(:)
+      real(wp), allocatable :: away(:)     !! from the start
+      integer :: i, before
+
+      associate (node => contact%slave%segment(:, side))
+        pairs = [(pair_of_side(model, at, node, node(i)), i=1, 3), masters]
+        pairs = pack(pairs, pairs > 0)
+        away = [(norm2(foot_of(pairs(i)) - model%x(:, node(1))), i=1, size(pairs))]
+      end associate
+      allocate (run(0))
+      do i = 1, size(pairs)
+        before = count(away(:i - 1) <= away(i))
+        run = [run(:before), pairs(i), run(before + 1:)]
+      end do
+    end function run_on
+
+    !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of
+    !! the side has no pair, the pieces at its end belong to none.
+    pure subroutine link(segment, run, line, places)
+      integer, intent(in) :: segment   !! the side
+      integer, intent(in) :: run(:)
+      type(contact_line), intent(inout) :: line
+      type(partition), intent(inout) :: places
+      real(wp) :: apart, share(3), width
+      integer :: i, k
+
+      associate (element => contact%slave%element(segment), side => contact%slave%segment(:, segment), &
+                 chord => contact%slave%chord_length(segment))
+        i = findloc(run >= contact%first_of_master, .true., dim=1)   ! whose normal is the side's
+        width = sum(shares_of_nodes(model, element, side, model%normal(:, run(i))))/chord
+        do i = 1, size(run)
+          associate (pair => run(i))
+            if (pair >= contact%first_of_master) cycle
+            share = shares_of_nodes(model, element, side, model%normal(:, pair))
+            if (is_along(model, side, model%normal(:, pair))) &
+              line%tributary(pair) = line%tributary(pair) - share(findloc(side, line%node(pair), dim=1))
+            do k = 1, 2
+              if (.not. (line%middle(pair) .or. any(run == line%neighbour(k, pair)))) cycle
+              line%neighbour(k, pair) = 0
+              line%part(k, pair) = 0.0_wp
+            end do
+            line%middle(pair) = .false.   ! no node between two others any more
+          end associate
+        end do
+        do i = 1, size(run) - 1
+          apart = norm2(foot_of(run(i + 1)) - foot_of(run(i)))
+          if (apart < close*(chord/merge(2, 1, side(3) > 0))) call places%join(run(i), run(i + 1))
+          call add_piece(run(i:i + 1), 0.5_wp*width*apart, line)
+        end do
+      end associate
+    end subroutine link
+  end subroutine insert_masters
+
+  !> Two pairs are neighbours, and a piece of the boundary between them belongs to each.
+  pure subroutine add_piece(pairs, piece, line)
+    integer, intent(in) :: pairs(2)
+    real(wp), intent(in) :: piece   !! of either [length**2]
+    type(contact_line), intent(inout) :: line
+    integer :: i, k
+
+    do i = 1, 2
+      associate (pair => pairs(i), towards => pairs(3 - i))
+        k = findloc(line%neighbour(:, pair), towards, dim=1)
+        if (k == 0) k = findloc(line%neighbour(:, pair), 0, dim=1)
+        if (k == 0) k = 2
+        line%neighbour(k, pair) = towards
+        line%part(k, pair) = line%part(k, pair) + piece
+        line%tributary(pair) = line%tributary(pair) + piece
+      end associate
+    end do
+  end subroutine add_piece
+
+  !> Between the places of two pairs [length].
+  pure real(wp) function distance(self, a, b)
+    class(contact_line), intent(in) :: self
+    integer, intent(in) :: a, b   !! the pairs
+
+    distance = norm2(self%x(:, a) - self%x(:, b))
+  end function distance
 
   !> Pairs that touch, and those without an area beside them: a corner on the axis of rings, which bears
   !! nothing that would tell whether it touches. [pairs]
-  pure function in_contact(line, touching) result(within)
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    logical, allocatable :: within(:)
-    integer :: k, pair
+  pure function in_contact(self, touching) result(within)
+    class(contact_line), intent(in) :: self
+    logical, intent(in) :: touching(:)   !! [pairs]
+    logical :: within(size(touching))
+    integer :: pair
 
     within = touching
     do pair = 1, size(touching)
-      if (line%tributary(pair) > 0.0_wp) cycle
-      do k = 1, 2
-        if (line%neighbour(k, pair) > 0) within(pair) = within(pair) .or. touching(line%neighbour(k, pair))
-      end do
+      associate (beside => self%neighbour(:, pair))
+        if (self%tributary(pair) <= 0.0_wp) &
+          within(pair) = within(pair) .or. any(touching(pack(beside, beside > 0)))
+      end associate
     end do
   end function in_contact
 end module epcont_result_contact_line

@@ -2,7 +2,6 @@
 !> contact on the undeformed shape are no longer those of the deformed one.
 module epcont_result_displacement_gradient
   use epcont_base_kinds, only: wp
-  use epcont_element_kinematics, only: axisymmetric
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -22,48 +21,49 @@ module epcont_result_displacement_gradient
 
 contains
 
+  !> Where gradients are large, and how large the largest is.
   pure function find_gradients(model, volume, displacement) result(found)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model       !! the scene
     real(wp), intent(in) :: volume(:)           !! of the integration points [points]
     real(wp), intent(in) :: displacement(:, :)  !! [length] [2, nodes]
     type(gradient_type) :: found
-    real(wp) :: gradient, own
+    real(wp) :: gradient
     integer :: e
 
     do e = 1, model%elements
-      gradient = norm(model, e, displacement)
-      own = sum(volume(model%first_point(e):model%first_point(e + 1) - 1))
-      if (gradient > large_gradient) found%part = found%part + own
+      gradient = norm_at(e)
+      if (gradient > large_gradient) &
+        found%part = found%part + sum(volume(model%first_point(e):model%first_point(e + 1) - 1))
       if (gradient <= found%largest) cycle
       found%largest = gradient
       found%worst = e
     end do
     found%part = found%part/max(sum(volume), tiny(1.0_wp))
     if (found%part < negligible_part) found%part = 0.0_wp
-  end function find_gradients
 
-  !> Norm (Frobenius) of the displacement gradient, by the corners of an element; of rings the stretch around,
-  !! if that is more.
-  pure real(wp) function norm(model, e, displacement)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: e
-    real(wp), intent(in) :: displacement(:, :)
-    real(wp) :: p(2), q(2), radius, s(2), t(2)
-    integer :: n
+  contains
 
-    n = model%corners(e)
-    associate (node => model%connectivity(:n, e), x => model%x, u => displacement)
-      ! Across a quadrilateral along its diagonals, across a triangle along two sides: gradient (s t) = (p q).
-      associate (from => node(max(1, n - 3)), to => node(n - 1))
-        t = x(:, to) - x(:, from)
-        q = u(:, to) - u(:, from)
+    !> Norm (Frobenius) of the displacement gradient, by the corners of an element; of rings the stretch
+    !! around, if that is more.
+    pure real(wp) function norm_at(e) result(norm)
+      integer, intent(in) :: e
+      real(wp) :: p(2), q(2), radius, s(2), t(2)
+      integer :: n
+
+      n = model%corners(e)
+      associate (node => model%connectivity(:n, e), x => model%x, u => displacement)
+        ! Across a quadrilateral along its diagonals, across a triangle along two sides: gradient (s t) = (p q).
+        associate (from => node(max(1, n - 3)), to => node(n - 1))
+          t = x(:, to) - x(:, from)
+          q = u(:, to) - u(:, from)
+        end associate
+        s = x(:, node(n)) - x(:, node(n - 2))
+        p = u(:, node(n)) - u(:, node(n - 2))
+        norm = sqrt(sum((p*t(2) - q*s(2))**2) + sum((q*s(1) - p*t(1))**2))/abs(s(1)*t(2) - s(2)*t(1))
+        if (.not. model%has_rings()) return
+        radius = sum(x(1, node))
+        if (radius > 0.0_wp) norm = max(norm, abs(sum(u(1, node)))/radius)
       end associate
-      s = x(:, node(n)) - x(:, node(n - 2))
-      p = u(:, node(n)) - u(:, node(n - 2))
-      norm = sqrt(sum((p*t(2) - q*s(2))**2) + sum((q*s(1) - p*t(1))**2))/abs(s(1)*t(2) - s(2)*t(1))
-      if (model%kinematics(model%section(e)) /= axisymmetric) return
-      radius = sum(x(1, node))
-      if (radius > 0.0_wp) norm = max(norm, abs(sum(u(1, node)))/radius)
-    end associate
-  end function norm
+    end function norm_at
+  end function find_gradients
 end module epcont_result_displacement_gradient

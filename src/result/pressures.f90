@@ -24,278 +24,213 @@ module epcont_result_pressures
   !> A run of sides that touch all along, in their order.
   type :: run_type
     integer, allocatable :: corner(:), middle(:)    !! pairs [sides + 1], [sides]
-    !> Summed up to each corner, and beyond a line of symmetry as mirrored there; corner k has index k. A
-    !! closed run goes on with itself.
-    real(wp), allocatable :: area(:), force(:)
+    !> Area and force, summed up to each corner, and beyond a line of symmetry as mirrored there; corner k has
+    !! index k. A closed run goes on with itself. [2, corners]
+    real(wp), allocatable :: total(:, :)
     logical :: even(2) = .false.                    !! the pressure goes on evenly beyond the end: symmetry, the axis of rings
   end type run_type
 
 contains
 
-  !> Pressures; negative where no boundary belongs to a pair. `touching` are the pairs `in_contact`.
+  !> Pressures; negative where no boundary belongs to a pair [stress] [pairs].
   pure function pair_pressures(model, line, touching, force) result(pressure)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    real(wp), intent(in) :: force(:)
+    type(model_type), intent(in) :: model   !! the scene
+    type(contact_line), intent(in) :: line  !! of its pairs
+    logical, intent(in) :: touching(:)      !! the pairs `in_contact` [pairs]
+    real(wp), intent(in) :: force(:)        !! [force] [pairs]
     real(wp), allocatable :: pressure(:)
-    logical, allocatable :: done(:)
+    logical :: done(model%pairs)
     type(run_type) :: run
-    integer :: pair
-
-    pressure = merge(force/max(line%tributary, tiny(1.0_wp)), -1.0_wp, line%tributary > 0.0_wp)
-    allocate (done(model%pairs), source=.false.)
-    do pair = 1, model%pairs
-      if (done(pair) .or. .not. is_whole(line, touching, pair)) cycle
-      call find_run(line, touching, pair, run)
-      done(run%middle) = .true.
-      call sum_up(model, line, touching, force, run)
-      call derive(model, line, run, pressure)
-    end do
-    call level(line, force, pressure)
-    do pair = 1, model%pairs
-      if (line%tributary(pair) <= 0.0_wp) call complete(line, touching, force, pair, pressure)
-    end do
-  end function pair_pressures
-
-  !> Pairs at one place have one pressure.
-  pure subroutine level(line, force, pressure)
-    type(contact_line), intent(in) :: line
-    real(wp), intent(in) :: force(:)
-    real(wp), intent(inout) :: pressure(:)
-    real(wp), allocatable :: area(:), sum(:)
-    integer, allocatable :: pairs(:)
     integer :: k
 
-    if (.not. allocated(line%place)) return
-    allocate (area(maxval(line%place)), sum(maxval(line%place)), source=0.0_wp)
-    allocate (pairs(maxval(line%place)), source=0)
-    do k = 1, size(force)
-      associate (at => line%place(k))
-        area(at) = area(at) + line%tributary(k)
-        sum(at) = sum(at) + force(k)
-        pairs(at) = pairs(at) + 1
-      end associate
+    pressure = merge(force/max(line%tributary, tiny(1.0_wp)), -1.0_wp, line%tributary > 0.0_wp)
+    done = .false.
+    do k = 1, model%pairs
+      if (done(k) .or. .not. is_whole(k)) cycle
+      run = run_of(k)
+      done(run%middle) = .true.
+      call derive(run, pressure)
     end do
-    do k = 1, size(force)
-      associate (at => line%place(k))
-        if (pairs(at) > 1 .and. force(k) > 0.0_wp .and. area(at) > 0.0_wp) pressure(k) = sum(at)/area(at)
-      end associate
+    do k = 1, size(line%at_place%start) - 1
+      call level(line%at_place%group(line%at_place%start(k):line%at_place%start(k + 1) - 1), pressure)
     end do
-  end subroutine level
+    do k = 1, model%pairs
+      if (line%tributary(k) <= 0.0_wp) call complete(k, maxval(line%neighbour(:, k)), pressure)
+    end do
 
-  !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is at
-  !! most where the corner has opened, which it does where pressures rise away from the axis.
-  pure subroutine complete(line, touching, force, pair, pressure)
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    real(wp), intent(in) :: force(:)
-    integer, intent(in) :: pair
-    real(wp), intent(inout) :: pressure(:)
+  contains
 
-    associate (next => maxval(line%neighbour(:, pair)))
+    !> Pairs at one place have one pressure.
+    pure subroutine level(pairs, pressure)
+      integer, intent(in) :: pairs(:)
+      real(wp), intent(inout) :: pressure(:)
+      integer :: i
+
+      associate (area => sum(line%tributary(pairs)), together => sum(force(pairs)))
+        if (size(pairs) == 1 .or. area <= 0.0_wp) return
+        do i = 1, size(pairs)
+          if (force(pairs(i)) > 0.0_wp) pressure(pairs(i)) = together/area
+        end do
+      end associate
+    end subroutine level
+
+    !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is
+    !! at most where the corner has opened, which it does where pressures rise away from the axis.
+    pure subroutine complete(pair, next, pressure)
+      integer, intent(in) :: pair, next
+      real(wp), intent(inout) :: pressure(:)
+
       if (next == 0) return
       if (.not. touching(next)) return
       if (pressure(pair) < 0.0_wp) pressure(pair) = pressure(next)
       if (force(pair) == 0.0_wp) pressure(pair) = min(pressure(pair), pressure(next))
-    end associate
-  end subroutine complete
+    end subroutine complete
 
-  !> Is the pair at the middle of a side that touches all along?
-  pure logical function is_whole(line, touching, pair)
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    integer, intent(in) :: pair
+    !> Is the pair at the middle of a side that touches all along?
+    pure logical function is_whole(pair)
+      integer, intent(in) :: pair
 
-    is_whole = .false.
-    if (pair == 0) return
-    if (.not. line%middle(pair) .or. any(line%neighbour(:, pair) == 0)) return
-    associate (corners => line%neighbour(:, pair))
-      ! Where a line turns a corner, the corner's pair may belong to the other side alone.
-      if (.not. (any(line%neighbour(:, corners(1)) == pair) .and. any(line%neighbour(:, corners(2)) == pair))) return
-      is_whole = touching(pair) .and. all(touching(corners))
-    end associate
-  end function is_whole
-
-  !> The run that a side belongs to.
-  pure subroutine find_run(line, touching, start, run)
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    integer, intent(in) :: start
-    type(run_type), intent(out) :: run
-    integer :: direction
-
-    run%middle = [start]
-    run%corner = line%neighbour(:, start)
-    do direction = 1, 2
-      call extend(line, touching, run)
-      run%middle = run%middle(size(run%middle):1:-1)
-      run%corner = run%corner(size(run%corner):1:-1)
-    end do
-  end subroutine find_run
-
-  !> Go on behind the last corner.
-  pure subroutine extend(line, touching, run)
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    type(run_type), intent(inout) :: run
-    integer :: corner, next
-
-    do
-      corner = run%corner(size(run%corner))
-      next = other_than(run%middle(size(run%middle)), line%neighbour(:, corner))
-      if (.not. is_whole(line, touching, next)) return
-      if (any(run%middle == next)) return
-      run%middle = [run%middle, next]
-      run%corner = [run%corner, other_than(corner, line%neighbour(:, next))]
-    end do
-  end subroutine extend
-
-  !> Of two neighbours the other one.
-  pure integer function other_than(one, both) result(other)
-    integer, intent(in) :: one, both(2)
-
-    other = merge(both(2), both(1), both(1) == one)
-  end function other_than
-
-  !> Area and force from the first corner on. What a corner bears goes to the sides that touch as its area
-  !! does.
-  pure subroutine sum_up(model, line, touching, force, run)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    real(wp), intent(in) :: force(:)
-    type(run_type), intent(inout) :: run
-    integer :: end, k, n, outside(2)
-    logical :: closed, mirrored(2)
-
-    n = size(run%middle)
-    associate (ends => run%corner([1, n + 1]))
-      closed = ends(1) == ends(2)
-      run%even = line%mirrored(ends) .or. closed
-      ! Of rings the pressure is even in the radius: a smooth function of the area from the axis on.
-      mirrored = run%even .and. .not. closed .and. .not. (model%has_rings() .and. model%x(1, line%node(ends)) == 0.0_wp)
-    end associate
-    outside = merge(min(n, before), 0, mirrored .or. closed)
-    allocate (run%area(1 - outside(1):n + 1 + outside(2)), run%force(1 - outside(1):n + 1 + outside(2)), source=0.0_wp)
-    do k = 1, n
-      run%area(k + 1) = run%area(k) + line%tributary(run%middle(k))
-      run%force(k + 1) = run%force(k) + force(run%middle(k))
-      do end = 0, 1
-        associate (corner => run%corner(k + end))
-          run%area(k + 1) = run%area(k + 1) + sum(line%part(:, corner), mask=line%neighbour(:, corner) == run%middle(k))
-          run%force(k + 1) = run%force(k + 1) + force(corner)*share_of_side(line, touching, corner, run%middle(k))
-        end associate
-      end do
-    end do
-    if (closed) then
-      do k = 1, before
-        if (k > n) exit
-        run%area(1 - k) = run%area(n + 1 - k) - run%area(n + 1)
-        run%force(1 - k) = run%force(n + 1 - k) - run%force(n + 1)
-        run%area(n + 1 + k) = run%area(n + 1) + run%area(1 + k)
-        run%force(n + 1 + k) = run%force(n + 1) + run%force(1 + k)
-      end do
-      return
-    end if
-    do k = 1, outside(1)
-      run%area(1 - k) = -run%area(1 + k)
-      run%force(1 - k) = -run%force(1 + k)
-    end do
-    do k = 1, outside(2)
-      run%area(n + 1 + k) = 2.0_wp*run%area(n + 1) - run%area(n + 1 - k)
-      run%force(n + 1 + k) = 2.0_wp*run%force(n + 1) - run%force(n + 1 - k)
-    end do
-  end subroutine sum_up
-
-  !> The share of a side in what its corner bears: all of it where the next middle does not touch.
-  pure real(wp) function share_of_side(line, touching, corner, middle) result(share)
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    integer, intent(in) :: corner, middle
-    integer :: k
-    real(wp) :: other, own
-
-    own = 0.0_wp
-    other = 0.0_wp
-    do k = 1, 2
-      associate (neighbour => line%neighbour(k, corner))
-        if (neighbour == 0) cycle
-        if (neighbour == middle) then
-          own = own + line%part(k, corner)
-        else if (touching(neighbour)) then
-          other = other + line%part(k, corner)
-        end if
+      is_whole = .false.
+      if (pair == 0) return
+      associate (corners => line%neighbour(:, pair))
+        if (.not. line%middle(pair) .or. any(corners == 0)) return
+        ! Where a line turns a corner, the corner's pair may belong to the other side alone.
+        is_whole = touching(pair) .and. all(touching(corners)) .and. all(any(line%neighbour(:, corners) == pair, dim=1))
       end associate
-    end do
-    share = 1.0_wp
-    if (other > 0.0_wp) share = own/(own + other)
-  end function share_of_side
+    end function is_whole
 
-  !> Pressures of a run. At an end where contact ends, the last side's own are left: there the pressure has no
-  !! polynomial.
-  pure subroutine derive(model, line, run, pressure)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    type(run_type), intent(in) :: run
-    real(wp), intent(inout) :: pressure(:)
-    integer :: first, k, last
+    !> The run that a side belongs to, given by its middle.
+    pure function run_of(side) result(run)
+      integer, intent(in) :: side
+      type(run_type) :: run
+      integer, allocatable :: chain(:)   !! corners and middles by turns
+      integer :: direction, next
 
-    if (size(run%area) < least_corners) then
-      if (size(run%area) < least_at_axis) return
-      do k = 1, size(run%corner), size(run%middle)
-        if (line%tributary(run%corner(k)) <= 0.0_wp) pressure(run%corner(k)) = slope(run, 1, least_at_axis, run%area(k))
+      chain = [line%neighbour(1, side), side, line%neighbour(2, side)]
+      do direction = 1, 2
+        do
+          associate (corner => chain(size(chain)))
+            next = sum(line%neighbour(:, corner)) - chain(size(chain) - 1)   ! the other one
+            if (.not. is_whole(next) .or. any(chain == next)) exit
+            chain = [chain, next, sum(line%neighbour(:, next)) - corner]
+          end associate
+        end do
+        chain = chain(size(chain):1:-1)
       end do
-      return
-    end if
-    first = merge(1, 2, run%even(1))
-    last = size(run%middle) - merge(0, 1, run%even(2))
-    do k = first, last
-      pressure(run%middle(k)) = slope(run, k - 1, around_middle, area_at_middle(model, line, run, k))
-    end do
-    do k = first, last + 1
-      pressure(run%corner(k)) = slope(run, k - before, around_corner, run%area(k))
-    end do
-  end subroutine derive
+      run%corner = chain(1::2)
+      run%middle = chain(2::2)
+      call sum_up(run)
+    end function run_of
 
-  !> Area up to the middle node of a side.
-  pure real(wp) function area_at_middle(model, line, run, k) result(area)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    type(run_type), intent(in) :: run
-    integer, intent(in) :: k
-    real(wp) :: half(2)
+    !> Area and force from the first corner on. What a corner bears goes to the sides that touch as its area
+    !! does.
+    pure subroutine sum_up(run)
+      type(run_type), intent(inout) :: run
+      integer :: beyond(2), end, k, n
+      logical :: closed, mirrored(2)
 
-    associate (a => model%x(:, line%node(run%corner(k))), m => model%x(:, line%node(run%middle(k))), &
-               b => model%x(:, line%node(run%corner(k + 1))))
-      half = [norm2(m - a), norm2(b - m)]
-      if (model%has_rings()) half = half*[a(1) + m(1), m(1) + b(1)]
-    end associate
-    area = run%area(k) + (run%area(k + 1) - run%area(k))*half(1)/sum(half)
-  end function area_at_middle
+      n = size(run%middle)
+      associate (ends => run%corner([1, n + 1]))
+        closed = ends(1) == ends(2)
+        run%even = line%mirrored(ends) .or. closed
+        ! Of rings the pressure is even in the radius: a smooth function of the area from the axis on.
+        mirrored = run%even .and. .not. closed .and. .not. (model%has_rings() .and. line%x(1, ends) == 0.0_wp)
+      end associate
+      beyond = merge(min(n, before), 0, mirrored .or. closed)
+      allocate (run%total(2, 1 - beyond(1):n + 1 + beyond(2)), source=0.0_wp)
+      associate (total => run%total)
+        do k = 1, n
+          total(:, k + 1) = total(:, k) + [line%tributary(run%middle(k)), force(run%middle(k))]
+          do end = k, k + 1
+            total(:, k + 1) = total(:, k + 1) + share_of_side(run%corner(end), run%middle(k))
+          end do
+        end do
+        do k = 1, min(n, before)
+          if (closed) total(:, 1 - k) = total(:, n + 1 - k) - total(:, n + 1)
+          if (closed) total(:, n + 1 + k) = total(:, n + 1) + total(:, 1 + k)
+          if (mirrored(1)) total(:, 1 - k) = -total(:, 1 + k)
+          if (mirrored(2)) total(:, n + 1 + k) = 2.0_wp*total(:, n + 1) - total(:, n + 1 - k)
+        end do
+      end associate
+    end subroutine sum_up
 
-  !> Derivative of the polynomial through some corners, from one of them on if the run has so many.
+    !> What a side has of the area and of the force of its corner: all of the latter where the next middle does
+    !! not touch.
+    pure function share_of_side(corner, middle) result(share)
+      integer, intent(in) :: corner, middle
+      real(wp) :: share(2), other
+
+      associate (next => line%neighbour(:, corner), part => line%part(:, corner))
+        share = [sum(part, mask=next == middle), force(corner)]
+        other = sum(part, mask=next /= middle .and. next > 0 .and. touching(max(1, next)))
+      end associate
+      if (other > 0.0_wp) share(2) = force(corner)*(share(1)/(share(1) + other))
+    end function share_of_side
+
+    !> Pressures of a run. At an end where contact ends, the last side's own are left: there the pressure has
+    !! no polynomial.
+    pure subroutine derive(run, pressure)
+      type(run_type), intent(in) :: run
+      real(wp), intent(inout) :: pressure(:)
+      integer :: first, k, last
+
+      if (size(run%total, 2) < least_corners) then
+        if (size(run%total, 2) < least_at_axis) return
+        do k = 1, size(run%corner), size(run%middle)
+          if (line%tributary(run%corner(k)) <= 0.0_wp) &
+            pressure(run%corner(k)) = slope(run, 1, least_at_axis, run%total(1, k))
+        end do
+        return
+      end if
+      first = merge(1, 2, run%even(1))
+      last = size(run%middle) - merge(0, 1, run%even(2))
+      do k = first, last
+        pressure(run%middle(k)) = slope(run, k - 1, around_middle, area_at_middle(run, k))
+      end do
+      do k = first, last + 1
+        pressure(run%corner(k)) = slope(run, k - before, around_corner, run%total(1, k))
+      end do
+    end subroutine derive
+
+    !> Area up to the middle node of a side.
+    pure real(wp) function area_at_middle(run, k) result(area)
+      type(run_type), intent(in) :: run
+      integer, intent(in) :: k
+      real(wp) :: half(2)
+
+      associate (a => run%corner(k), m => run%middle(k), b => run%corner(k + 1), radius => line%x(1, :))
+        half = [line%distance(m, a), line%distance(b, m)]
+        if (model%has_rings()) half = half*[radius(a) + radius(m), radius(m) + radius(b)]
+      end associate
+      area = run%total(1, k) + (run%total(1, k + 1) - run%total(1, k))*half(1)/sum(half)
+    end function area_at_middle
+  end function pair_pressures
+
+  !> Derivative of force by area: of the polynomial through some corners, from one of them on if the run has
+  !! so many.
   pure real(wp) function slope(run, from, many, at)
     type(run_type), intent(in) :: run
     integer, intent(in) :: from, many
-    real(wp), intent(in) :: at
+    real(wp), intent(in) :: at   !! this area
     integer :: first, i, j, k, last
     real(wp) :: product, total
 
-    first = max(lbound(run%area, 1), min(from, ubound(run%area, 1) - many + 1))
-    last = min(ubound(run%area, 1), first + many - 1)
+    first = max(lbound(run%total, 2), min(from, ubound(run%total, 2) - many + 1))
+    last = min(ubound(run%total, 2), first + many - 1)
     slope = 0.0_wp
-    do k = first, last
-      total = 0.0_wp
-      do j = first, last
-        if (j == k) cycle
-        product = 1.0_wp/(run%area(k) - run%area(j))
-        do i = first, last
-          if (i /= k .and. i /= j) product = product*(at - run%area(i))/(run%area(k) - run%area(i))
+    associate (area => run%total(1, first:last), force => run%total(2, first:last))
+      do k = 1, size(area)
+        total = 0.0_wp
+        do j = 1, size(area)
+          if (j == k) cycle
+          product = 1.0_wp/(area(k) - area(j))
+          do i = 1, size(area)
+            if (i /= k .and. i /= j) product = product*(at - area(i))/(area(k) - area(i))
+          end do
+          total = total + product
         end do
-        total = total + product
+        slope = slope + force(k)*total
       end do
-      slope = slope + run%force(k)*total
-    end do
+    end associate
   end function slope
 end module epcont_result_pressures

@@ -13,26 +13,33 @@ module epcont_result_stresses
 
 contains
 
-  !> Fill in stresses, strains, moduli and reactions. `applied` are the nodal forces of loads and pairs [2,
-  !! nodes].
+  !> Fill in stresses, strains, moduli and reactions.
   pure subroutine recover_stresses(model, linear, applied, answer)
-    type(model_type), intent(in) :: model
-    type(linear_problem), intent(in) :: linear
-    real(wp), intent(in) :: applied(:, :)
-    type(answer_type), intent(inout) :: answer
+    type(model_type), intent(in) :: model        !! the scene
+    type(linear_problem), intent(in) :: linear     !! of the last solve
+    real(wp), intent(in) :: applied(:, :)        !! nodal forces of loads and pairs [force] [2, nodes]
+    type(answer_type), intent(inout) :: answer   !! its state is given
     type(point_state) :: point
-    real(wp), allocatable :: mises(:)   !! at each point
+    real(wp) :: mises(model%points), nothing(model%elements)
     real(wp) :: modulus, share, whole
     integer :: e, p
 
-    call clear_elements(model%elements, answer)
+    nothing = 0.0_wp
+    answer%stress = spread(nothing, 1, 4)
+    answer%equivalent_stress = nothing
+    answer%equivalent_strain = nothing
+    answer%secant_modulus = nothing
+    answer%largest_stress = nothing
+    answer%largest_at = int(nothing)
+    answer%plastic = nothing > 0.0_wp
+    answer%beyond = answer%plastic
     mises = [(equivalent_stress(answer%point_stress(:, p)), p=1, model%points)]
     do e = 1, model%elements
       associate (law => linear%materials%section(model%section(e))%law, first => model%first_point(e), &
-                 last => model%first_point(e + 1) - 1)
-        whole = sum(linear%operator%volume(first:last))
-        answer%largest_stress(e) = maxval(mises(first:last))
+                 last => model%first_point(e + 1) - 1, volume => linear%operator%volume)
+        whole = sum(volume(first:last))
         answer%largest_at(e) = first - 1 + first_largest(mises(first:last))
+        answer%largest_stress(e) = maxval(mises(first:last))
         do p = first, last
           if (allocated(answer%point)) then
             point = answer%point(p)
@@ -41,7 +48,7 @@ contains
           end if
           modulus = law%young
           if (point%yielded) modulus = 1.0_wp/(1.0_wp/point%modulus + law%shift)
-          share = linear%operator%volume(p)/whole
+          share = volume(p)/whole
           answer%stress(:, e) = answer%stress(:, e) + share*answer%point_stress(:, p)
           answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*mises(p)
           answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*point%total
@@ -51,60 +58,42 @@ contains
         end do
       end associate
     end do
-    answer%reaction = reactions(model, linear%operator%nodal_forces(model, answer%point_stress), applied)
+    answer%reaction = reactions(linear%operator%nodal_forces(model, answer%point_stress))
+
+  contains
+
+    !> What the supports must hold [force] [2, nodes].
+    pure function reactions(force) result(reaction)
+      real(wp), intent(in) :: force(:, :)     !! that the elements need at the nodes [2, nodes]
+      real(wp) :: reaction(2, model%nodes)
+      integer :: c, node
+
+      reaction = 0.0_wp
+      do node = 1, model%nodes
+        do c = 1, 2
+          associate (leader => model%leader(c, node))
+            if (model%held(c, leader)) reaction(c, leader) = reaction(c, leader) + force(c, node) - applied(c, node)
+          end associate
+        end do
+      end do
+    end function reactions
   end subroutine recover_stresses
-
-  !> Nothing yet of any element.
-  pure subroutine clear_elements(elements, answer)
-    integer, intent(in) :: elements
-    type(answer_type), intent(inout) :: answer
-
-    if (.not. allocated(answer%stress)) then
-      allocate (answer%stress(4, elements), answer%equivalent_stress(elements), answer%equivalent_strain(elements))
-      allocate (answer%secant_modulus(elements), answer%plastic(elements), answer%beyond(elements))
-      allocate (answer%largest_stress(elements), answer%largest_at(elements))
-    end if
-    answer%stress = 0.0_wp
-    answer%equivalent_stress = 0.0_wp
-    answer%equivalent_strain = 0.0_wp
-    answer%secant_modulus = 0.0_wp
-    answer%plastic = .false.
-    answer%beyond = .false.
-  end subroutine clear_elements
 
   !> Where the largest of some stresses is; of equal ones, but for rounding, the first.
   pure integer function first_largest(stress) result(k)
-    real(wp), intent(in) :: stress(:)
+    real(wp), intent(in) :: stress(:)   !! [stress] [any]
 
     k = findloc(stress >= maxval(stress)*(1.0_wp - least_difference), .true., dim=1)
   end function first_largest
 
   !> Coordinates of an integration point [length].
   pure function place_of_point(model, point) result(x)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: point
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: point            !! by its number
     real(wp) :: x(2)
 
-    associate (e => model%point_element(point))
-      x = matmul(model%coordinates(e), model%kinds(model%kind(e))%values(:model%order(e), point - model%first_point(e) + 1))
+    associate (e => model%point_element(point), kind => model%kinds(model%kind(model%point_element(point))))
+      x = matmul(model%coordinates(e), kind%values(:kind%nodes, point - model%first_point(e) + 1))
     end associate
   end function place_of_point
-
-  !> What the supports must hold [force] [2, nodes].
-  pure function reactions(model, force, applied) result(reaction)
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: force(:, :)     !! that the elements need at the nodes [2, nodes]
-    real(wp), intent(in) :: applied(:, :)
-    real(wp), allocatable :: reaction(:, :)
-    integer :: c, node
-
-    allocate (reaction(2, model%nodes), source=0.0_wp)
-    do node = 1, model%nodes
-      do c = 1, 2
-        associate (leader => model%leader(c, node))
-          if (model%held(c, leader)) reaction(c, leader) = reaction(c, leader) + force(c, node) - applied(c, node)
-        end associate
-      end do
-    end do
-  end function reactions
 end module epcont_result_stresses

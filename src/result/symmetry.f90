@@ -18,9 +18,9 @@ contains
   !! beyond the line is not mirrored. One of the two is held along the boundary alone: one held all over, or
   !! tied by RBE2, does not tell.
   pure logical function is_on_symmetry(model, pair, node, side)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: pair, node
-    real(wp), intent(in) :: side   !! length of the longest side at the node [length]
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: pair, node       !! of the boundary there
+    real(wp), intent(in) :: side            !! length of the longest side at the node [length]
     logical :: ends, guided, rigid
     integer :: along, i
 
@@ -31,7 +31,7 @@ contains
     end associate
     if (.not. is_held(node)) return
     ends = .false.
-    guided = is_guided(model, node, along)
+    guided = is_guided(node)
     rigid = .true.
     do i = model%row_start(pair), model%row_start(pair + 1) - 1
       associate (other => model%row_node(i))
@@ -39,7 +39,7 @@ contains
         rigid = rigid .and. is_held(other)
         if (.not. is_held(other) .or. abs(model%x(along, other) - model%x(along, node)) > beside*side) cycle
         ends = .true.
-        guided = guided .or. is_guided(model, other, along)
+        guided = guided .or. is_guided(other)
       end associate
     end do
     is_on_symmetry = guided .and. (ends .or. rigid)
@@ -51,13 +51,12 @@ contains
 
       is_held = model%held(along, model%leader(along, node))
     end function is_held
+
+    !> Is a node held by itself along the boundary, and free across it?
+    pure logical function is_guided(node)
+      integer, intent(in) :: node
+
+      is_guided = model%held(along, node) .and. .not. model%held(3 - along, model%leader(3 - along, node))
+    end function is_guided
   end function is_on_symmetry
-
-  !> Is a node held by itself in one direction, and free in the other?
-  pure logical function is_guided(model, node, direction)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: node, direction
-
-    is_guided = model%held(direction, node) .and. .not. model%held(3 - direction, model%leader(3 - direction, node))
-  end function is_guided
 end module epcont_result_symmetry

@@ -2,11 +2,13 @@
 module epcont_result_zones
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
-  use epcont_model_model, only: model_type
-  use epcont_result_contact_line, only: contact_line, distance
+  use epcont_result_contact_line, only: contact_line
   implicit none
   private
   public :: contact_zone, find_zones
+
+  !> A pressure that is not below this part of the largest at an end does not fall towards it.
+  real(wp), parameter, public :: falls = 0.5_wp
 
   !> A run of neighbouring pairs that touch.
   type :: contact_zone
@@ -16,127 +18,118 @@ module epcont_result_zones
     real(wp) :: half_width_pairs = 0.0_wp   !! half of the length between its last pairs [length]
     real(wp) :: half_width = -1.0_wp        !! to where the pressure vanishes; negative: unknown [length]
     integer, allocatable :: pairs(:)        !! from end to end
+    real(wp), allocatable :: along(:)       !! place of each, from the first on [length] [its pairs]
+    real(wp) :: open(2) = 0.0_wp            !! from each end to the first open pair; 0: the end is the last candidate [length]
   end type contact_zone
 
 contains
 
-  !> The zones, in the order of their first pairs. `touching` are the pairs `in_contact`.
-  pure function find_zones(model, line, touching, force, pressure) result(zones)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    real(wp), intent(in) :: force(:), pressure(:)
+  !> The zones, in the order of their first pairs.
+  pure function find_zones(line, touching, force, pressure) result(zones)
+    type(contact_line), intent(in) :: line          !! of the pairs
+    logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
+    real(wp), intent(in) :: force(:), pressure(:)   !! [force], [stress] [pairs]
     type(contact_zone), allocatable :: zones(:)
     type(partition) :: sets
     integer, allocatable :: number(:), start(:)   !! set of each pair; first pair of each zone
     integer :: count, k, pair, z
 
-    sets = new_partition(model%pairs)
-    do pair = 1, model%pairs
-      do k = 1, 2
-        if (line%neighbour(k, pair) == 0 .or. .not. touching(pair)) cycle
-        if (touching(line%neighbour(k, pair))) call sets%join(pair, line%neighbour(k, pair))
-      end do
+    sets = new_partition(size(touching))
+    do pair = 1, size(touching)
+      if (.not. touching(pair)) cycle
+      associate (next => beside(pair, .true.))
+        do k = 1, size(next)
+          call sets%join(pair, next(k))
+        end do
+      end associate
     end do
     call sets%numbers(number, count)
     start = [(findloc(number, z, dim=1), z=1, count)]
     start = pack(start, touching(start))
     allocate (zones(size(start)))
     do z = 1, size(zones)
-      zones(z) = walk(model, line, touching, force, pressure, start(z))
+      zones(z) = zone_from(start(z))
     end do
-  end function find_zones
 
-  !> One zone: its pairs from end to end, beginning with the end met first in the deck.
-  pure function walk(model, line, touching, force, pressure, start) result(zone)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    real(wp), intent(in) :: force(:), pressure(:)
-    integer, intent(in) :: start
-    type(contact_zone) :: zone
-    integer, allocatable :: run(:)
-    real(wp) :: beyond(2), length
-    logical :: falls(2)
-    integer :: k
+  contains
 
-    run = run_from(line, touching, start)
-    run = run_from(line, touching, run(size(run)))
-    if (run(size(run)) < run(1)) run = run(size(run):1:-1)
-    zone%pairs = run
-    zone%first = run(1)
-    zone%last = run(size(run))
-    zone%force = sum(force(run))
-    zone%max_pressure = maxval(pressure(run))
-    length = 0.0_wp
-    do k = 2, size(run)
-      length = length + distance(model, line, run(k), run(k - 1))
-    end do
-    call extend(model, line, touching, pressure, run, beyond(2), falls(2))
-    call extend(model, line, touching, pressure, run(size(run):1:-1), beyond(1), falls(1))
-    if (line%mirrored(zone%first) .neqv. line%mirrored(zone%last)) then
-      k = merge(2, 1, line%mirrored(zone%first))
-      zone%half_width_pairs = length
-      if (falls(k)) zone%half_width = length + beyond(k)
-    else
-      zone%half_width_pairs = 0.5_wp*length
-      if (all(falls)) zone%half_width = 0.5_wp*(length + sum(beyond))
-    end if
-  end function walk
+    !> One zone: its pairs from end to end, beginning with the end met first in the deck.
+    pure function zone_from(start) result(zone)
+      integer, intent(in) :: start
+      type(contact_zone) :: zone
+      integer, allocatable :: run(:)
+      real(wp) :: beyond(2)
+      logical :: counts(2), falling(2)
+      integer :: k, n
 
-  !> The touching pairs from `start` as far as they go in one direction.
-  pure function run_from(line, touching, start) result(run)
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    integer, intent(in) :: start
-    integer, allocatable :: run(:)
-    integer :: k, next
-
-    run = [start]
-    do
-      next = 0
-      do k = 1, 2
-        associate (candidate => line%neighbour(k, run(size(run))))
-          if (candidate == 0) cycle
-          if (.not. touching(candidate) .or. any(run == candidate)) cycle
-          next = candidate
-          exit
-        end associate
+      run = run_from(start)
+      run = run_from(run(size(run)))
+      n = size(run)
+      if (run(n) < run(1)) run = run(n:1:-1)
+      zone%pairs = run
+      zone%first = run(1)
+      zone%last = run(n)
+      zone%force = sum(force(run))
+      zone%max_pressure = maxval(pressure(run))
+      allocate (zone%along(n), source=0.0_wp)
+      do k = 2, n
+        zone%along(k) = zone%along(k - 1) + line%distance(run(k), run(k - 1))
       end do
-      if (next == 0) return
-      run = [run, next]
-    end do
-  end function run_from
-
-  !> How far beyond the last pair of a run the pressure vanishes: near the edge p**2 is linear. Not beyond the
-  !! first open pair; not at all where that end is the last candidate, or the pressure does not fall towards
-  !! it.
-  pure subroutine extend(model, line, touching, pressure, run, beyond, falls)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    logical, intent(in) :: touching(:)
-    real(wp), intent(in) :: pressure(:)
-    integer, intent(in) :: run(:)
-    real(wp), intent(out) :: beyond
-    logical, intent(out) :: falls
-    real(wp) :: drop
-    integer :: k, n, open
-
-    n = size(run)
-    beyond = 0.0_wp
-    falls = .false.
-    if (n < 2) return
-    open = 0
-    do k = 1, 2
-      associate (other => line%neighbour(k, run(n)))
-        if (other == 0) cycle
-        if (.not. touching(other)) open = other
+      call extend(run(n:1:-1), zone%open(1), beyond(1), falling(1))
+      call extend(run, zone%open(2), beyond(2), falling(2))
+      ! From a line of symmetry on, it is half of the zone.
+      counts = .not. line%mirrored(run([1, n])) .or. all(line%mirrored(run([1, n])))
+      associate (half => merge(0.5_wp, 1.0_wp, all(counts)))
+        zone%half_width_pairs = half*zone%along(n)
+        if (all(falling .or. .not. counts)) zone%half_width = half*(zone%along(n) + sum(beyond, mask=counts))
       end associate
-    end do
-    if (open == 0) return
-    falls = pressure(run(n)) < 0.5_wp*maxval(pressure(run))
-    drop = pressure(run(n - 1))**2 - pressure(run(n))**2
-    if (drop <= 0.0_wp) return
-    beyond = min(distance(model, line, run(n), run(n - 1))*pressure(run(n))**2/drop, distance(model, line, run(n), open))
-  end subroutine extend
+    end function zone_from
+
+    !> The neighbours of a pair that touch, or those that do not.
+    pure function beside(pair, touches) result(next)
+      integer, intent(in) :: pair
+      logical, intent(in) :: touches
+      integer, allocatable :: next(:)
+
+      next = pack(line%neighbour(:, pair), line%neighbour(:, pair) > 0)
+      next = pack(next, touching(next) .eqv. touches)
+    end function beside
+
+    !> The touching pairs from `start` as far as they go in one direction.
+    pure function run_from(start) result(run)
+      integer, intent(in) :: start
+      integer, allocatable :: next(:), run(:)
+      integer :: k
+
+      run = [start]
+      do
+        next = beside(run(size(run)), .true.)
+        next = pack(next, [(.not. any(run == next(k)), k=1, size(next))])
+        if (size(next) == 0) return
+        run = [run, next(1)]
+      end do
+    end function run_from
+
+    !> How far beyond the last pair of a run the pressure vanishes: near the edge p**2 is linear. Not beyond
+    !! the first open pair; not at all where that end is the last candidate, or the pressure does not fall
+    !! towards it.
+    pure subroutine extend(run, open, beyond, falling)
+      integer, intent(in) :: run(:)
+      real(wp), intent(out) :: open, beyond   !! to the first open pair; to where the pressure vanishes [length]
+      logical, intent(out) :: falling
+      integer, allocatable :: next(:)   !! open pairs
+      real(wp) :: drop
+      integer :: n
+
+      n = size(run)
+      open = 0.0_wp
+      beyond = 0.0_wp
+      next = beside(run(n), .false.)
+      if (size(next) > 0) open = line%distance(run(n), next(size(next)))
+      falling = n > 1 .and. size(next) > 0 .and. pressure(run(n)) < falls*maxval(pressure(run))
+      if (n < 2 .or. size(next) == 0) return
+      drop = pressure(run(n - 1))**2 - pressure(run(n))**2
+      if (drop > 0.0_wp) beyond = min(line%distance(run(n), run(n - 1))*pressure(run(n))**2/drop, open)
+    end subroutine extend
+  end function find_zones
 end module epcont_result_zones
