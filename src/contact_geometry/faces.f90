@@ -1,7 +1,7 @@
 !> What the nodes of lines in contact face, by geometry alone: each node of the slave's sides against the
 !> master, and in concave corners a second face of it.
 module epcont_contact_geometry_faces
-  use epcont_geometry_boxed_line, only: boxed_line
+  use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_facing, only: facing_type, find_facing, node_of, same_face
   use epcont_model_model, only: line_contact
   implicit none
@@ -71,7 +71,7 @@ contains
     has_face = .true.
     do k = 1, self%count
       if (self%node(k) /= node) cycle
-      if (dot_product(self%facing(k)%place%normal, facing%place%normal) > same_face) return
+      if (dot_product(self%facing(k)%normal, facing%normal) > same_face) return
     end do
     has_face = .false.
   end function has_face
@@ -80,7 +80,7 @@ contains
   !! where the node has one like them: its other side faces the same.
   pure subroutine find_faces(contact, obstacles, faces)
     type(line_contact), intent(in) :: contact   !! the contact of lines
-    type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
+    type(boundary_line), intent(in) :: obstacles   !! the outlines of all bodies
     type(faces_type), intent(out) :: faces   !! what they face
     type(face_list) :: seconds
     integer, parameter :: in_turn(3) = [1, 3, 2]   ! start, middle, end
@@ -104,11 +104,11 @@ contains
   !> What a node of a side faces, if that is not known from the side beside it.
   pure subroutine look_from_node(contact, obstacles, side, which, faces, seconds)
     type(line_contact), intent(in) :: contact
-    type(boxed_line), intent(in) :: obstacles
+    type(boundary_line), intent(in) :: obstacles
     integer, intent(in) :: side, which
     type(faces_type), intent(inout) :: faces
     type(face_list), intent(inout) :: seconds
-    type(facing_type) :: face, second
+    type(facing_type) :: face, second, seen(2)
     integer :: beside, neighbour, row
 
     associate (slave => contact%slave, node => contact%slave%segment(which, side))
@@ -122,10 +122,12 @@ contains
             seconds%has_node(node)) row = 0
       end if
       if (row == 0) then
-        call find_facing(contact%master, obstacles, node_of(slave, side, which), contact%search, face, second)
+        seen = find_facing(contact%master, obstacles, node_of(slave, side, which), contact%search)
+        face=seen(1)
+        second=seen(2)
         if (face%same_way .and. (neighbour == 0 .or. neighbour > side)) faces%same_way = faces%same_way + 1
-        if (second%place%found) call seconds%append(node, second)
-        if (.not. face%place%found) then
+        if (second%found) call seconds%append(node, second)
+        if (.not. face%found) then
           faces%left = faces%left + 1
           faces%left_out(:, faces%left) = [side, which]
           return
@@ -151,6 +153,6 @@ contains
 
     row_like = row
     if (row == 0) return
-    if (dot_product(face%place%normal, list%facing(row)%place%normal) <= same_face) row_like = 0
+    if (dot_product(face%normal, list%facing(row)%normal) <= same_face) row_like = 0
   end function row_like
 end module epcont_contact_geometry_faces

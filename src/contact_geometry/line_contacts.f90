@@ -8,7 +8,6 @@ module epcont_contact_geometry_line_contacts
   use epcont_contact_geometry_line_sides, only: find_line_sides
   use epcont_contact_geometry_line_warnings, only: warn_of_both_ways, warn_of_finer_slave, warn_of_overlap, &
                                                    warn_of_thicker_slave
-  use epcont_geometry_boxed_line, only: new_boxed_line
   use epcont_model_finding, only: findings, of_couple, of_line
   use epcont_model_model, only: line_contact, model_type
   implicit none
@@ -169,6 +168,7 @@ contains
     type(model_type), intent(in) :: model
     type(line_contact), intent(inout) :: contact
     integer, allocatable :: master(:), slave(:)
+    integer :: i
 
     associate (couple => model%couple(contact%couple))
       contact%bconp = couple%id
@@ -177,11 +177,12 @@ contains
     end associate
     contact%slave_id = model%line(slave)%id
     contact%master_id = model%line(master)%id
-    contact%slave = new_boxed_line(model%boundary%pick(sides_of(model, slave)))
-    contact%master = new_boxed_line(model%boundary%pick(sides_of(model, master)))
+    contact%slave = model%boundary%pick(sides_of(model, slave))
+    contact%master = model%boundary%pick(sides_of(model, master))
     contact%search = model%controls%search
-    if (contact%search == 0.0_wp) contact%search = default_search*max(contact%slave%longest(), &
-                                                                      contact%master%longest())
+    if (contact%search == 0.0_wp) contact%search = default_search*max( &
+    maxval([(contact%slave%chord_length(i),i=1,size(contact%slave%element))]),&
+    maxval([(contact%master%chord_length(i),i=1,size(contact%master%element))]))
     allocate (contact%came_near(0))
   end subroutine set_lines
 

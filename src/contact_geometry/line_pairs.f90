@@ -6,8 +6,7 @@ module epcont_contact_geometry_line_pairs
   use epcont_base_kinds, only: wp
   use epcont_contact_geometry_faces, only: face_list, faces_type
   use epcont_contact_geometry_mortar, only: find_mortar_rows, mortar_rows
-  use epcont_geometry_boundary_line, only: beyond
-  use epcont_geometry_boxed_line, only: boxed_line
+  use epcont_geometry_boundary_line, only: beyond, boundary_line
   use epcont_geometry_facing, only: facing_type, find_facing, node_of
   use epcont_model_model, only: line_contact, model_type
   implicit none
@@ -25,7 +24,7 @@ contains
   !> lie flush, the side's own nodes hold both), and nodes that came near.
   pure subroutine find_tips(contact, obstacles, covered, faces)
     type(line_contact), intent(in) :: contact
-    type(boxed_line), intent(in) :: obstacles
+    type(boundary_line), intent(in) :: obstacles
     logical, intent(in) :: covered(:)           !! sides of the slave
     type(faces_type), intent(inout) :: faces
     type(facing_type) :: on(2)
@@ -42,10 +41,9 @@ contains
               if (which == 3) cycle
               if (.not. master%tip(which, side)) cycle
             end if
-            call find_facing(contact%slave, obstacles, node_of(master, side, which), contact%search, on(1), &
-                             on(2))
+            on = find_facing(contact%slave, obstacles, node_of(master, side, which), contact%search)
             do k = 1, 2
-              if (.not. on(k)%place%found .or. (covered(max(on(k)%segment, 1)) .and. .not. near)) cycle
+              if (.not. on(k)%found .or. (covered(max(on(k)%segment, 1)) .and. .not. near)) cycle
               if (stands_at_node(contact, faces%slave, on(k)) .or. faces%master%has_face(node, on(k))) cycle
               call faces%master%append(node, on(k))
             end do
@@ -64,11 +62,11 @@ contains
     integer :: k, row
 
     stands_at_node = .false.
-    k = maxloc(on%place%share, dim=1)
-    if (on%place%share(k) < 1.0_wp - beyond) return
+    k = maxloc(on%share, dim=1)
+    if (on%share(k) < 1.0_wp - beyond) return
     do row = 1, rows%count
       if (rows%node(row) /= contact%slave%segment(k, on%segment)) cycle
-      stands_at_node = dot_product(rows%facing(row)%place%normal, on%place%normal) < -opposite
+      stands_at_node = dot_product(rows%facing(row)%normal, on%normal) < -opposite
       if (stands_at_node) return
     end do
   end function stands_at_node
@@ -106,7 +104,7 @@ contains
     contact%stands_on = [(faces%master%facing(k)%segment, k=1, faces%master%count)]
     do k = 1, faces%master%count
       associate (facing => faces%master%facing(k))
-        associate (share => facing%place%share)
+        associate (share => facing%share)
           call rows%append(pack(contact%slave%segment(:, facing%segment), share /= 0.0_wp), &
                            pack(share, share /= 0.0_wp))
         end associate
@@ -147,8 +145,8 @@ contains
     model%row_weight = [model%row_weight, weight]
     model%pair_id = [model%pair_id, model%node_id(b)]
     model%pair_node = reshape([model%pair_node, (a(i), b(i), i=1, pairs)], [2, model%pairs])
-    model%normal = reshape([model%normal, (facing(i)%place%normal, i=1, pairs)], [2, model%pairs])
-    model%initial_gap = [model%initial_gap, facing%place%gap]
+    model%normal = reshape([model%normal, (facing(i)%normal, i=1, pairs)], [2, model%pairs])
+    model%initial_gap = [model%initial_gap, facing%gap]
   end subroutine append_pairs
 
   !> Nodes of the slave without a pair.

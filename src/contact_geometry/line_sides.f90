@@ -2,7 +2,6 @@
 module epcont_contact_geometry_line_sides
   use epcont_base_text, only: text_of
   use epcont_contact_geometry_boundary, only: find_boundary
-  use epcont_geometry_boxed_line, only: new_boxed_line
   use epcont_model_finding, only: findings, of_element, of_line, of_node
   use epcont_model_model, only: model_type
   implicit none
@@ -30,7 +29,7 @@ contains
 
     if (size(model%line) == 0) return
     if (sound) then
-      model%boundary = new_boxed_line(find_boundary(model))
+      model%boundary = find_boundary(model)
       allocate (starting(model%nodes), source=0)
       starting(model%boundary%segment(1, :)) = [(i, i=1, size(model%boundary%element))]
     end if

@@ -107,14 +107,14 @@ contains
     real(wp) :: length(2), nearest
     integer :: k, s
 
-    nearest = minval(faces%slave%facing(:faces%slave%count)%place%gap)
+    nearest = minval(faces%slave%facing(:faces%slave%count)%gap)
     length = 0.0_wp
     do s = 1, size(contact%slave%element)
       if (model%is_rigid(contact%slave%segment(:2, s))) cycle
       do k = 1, 2
         if (faces%row_of(k, s) == 0) cycle
         associate (facing => faces%slave%facing(faces%row_of(k, s)))
-          if (facing%place%gap > nearest + contact%slave%chord_length(s)) cycle
+          if (facing%gap > nearest + contact%slave%chord_length(s)) cycle
           if (model%is_rigid(contact%master%segment(:2, facing%segment))) cycle
           length = length + [node_distance(contact%slave, s), node_distance(contact%master, facing%segment)]
         end associate

@@ -12,9 +12,8 @@ module epcont_contact_geometry_mortar
   use epcont_base_sorting, only: sorted_order
   use epcont_base_tolerances, only: no_area, rounded_off
   use epcont_contact_geometry_faces, only: faces_type
-  use epcont_geometry_boundary_line, only: beyond
-  use epcont_geometry_boxed_line, only: boxed_line
-  use epcont_geometry_facing, only: facing_type, find_nearest, looking_point, rise_of
+  use epcont_geometry_boundary_line, only: beyond, boundary_line, facing_place
+  use epcont_geometry_facing, only: facing_type, find_facing, looking_point, rise_of
   use epcont_model_model, only: line_contact
   implicit none
   private
@@ -87,7 +86,7 @@ contains
   !! own places.
   pure subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
     type(line_contact), intent(in) :: contact   !! the contact of lines
-    type(boxed_line), intent(in) :: obstacles      !! the outlines of all bodies
+    type(boundary_line), intent(in) :: obstacles      !! the outlines of all bodies
     type(faces_type), intent(in) :: faces          !! what the slave's nodes face
     logical, intent(in) :: ring                    !! x is a radius
     type(mortar_rows), intent(out) :: rows   !! one for each of these nodes
@@ -132,18 +131,18 @@ contains
 
     is_covered = points%covered .and. all(row > 0 .or. segment == 0)
     if (.not. is_covered) return
-    normal = reshape([(points%facing(p)%place%normal, p=1, points%count)], [2, points%count])
+    normal = reshape([(points%facing(p)%normal, p=1, points%count)], [2, points%count])
     do k = 1, 3
       if (row(k) > 0) is_covered = is_covered .and. &
-                                   all(matmul(facing(row(k))%place%normal, normal) > one_curve)
+                                   all(matmul(facing(row(k))%normal, normal) > one_curve)
     end do
     do p = gauss_points, points%count - 1, gauss_points
       is_covered = is_covered .and. dot_product(normal(:, p), normal(:, p + 1)) > smooth
     end do
     if (.not. is_covered) return
-    before = facing(row(1))%place%gap
+    before = facing(row(1))%gap
     do p = gauss_points, points%count, gauss_points   ! piece by piece
-      associate (gap => points%facing(p - gauss_points + 1:p)%place%gap, &
+      associate (gap => points%facing(p - gauss_points + 1:p)%gap, &
                  s => points%along(p - gauss_points + 1:p))
         cut = s(1) - (s(gauss_points) - s(1))*gauss_place(1)/(gauss_place(gauss_points) - gauss_place(1))
         is_covered = abs(continued(s, gap, cut) - before) <= step*length
@@ -153,7 +152,7 @@ contains
       if (.not. is_covered) return
       before = behind
     end do
-    is_covered = abs(facing(row(2))%place%gap - before) <= step*length
+    is_covered = abs(facing(row(2))%gap - before) <= step*length
   end function is_covered
 
   !> The value at s of the parabola through three points.
@@ -176,18 +175,19 @@ contains
     reach_of = contact%search
     if (any(row == 0 .and. contact%slave%segment(:, side) > 0)) return
     reach_of = min(reach_of, 2.0_wp*max(contact%slave%chord_length(side), &
-                                        maxval(abs(facing(row(:2))%place%gap))))
+                                        maxval(abs(facing(row(:2))%gap))))
   end function reach_of
 
   !> Integration points of a side, cut where nodes of the other line face it.
   pure subroutine cut_side(contact, obstacles, side, reach, ring, points)
     type(line_contact), intent(in) :: contact
-    type(boxed_line), intent(in) :: obstacles
+    type(boundary_line), intent(in) :: obstacles
     integer, intent(in) :: side
     real(wp), intent(in) :: reach             !! the part of the other line that may cut it lies within
     logical, intent(in) :: ring
     type(side_points), intent(out) :: points
     type(looking_point) :: from
+ type(facing_type)::seen(2)
     real(wp), allocatable :: cut(:)
     real(wp) :: s, tangent(2)
     integer :: i, k
@@ -208,9 +208,10 @@ contains
           from%outward = [tangent(2), -tangent(1)]/norm2(tangent)
           from%along = 0.5_wp*tangent
           from%rise = rise_of(slave, side)
-          points%facing(p) = find_nearest(contact%master, obstacles, from, contact%search)
-          points%covered = points%covered .and. points%facing(p)%place%found .and. &
-                           dot_product(points%facing(p)%place%normal, from%outward) < -parallel
+          seen= find_facing(contact%master, obstacles, from, contact%search)
+points%facing(p)=seen(1)
+          points%covered = points%covered .and. points%facing(p)%found .and. &
+                           dot_product(points%facing(p)%normal, from%outward) < -parallel
         end associate
       end do
     end do
@@ -218,14 +219,14 @@ contains
 
   !> Places along a side, from 0 to 1, at which the ends of the other line's sides, within `reach`, face it.
   pure function cuts_of(slave, side, master, reach) result(cut)
-    type(boxed_line), intent(in) :: slave, master
+    type(boundary_line), intent(in) :: slave, master
     integer, intent(in) :: side
     real(wp), intent(in) :: reach
     real(wp), allocatable :: cut(:)
     integer, allocatable :: near(:)
     real(wp) :: middle(2), s, within
     integer :: i, k, n
-    logical :: found
+    type(facing_place) :: place
 
     middle = 0.5_wp*(slave%x(:, 1, side) + slave%x(:, 2, side))
     within = reach + slave%chord_length(side)
@@ -238,8 +239,9 @@ contains
         if (k == 2 .and. i < size(near)) then
           if (near(i + 1) == master%neighbour(2, near(i))) cycle   ! the start of the next
         end if
-        call slave%foot(side, master%x(:, k, near(i)), reach, s, found)
-        if (found) call insert(s, n, cut)
+        place = slave%face(side, master%x(:, k, near(i)))
+        if (place%found .and. place%s >= 0.0_wp .and. place%s <= 1.0_wp .and. abs(place%gap) <= reach*(1.0_wp + beyond)) &
+ call insert(place%s, n, cut)
       end do
     end do
     cut = cut(n:1:-1)
@@ -263,7 +265,7 @@ contains
 
   !> Add the weights of a side that faces the other line all along.
   pure subroutine add_dual(master, points, row, list)
-    type(boxed_line), intent(in) :: master
+    type(boundary_line), intent(in) :: master
     type(side_points), intent(in) :: points
     integer, intent(in) :: row(3)
     type(weight_list), intent(inout) :: list
@@ -291,7 +293,7 @@ contains
       psi = points%weight(p)*matmul(dual, points%share(:, p))
       associate (facing => points%facing(p))
         do k = 1, 3
-          if (row(k) > 0) call list%add(row(k), master%segment(:, facing%segment), psi(k)*facing%place%share)
+          if (row(k) > 0) call list%add(row(k), master%segment(:, facing%segment), psi(k)*facing%share)
         end do
       end associate
     end do
@@ -334,11 +336,11 @@ contains
   pure subroutine add_own_place(self, row, master, facing, integral)
     class(weight_list), intent(inout) :: self
     integer, intent(in) :: row   !! the row
-    type(boxed_line), intent(in) :: master   !! whose side is faced
+    type(boundary_line), intent(in) :: master   !! whose side is faced
     type(facing_type), intent(in) :: facing   !! what it faces
     real(wp), intent(in) :: integral   !! of the node's shape function, as far as this counts for
 
-    call self%add(row, master%segment(:, facing%segment), integral*facing%place%share)
+    call self%add(row, master%segment(:, facing%segment), integral*facing%share)
     self%area(row) = self%area(row) + integral
   end subroutine add_own_place
 

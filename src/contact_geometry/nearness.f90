@@ -9,8 +9,7 @@ module epcont_contact_geometry_nearness
   use epcont_contact_geometry_faces, only: faces_type, find_faces
   use epcont_contact_geometry_line_pairs, only: add_pairs, forget_pairs
   use epcont_geometry_boundary_line, only: boundary_line
-  use epcont_geometry_boxed_line, only: boxed_line
-  use epcont_geometry_facing, only: facing_type, find_facing, find_nearest, node_of
+  use epcont_geometry_facing, only: facing_type, find_facing, node_of
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: line_contact, model_type
   implicit none
@@ -79,7 +78,7 @@ contains
   !! master.
   pure subroutine look_at_contact(contact, obstacles, moved, entered)
     type(line_contact), intent(inout) :: contact
-    type(boxed_line), intent(in) :: obstacles    !! the outlines of all bodies
+    type(boundary_line), intent(in) :: obstacles    !! the outlines of all bodies
     type(moved_scene), intent(in) :: moved
     logical, intent(inout) :: entered
     real(wp) :: search
@@ -108,20 +107,21 @@ contains
   !! that touches: what the nodes of a side share is known only where all of them have pairs [length].
   pure real(wp) function wanted_search(contact, obstacles, moved) result(search)
     type(line_contact), intent(in) :: contact
-    type(boxed_line), intent(in) :: obstacles
+    type(boundary_line), intent(in) :: obstacles
     type(moved_scene), intent(in) :: moved
-    type(facing_type) :: face
+    type(facing_type) :: face,seen(2)
     real(wp) :: gap, slip
     integer :: i
 
     search = contact%search
     do i = 1, size(contact%left_out, 2)
       associate (side => contact%left_out(1, i), which => contact%left_out(2, i))
-        face = find_nearest(contact%master, obstacles, node_of(contact%slave, side, which), moved%size)
-        if (.not. face%place%found) cycle
+        seen = find_facing(contact%master, obstacles, node_of(contact%slave, side, which), moved%size)
+ face=seen(1)
+        if (.not. face%found) cycle
         call find_gap(contact%slave%segment(which, side), contact%master, face, moved%displacement, gap, slip)
         if (gap < -no_gap*moved%size .or. any(moved%holds(contact%slave%segment(:, side)))) &
-          search = max(search, further*abs(face%place%gap))
+          search = max(search, further*abs(face%gap))
       end associate
     end do
   end function wanted_search
@@ -130,7 +130,7 @@ contains
   !! slave's nodes.
   pure subroutine look_from_master(contact, obstacles, moved, side, which, entered)
     type(line_contact), intent(inout) :: contact
-    type(boxed_line), intent(in) :: obstacles
+    type(boundary_line), intent(in) :: obstacles
     type(moved_scene), intent(in) :: moved
     integer, intent(in) :: side, which
     logical, intent(inout) :: entered
@@ -140,16 +140,15 @@ contains
 
     associate (node => contact%master%segment(which, side))
       if (node == 0 .or. any(contact%came_near == node)) return
-      call find_facing(contact%slave, obstacles, node_of(contact%master, side, which), moved%size, face(1), &
-                       face(2))
+      face = find_facing(contact%slave, obstacles, node_of(contact%master, side, which), moved%size)
       do k = 1, 2
-        if (.not. face(k)%place%found) cycle
+        if (.not. face(k)%found) cycle
         if (contact%master%tip(min(which, 2), side) .and. which < 3 .and. &
-            abs(face(k)%place%gap) <= contact%search) cycle
+            abs(face(k)%gap) <= contact%search) cycle
         call find_gap(node, contact%slave, face(k), moved%displacement, gap, slip)
         if (gap >= -left_open(contact, moved, side, which, face(k), slip)) cycle
         contact%came_near = [contact%came_near, node]
-        contact%search = max(contact%search, further*abs(face(k)%place%gap))
+        contact%search = max(contact%search, further*abs(face(k)%gap))
         entered = .true.
         return
       end do
@@ -182,8 +181,8 @@ contains
         left_open = left_open + bend(slave, face%segment, displacement, 0.0_wp)
       end if
       if (smooth) then
-        angle = norm2(face%place%normal + master%outward(side, which))
-        left_open = left_open + askew*angle*(slip + 0.5_wp*angle*abs(face%place%gap))
+        angle = norm2(face%normal + master%outward(side, which))
+        left_open = left_open + askew*angle*(slip + 0.5_wp*angle*abs(face%gap))
       end if
     end associate
     left_open = min(left_open, most*moved%travel)
@@ -214,11 +213,11 @@ contains
 
     apart = displacement(:, node)
     do k = 1, 3
-      if (face%place%share(k) /= 0.0_wp) &
-        apart = apart - face%place%share(k)*displacement(:, line%segment(k, face%segment))
+      if (face%share(k) /= 0.0_wp) &
+        apart = apart - face%share(k)*displacement(:, line%segment(k, face%segment))
     end do
-    gap = face%place%gap + dot_product(face%place%normal, apart)
-    slip = abs(cross_product(face%place%normal, apart))
+    gap = face%gap + dot_product(face%normal, apart)
+    slip = abs(cross_product(face%normal, apart))
   end subroutine find_gap
 
   !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and as
