@@ -54,6 +54,8 @@ module epcont_geometry_boundary_line
     real(wp) :: normal(2) = 0.0_wp   !! outward
     real(wp) :: gap = 0.0_wp         !! from the curve to the point, along the normal [length]
     logical :: at_corner = .false.   !! the place is a corner of the boundary
+  contains
+    procedure :: cosine
   end type facing_place
 
   !> One side, seen from its start: far from the origin its coordinates are exact differences.
@@ -179,6 +181,14 @@ contains
       place%at_corner = self%corner(end, segment) .and. .not. mirrored
     end associate
   end function face
+
+  !> Cosine of the angle between the normals of two places.
+  elemental real(wp) function cosine(self, other)
+    class(facing_place), intent(in) :: self
+    class(facing_place), intent(in) :: other   !! of whatever line
+
+    cosine = dot_product(self%normal, other%normal)
+  end function cosine
 
   !> Shape functions, place on the smooth curve and tangent at a place of a side.
   pure subroutine at(self, segment, s, share, x, tangent)

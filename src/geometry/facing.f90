@@ -174,7 +174,7 @@ contains
           taken(i) = .true.
         end if
       end do
-      taken = taken .or. [(dot_product(met(i)%normal, best(1)%normal) > same_face, i=1, size(met))]
+      taken = taken .or. met%cosine(best(1)) > same_face
       i = minloc(abs(met%gap), mask=.not. taken, dim=1)
       if (i > 0) best(2) = met(i)
     end function best_two
