@@ -109,12 +109,9 @@ contains
   pure function boxes_meeting(tree, low, high) result(box)
     type(box_tree), intent(in) :: tree        !! of the boxes
     real(wp), intent(in) :: low(2), high(2)   !! [length]
-    integer, allocatable :: box(:), found(:)
-    integer :: n
+    integer, allocatable :: box(:)
 
-    allocate (found(16))
-    call tree%meeting(low, high, found, n)
-    box = found(:n)
+    box = tree%meeting(low, high)
   end function boxes_meeting
 
   !> The sides of a part whose boxes do.

@@ -92,7 +92,7 @@ contains
   end subroutine raise_first
 
   !> Bodies, their outlines, and the contacts of lines: after elements, supports, ties and single pairs.
-  pure subroutine find_contacts(model, found)
+  subroutine find_contacts(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
 
@@ -105,7 +105,7 @@ contains
   end subroutine find_contacts
 
   !> What a scene without errors must still be refused or warned of, and its travels.
-  pure subroutine finish_model(model, found)
+  subroutine finish_model(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
 

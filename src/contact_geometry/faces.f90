@@ -1,156 +1,106 @@
 !> What the nodes of lines in contact face, by geometry alone: each node of the slave's sides against the
 !> master, and in concave corners a second face of it.
 module epcont_contact_geometry_faces
-  use epcont_geometry_boxed_line, only: boxed_line
+  use epcont_base_kinds, only: wp
+  use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_facing, only: facing_type, find_facing, node_of, same_face
   use epcont_model_model, only: line_contact
   implicit none
   private
-  public :: face_list, faces_type, find_faces
+  public :: faces_type, find_faces, has_face, node_face
 
-  !> Nodes, and what each of them faces.
-  type :: face_list
-    integer :: count = 0
-    integer, allocatable :: node(:)                !! [count or more]
-    type(facing_type), allocatable :: facing(:)    !! [count or more]
-  contains
-    procedure :: append
-    procedure :: has_node
-    procedure :: has_face
-  end type face_list
+  !> A node and what it faces.
+  type, extends(facing_type) :: node_face
+    integer :: node = 0
+  end type node_face
 
-  !> What nodes face.
+  !> What nodes of the slave face.
   type :: faces_type
-    type(face_list) :: slave                       !! nodes of the slave, each of them a row
+    type(node_face), allocatable :: row(:)   !! each of them a row [any]
     !> Of the nodes of each side; 0: they face nothing [3, sides]
     integer, allocatable :: row_of(:, :)
-    !> Nodes of the slave near sides that look the same way only
-    integer :: same_way = 0
-    integer :: left = 0                            !! nodes of sides that face nothing
-    integer, allocatable :: left_out(:, :)         !! these: which side, which node of it [2, left or more]
-    !> Nodes of the master, and where they stand on sides of the slave
-    type(face_list) :: master
+    integer :: same_way = 0                  !! nodes near sides that look the same way only
+    integer, allocatable :: left_out(:, :)   !! what faces nothing: which side, which node of it [2, any]
   end type faces_type
-
-  integer, parameter :: first_room = 16   !! entries that a list holds before it first grows
 
 contains
 
-  !> Add a node and its face.
-  pure subroutine append(self, node, facing)
-    class(face_list), intent(inout) :: self
-    integer, intent(in) :: node   !! its node
-    type(facing_type), intent(in) :: facing   !! what it faces
+  !> Has a node a face whose normal is near another?
+  pure logical function has_face(faces, node, normal, least_cosine)
+    type(node_face), intent(in) :: faces(:)    !! of these nodes [any]
+    integer, intent(in) :: node                !! which one
+    real(wp), intent(in) :: normal(2)          !! the other
+    real(wp), intent(in) :: least_cosine       !! of the angle between near ones
 
-    if (.not. allocated(self%node)) allocate (self%node(first_room), self%facing(first_room))
-    if (self%count == size(self%node)) then   ! room for twice as many
-      self%node = [self%node, self%node]
-      self%facing = [self%facing, self%facing]
-    end if
-    self%count = self%count + 1
-    self%node(self%count) = node
-    self%facing(self%count) = facing
-  end subroutine append
-
-  !> Is a node in the list?
-  pure logical function has_node(self, node)
-    class(face_list), intent(in) :: self
-    integer, intent(in) :: node   !! its node
-
-    has_node = .false.
-    if (self%count > 0) has_node = any(self%node(:self%count) == node)
-  end function has_node
-
-  !> Has a node a face like this one, that looks the same way?
-  pure logical function has_face(self, node, facing)
-    class(face_list), intent(in) :: self
-    integer, intent(in) :: node   !! its node
-    type(facing_type), intent(in) :: facing   !! what it faces
-    integer :: k
-
-    has_face = .true.
-    do k = 1, self%count
-      if (self%node(k) /= node) cycle
-      if (dot_product(self%facing(k)%place%normal, facing%place%normal) > same_face) return
-    end do
-    has_face = .false.
+    has_face = any(faces%node == node .and. &
+                   faces%normal(1)*normal(1) + faces%normal(2)*normal(2) > least_cosine)
   end function has_face
 
   !> What the nodes of the slave face of the master, in their order along its sides; then second faces, but
   !! where the node has one like them: its other side faces the same.
-  pure subroutine find_faces(contact, obstacles, faces)
-    type(line_contact), intent(in) :: contact   !! the contact of lines
-    type(boxed_line), intent(in) :: obstacles   !! the outlines of all bodies
-    type(faces_type), intent(out) :: faces   !! what they face
-    type(face_list) :: seconds
-    integer, parameter :: in_turn(3) = [1, 3, 2]   ! start, middle, end
-    integer :: k, s
+  subroutine find_faces(contact, obstacles, faces)
+    type(line_contact), intent(in) :: contact       !! the contact of lines
+    type(boundary_line), intent(in) :: obstacles    !! the outlines of all bodies
+    type(faces_type), intent(out) :: faces          !! what they face
+    integer, parameter :: in_turn(3) = [1, 3, 2]    ! start, middle, end
+    type(node_face), dimension(3*size(contact%slave%element)) :: first, second
+    integer :: left_out(2, 3*size(contact%slave%element))
+    integer :: k, left, rows, s, seconds
 
-    associate (slave => contact%slave)
-      allocate (faces%row_of(3, size(slave%element)), faces%left_out(2, 3*size(slave%element)), source=0)
-      do s = 1, size(slave%element)
-        do k = 1, 3
-          if (slave%segment(in_turn(k), s) > 0) &
-            call look_from_node(contact, obstacles, s, in_turn(k), faces, seconds)
-        end do
+    allocate (faces%row_of(3, size(contact%slave%element)), source=0)
+    rows = 0
+    seconds = 0
+    left = 0
+    do s = 1, size(contact%slave%element)
+      do k = 1, 3
+        if (contact%slave%segment(in_turn(k), s) > 0) call look_from_node(contact%slave, s, in_turn(k))
       end do
-    end associate
-    do k = 1, seconds%count
-      if (.not. faces%slave%has_face(seconds%node(k), seconds%facing(k))) &
-        call faces%slave%append(seconds%node(k), seconds%facing(k))
     end do
-  end subroutine find_faces
+    faces%row = first(:rows)
+    do k = 1, seconds
+      if (.not. has_face(faces%row, second(k)%node, second(k)%normal, same_face)) &
+        faces%row = [faces%row, second(k)]
+    end do
+    faces%left_out = left_out(:, :left)
 
-  !> What a node of a side faces, if that is not known from the side beside it.
-  pure subroutine look_from_node(contact, obstacles, side, which, faces, seconds)
-    type(line_contact), intent(in) :: contact
-    type(boxed_line), intent(in) :: obstacles
-    integer, intent(in) :: side, which
-    type(faces_type), intent(inout) :: faces
-    type(face_list), intent(inout) :: seconds
-    type(facing_type) :: face, second
-    integer :: beside, neighbour, row
+  contains
 
-    associate (slave => contact%slave, node => contact%slave%segment(which, side))
-      neighbour = 0
-      beside = 0
-      if (which < 3) neighbour = slave%neighbour(which, side)
-      if (neighbour > 0) beside = faces%row_of(3 - which, neighbour)
-      row = beside
-      if (beside > 0) then   ! where boundary and face are smooth, as looked at from there
-        if (any(slave%normal(:, which, side) /= slave%normal(:, 3 - which, neighbour)) .or. &
-            seconds%has_node(node)) row = 0
-      end if
-      if (row == 0) then
-        call find_facing(contact%master, obstacles, node_of(slave, side, which), contact%search, face, second)
-        if (face%same_way .and. (neighbour == 0 .or. neighbour > side)) faces%same_way = faces%same_way + 1
-        if (second%place%found) call seconds%append(node, second)
-        if (.not. face%place%found) then
-          faces%left = faces%left + 1
-          faces%left_out(:, faces%left) = [side, which]
+    !> What a node of a side faces, if that is not known from the side beside it.
+    subroutine look_from_node(slave, side, which)
+      type(boundary_line), intent(in) :: slave
+      integer, intent(in) :: side, which
+      type(facing_type) :: face(2)
+      integer :: neighbour
+
+      associate (node => slave%segment(which, side), row => faces%row_of(which, side))
+        neighbour = 0
+        if (which < 3) neighbour = slave%neighbour(which, side)
+        if (neighbour > 0) row = faces%row_of(3 - which, neighbour)
+        if (row > 0) then   ! where boundary and face are smooth, as looked at from there
+          if (all(slave%normal(:, which, side) == slave%normal(:, 3 - which, neighbour)) .and. &
+              all(second(:seconds)%node /= node)) return
+        end if
+        face = find_facing(contact%master, obstacles, node_of(slave, side, which), contact%search)
+        if (face(1)%same_way .and. (neighbour == 0 .or. neighbour > side)) faces%same_way = faces%same_way + 1
+        if (face(2)%found) then
+          seconds = seconds + 1
+          second(seconds) = node_face(facing_type=face(2), node=node)
+        end if
+        if (.not. face(1)%found) then
+          row = 0
+          left = left + 1
+          left_out(:, left) = [side, which]
           return
         end if
         ! Sides that meet in a hinge are not neighbours.
-        if (which < 3 .and. neighbour == 0 .and. faces%slave%has_node(node)) &
-          beside = findloc(faces%slave%node, node, dim=1)
-        row = row_like(faces%slave, beside, face)
-        if (row == 0) then
-          call faces%slave%append(node, face)
-          row = faces%slave%count
+        if (which < 3 .and. neighbour == 0) row = findloc(first(:rows)%node, node, dim=1)
+        if (row > 0) then   ! round a corner each side has a pair of its own
+          if (face(1)%cosine(first(row)) > same_face) return
         end if
-      end if
-      faces%row_of(which, side) = row
-    end associate
-  end subroutine look_from_node
-
-  !> The row, if it is of the same face: round a corner each side has a pair of its own. 0: it is not.
-  pure integer function row_like(list, row, face)
-    type(face_list), intent(in) :: list
-    integer, intent(in) :: row               !! 0: there is none
-    type(facing_type), intent(in) :: face
-
-    row_like = row
-    if (row == 0) return
-    if (dot_product(face%place%normal, list%facing(row)%place%normal) <= same_face) row_like = 0
-  end function row_like
+        rows = rows + 1
+        row = rows
+        first(row) = node_face(facing_type=face(1), node=node)
+      end associate
+    end subroutine look_from_node
+  end subroutine find_faces
 end module epcont_contact_geometry_faces

@@ -4,11 +4,10 @@
 !> epcont_contact_geometry_mortar.
 module epcont_contact_geometry_line_pairs
   use epcont_base_kinds, only: wp
-  use epcont_contact_geometry_faces, only: face_list, faces_type
-  use epcont_contact_geometry_mortar, only: find_mortar_rows, mortar_rows
+  use epcont_contact_geometry_faces, only: faces_type, find_faces, has_face, node_face
+  use epcont_contact_geometry_mortar, only: find_mortar_rows, mortar_row
   use epcont_geometry_boundary_line, only: beyond
-  use epcont_geometry_boxed_line, only: boxed_line
-  use epcont_geometry_facing, only: facing_type, find_facing, node_of
+  use epcont_geometry_facing, only: facing_type, find_facing, looking_point, node_of, same_face
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
@@ -20,65 +19,12 @@ module epcont_contact_geometry_line_pairs
 
 contains
 
-  !> Corners of the master that stand on a side of the slave which does not face the master all along (where
-  !! two masters
-  !> lie flush, the side's own nodes hold both), and nodes that came near.
-  pure subroutine find_tips(contact, obstacles, covered, faces)
-    type(line_contact), intent(in) :: contact
-    type(boxed_line), intent(in) :: obstacles
-    logical, intent(in) :: covered(:)           !! sides of the slave
-    type(faces_type), intent(inout) :: faces
-    type(facing_type) :: on(2)
-    integer :: k, side, which
-    logical :: near
-
-    associate (master => contact%master)
-      do side = 1, size(master%element)
-        do which = 1, 3
-          associate (node => master%segment(which, side))
-            if (node == 0) cycle
-            near = any(contact%came_near == node)
-            if (.not. near) then
-              if (which == 3) cycle
-              if (.not. master%tip(which, side)) cycle
-            end if
-            call find_facing(contact%slave, obstacles, node_of(master, side, which), contact%search, on(1), &
-                             on(2))
-            do k = 1, 2
-              if (.not. on(k)%place%found .or. (covered(max(on(k)%segment, 1)) .and. .not. near)) cycle
-              if (stands_at_node(contact, faces%slave, on(k)) .or. faces%master%has_face(node, on(k))) cycle
-              call faces%master%append(node, on(k))
-            end do
-          end associate
-        end do
-      end do
-    end associate
-  end subroutine find_tips
-
-  !> Does a place on the slave lie at a node that has a pair there, of whichever of its sides? (At a corner
-  !! rounding tells which of them is faced.)
-  pure logical function stands_at_node(contact, rows, on)
-    type(line_contact), intent(in) :: contact
-    type(face_list), intent(in) :: rows     !! of the slave's nodes
-    type(facing_type), intent(in) :: on
-    integer :: k, row
-
-    stands_at_node = .false.
-    k = maxloc(on%place%share, dim=1)
-    if (on%place%share(k) < 1.0_wp - beyond) return
-    do row = 1, rows%count
-      if (rows%node(row) /= contact%slave%segment(k, on%segment)) cycle
-      stands_at_node = dot_product(rows%facing(row)%place%normal, on%place%normal) < -opposite
-      if (stands_at_node) return
-    end do
-  end function stands_at_node
-
   !> Forget the pairs of all contacts of lines.
   pure subroutine forget_pairs(model)
     type(model_type), intent(inout) :: model   !! the scene
     integer :: n
 
-    n = model%line_contact(1)%first - 1
+    n = model%single_pairs()
     model%pairs = n
     model%row_start = model%row_start(:n + 1)
     model%pair_node = model%pair_node(:, :n)
@@ -89,80 +35,112 @@ contains
     model%row_weight = model%row_weight(:model%row_start(n + 1) - 1)
   end subroutine forget_pairs
 
-  !> Append pairs, with their rows of N. The node that stands on a side is B, the nodes of that side are A.
-  pure subroutine add_pairs(faces, model, contact)
-    !> What nodes of the slave face; those of the master are found here
-    type(faces_type), intent(inout) :: faces
-    type(model_type), intent(inout) :: model   !! the scene
+  !> Append the pairs of a contact, with their rows of N. The node that stands on a side is B, the nodes of
+  !! that side are A.
+  subroutine add_pairs(model, contact, faces)
+    type(model_type), intent(inout) :: model       !! the scene
     type(line_contact), intent(inout) :: contact   !! the contact of lines
-    logical :: covered(size(contact%slave%element))
-    type(mortar_rows) :: rows
-    type(face_list) :: on   ! what all nodes B face
+    type(faces_type), intent(out) :: faces         !! what nodes of the slave face
+    type(mortar_row), allocatable :: rows(:)
+    type(node_face), allocatable :: tips(:)        ! nodes of the master, and what they face of the slave
+    logical :: covered(size(contact%slave%element)), without(model%nodes)
     integer :: k
 
+    call find_faces(contact, model%boundary, faces)
     call find_mortar_rows(contact, model%boundary, faces, model%has_rings(), rows, covered)
-    call find_tips(contact, model%boundary, covered, faces)
-    on = faces%slave
-    contact%stands_on = [(faces%master%facing(k)%segment, k=1, faces%master%count)]
-    do k = 1, faces%master%count
-      associate (facing => faces%master%facing(k))
-        associate (share => facing%place%share)
-          call rows%append(pack(contact%slave%segment(:, facing%segment), share /= 0.0_wp), &
-                           pack(share, share /= 0.0_wp))
-        end associate
-        call on%append(faces%master%node(k), facing)
-      end associate
-    end do
-    contact%came_near = pack(contact%came_near, &
-                             [(faces%master%has_node(contact%came_near(k)), k=1, size(contact%came_near))])
+    call find_tips()
+    contact%stands_on = tips%segment
+    contact%came_near = pack(contact%came_near, [(any(tips%node == contact%came_near(k)), &
+                                                  k=1, size(contact%came_near))])
     contact%first = model%pairs + 1
-    contact%first_of_master = contact%first + faces%slave%count
-    contact%last = model%pairs + on%count
-    contact%left_out = faces%left_out(:, :faces%left)
-    contact%nodes_left_out = count_left_out(contact%slave%segment, faces)
-    if (on%count > 0) call append_pairs(rows, on%node(:on%count), on%facing(:on%count), model)
+    contact%first_of_master = contact%first + size(faces%row)
+    call append_pairs(faces%row, rows, model)
+    call append_pairs(tips, rows_of_tips(), model)
+    contact%last = model%pairs
+    contact%left_out = faces%left_out
+    without = .false.
+    do k = 1, size(faces%left_out, 2)
+      without(contact%slave%segment(faces%left_out(2, k), faces%left_out(1, k))) = .true.
+    end do
+    without(faces%row%node) = .false.
+    contact%nodes_left_out = count(without)
+
+  contains
+
+    !> Corners of the master that stand on a side of the slave which does not face the master all along (where
+    !! two masters lie flush, the side's own nodes hold both), and nodes that came near.
+    subroutine find_tips()
+      type(facing_type) :: on(2)
+      type(looking_point) :: from
+      integer :: i, side, which
+      logical :: near
+
+      allocate (tips(0))
+      do side = 1, size(contact%master%element)
+        do which = 1, 3
+          associate (node => contact%master%segment(which, side))
+            near = any(contact%came_near == node)
+            from = node_of(contact%master, side, which)
+            if (.not. (near .or. from%at_tip)) cycle
+            on = find_facing(contact%slave, model%boundary, from, contact%search)
+            do i = 1, 2
+              if (.not. on(i)%found) cycle
+              if (covered(on(i)%segment) .and. .not. near) cycle
+              if (stands_at_node(on(i)) .or. has_face(tips, node, on(i)%normal, same_face)) cycle
+              tips = [tips, node_face(facing_type=on(i), node=node)]
+            end do
+          end associate
+        end do
+      end do
+    end subroutine find_tips
+
+    !> Does a place on the slave lie at a node that has a pair there, of whichever of its sides? (At a corner
+    !! rounding tells which of them is faced.)
+    pure logical function stands_at_node(on)
+      type(facing_type), intent(in) :: on
+      integer :: i
+
+      i = maxloc(on%share, dim=1)
+      stands_at_node = on%share(i) >= 1.0_wp - beyond
+      if (stands_at_node) stands_at_node = has_face(faces%row, contact%slave%segment(i, on%segment), &
+                                                    -on%normal, opposite)
+    end function stands_at_node
+
+    !> Shared by the nodes of the slave's side as its shape functions say.
+    pure function rows_of_tips() result(row)
+      type(mortar_row) :: row(size(tips))
+      integer :: i
+
+      do i = 1, size(tips)
+        associate (share => tips(i)%share)
+          row(i)%node = pack(contact%slave%segment(:, tips(i)%segment), share /= 0.0_wp)
+          row(i)%weight = pack(share, share /= 0.0_wp)
+        end associate
+      end do
+    end function rows_of_tips
   end subroutine add_pairs
 
   !> Pairs behind those that there are. In their rows of N node B has weight 1, the others have theirs, less
   !! than zero; of these the largest is A.
-  pure subroutine append_pairs(rows, b, facing, model)
-    type(mortar_rows), intent(in) :: rows
-    integer, intent(in) :: b(:)                       !! [rows]
-    type(facing_type), intent(in) :: facing(:)        !! what they face [rows]
+  pure subroutine append_pairs(b, row, model)
+    type(node_face), intent(in) :: b(:)      !! and what it faces [rows]
+    type(mortar_row), intent(in) :: row(:)
     type(model_type), intent(inout) :: model
-    integer :: a(size(b)), i, node(size(b) + size(rows%node)), pairs
-    real(wp) :: weight(size(node))
+    integer :: a(size(b)), start(size(b) + 1), i, n
 
-    pairs = size(b)
-    do i = 1, pairs
-      associate (first => rows%start(i), last => rows%start(i + 1) - 1)
-        node(first + i - 1:last + i) = [b(i), rows%node(first:last)]
-        weight(first + i - 1:last + i) = [1.0_wp, -rows%weight(first:last)]
-        a(i) = rows%node(first - 1 + maxloc(rows%weight(first:last), dim=1))
-      end associate
+    n = size(b)
+    start(1) = size(model%row_node) + 1
+    do i = 1, n
+      a(i) = row(i)%node(maxloc(row(i)%weight, dim=1))
+      start(i + 1) = start(i) + size(row(i)%node) + 1
     end do
-    model%pairs = model%pairs + pairs
-    model%row_start = [model%row_start, size(model%row_node) + rows%start(2:) + [(i, i=1, pairs)]]
-    model%row_node = [model%row_node, node]
-    model%row_weight = [model%row_weight, weight]
-    model%pair_id = [model%pair_id, model%node_id(b)]
-    model%pair_node = reshape([model%pair_node, (a(i), b(i), i=1, pairs)], [2, model%pairs])
-    model%normal = reshape([model%normal, (facing(i)%place%normal, i=1, pairs)], [2, model%pairs])
-    model%initial_gap = [model%initial_gap, facing%place%gap]
+    model%pairs = model%pairs + n
+    model%row_start = [model%row_start, start(2:)]
+    model%row_node = [model%row_node, (b(i)%node, row(i)%node, i=1, n)]
+    model%row_weight = [model%row_weight, (1.0_wp, -row(i)%weight, i=1, n)]
+    model%pair_id = [model%pair_id, model%node_id(b%node)]
+    model%pair_node = reshape([model%pair_node, (a(i), b(i)%node, i=1, n)], [2, model%pairs])
+    model%normal = reshape([model%normal, (b(i)%normal, i=1, n)], [2, model%pairs])
+    model%initial_gap = [model%initial_gap, b%gap]
   end subroutine append_pairs
-
-  !> Nodes of the slave without a pair.
-  pure integer function count_left_out(segment, faces) result(nodes)
-    integer, intent(in) :: segment(:, :)
-    type(faces_type), intent(in) :: faces
-    logical :: without(maxval(segment))
-    integer :: i
-
-    without = .false.
-    do i = 1, faces%left
-      without(segment(faces%left_out(2, i), faces%left_out(1, i))) = .true.
-    end do
-    if (faces%slave%count > 0) without(faces%slave%node(:faces%slave%count)) = .false.
-    nodes = count(without)
-  end function count_left_out
 end module epcont_contact_geometry_line_pairs

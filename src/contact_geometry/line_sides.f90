@@ -1,8 +1,10 @@
-!> Boundary lines: from the nodes that are given to sides of the bodies' outlines, end to end.
+!> Boundary lines: from the nodes that are given to sides of the bodies' outlines, end to end; and the boundary
+!> of all bodies as contact takes it, those sides with normals and corners.
 module epcont_contact_geometry_line_sides
+  use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_contact_geometry_boundary, only: find_boundary
-  use epcont_geometry_boxed_line, only: new_boxed_line
+  use epcont_geometry_boundary_line, only: boundary_line
+  use epcont_geometry_corners, only: find_normals
   use epcont_model_finding, only: findings, of_element, of_line, of_node
   use epcont_model_model, only: model_type
   implicit none
@@ -18,35 +20,112 @@ module epcont_contact_geometry_line_sides
 
 contains
 
-  !> The sides of all lines; one that is not sound has none. Where the elements are not `sound` there are no
+  !> The sides of all lines; one that is not sound has none. Where there were errors before there are no
   !! outlines, and nodes alone are looked at.
-  pure subroutine find_line_sides(model, sound, found)
+  subroutine find_line_sides(model, found)
     type(model_type), intent(inout) :: model   !! the scene
-    logical, intent(in) :: sound              !! the elements are, and the outlines known
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    type(between_type), allocatable :: way(:)
     integer, allocatable :: starting(:)       ! the last side of the outline that starts at each node
     integer :: i, passed
+    logical :: sound                          ! the elements are, and the outlines known
 
     if (size(model%line) == 0) return
+    sound = found%errors == 0
     if (sound) then
-      model%boundary = new_boxed_line(find_boundary(model))
+      model%boundary = find_boundary(model)
       allocate (starting(model%nodes), source=0)
       starting(model%boundary%segment(1, :)) = [(i, i=1, size(model%boundary%element))]
     end if
     do i = 1, size(model%line)
-      allocate (model%line(i)%side(0))
-      if (size(model%line(i)%node) == 1) &
-        call found%add_error(of_line, i, 0, ': one node is no line', 'two nodes or more')
-      passed = first_passed_twice(model%line(i)%node, model%nodes)
-      if (passed > 0) then
-        call found%add_error(of_line, i, -passed, ': '//model%name_of(of_node, model%line(i)%node(passed))// &
-                             ' stands in it before', 'each node once; a closed line ends with its first node')
-      else
-        call walk(model, i, way, found)
-        if (sound .and. size(way) > 0) call set_sides(model, i, way, starting)
-      end if
+      associate (line => model%line(i))
+        allocate (line%side(0))
+        if (size(line%node) == 1) &
+          call found%add_error(of_line, i, 0, ': one node is no line', 'two nodes or more')
+        passed = first_passed_twice(line%node, model%nodes)
+        if (passed > 0) then
+          call found%add_error(of_line, i, -passed, ': '//model%name_of(of_node, line%node(passed))// &
+                               ' stands in it before', 'each node once; a closed line ends with its first node')
+        else
+          call walk(line%node)
+        end if
+      end associate
     end do
+
+  contains
+
+    !> The sides between consecutive nodes, none where one is missing; a middle node between two corners may be
+    !! listed or left out.
+    subroutine walk(node)
+      integer, intent(in) :: node(:)
+      type(between_type) :: next, over
+      integer :: k, side(size(node)), sides
+
+      sides = 0
+      k = 1
+      do while (k < size(node))
+        next = between(node(k), node(k + 1))
+        if (next%elements == 0 .and. k + 2 <= size(node)) then
+          over = between(node(k), node(k + 2))
+          if (over%elements > 0 .and. over%node(3) == node(k + 1)) then
+            k = k + 1
+            next = over
+          end if
+        end if
+        if (next%elements /= 1) then
+          call add_no_side(next, k, model%name_of(of_node, node(k))//' and '//text_of(model%node_id(node(k + 1))))
+          return
+        end if
+        sides = sides + 1
+        if (sound) side(sides) = side_of_outline(next)
+        k = k + 1
+      end do
+      if (.not. sound .or. sides == 0) return
+      if (model%boundary%segment(1, side(1)) /= node(1)) side(:sides) = side(sides:1:-1)
+      model%line(i)%side = side(:sides)
+      model%line(i)%box = reshape([minval(model%x(:, node), dim=2), maxval(model%x(:, node), dim=2)], [2, 2])
+    end subroutine walk
+
+    !> The side that ends at two corners, and how many elements have it.
+    pure type(between_type) function between(a, b)
+      integer, intent(in) :: a, b
+      integer :: k, side
+
+      do k = model%around%start(a), model%around%start(a + 1) - 1
+        associate (element => model%around%group(k))
+          side = model%side_between(element, a, b)
+          if (side == 0) cycle
+          between%elements = between%elements + 1
+          between%element(min(between%elements, 2)) = element
+          if (between%elements == 1) between%node = model%edge(element, side)
+        end associate
+      end do
+    end function between
+
+    !> No side, or no free one, between the k-th and the next node of a line.
+    subroutine add_no_side(there, k, ends)
+      type(between_type), intent(in) :: there
+      integer, intent(in) :: k
+      character(len=*), intent(in) :: ends   !! the two nodes
+
+      if (there%elements == 0) then
+        call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
+                             'nodes in the order of the boundary')
+      else
+        call found%add_error(of_line, i, -k - 1, ': the side between '//ends// &
+                             ' lies inside a body, between '//model%name_of(of_element, there%element(1))// &
+                             ' and '//model%name_of(of_element, there%element(2)), 'sides that one element has')
+      end if
+    end subroutine add_no_side
+
+    !> The side of the outline that an element has, walked with the body to the left.
+    pure integer function side_of_outline(own) result(k)
+      type(between_type), intent(in) :: own
+
+      k = starting(own%node(1))
+      do while (model%boundary%element(k) /= own%element(1) .or. any(model%boundary%segment(:, k) /= own%node))
+        k = k - 1   ! the only one, but where boundaries meet in a node
+      end do
+    end function side_of_outline
   end subroutine find_line_sides
 
   !> Where a line comes to a node that it has passed; 0: nowhere. But a closed line ends with its first node.
@@ -63,104 +142,33 @@ contains
     k = 0
   end function first_passed_twice
 
-  !> The sides between consecutive nodes; a middle node between two corners may be listed or left out.
-  pure subroutine walk(model, i, way, found)
+  !> All sides of the bodies, numbered as those of the outlines.
+  pure type(boundary_line) function find_boundary(model) result(line)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: i
-    type(between_type), allocatable, intent(out) :: way(:)   !! none where one is missing [sides]
-    type(findings), intent(inout) :: found
-    type(between_type) :: next, over
-    integer :: k, sides
+    integer :: i, k
 
-    associate (node => model%line(i)%node)
-      allocate (way(size(node)))
-      sides = 0
-      k = 1
-      do while (k < size(node))
-        next = between(model, node(k), node(k + 1))
-        if (next%elements == 0 .and. k + 2 <= size(node)) then
-          over = between(model, node(k), node(k + 2))
-          if (over%elements > 0 .and. over%node(3) == node(k + 1)) then
-            k = k + 1
-            next = over
-          end if
-        end if
-        if (next%elements /= 1) then
-          call add_no_side(model, i, k, next, found)
-          sides = 0
-          exit
-        end if
-        sides = sides + 1
-        way(sides) = next
-        k = k + 1
+    associate (outline => model%body_outline, sides => model%body_outline%sides)
+      line%segment = outline%node
+      line%element = outline%element
+      line%neighbour = transpose(reshape([outline%before, outline%after], [sides, 2]))
+      allocate (line%x(2, 3, sides), source=0.0_wp)
+      do i = 1, sides
+        associate (node => outline%node(:, i))
+          line%x(:, :merge(3, 2, node(3) > 0), i) = model%edge_coordinates(node)
+        end associate
       end do
+      call find_normals(line, reshape([((held_direction(outline%node(k, i)), k=1, 2), i=1, sides)], [2, sides]), &
+                        model%controls%corner)
     end associate
-    way = way(:sides)
-  end subroutine walk
 
-  !> No side, or no free one, between the nodes k and k + 1 of a line.
-  pure subroutine add_no_side(model, i, k, there, found)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: i, k
-    type(between_type), intent(in) :: there
-    type(findings), intent(inout) :: found
-    character(len=:), allocatable :: ends
+  contains
 
-    associate (node => model%line(i)%node)
-      ends = model%name_of(of_node, node(k))//' and '//text_of(model%node_id(node(k + 1)))
-    end associate
-    if (there%elements == 0) then
-      call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
-                           'nodes in the order of the boundary')
-    else
-      call found%add_error(of_line, i, -k - 1, ': the side between '//ends// &
-                           ' lies inside a body, between '// &
-                           model%name_of(of_element, there%element(1))//' and '// &
-                           model%name_of(of_element, there%element(2)), 'sides that one element has')
-    end if
-  end subroutine add_no_side
+    !> The direction in which a node, or what it is tied to, is held: 0 none, 3 both.
+    pure integer function held_direction(node)
+      integer, intent(in) :: node
+      integer :: c
 
-  !> The side that ends at two corners, and how many elements have it.
-  pure type(between_type) function between(model, a, b)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: a, b
-    integer :: i, side
-
-    do i = model%around%start(a), model%around%start(a + 1) - 1
-      associate (element => model%around%group(i))
-        side = model%side_between(element, a, b)
-        if (side == 0) cycle
-        between%elements = between%elements + 1
-        if (between%elements == 1) then
-          between%element = element
-          between%node = model%edge(element, side)
-        else
-          between%element(2) = element
-        end if
-      end associate
-    end do
-  end function between
-
-  !> Its sides of the outline, walked with the body to the left.
-  pure subroutine set_sides(model, i, way, starting)
-    type(model_type), intent(inout) :: model
-    integer, intent(in) :: i
-    type(between_type), intent(in) :: way(:)
-    integer, intent(in) :: starting(:)       !! the last side of the outline that starts at each node
-    integer :: k, s, side(size(way))
-
-    do s = 1, size(way)
-      k = starting(way(s)%node(1))
-      do while (model%boundary%element(k) /= way(s)%element(1) .or. &
-                any(model%boundary%segment(:, k) /= way(s)%node))
-        k = k - 1   ! the only one, but where boundaries meet in a node
-      end do
-      side(s) = k
-    end do
-    associate (line => model%line(i))
-      if (way(1)%node(1) /= line%node(1)) side = side(size(side):1:-1)
-      line%side = side
-      line%box = reshape([minval(model%x(:, line%node), dim=2), maxval(model%x(:, line%node), dim=2)], [2, 2])
-    end associate
-  end subroutine set_sides
+      held_direction = sum([(merge(c, 0, model%held(c, model%leader(c, node))), c=1, 2)])
+    end function held_direction
+  end function find_boundary
 end module epcont_contact_geometry_line_sides

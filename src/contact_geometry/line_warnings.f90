@@ -9,7 +9,7 @@ module epcont_contact_geometry_line_warnings
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
-  public :: warn_of_both_ways, warn_of_finer_slave, warn_of_overlap, warn_of_thicker_slave
+  public :: warn_of_both_ways, warn_of_contact
 
   !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off by
   !! 3 % and more.
@@ -27,23 +27,130 @@ module epcont_contact_geometry_line_warnings
 
 contains
 
+  !> What is not as it seems of one contact.
+  subroutine warn_of_contact(model, contact, faces, found)
+    type(model_type), intent(in) :: model        !! the scene
+    type(line_contact), intent(in) :: contact    !! the contact of lines
+    type(faces_type), intent(in) :: faces        !! what the slave's nodes face
+    type(findings), intent(inout) :: found       !! what is wrong with it is added
+
+    call warn_of_overlap()
+    call warn_of_finer_slave()
+    call warn_of_thicker_slave()
+
+  contains
+
+    !> One warning for all overlaps: shrink fits have many. What curves over chords, and cards of eight
+    !! columns, leave is none.
+    subroutine warn_of_overlap()
+      character(len=:), allocatable :: others
+      integer :: deepest, overlaps
+      real(wp) :: least
+
+      least = digits*maxval(abs(contact%slave%x)) + &
+              curve_error*(largest_rise(contact%slave) + largest_rise(contact%master))
+      overlaps = count(model%initial_gap(contact%first:contact%last) < -least)
+      if (overlaps == 0) return
+      deepest = contact%first - 1 + minloc(model%initial_gap(contact%first:contact%last), dim=1)
+      others = ''
+      if (overlaps > 1) others = '; '//text_of(overlaps)//' nodes overlap'
+      call found%add_warning(of_couple, contact%couple(1), 1, ': the initial gap at GRID '// &
+                             text_of(model%pair_id(deepest))//' is '//short_real(model%initial_gap(deepest))// &
+                             others, 'gaps of 0.0 or more, unless a fit is meant')
+    end subroutine warn_of_overlap
+
+    !> Pressures are carried by the slave's nodes. Where these are closer than the nodes of the master, whose
+    !! sides bend at nodes alone, they show its facets.
+    subroutine warn_of_finer_slave()
+      character(len=:), allocatable :: advice, text
+      real(wp) :: sides(2)
+
+      sides = facing_sides()
+      if (sides(1)*finer >= sides(2)) return
+      if (sides(1)*far_coarser < sides(2)) then
+        text = 'pressures and approaches will be those of facets'
+        advice = 'lines of about the same fineness'
+      else
+        text = 'pressures will show these as facets'
+        advice = 'SLAVE and MASTER exchanged, or lines of about the same fineness'
+      end if
+      call found%add_warning(of_couple, contact%couple(1), 2, ': sides of the slave line are '// &
+                             short_real(sides(2)/sides(1))// &
+                             ' times shorter than those that they face: '//text, advice)
+    end subroutine warn_of_finer_slave
+
+    !> Lengths, from node to node, of the slave's sides and of those that they face, summed up where the lines
+    !! are nearest to each other. A side whose ends are held, or move as one, does not bend at all, and does
+    !! not count.
+    pure function facing_sides() result(length)
+      real(wp) :: length(2), nearest
+      integer :: k, s
+
+      nearest = minval(faces%row%gap)
+      length = 0.0_wp
+      do s = 1, size(contact%slave%element)
+        if (model%is_rigid(contact%slave%segment(:2, s))) cycle
+        do k = 1, 2
+          if (faces%row_of(k, s) == 0) cycle
+          associate (row => faces%row(faces%row_of(k, s)))
+            if (row%gap > nearest + contact%slave%chord_length(s)) cycle
+            if (model%is_rigid(contact%master%segment(:2, row%segment))) cycle
+            length = length + [node_distance(contact%slave, s), node_distance(contact%master, row%segment)]
+          end associate
+        end do
+      end do
+    end function facing_sides
+
+    !> Pressures are forces by the area of the slave, which a thinner master does not cover.
+    subroutine warn_of_thicker_slave()
+      real(wp) :: thickness(2)
+
+      if (model%has_rings()) return
+      thickness = [maxval(model%thickness(model%section(contact%slave%element))), &
+                   minval(model%thickness(model%section(contact%master%element)))]
+      if (thickness(1)*(1.0_wp - digits) > thickness(2)) &
+        call found%add_warning(of_couple, contact%couple(1), 2, ': the slave is '//short_real(thickness(1))// &
+                               ' thick, the master '//short_real(thickness(2))//': pressures are forces by '// &
+                               'the slave''s area, of which the master covers a part', &
+                               'SLAVE and MASTER exchanged')
+    end subroutine warn_of_thicker_slave
+  end subroutine warn_of_contact
+
+  !> From one node of a side to the next [length].
+  pure real(wp) function node_distance(line, side)
+    type(boundary_line), intent(in) :: line
+    integer, intent(in) :: side
+
+    node_distance = line%chord_length(side)/merge(2, 1, line%segment(3, side) > 0)
+  end function node_distance
+
+  !> How high the curves over a line's sides rise above its chords, at most [length].
+  pure real(wp) function largest_rise(line)
+    type(boundary_line), intent(in) :: line
+    integer :: i
+
+    largest_rise = maxval([(line%chord_length(i)*norm2(line%normal(:, 2, i) - line%normal(:, 1, i)), &
+                            i=1, size(line%element))])/8.0_wp
+  end function largest_rise
+
   !> A node that is slave in one contact and master in another, on the same face: neither knows of the sides
   !! that the other has beside it, whose pressures are shared by chance.
-  pure subroutine warn_of_both_ways(model, found)
+  subroutine warn_of_both_ways(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     !> Of each pair, 0: given alone; the pair of each node as slave, 0: none
-    integer, allocatable :: contact(:), slave(:)
-    integer :: c, i, pair
+    integer :: contact(model%pairs), slave(model%nodes)
     logical :: told(size(model%line_contact))
+    integer :: c, i, pair
 
     if (size(model%line_contact) < 2) return
-    allocate (contact(model%pairs), slave(model%nodes), source=0)
+    contact = 0
+    slave = 0
     do c = 1, size(model%line_contact)
-      do pair = model%line_contact(c)%first, model%line_contact(c)%first_of_master - 1
-        contact(pair) = c
-        slave(model%row_node(model%row_start(pair))) = pair
-      end do
+      associate (first => model%line_contact(c)%first, last => model%line_contact(c)%first_of_master - 1)
+        contact(first:last) = c
+        slave(model%row_node(model%row_start(first:last))) = [(pair, pair=first, last)]
+      end associate
     end do
     told = .false.
     do pair = 1, model%pairs
@@ -54,131 +161,22 @@ contains
           if (contact(other) == contact(pair) .or. told(contact(pair))) cycle
           if (dot_product(model%normal(:, pair), model%normal(:, other)) > -one_face) cycle
           told([contact(pair), contact(other)]) = .true.
-          call found%add_warning(of_couple, first_couple(contact(pair)), 3, ': '// &
-                                 model%name_of(of_node, model%row_node(i))// &
-            ' is of its MASTER, and of the SLAVE of '// &
-            model%name_of(of_couple, first_couple(contact(other)))// &
-            ': pressures beside it are off, by a quarter where both touch', &
-            'SLAVE and MASTER of one of the two exchanged: lines that go on in each other are one contact')
+          call add_both_ways(model%line_contact(contact(pair))%couple(1), model%row_node(i), &
+                             model%line_contact(contact(other))%couple(1))
         end associate
       end do
     end do
 
   contains
 
-    pure integer function first_couple(c)
-      integer, intent(in) :: c
+    subroutine add_both_ways(couple, node, other)
+      integer, intent(in) :: couple, node, other   !! that node is of the master of the first couple
 
-      first_couple = model%line_contact(c)%couple(1)
-    end function first_couple
+      call found%add_warning(of_couple, couple, 3, ': '//model%name_of(of_node, node)// &
+                             ' is of its MASTER, and of the SLAVE of '//model%name_of(of_couple, other)// &
+                             ': pressures beside it are off, by a quarter where both touch', &
+                             'SLAVE and MASTER of one of the two exchanged: lines that go on in each other '// &
+                             'are one contact')
+    end subroutine add_both_ways
   end subroutine warn_of_both_ways
-
-  !> Pressures are carried by the slave's nodes. Where these are closer than the nodes of the master, whose
-  !! sides bend at nodes alone, they show its facets.
-  pure subroutine warn_of_finer_slave(model, contact, faces, found)
-    type(model_type), intent(in) :: model   !! the scene
-    type(line_contact), intent(in) :: contact   !! the contact of lines
-    type(faces_type), intent(in) :: faces         !! what the slave's nodes face
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    character(len=:), allocatable :: advice, text
-    real(wp) :: sides(2)
-
-    sides = facing_sides(model, contact, faces)
-    if (sides(1)*finer >= sides(2)) return
-    if (sides(1)*far_coarser < sides(2)) then
-      text = 'pressures and approaches will be those of facets'
-      advice = 'lines of about the same fineness'
-    else
-      text = 'pressures will show these as facets'
-      advice = 'SLAVE and MASTER exchanged, or lines of about the same fineness'
-    end if
-    call found%add_warning(of_couple, contact%couple(1), 2, ': sides of the slave line are '// &
-                           short_real(sides(2)/sides(1))// &
-                           ' times shorter than those that they face: '//text, advice)
-  end subroutine warn_of_finer_slave
-
-  !> Lengths, from node to node, of the slave's sides and of those that they face, summed up where the lines
-  !! are nearest to each other. A side whose ends are held, or move as one, does not bend at all, and does not
-  !! count.
-  pure function facing_sides(model, contact, faces) result(length)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    type(faces_type), intent(in) :: faces
-    real(wp) :: length(2), nearest
-    integer :: k, s
-
-    nearest = minval(faces%slave%facing(:faces%slave%count)%place%gap)
-    length = 0.0_wp
-    do s = 1, size(contact%slave%element)
-      if (model%is_rigid(contact%slave%segment(:2, s))) cycle
-      do k = 1, 2
-        if (faces%row_of(k, s) == 0) cycle
-        associate (facing => faces%slave%facing(faces%row_of(k, s)))
-          if (facing%place%gap > nearest + contact%slave%chord_length(s)) cycle
-          if (model%is_rigid(contact%master%segment(:2, facing%segment))) cycle
-          length = length + [node_distance(contact%slave, s), node_distance(contact%master, facing%segment)]
-        end associate
-      end do
-    end do
-  end function facing_sides
-
-  !> From one node of a side to the next [length].
-  pure real(wp) function node_distance(line, side)
-    class(boundary_line), intent(in) :: line
-    integer, intent(in) :: side
-
-    node_distance = line%chord_length(side)/merge(2, 1, line%segment(3, side) > 0)
-  end function node_distance
-
-  !> Pressures are forces by the area of the slave, which a thinner master does not cover.
-  pure subroutine warn_of_thicker_slave(model, contact, found)
-    type(model_type), intent(in) :: model   !! the scene
-    type(line_contact), intent(in) :: contact   !! the contact of lines
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    real(wp) :: thickness(2)
-
-    if (model%has_rings()) return
-    thickness = [maxval(model%thickness(model%section(contact%slave%element))), &
-                 minval(model%thickness(model%section(contact%master%element)))]
-    if (thickness(1)*(1.0_wp - digits) > thickness(2)) &
-      call found%add_warning(of_couple, contact%couple(1), 2, ': the slave is '//short_real(thickness(1))// &
-                             ' thick, the master '//short_real(thickness(2))// &
-                             ': pressures are forces by the slave''s area, of which the master covers '// &
-                             'a part', &
-                             'SLAVE and MASTER exchanged')
-  end subroutine warn_of_thicker_slave
-
-  !> One warning for all overlaps: shrink fits have many. What curves over chords, and cards of eight columns,
-  !! leave is none.
-  pure subroutine warn_of_overlap(model, contact, found)
-    type(model_type), intent(in) :: model   !! the scene
-    type(line_contact), intent(in) :: contact   !! the contact of lines
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    character(len=:), allocatable :: others
-    integer :: deepest, overlaps
-    real(wp) :: least
-
-    least = digits*maxval(abs(contact%slave%x)) + &
-            curve_error*(largest_rise(contact%slave) + largest_rise(contact%master))
-    associate (gap => model%initial_gap(contact%first:contact%last))
-      overlaps = count(gap < -least)
-      if (overlaps == 0) return
-      deepest = contact%first - 1 + minloc(gap, dim=1)
-    end associate
-    others = ''
-    if (overlaps > 1) others = '; '//text_of(overlaps)//' nodes overlap'
-    call found%add_warning(of_couple, contact%couple(1), 1, ': the initial gap at GRID '// &
-                           text_of(model%pair_id(deepest))// &
-                           ' is '//short_real(model%initial_gap(deepest))//others, &
-                           'gaps of 0.0 or more, unless a fit is meant')
-  end subroutine warn_of_overlap
-
-  !> How high the curves over a line's sides rise above its chords, at most [length].
-  pure real(wp) function largest_rise(line)
-    class(boundary_line), intent(in) :: line
-    integer :: i
-
-    largest_rise = maxval([(line%chord_length(i)*norm2(line%normal(:, 2, i) - line%normal(:, 1, i)), &
-                            i=1, size(line%element))])/8.0_wp
-  end function largest_rise
 end module epcont_contact_geometry_line_warnings

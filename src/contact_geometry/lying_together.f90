@@ -69,7 +69,8 @@ contains
       mate = find_mates(model)
       do side = 1, model%body_outline%sides
         within = coincident*norm2(drawn%chord(side))
-        call drawn%part_tree%meeting(drawn%low(:, side) - within, drawn%high(:, side) + within, near, n)
+        near = drawn%part_tree%meeting(drawn%low(:, side) - within, drawn%high(:, side) + within)
+ n=size(near)
         do i = 1, n
           if (near(i) <= model%body_outline%part(side)) cycle
           other = twin_that_counts(model, drawn, mate, side, near(i))

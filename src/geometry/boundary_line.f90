@@ -1,4 +1,4 @@
-!> Sides of elements along the boundary of a body, and where a point faces them.
+!> Sides of elements along the boundary of a body, where a point faces them, and which of them lie near by.
 !>
 !> Sides are walked with the body to the left, so that outward is to the right. Normals at the nodes come from
 !> the two sides that meet there, exact on a circle (epcont_geometry_corners); along a side they turn from one
@@ -8,6 +8,8 @@
 !> the chord.
 module epcont_geometry_boundary_line
   use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: sorted_order
+  use epcont_geometry_box_tree, only: box_tree, new_box_tree
   use epcont_geometry_plane, only: cross_product
   implicit none
   private
@@ -32,27 +34,66 @@ module epcont_geometry_boundary_line
     !! corner.
     logical, allocatable :: mirrored(:, :)     !! [2, sides]
     real(wp), allocatable :: end_normal(:, :, :)   !! [2, 2, sides]
+    type(box_tree), private :: tree            !! of boxes round the sides
   contains
+    procedure :: set_boxes
+    procedure :: in_box
     procedure :: pick
-    procedure :: longest
     procedure :: chord_length
     procedure :: own_normal
     procedure :: outward
     procedure :: face
-    procedure :: foot
     procedure :: at
   end type boundary_line
 
   !> Where a point faces a line.
   type :: facing_place
     logical :: found = .false.
+    real(wp) :: s = 0.0_wp           !! from 0 at the start of the side to 1 at its end; or just beyond
     real(wp) :: share(3) = 0.0_wp    !! of start, end and middle of the side in the place [-]
     real(wp) :: normal(2) = 0.0_wp   !! outward
     real(wp) :: gap = 0.0_wp         !! from the curve to the point, along the normal [length]
     logical :: at_corner = .false.   !! the place is a corner of the boundary
+  contains
+    procedure :: cosine
   end type facing_place
 
+  !> One side, seen from its start: far from the origin its coordinates are exact differences.
+  type :: side_type
+    logical :: curved = .false.             !! it has a middle node
+    real(wp) :: x(2, 3) = 0.0_wp            !! of start, end and middle [length]
+    real(wp) :: normal(2, 2) = 0.0_wp       !! at start and end
+    real(wp) :: tangent_length(2) = 0.0_wp  !! there [length]
+  contains
+    procedure :: values
+    procedure :: tangent
+    procedure :: scaled_normal
+    procedure :: rise
+    procedure :: find_foot
+  end type side_type
+
 contains
+
+  !> Put boxes round the sides, each beyond its side by half of the side's length, as the curve over it may be.
+  pure subroutine set_boxes(self)
+    class(boundary_line), intent(inout) :: self
+    real(wp), dimension(2, size(self%element)) :: middle, reach
+    integer :: i
+
+    middle = 0.5_wp*(self%x(:, 1, :) + self%x(:, 2, :))
+    reach = spread([(self%chord_length(i), i=1, size(self%element))], 1, 2)
+    self%tree = new_box_tree(middle - reach, middle + reach)
+  end subroutine set_boxes
+
+  !> The sides whose boxes meet a box, in their order.
+  pure function in_box(self, low, high) result(sides)
+    class(boundary_line), intent(in) :: self
+    real(wp), intent(in) :: low(2), high(2)   !! its opposite corners
+    integer, allocatable :: sides(:)
+
+    sides = self%tree%meeting(low, high)
+    sides = sides(sorted_order(sides))   ! not by the tree's: of equal ones the first counts
+  end function in_box
 
   !> Some of the sides, in the order given; what lies beyond the ends is forgotten, but for the normals.
   pure function pick(self, sides) result(part)
@@ -72,18 +113,8 @@ contains
     part%tip = self%tip(:, sides)
     part%mirrored = self%mirrored(:, sides)
     part%end_normal = self%end_normal(:, :, sides)
+    call part%set_boxes()
   end function pick
-
-  !> Outward normal of a side itself, at a place from 0 to 1.
-  pure function own_normal(self, segment, s) result(normal)
-    class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment   !! which side
-    real(wp), intent(in) :: s   !! from 0 to 1
-    real(wp) :: normal(2), tangent(2)
-
-    tangent = matmul(local(self, segment), slopes(self%segment(3, segment) > 0, s))
-    normal = unit([tangent(2), -tangent(1)])
-  end function own_normal
 
   !> Length of a side, from end to end [length].
   pure real(wp) function chord_length(self, segment)
@@ -93,16 +124,18 @@ contains
     chord_length = norm2(self%x(:, 2, segment) - self%x(:, 1, segment))
   end function chord_length
 
-  !> Length of the longest side, from end to end [length].
-  pure real(wp) function longest(self)
+  !> Outward normal of a side itself, at a place from 0 to 1.
+  pure function own_normal(self, segment, s) result(normal)
     class(boundary_line), intent(in) :: self
-    integer :: i
+    integer, intent(in) :: segment   !! which side
+    real(wp), intent(in) :: s   !! from 0 to 1
+    real(wp) :: normal(2), tangent(2)
+    type(side_type) :: side
 
-    longest = 0.0_wp
-    do i = 1, size(self%element)
-      longest = max(longest, chord_length(self, i))
-    end do
-  end function longest
+    call set_nodes(side, self%x(:, :, segment), self%segment(3, segment))
+    tangent = side%tangent(s)
+    normal = unit([tangent(2), -tangent(1)])
+  end function own_normal
 
   !> Outward normal at a node of a side: 1 its start, 2 its end, 3 its middle; at a corner the side's own.
   pure function outward(self, segment, which) result(normal)
@@ -123,62 +156,39 @@ contains
     integer, intent(in) :: segment   !! which side
     real(wp), intent(in) :: point(2)    !! [length]
     type(facing_place) :: place
-    real(wp) :: s
-    logical :: curved, found
+    type(side_type) :: side
+    real(wp) :: from(2)
+    integer :: end
 
-    curved = self%segment(3, segment) > 0
-    call find_foot(self, segment, point, s, found)
-    if (.not. found .or. s < -beyond .or. s > 1.0_wp + beyond) return
-    place%found = .true.
-    if (s <= beyond) then
-      call face_end(self, segment, 1, point, place)
-    else if (s >= 1.0_wp - beyond) then
-      call face_end(self, segment, 2, point, place)
-    else
-      place%share = values(curved, s)
-      place%normal = unit(scaled_normal(self, segment, s))
-      place%gap = dot_product(place%normal, point - self%x(:, 1, segment) - &
-                              matmul(local(self, segment), place%share))
-      if (.not. curved) place%gap = place%gap - rise(self, segment, s)
-    end if
+    side = side_of(self, segment)
+    from = point - self%x(:, 1, segment)
+    call side%find_foot(from, place%s, place%found)
+    associate (s => place%s)
+      place%found = place%found .and. s >= -beyond .and. s <= 1.0_wp + beyond
+      if (.not. place%found) return
+      if (s > beyond .and. s < 1.0_wp - beyond) then
+        place%share = side%values(s)
+        place%normal = unit(side%scaled_normal(s))
+        place%gap = dot_product(place%normal, from - matmul(side%x, place%share)) - side%rise(s)
+        return
+      end if
+      end = merge(1, 2, s <= beyond)
+    end associate
+    associate (mirrored => self%mirrored(end, segment))
+      place%share(end) = 1.0_wp
+      place%normal = merge(self%end_normal(:, end, segment), self%normal(:, end, segment), mirrored)
+      place%gap = dot_product(place%normal, point - self%x(:, end, segment))
+      place%at_corner = self%corner(end, segment) .and. .not. mirrored
+    end associate
   end function face
 
-  !> A point faces the start (1) or the end (2) of a side.
-  pure subroutine face_end(line, segment, which, point, place)
-    class(boundary_line), intent(in) :: line
-    integer, intent(in) :: segment, which
-    real(wp), intent(in) :: point(2)
-    type(facing_place), intent(inout) :: place
+  !> Cosine of the angle between the normals of two places.
+  elemental real(wp) function cosine(self, other)
+    class(facing_place), intent(in) :: self
+    class(facing_place), intent(in) :: other   !! of whatever line
 
-    place%share(which) = 1.0_wp
-    place%normal = line%normal(:, which, segment)
-    if (line%mirrored(which, segment)) place%normal = line%end_normal(:, which, segment)
-    place%gap = dot_product(place%normal, point - line%x(:, which, segment))
-    place%at_corner = line%corner(which, segment) .and. .not. line%mirrored(which, segment)
-  end subroutine face_end
-
-  !> The place of a side, from 0 to 1, that a point within a distance of it faces.
-  pure subroutine foot(self, segment, point, distance, s, found)
-    class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment   !! which side
-    real(wp), intent(in) :: point(2), distance   !! [length]
-    real(wp), intent(out) :: s   !! from 0 to 1
-    logical, intent(out) :: found   !! there is one
-
-    real(wp) :: share(3), tangent(2), x(2)
-
-    found = .false.
-    s = 0.0_wp
-    associate (a => self%x(:, 1, segment), b => self%x(:, 2, segment))
-      if (any(abs(point - 0.5_wp*(a + b)) > distance + norm2(b - a))) return
-    end associate
-    call find_foot(self, segment, point, s, found)
-    found = found .and. s >= 0.0_wp .and. s <= 1.0_wp
-    if (.not. found) return
-    ! Not by boxes: how a scene is turned must not decide.
-    call self%at(segment, s, share, x, tangent)
-    found = norm2(point - x) <= distance*(1.0_wp + beyond)
-  end subroutine foot
+    cosine = dot_product(self%normal, other%normal)
+  end function cosine
 
   !> Shape functions, place on the smooth curve and tangent at a place of a side.
   pure subroutine at(self, segment, s, share, x, tangent)
@@ -186,40 +196,54 @@ contains
     integer, intent(in) :: segment   !! which side
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp), intent(out) :: share(3), x(2), tangent(2)   !! shape functions; [length]; [length]
-    logical :: curved
+    type(side_type) :: side
 
-    curved = self%segment(3, segment) > 0
-    share = values(curved, s)
-    x = matmul(self%x(:, :, segment), share)
-    tangent = matmul(local(self, segment), slopes(curved, s))
-    if (.not. curved) x = x + rise(self, segment, s)*unit(scaled_normal(self, segment, s))
+    side = side_of(self, segment)
+    share = side%values(s)
+    tangent = side%tangent(s)
+    x = matmul(self%x(:, :, segment), share) + side%rise(s)*unit(side%scaled_normal(s))
   end subroutine at
 
-  !> The place of a side whose normal leads to a point.
-  pure subroutine find_foot(line, segment, point, s, found)
-    type(boundary_line), intent(in) :: line
+  pure type(side_type) function side_of(line, segment) result(side)
+    class(boundary_line), intent(in) :: line
     integer, intent(in) :: segment
-    real(wp), intent(in) :: point(2)
-    real(wp), intent(out) :: s
-    logical, intent(out) :: found
-    real(wp) :: away(2), chord(2), from(2), normal(2), rate, slope(2), start(2), step, turn(2), x(2, 3)
-    logical :: curved
     integer :: k
 
-    curved = line%segment(3, segment) > 0
-    x = local(line, segment)
-    chord = x(:, 2)
-    from = point - line%x(:, 1, segment)
-    start = scaled_normal(line, segment, 0.0_wp)
-    turn = scaled_normal(line, segment, 1.0_wp) - start
-    s = dot_product(from, chord)/dot_product(chord, chord)
+    call set_nodes(side, line%x(:, :, segment), line%segment(3, segment))
+    side%normal = line%normal(:, :, segment)
+    side%tangent_length = [(norm2(side%tangent(real(k, wp))), k=0, 1)]
+  end function side_of
+
+  pure subroutine set_nodes(side, x, middle)
+    type(side_type), intent(inout) :: side
+    real(wp), intent(in) :: x(2, 3)
+    integer, intent(in) :: middle     !! the node there; 0: none
+
+    side%curved = middle > 0
+    side%x = x - spread(x(:, 1), 2, 3)
+    if (.not. side%curved) side%x(:, 3) = 0.0_wp
+  end subroutine set_nodes
+
+  !> The place whose normal leads to a point, which is given from the side's start as well.
+  pure subroutine find_foot(self, point, s, found)
+    class(side_type), intent(in) :: self
+    real(wp), intent(in) :: point(2)   !! [length]
+    real(wp), intent(out) :: s         !! from 0 to 1, or beyond
+    logical, intent(out) :: found      !! there is one
+    real(wp) :: away(2), normal(2), rate, start(2), step, turn(2)
+    integer :: k
+
+    start = self%scaled_normal(0.0_wp)
+    turn = self%scaled_normal(1.0_wp) - start
+    associate (chord => self%x(:, 2))
+      s = dot_product(point, chord)/dot_product(chord, chord)
+    end associate
     found = .false.
     do k = 1, most_steps
       if (abs(s) > 10.0_wp) return
-      away = from - matmul(x, values(curved, s))
-      slope = matmul(x, slopes(curved, s))
+      away = point - matmul(self%x, self%values(s))
       normal = start + s*turn
-      rate = cross_product(turn, away) - cross_product(normal, slope)
+      rate = cross_product(turn, away) - cross_product(normal, self%tangent(s))
       if (rate == 0.0_wp) return
       step = -cross_product(normal, away)/rate
       s = s + step
@@ -229,70 +253,54 @@ contains
     found = abs(step) <= beyond
   end subroutine find_foot
 
-  !> Coordinates of a side's nodes from its start: far from the origin they are exact differences.
-  pure function local(line, segment) result(x)
-    class(boundary_line), intent(in) :: line
-    integer, intent(in) :: segment
-    real(wp) :: x(2, 3)
-
-    x = line%x(:, :, segment) - spread(line%x(:, 1, segment), 2, 3)
-    if (line%segment(3, segment) == 0) x(:, 3) = 0.0_wp
-  end function local
-
   !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is
   !! linear between them.)
-  pure function scaled_normal(line, segment, s) result(normal)
-    type(boundary_line), intent(in) :: line
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: s
+  pure function scaled_normal(self, s) result(normal)
+    class(side_type), intent(in) :: self
+    real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: normal(2)
-    real(wp) :: length(2)
-    integer :: k
 
-    do k = 1, 2
-      length(k) = norm2(matmul(local(line, segment), slopes(line%segment(3, segment) > 0, real(k - 1, wp))))
-    end do
-    normal = (1.0_wp - s)*length(1)*line%normal(:, 1, segment) + s*length(2)*line%normal(:, 2, segment)
+    normal = (1.0_wp - s)*self%tangent_length(1)*self%normal(:, 1) + s*self%tangent_length(2)*self%normal(:, 2)
   end function scaled_normal
 
-  !> How far along its normal the smooth curve rises above the chord: exactly where the normals at the ends
-  !! are those of an arc [length].
-  pure real(wp) function rise(line, segment, s)
-    type(boundary_line), intent(in) :: line
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: s
-    real(wp) :: across(2), along(2), lean
+  !> How far along its normal the smooth curve rises above a chord: exactly where the normals at the ends are
+  !! those of an arc [length].
+  pure real(wp) function rise(self, s)
+    class(side_type), intent(in) :: self
+    real(wp), intent(in) :: s   !! from 0 to 1
+    real(wp) :: along(2), lean
 
-    across = line%own_normal(segment, s)
-    along = [-across(2), across(1)]
+    rise = 0.0_wp
+    if (self%curved) return
+    along = unit(self%x(:, 2))
     ! An arc of radius r leans by asin(chord/(2 r)) at its ends, and is r - sqrt(r**2 - chord**2 s (1 - s))
     ! above.
-    lean = s*dot_product(line%normal(:, 2, segment), along) - &
-           (1.0_wp - s)*dot_product(line%normal(:, 1, segment), along)
+    lean = s*dot_product(self%normal(:, 2), along) - (1.0_wp - s)*dot_product(self%normal(:, 1), along)
     associate (w => s*(1.0_wp - s))
-      rise = 2.0_wp*chord_length(line, segment)*w*lean/(1.0_wp + sqrt(max(0.0_wp, 1.0_wp - 4.0_wp*w*lean**2)))
+      rise = 2.0_wp*norm2(self%x(:, 2))*w*lean/(1.0_wp + sqrt(max(0.0_wp, 1.0_wp - 4.0_wp*w*lean**2)))
     end associate
   end function rise
 
   !> Shape functions of start, end and middle.
-  pure function values(curved, s) result(share)
-    logical, intent(in) :: curved
-    real(wp), intent(in) :: s
-    real(wp) :: share(3)
+  pure function values(self, s)
+    class(side_type), intent(in) :: self
+    real(wp), intent(in) :: s   !! from 0 to 1
+    real(wp) :: values(3)
 
-    share = [1.0_wp - s, s, 0.0_wp]
-    if (curved) share = [(1.0_wp - s)*(1.0_wp - 2.0_wp*s), s*(2.0_wp*s - 1.0_wp), 4.0_wp*s*(1.0_wp - s)]
+    values = [1.0_wp - s, s, 0.0_wp]
+    if (self%curved) values = [(1.0_wp - s)*(1.0_wp - 2.0_wp*s), s*(2.0_wp*s - 1.0_wp), 4.0_wp*s*(1.0_wp - s)]
   end function values
 
-  !> Their derivatives.
-  pure function slopes(curved, s) result(slope)
-    logical, intent(in) :: curved
-    real(wp), intent(in) :: s
-    real(wp) :: slope(3)
+  !> Along the side, as long as it would be if it were straight on from there [length].
+  pure function tangent(self, s)
+    class(side_type), intent(in) :: self
+    real(wp), intent(in) :: s   !! from 0 to 1
+    real(wp) :: tangent(2), slope(3)
 
     slope = [-1.0_wp, 1.0_wp, 0.0_wp]
-    if (curved) slope = [4.0_wp*s - 3.0_wp, 4.0_wp*s - 1.0_wp, 4.0_wp - 8.0_wp*s]
-  end function slopes
+    if (self%curved) slope = [4.0_wp*s - 3.0_wp, 4.0_wp*s - 1.0_wp, 4.0_wp - 8.0_wp*s]
+    tangent = matmul(self%x, slope)
+  end function tangent
 
   !> Zero of zero: a side without length, which its element is refused for.
   pure function unit(vector)

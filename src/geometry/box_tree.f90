@@ -29,8 +29,7 @@ contains
     real(wp), intent(in) :: low(:, :), high(:, :)   !! [length] [2, boxes]
     type(box_tree) :: tree
     integer, allocatable :: first(:), last(:), order(:)
-    integer :: axis, i, k, leaves, middle, n
-    real(wp) :: extent(2)
+    integer :: axis, i, leaves, middle, n
 
     n = size(low, 2)
     leaves = 1
@@ -46,33 +45,30 @@ contains
     last(1) = n
     do i = 1, 2*leaves - 1
       if (first(i) == 0) cycle
-      do k = first(i), last(i)
-        tree%low(:, i) = min(tree%low(:, i), low(:, order(k)))
-        tree%high(:, i) = max(tree%high(:, i), high(:, order(k)))
-      end do
-      if (first(i) == last(i)) then
-        tree%item(i) = order(first(i))
-        cycle
-      end if
-      extent = tree%high(:, i) - tree%low(:, i)
-      axis = merge(1, 2, extent(1) >= extent(2))
       associate (own => order(first(i):last(i)))
+        tree%low(:, i) = minval(low(:, own), dim=2)
+        tree%high(:, i) = maxval(high(:, own), dim=2)
+        if (size(own) == 1) then
+          tree%item(i) = own(1)
+          cycle
+        end if
+        axis = maxloc(tree%high(:, i) - tree%low(:, i), dim=1)
         call halve(low(axis, own) + high(axis, own), own)
+        middle = first(i) + size(own)/2
       end associate
-      middle = first(i) + (last(i) - first(i) + 1)/2
       first(2*i:2*i + 1) = [first(i), middle]
       last(2*i:2*i + 1) = [middle - 1, last(i)]
     end do
   end function new_box_tree
 
   !> The boxes that meet the one from `low` to `high`, ascending by their place in the tree.
-  pure subroutine meeting(self, low, high, found, count)
+  pure function meeting(self, low, high) result(found)
     class(box_tree), intent(in) :: self
-    real(wp), intent(in) :: low(2), high(2)       !! [length]
-    integer, allocatable, intent(inout) :: found(:)   !! room, made longer where it is short
-    integer, intent(out) :: count                 !! of them
-    integer :: i, waiting(most_waiting), waits
+    real(wp), intent(in) :: low(2), high(2)   !! [length]
+    integer, allocatable :: found(:)
+    integer :: count, i, waiting(most_waiting), waits
 
+    allocate (found(16))
     count = 0
     waiting(1) = 1
     waits = 1
@@ -89,7 +85,8 @@ contains
       count = count + 1
       found(count) = self%item(i)
     end do
-  end subroutine meeting
+    found = found(:count)
+  end function meeting
 
   !> Square of the distance of a point from the box of a node; 0 in it [length**2].
   pure real(wp) function away(self, node, point)

@@ -27,54 +27,113 @@ module epcont_geometry_corners
 
 contains
 
-  !> Normals at the ends of the sides, corners and lines of symmetry. A side's neighbours are known.
+  !> Normals at the ends of the sides, corners and lines of symmetry, and boxes round the sides. A side's
+  !! neighbours are known.
   pure subroutine find_normals(line, held, angle)
     type(boundary_line), intent(inout) :: line   !! its sides, whose normals are set
     !> The direction in which its start, its end is held: 0 none, 3 both [2, sides]
     integer, intent(in) :: held(:, :)
     !> Turns above it are corners, others are not [degree]; 0: decided here
     real(wp), intent(in) :: angle
-    real(wp) :: turn(2, size(line%element))
-    integer :: n
+    !> Normals of each side itself at its ends; turns of the boundary there, positive where it is convex
+    real(wp) :: own(2, 2, size(line%element)), turn(2, size(line%element))
+    logical :: ends_there(2, size(line%element))
+    integer :: end, i, n
 
     n = size(line%element)
-    allocate (line%normal(2, 2, n), line%end_normal(2, 2, n), source=0.0_wp)
-    allocate (line%mirrored(2, n), source=.false.)
-    allocate (line%corner(2, n), source=.true.)
-    call find_turns(line, turn)
-    call reflect(line, held, turn)
+    own = reshape([((line%own_normal(i, real(end - 1, wp)), end=1, 2), i=1, n)], [2, 2, n])
+    turn = 0.0_wp
+    do i = 1, n
+      associate (next => line%neighbour(2, i))
+        if (next == 0) cycle
+        turn(2, i) = angle_between(own(:, 2, i), own(:, 1, next))
+        turn(1, next) = turn(2, i)
+      end associate
+    end do
+    line%mirrored = reshape([((is_mirrored(end, i), end=1, 2), i=1, n)], [2, n])
+    allocate (line%end_normal(2, 2, n), source=0.0_wp)
+    do i = 1, n
+      do end = 1, 2
+        if (line%mirrored(end, i)) &
+          call reflect(end, held(end, i), own(:, end, i), line%end_normal(:, end, i), turn(end, i))
+      end do
+    end do
+    ends_there = line%neighbour == 0 .and. .not. line%mirrored
     if (angle > 0.0_wp) then
-      line%corner = abs(turn) > angle*degree + rounding
+      line%corner = ends_there .or. abs(turn) > angle*degree + rounding
     else
-      line%corner = .not. (abs(turn) < always_smooth .or. is_on_curve(line, turn))
+      line%corner = ends_there .or. .not. (abs(turn) < always_smooth .or. is_on_curve())
     end if
-    where (ends_there(line)) line%corner = .true.
-    line%tip = line%corner .and. (turn > 0.0_wp .or. ends_there(line)) .and. .not. line%mirrored
+    line%tip = line%corner .and. (turn > 0.0_wp .or. ends_there) .and. .not. line%mirrored
     call set_normals(line)
+    call line%set_boxes()
+
+  contains
+
+    !> Does a side meet a line of symmetry at its end, along which the body is cut, and across which that is
+    !! held? A node held by itself, to keep a body from drifting, is no cut.
+    pure logical function is_mirrored(end, side)
+      integer, intent(in) :: end, side
+
+      associate (d => held(end, side), next => line%neighbour(end, side))
+        is_mirrored = d /= 0 .and. d /= both .and. held(3 - end, side) /= d
+        if (is_mirrored) is_mirrored = .not. looks_along(own(:, end, side), d)
+        if (.not. is_mirrored .or. next == 0) return   ! nothing is known of what lies beyond
+        ! A cut meets the side at a corner; on a curve the next side may look like one from 45 degrees on.
+        is_mirrored = abs(turn(end, side)) >= always_corner .and. any(held(end, next) == [d, both]) .and. &
+                      looks_along(own(:, 3 - end, next), d)
+      end associate
+    end function is_mirrored
+
+    !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the
+    !! first or the last node of one (beside a node within it, and they turn like that)?
+    pure function is_on_curve() result(on)
+      logical :: on(2, n)
+      logical :: alike_beside(2, 2, n), inner(2, 0:n)
+      real(wp) :: beside(2)
+      integer :: end, i, next
+
+      inner = .false.
+      do i = 1, n
+        do end = 1, 2
+          ! Along the side, and along the one that it meets there.
+          next = line%neighbour(end, i)
+          beside = [turn(3 - end, i), 0.0_wp]
+          if (line%mirrored(end, i)) then
+            beside(2) = beside(1)
+          else if (next > 0) then
+            beside(2) = turn(end, next)
+          end if
+          beside = beside*sign(1.0_wp, turn(end, i))
+          alike_beside(:, end, i) = alike*beside > abs(turn(end, i))
+          inner(end, i) = all(alike_beside(:, end, i) .and. beside < always_corner)
+        end do
+      end do
+      inner(:, 1:) = inner(:, 1:) .and. abs(turn) < always_corner
+      do i = 1, n
+        do end = 1, 2
+          next = merge(0, line%neighbour(end, i), line%mirrored(end, i))
+          on(end, i) = inner(end, i) .or. any([inner(3 - end, i), inner(end, next)] .and. alike_beside(:, end, i))
+        end do
+      end do
+      on = on .and. abs(turn) < always_corner
+    end function is_on_curve
   end subroutine find_normals
 
-  !> Sides without a neighbour, and without a mirrored one.
-  pure function ends_there(line) result(ends)
-    type(boundary_line), intent(in) :: line
-    logical :: ends(2, size(line%element))
+  !> The normal within a line of symmetry where a side meets it, and the turn there, as the side goes on
+  !! beyond it.
+  pure subroutine reflect(end, across, own, normal, turn)
+    integer, intent(in) :: end           !! of the side: 1 its start, 2 its end
+    integer, intent(in) :: across        !! the direction across the line
+    real(wp), intent(in) :: own(2)       !! normal of the side itself
+    real(wp), intent(inout) :: normal(2), turn
+    real(wp) :: beyond(2)
 
-    ends = line%neighbour == 0 .and. .not. line%mirrored
-  end function ends_there
-
-  !> By how much the boundary turns at the start and end of each side, positive where it is convex.
-  pure subroutine find_turns(line, turn)
-    type(boundary_line), intent(in) :: line
-    real(wp), intent(out) :: turn(:, :)   !! [2, sides]
-    integer :: i, next
-
-    turn = 0.0_wp
-    do i = 1, size(line%element)
-      next = line%neighbour(2, i)
-      if (next == 0) cycle
-      turn(2, i) = angle_between(line%own_normal(i, 1.0_wp), line%own_normal(next, 0.0_wp))
-      turn(1, next) = turn(2, i)
-    end do
-  end subroutine find_turns
+    normal(3 - across) = sign(1.0_wp, own(3 - across))
+    beyond = own
+    beyond(across) = -own(across)
+    turn = merge(-1.0_wp, 1.0_wp, end == 1)*angle_between(own, beyond)
+  end subroutine reflect
 
   !> Counter-clockwise from one vector to another.
   pure real(wp) function angle_between(a, b)
@@ -83,111 +142,28 @@ contains
     angle_between = atan2(cross_product(a, b), dot_product(a, b))
   end function angle_between
 
-  !> Where a side meets a line of symmetry, along which the body is cut, it goes on as it would be mirrored
-  !! there.
-  pure subroutine reflect(line, held, turn)
-    type(boundary_line), intent(inout) :: line
-    integer, intent(in) :: held(:, :)
-    real(wp), intent(inout) :: turn(:, :)
-    real(wp) :: mirrored(2), own(2)
-    integer :: end, i
+  !> Does a vector lean more along an axis than across it?
+  pure logical function looks_along(vector, axis)
+    real(wp), intent(in) :: vector(2)
+    integer, intent(in) :: axis
 
-    do i = 1, size(line%element)
-      do end = 1, 2
-        associate (d => held(end, i))
-          if (d == 0 .or. d == both .or. held(3 - end, i) == d) cycle
-          ! A cut meets the side at a corner; on a curve the next side may look like one from 45 degrees on.
-          if (line%neighbour(end, i) > 0 .and. abs(turn(end, i)) < always_corner) cycle
-          own = line%own_normal(i, real(end - 1, wp))
-          if (abs(own(3 - d)) < abs(own(d)) .or. .not. is_cut(line, held, i, end)) cycle
-          line%mirrored(end, i) = .true.
-          line%end_normal(3 - d, end, i) = sign(1.0_wp, own(3 - d))
-          mirrored = own
-          mirrored(d) = -own(d)
-          turn(end, i) = angle_between(own, mirrored)
-          if (end == 1) turn(end, i) = -turn(end, i)
-        end associate
-      end do
-    end do
-  end subroutine reflect
-
-  !> Does the body end there along a line across the direction in which that end of a side is held? A node
-  !! held by itself, to keep a body from drifting, is no cut. If nothing is known of what lies beyond, yes.
-  pure logical function is_cut(line, held, side, end)
-    type(boundary_line), intent(in) :: line
-    integer, intent(in) :: held(:, :), side, end
-    real(wp) :: other(2)
-
-    is_cut = line%neighbour(end, side) == 0
-    if (is_cut) return
-    associate (d => held(end, side), next => line%neighbour(end, side))
-      other = line%own_normal(next, real(2 - end, wp))
-      is_cut = abs(other(3 - d)) < abs(other(d)) .and. any(held(end, next) == [d, both])
-    end associate
-  end function is_cut
-
-  !> The turns beside that at one end of a side: along the side, and along the one that it meets there.
-  pure function beside(line, turn, end, side) result(turns)
-    type(boundary_line), intent(in) :: line
-    real(wp), intent(in) :: turn(:, :)
-    integer, intent(in) :: end, side
-    real(wp) :: turns(2)
-
-    turns(1) = turn(3 - end, side)
-    turns(2) = 0.0_wp
-    if (line%mirrored(end, side)) then
-      turns(2) = turns(1)
-    else if (line%neighbour(end, side) > 0) then
-      turns(2) = turn(end, line%neighbour(end, side))
-    end if
-  end function beside
-
-  !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the
-  !! first or the last node of one (beside a node within it, and they turn like that)?
-  pure function is_on_curve(line, turn) result(on)
-    type(boundary_line), intent(in) :: line
-    real(wp), intent(in) :: turn(:, :)
-    logical :: on(2, size(line%element))
-    logical :: inner(2, 0:size(line%element))
-    real(wp) :: turns(2)
-    integer :: end, i, next
-
-    inner = .false.
-    do i = 1, size(line%element)
-      do end = 1, 2
-        turns = beside(line, turn, end, i)*sign(1.0_wp, turn(end, i))
-        inner(end, i) = all(alike*turns > abs(turn(end, i)) .and. turns < always_corner)
-      end do
-    end do
-    inner(:, 1:) = inner(:, 1:) .and. abs(turn) < always_corner
-    do i = 1, size(line%element)
-      do end = 1, 2
-        next = merge(0, line%neighbour(end, i), line%mirrored(end, i))
-        turns = beside(line, turn, end, i)*sign(1.0_wp, turn(end, i))
-        on(end, i) = inner(end, i) .or. any([inner(3 - end, i), inner(end, next)] .and. &
-                                            alike*turns > abs(turn(end, i)))
-      end do
-    end do
-    on = on .and. abs(turn) < always_corner
-  end function is_on_curve
+    looks_along = abs(vector(3 - axis)) < abs(vector(axis))
+  end function looks_along
 
   !> Normals from the sides that meet, or from the other end of the side.
   pure subroutine set_normals(line)
     type(boundary_line), intent(inout) :: line
     real(wp) :: chord(2)
-    integer :: end, i, next
+    integer :: end, i
 
+    line%normal = line%end_normal
     do i = 1, size(line%element)
-      next = line%neighbour(2, i)
-      if (.not. line%corner(2, i) .and. .not. line%mirrored(2, i)) then
+      if (line%corner(2, i) .or. line%mirrored(2, i)) cycle
+      associate (next => line%neighbour(2, i))
         line%normal(:, 2, i) = unit(line%chord_length(next)*line%own_normal(i, 1.0_wp) + &
                                     line%chord_length(i)*line%own_normal(next, 0.0_wp))
         line%normal(:, 1, next) = line%normal(:, 2, i)
-      end if
-      do end = 1, 2
-        if (line%mirrored(end, i) .and. .not. line%corner(end, i)) &
-          line%normal(:, end, i) = line%end_normal(:, end, i)
-      end do
+      end associate
     end do
     do i = 1, size(line%element)
       chord = line%own_normal(i, 0.5_wp)

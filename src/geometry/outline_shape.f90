@@ -49,7 +49,6 @@ contains
     real(wp), intent(in) :: x(:, :)   !! [length] [2, nodes]
     type(outline_shape) :: shape
     real(wp) :: control(2)
-    real(wp), allocatable :: high(:, :), low(:, :)
     integer :: p, s
 
     shape%outline = outline
@@ -64,15 +63,16 @@ contains
         shape%high(:, s) = max(own(:, 1), own(:, 2), control)
       end associate
     end do
-    allocate (shape%side_tree(outline%parts), low(2, outline%parts), high(2, outline%parts))
+    allocate (shape%side_tree(outline%parts))
     do p = 1, outline%parts
       associate (first => outline%first(p), last => outline%first(p + 1) - 1)
         shape%side_tree(p) = new_box_tree(shape%low(:, first:last), shape%high(:, first:last))
-        low(:, p) = shape%side_tree(p)%low(:, 1)
-        high(:, p) = shape%side_tree(p)%high(:, 1)
       end associate
     end do
-    if (outline%parts > 0) shape%part_tree = new_box_tree(low, high)
+    associate (tree => shape%side_tree, n => outline%parts)
+      shape%part_tree = new_box_tree(reshape([(tree(p)%low(:, 1), p=1, n)], [2, n]), &
+                                     reshape([(tree(p)%high(:, 1), p=1, n)], [2, n]))
+    end associate
   end function new_outline_shape
 
   !> A place of a side.
@@ -118,7 +118,7 @@ contains
     type(near_place) :: best
     type(near_place) :: place
     real(wp) :: away(2), bound(most_waiting)
-    integer :: i, waiting(most_waiting), waits
+    integer :: child(2), i, waiting(most_waiting), waits
 
     waiting(1) = 1
     bound(1) = 0.0_wp
@@ -133,27 +133,26 @@ contains
         if (bound(waits + 1) > best%distance*best%distance) cycle
         if (tree%item(i) > 0) then
           place = self%near_side(self%outline%first(part) + tree%item(i) - 1, point)
-          if (place%side == best%side) cycle
-          if (place%distance > best%distance*(1.0_wp + least_difference)) cycle
-          if (place%distance >= best%distance*(1.0_wp - least_difference)) then
-            if (is_inside(self, best, point) .or. .not. is_inside(self, place, point)) cycle
-          end if
-          best = place
+          if (is_better()) best = place
           cycle
         end if
         away = [tree%away(2*i, point), tree%away(2*i + 1, point)]
-        ! The nearer one is looked at first.
-        if (away(1) <= away(2)) then
-          waiting(waits + 1:waits + 2) = [2*i + 1, 2*i]
-          bound(waits + 1:waits + 2) = [away(2), away(1)]
-        else
-          waiting(waits + 1:waits + 2) = [2*i, 2*i + 1]
-          bound(waits + 1:waits + 2) = away
-        end if
+        child = merge([2, 1], [1, 2], away(1) <= away(2))   ! the nearer one is looked at first
+        waiting(waits + 1:waits + 2) = 2*i - 1 + child
+        bound(waits + 1:waits + 2) = away(child)
         waits = waits + 2
       end do
     end associate
-    best%inside = is_inside(self, best, point)
+    best%inside = self%is_inside(best, point)
+
+  contains
+
+    !> Is the place nearer; or as near, and of two edges of a slit the one whose body has the point inside?
+    pure logical function is_better()
+      is_better = place%side /= best%side .and. place%distance <= best%distance*(1.0_wp + least_difference)
+      if (.not. is_better .or. place%distance < best%distance*(1.0_wp - least_difference)) return
+      is_better = self%is_inside(place, point) .and. .not. self%is_inside(best, point)
+    end function is_better
   end function nearest_place
 
   !> The place of a side that is nearest to a point; whether the point is inside is not looked at.
@@ -162,19 +161,44 @@ contains
     integer, intent(in) :: side   !! which side
     real(wp), intent(in) :: point(2)   !! [length]
     type(near_place) :: place
-    real(wp) :: along(2)
 
     place%side = side
-    associate (own => self%x(:, :, side))
-      along = own(:, 2) - own(:, 1)
-      place%s = dot_product(point - own(:, 1), along)/max(dot_product(along, along), tiny(1.0_wp))
-      place%s = min(1.0_wp, max(0.0_wp, place%s))
-    end associate
-    if (self%outline%node(3, side) > 0) place%s = near_curve(self, side, point)
+    if (self%outline%node(3, side) > 0) then
+      place%s = near_curve()
+    else
+      associate (start => self%x(:, 1, side), along => self%chord(side))
+        place%s = dot_product(point - start, along)/max(dot_product(along, along), tiny(1.0_wp))
+        place%s = min(1.0_wp, max(0.0_wp, place%s))
+      end associate
+    end if
     if (place%s < least_difference) place%s = 0.0_wp
     if (1.0_wp - place%s < least_difference) place%s = 1.0_wp
     place%x = self%at(side, place%s)
     place%distance = norm2(point - place%x)
+
+  contains
+
+    !> The place along a parabola: the nearest of a few, and Newton's method from there.
+    pure real(wp) function near_curve() result(s)
+      real(wp) :: along(2), away(2), bend(2), rate, step
+      integer :: k
+
+      k = minloc([(norm2(point - self%at(side, real(k, wp)/tried)), k=0, tried)], dim=1) - 1
+      s = real(k, wp)/tried
+      associate (own => self%x(:, :, side))
+        bend = -8.0_wp*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
+      end associate
+      do k = 1, most_steps
+        away = self%at(side, s) - point
+        along = self%tangent(side, s)
+        rate = dot_product(along, along) + dot_product(away, bend)
+        if (rate <= 0.0_wp) rate = dot_product(along, along)
+        if (rate == 0.0_wp) return
+        step = min(1.0_wp, max(0.0_wp, s - dot_product(away, along)/rate)) - s
+        s = s + step
+        if (abs(step) <= epsilon(s)) return
+      end do
+    end function near_curve
   end function near_side
 
   !> Is a point in the body, as seen from the place of the outline that is nearest to it? At a node both sides
@@ -185,55 +209,20 @@ contains
     real(wp), intent(in) :: point(2)   !! [length]
     real(wp) :: outward(2)
 
-    associate (side => place%side, before => self%outline%before(place%side), &
-               after => self%outline%after(place%side))
-      if (place%s <= 0.0_wp) then
-        outward = normal(self%tangent(before, 1.0_wp)) + normal(self%tangent(side, 0.0_wp))
-      else if (place%s >= 1.0_wp) then
-        outward = normal(self%tangent(side, 1.0_wp)) + normal(self%tangent(after, 0.0_wp))
-      else
-        outward = normal(self%tangent(side, place%s))
-      end if
-    end associate
+    outward = normal(place%side, place%s)
+    if (place%s <= 0.0_wp) outward = outward + normal(self%outline%before(place%side), 1.0_wp)
+    if (place%s >= 1.0_wp) outward = outward + normal(self%outline%after(place%side), 0.0_wp)
     is_inside = dot_product(outward, point - place%x) < 0.0_wp
-  end function is_inside
 
-  !> The place along a parabola: the nearest of a few, and Newton's method from there.
-  pure real(wp) function near_curve(self, side, point) result(s)
-    type(outline_shape), intent(in) :: self
-    integer, intent(in) :: side
-    real(wp), intent(in) :: point(2)
-    real(wp) :: along(2), away(2), bend(2), distance, least, rate, step
-    integer :: k
+  contains
 
-    least = huge(1.0_wp)
-    s = 0.0_wp
-    do k = 0, tried
-      distance = norm2(point - self%at(side, real(k, wp)/tried))
-      if (distance >= least) cycle
-      least = distance
-      s = real(k, wp)/tried
-    end do
-    associate (own => self%x(:, :, side))
-      bend = -8.0_wp*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
-    end associate
-    do k = 1, most_steps
-      away = self%at(side, s) - point
+    pure function normal(side, s)
+      integer, intent(in) :: side
+      real(wp), intent(in) :: s
+      real(wp) :: along(2), normal(2)
+
       along = self%tangent(side, s)
-      rate = dot_product(along, along) + dot_product(away, bend)
-      if (rate <= 0.0_wp) rate = dot_product(along, along)
-      if (rate == 0.0_wp) return
-      step = min(1.0_wp, max(0.0_wp, s - dot_product(away, along)/rate)) - s
-      s = s + step
-      if (abs(step) <= epsilon(s)) return
-    end do
-  end function near_curve
-
-  !> Outward, of length 1.
-  pure function normal(along)
-    real(wp), intent(in) :: along(2)
-    real(wp) :: normal(2)
-
-    normal = [along(2), -along(1)]/max(norm2(along), tiny(1.0_wp))
-  end function normal
+      normal = [along(2), -along(1)]/max(norm2(along), tiny(1.0_wp))
+    end function normal
+  end function is_inside
 end module epcont_geometry_outline_shape

@@ -8,7 +8,7 @@ module epcont_model_model
   use epcont_base_text, only: text_of
   use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: axisymmetric
-  use epcont_geometry_boxed_line, only: boxed_line
+  use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_outline, only: outline_type
   use epcont_model_controls, only: controls_type, uniaxial_curve
   use epcont_model_finding, only: of_couple, of_element, of_line, of_node, of_pair, of_paper_ratio, of_section
@@ -36,7 +36,7 @@ module epcont_model_model
   type :: line_contact
     integer, allocatable :: couple(:)     !! by their positions
     integer, allocatable :: bconp(:), slave_id(:), master_id(:)   !! ids of the cards
-    type(boxed_line) :: slave, master
+    type(boundary_line) :: slave, master
     real(wp) :: search = 0.0_wp           !! how far away a side may be [length]
     integer :: first = 1, last = 0        !! its pairs: of the slave's nodes, and from the next one on
     integer :: first_of_master = 1        !! those of the master's nodes, most of them corners
@@ -92,7 +92,7 @@ module epcont_model_model
     real(wp), allocatable :: row_weight(:)
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
     !> Sides of the bodies' outlines, by the same numbers, with normals; where lines are
-    type(boxed_line) :: boundary
+    type(boundary_line) :: boundary
     type(named_line), allocatable :: line(:)
     type(line_couple), allocatable :: couple(:)
     type(line_contact), allocatable :: line_contact(:)
