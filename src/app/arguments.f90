@@ -42,8 +42,6 @@ contains
     type(word_type), intent(in) :: words(:)   !! without the name of the program
     type(arguments_type), intent(out) :: arguments   !! what they ask for
     type(error_type), allocatable, intent(out) :: error   !! of usage
-    type(option_type) :: option
-    character(len=:), allocatable :: value
     logical :: is_deck(size(words))
     integer :: i
 
@@ -51,25 +49,78 @@ contains
     arguments%card = ''
     is_deck = .false.
     i = 0
-    do while (i < size(words))
+    do while (i < size(words) .and. .not. allocated(error))
       i = i + 1
       is_deck(i) = index(words(i)%text, '-') /= 1
-      if (is_deck(i)) cycle
+      if (.not. is_deck(i)) call take_option()
+    end do
+    if (allocated(error)) return
+    arguments%deck = pack(words, is_deck)
+    if (.not. (arguments%asks('--help') .or. arguments%asks('--man') .or. arguments%asks('--version') .or. &
+               arguments%asks('--cards'))) call check_decks()
+
+  contains
+
+    !> Take an option, and the word behind it where that is its value.
+    subroutine take_option()
+      type(option_type) :: option
+      character(len=:), allocatable :: right   ! value, where this is not
+      character(len=:), allocatable :: value
+
       option = find_option(words(i)%text)
       value = ''
       if (option%name == '') then
-        call raise(error, status_usage, words(i)%text//': no such option; epcont --help lists them')
+        call refuse(words(i)%text//': no such option; epcont --help lists them')
       else if (option%value /= '' .and. i < size(words)) then
         i = i + 1
         value = words(i)%text
       else if (option%needs_value()) then
-        call raise(error, status_usage, words(i)%text//' needs a value')
+        call refuse(words(i)%text//' needs a value')
       end if
-      if (.not. allocated(error)) call take(option, value, arguments, error)
       if (allocated(error)) return
-    end do
-    arguments%deck = pack(words, is_deck)
-    call check(arguments, error)
+      arguments%asked = arguments%asked .or. options%name == option%name
+      right = ''
+      select case (option%name)
+      case ('-o')
+        arguments%directory = value
+      case ('--tables')
+        if (value /= 'all') right = '--tables all'
+      case ('--memory')
+        arguments%memory = positive(value)
+        if (.not. arguments%memory > 0.0_wp) right = 'a positive number of GB'
+      case ('--cards')
+        arguments%card = value
+      end select
+      if (len(right) > 0) call refuse(trim(option%name)//' '//value//': '//right//' would be right')
+    end subroutine take_option
+
+    !> There are decks, and no two of one stem: their results would have one name.
+    subroutine check_decks()
+      integer :: j
+
+      associate (deck => arguments%deck)
+        if (size(deck) == 0) &
+          call refuse('no deck given: epcont [options] DECK...; epcont --help says more')
+        do i = 1, size(deck)
+          if (is_result(deck(i)%text)) &
+            call refuse(deck(i)%text//': results are written under such names: a deck is named DECK.dat')
+        end do
+        do i = 2, size(deck)
+          do j = 1, i - 1
+            if (stem_of(deck(i)%text) == stem_of(deck(j)%text)) &
+              call refuse(deck(j)%text//' and '//deck(i)%text// &
+                          ' would write the same files: run them apart, each with its own -o DIR')
+          end do
+        end do
+      end associate
+    end subroutine check_decks
+
+    !> Say what is wrong; the first fault counts.
+    subroutine refuse(message)
+      character(len=*), intent(in) :: message
+
+      if (.not. allocated(error)) call raise(error, status_usage, message)
+    end subroutine refuse
   end subroutine read_arguments
 
   !> Has an option been given?
@@ -80,74 +131,18 @@ contains
     asks = any(self%asked .and. options%name == name)
   end function asks
 
-  !> Take an option, and its value where it has one.
-  subroutine take(option, value, arguments, error)
-    type(option_type), intent(in) :: option
-    character(len=*), intent(in) :: value
-    type(arguments_type), intent(inout) :: arguments
-    type(error_type), allocatable, intent(out) :: error
-    character(len=:), allocatable :: right   ! value, where this is not
-    logical :: taken
-
-    arguments%asked = arguments%asked .or. options%name == option%name
-    right = ''
-    select case (option%name)
-    case ('-o')
-      arguments%directory = value
-    case ('--tables')
-      if (value /= 'all') right = '--tables all'
-    case ('--memory')
-      call read_positive(value, arguments%memory, taken)
-      if (.not. taken) right = 'a positive number of GB'
-    case ('--cards')
-      arguments%card = value
-    end select
-    if (len(right) > 0) &
-      call raise(error, status_usage, trim(option%name)//' '//value//': '//right//' would be right')
-  end subroutine take
-
-  !> Take a positive number without exponent, which no length makes overflow. READ alone takes `2 x`, `,` and
-  !! `nan`.
-  subroutine read_positive(text, number, taken)
+  !> A positive number without exponent, which no length makes overflow; 0: it is none. READ alone takes
+  !! `2 x`, `,` and `nan`.
+  pure real(wp) function positive(text)
     character(len=*), intent(in) :: text
-    real(wp), intent(inout) :: number
-    logical, intent(out) :: taken
     integer, parameter :: longest = 20
     integer :: status
 
-    taken = .false.
+    positive = 0.0_wp
     if (verify(text, '0123456789.') > 0 .or. len(text) > longest) return
-    read (text, *, iostat=status) number
-    taken = status == 0 .and. number > 0.0_wp
-  end subroutine read_positive
-
-  !> There are decks, and no two of one stem: their results would have one name.
-  subroutine check(arguments, error)
-    type(arguments_type), intent(in) :: arguments
-    type(error_type), allocatable, intent(out) :: error
-    integer :: i, j
-
-    if (arguments%asks('--help') .or. arguments%asks('--man')) return
-    if (arguments%asks('--version') .or. arguments%asks('--cards')) return
-    if (size(arguments%deck) == 0) then
-      call raise(error, status_usage, 'no deck given: epcont [options] DECK...; epcont --help says more')
-      return
-    end if
-    do i = 1, size(arguments%deck)
-      if (.not. is_result(arguments%deck(i)%text)) cycle
-      call raise(error, status_usage, arguments%deck(i)%text// &
-                 ': results are written under such names: a deck is named DECK.dat')
-      return
-    end do
-    do i = 2, size(arguments%deck)
-      do j = 1, i - 1
-        if (stem_of(arguments%deck(i)%text) /= stem_of(arguments%deck(j)%text)) cycle
-        call raise(error, status_usage, arguments%deck(j)%text//' and '//arguments%deck(i)%text// &
-                   ' would write the same files: run them apart, each with its own -o DIR')
-        return
-      end do
-    end do
-  end subroutine check
+    read (text, *, iostat=status) positive
+    if (status /= 0) positive = 0.0_wp
+  end function positive
 
   !> Might the results of a deck of this name be written over it?
   pure logical function is_result(path)

@@ -1,14 +1,60 @@
-!> What --help prints, from the tables of options and of exit statuses.
+!> What --help and --man print: the latter is the manual page epcont(1) as roff. Both come from the tables of
+!> options, of exit statuses and of files.
 module epcont_app_help
+  use epcont_app_console, only: newline
   use epcont_app_options, only: option_type, options
   use epcont_base_error, only: status_meaning
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: text_of, upper
+  use epcont_base_version, only: program_date, program_name, program_version
+  use epcont_report_results, only: result_files
+  use epcont_report_tables, only: columns_in
   implicit none
   private
-  public :: help_text
+  public :: help_text, man_page
 
-  character(len=1), parameter :: newline = new_line('a')
-  integer, parameter :: width = 15   !! of the names of options
+  type :: example_type
+    character(len=60) :: command
+    character(len=76) :: text
+  end type example_type
+
+  !> With the deck that is installed beside the page (a test runs them).
+  type(example_type), parameter :: examples(*) = [ &
+    example_type('epcont hertz44.dat', &
+                 'Solve the deck; the answer is in hertz44.lst and tables beside it.'), &
+    example_type('epcont -o out --tables all hertz44.dat', &
+                 'The same to the folder out, with displacements and stresses.'), &
+    example_type('epcont --check *.dat', 'Name every fault of many decks, and solve none.'), &
+    example_type('epcont --plan hertz44.dat', 'How many unknowns, which method and why, how much memory.'), &
+    example_type('epcont --cards PARAM', 'The fields of a card, and what may stand in them.')]
+
+  !> The page: what begins with a point is roff; `@options` and the like are lists; all else is a paragraph.
+  character(len=*), parameter :: page(*) = [character(len=280) :: &
+    '.TH EPCONT 1 '//program_date//' "'//program_name//' '//program_version//'" "User Commands"', &
+    '.SH NAME'//newline// &
+    program_name//' \- contact and yielding of plane bodies and rings, from card decks', &
+    '.SH SYNOPSIS', &
+    '.B '//program_name, &
+    '.RI [ options ]', &
+    '.IR DECK ...', &
+    '.SH DESCRIPTION', &
+    'For each deck of NASTRAN bulk data: what touches, with what force, how far the bodies approach, and '// &
+    'where they have yielded.', &
+    'Contact is exact to rounding, yielding follows total theory, and every answer is certified by code '// &
+    'of its own: the exit status and the listing say whether the certificate holds.', &
+    'A deck is named DECK.dat; the same deck gives the same files, byte for byte.', &
+    'Faults go to standard error, one line of outcome for each deck to standard output.', &
+    '.SH OPTIONS', '@options', &
+    '.SH EXIT STATUS', 'Of several decks the largest counts.', '@statuses', &
+    '.SH FILES', 'In the current directory, or in DIR.', '@files', &
+    '.SH EXAMPLES', '@examples', &
+    '.SH ENVIRONMENT', &
+    'OMP_NUM_THREADS: threads that may work on bodies side by side, where a scene has several large ones'// &
+    '; one if it is not set. Results are the same bytes on any number.', &
+    'OMP_WAIT_POLICY: what threads do that wait; PASSIVE, which leaves their core to others, if it is'// &
+    ' not set and OpenBLAS is a part of the program, as the scripts link it.', &
+    'OpenBLAS chooses its kernels by the processor, or by OPENBLAS_CORETYPE: others change the last of '// &
+    'the 17 digits of the tables.', &
+    '.SH COPYRIGHT', 'The epcont authors; MIT License.']
 
 contains
 
@@ -16,14 +62,11 @@ contains
   pure function help_text() result(text)
     character(len=:), allocatable :: text
     type(option_type) :: option
-    character(len=width) :: name
+    character(len=15) :: name
     integer :: k
 
-    text = 'usage: epcont [options] DECK...'//newline// &
-           newline// &
-           'Solves the contact of plane bodies and rings from card decks. Results go to DECK.lst and'// &
-           ' DECK.*.csv.'//newline// &
-           newline
+    text = 'usage: epcont [options] DECK...'//newline//newline//'Solves the contact of plane bodies and '// &
+           'rings from card decks. Results go to DECK.lst and DECK.*.csv.'//newline//newline
     do k = 1, size(options)
       option = options(k)
       name = option%usage()
@@ -34,4 +77,100 @@ contains
       text = text//'  '//text_of(k)//'  '//trim(status_meaning(k))//newline
     end do
   end function help_text
+
+  !> The text of --man.
+  function man_page() result(text)
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = ''
+    do k = 1, size(page)
+      if (page(k)(1:1) == '@') then
+        call add_list(page(k))
+      else if (page(k)(1:1) == '.') then
+        text = text//trim(page(k))//newline
+      else
+        text = text//paragraph(page(k))
+      end if
+    end do
+
+  contains
+
+    !> An entry for each row of a table.
+    subroutine add_list(name)
+      character(len=*), intent(in) :: name
+      integer :: i
+
+      select case (name)
+      case ('@options')
+        do i = 1, size(options)
+          call add_entry(heading(options(i)), options(i)%text, options(i)%more)
+        end do
+      case ('@statuses')
+        do i = lbound(status_meaning, dim=1), ubound(status_meaning, dim=1)
+          call add_entry('.B '//text_of(i), status_meaning(i), '')
+        end do
+      case ('@files')
+        do i = 1, size(result_files)
+          call add_entry('.IB DECK '//roff(trim(result_files(i)%suffix)), result_files(i)%text, &
+                         columns_in(result_files(i)%suffix))
+        end do
+      case default
+        do i = 1, size(examples)
+          call add_entry('.B '//roff(trim(examples(i)%command)), examples(i)%text, '')
+        end do
+      end select
+    end subroutine add_list
+
+    !> What is explained, in its own line, and the explanation.
+    subroutine add_entry(name, explanation, more)
+      character(len=*), intent(in) :: name, explanation, more
+
+      text = text//'.TP'//newline//name//newline//paragraph(explanation)
+      if (more /= '') text = text//'.br'//newline//paragraph(more)
+    end subroutine add_entry
+  end function man_page
+
+  !> Names bold, and the value too where it stands for itself.
+  pure function heading(option) result(text)
+    type(option_type), intent(in) :: option
+    character(len=:), allocatable :: text
+    integer :: value
+
+    text = '.B '//roff(option%usage())
+    value = index(text, ' ', back=.true.) + 1
+    if (option%value /= '' .and. upper(option%value) == option%value) &
+      text = '.BI "'//text(4:value - 1)//'" '//text(value:)
+  end function heading
+
+  !> Text, in lines of a source that can be read.
+  pure function paragraph(text)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: paragraph
+    integer, parameter :: width = 70
+    integer :: from, to
+
+    paragraph = ''
+    from = 1
+    do while (from <= len_trim(text))
+      to = len_trim(text)
+      if (to - from >= width) to = from + index(text(from:from + width), ' ', back=.true.) - 2
+      paragraph = paragraph//roff(text(from:to))//newline
+      from = to + 2
+    end do
+  end function paragraph
+
+  !> Text as roff prints it: its hyphens are those that are typed, and nothing is a request.
+  pure function roff(text) result(escaped)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: escaped
+    integer :: k
+
+    escaped = ''
+    if (scan(text, '.''') == 1) escaped = '\&'
+    do k = 1, len(text)
+      if (text(k:k) == '-' .or. text(k:k) == '\') escaped = escaped//'\'
+      escaped = escaped//merge('e', text(k:k), text(k:k) == '\')
+    end do
+  end function roff
 end module epcont_app_help

@@ -5,8 +5,7 @@ program epcont_main
   use epcont_app_console, only: newline, print_error, print_text
   use epcont_app_driver, only: run_deck
   use epcont_app_ending, only: stop_with, watch_exit
-  use epcont_app_help, only: help_text
-  use epcont_app_man_page, only: man_page
+  use epcont_app_help, only: help_text, man_page
   use epcont_base_error, only: error_type, raise, status_usage, status_valid
   use epcont_base_text, only: shown
   use epcont_base_version, only: program_name, program_version

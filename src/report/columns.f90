@@ -5,7 +5,7 @@ module epcont_report_columns
   use epcont_base_text, only: text_of
   use epcont_report_file, only: text_file
   use epcont_report_layout, only: heading, right
-  use epcont_report_number, only: full_numbers, is_known, listed_number
+  use epcont_report_number, only: full_numbers, listed_number
   implicit none
   private
   public :: column, table_type, columns_text
@@ -26,10 +26,9 @@ module epcont_report_columns
   end type column
 
   !> A table that is being written, to the listing or to a file of its own.
-  type :: table_type
-    type(text_file) :: file
+  type, extends(text_file) :: table_type
     logical :: listed = .true.                       !! in the listing
-    type(column), allocatable, private :: column(:)  !! that are shown, in their order
+    type(column), allocatable, private :: column(:)
     integer, allocatable, private :: nth(:)          !! which value of its sort each of them has in a row
     real(wp), allocatable, private :: scale(:)       !! of each number in a row
   contains
@@ -38,7 +37,7 @@ module epcont_report_columns
     procedure :: row
     procedure :: head_text
     procedure :: row_text
-    procedure, private :: placed
+    procedure, private :: line_text
   end type table_type
 
 contains
@@ -65,36 +64,29 @@ contains
   end function columns_text
 
   !> Say what the columns are.
-  pure subroutine describe(self, columns, scale, order)
+  pure subroutine describe(self, columns, scale)
     class(table_type), intent(inout) :: self
-    type(column), intent(in) :: columns(:)  !! in the order of the file
+    type(column), intent(in) :: columns(:)       !! in their order
     real(wp), intent(in), optional :: scale(:)   !! of each number: the largest of its column; not given: 0
-    integer, intent(in), optional :: order(:)    !! of the listing's columns; not given: that of the file
     integer :: i, sort(size(columns))
-    integer, allocatable :: shown(:)
 
-    shown = [(i, i=1, size(columns))]
-    if (self%listed .and. present(order)) shown = order
-    shown = pack(shown, merge(columns(shown)%width > 0, columns(shown)%name /= '', self%listed))
-    sort = min(columns%kind, 1)
-    where (sort == state) sort = word
-    self%column = columns(shown)
-    self%nth = [(count(sort(:shown(i)) == sort(shown(i))), i=1, size(shown))]
+    sort = max(word, min(columns%kind, 1))
+    self%column = columns
+    self%nth = [(count(sort(:i) == sort(i)), i=1, size(sort))]
     self%scale = spread(0.0_wp, 1, size(columns))
     if (present(scale)) self%scale = scale
   end subroutine describe
 
   !> Write the heading, and the heads of the columns.
-  subroutine begin(self, title, columns, scale, order)
+  subroutine begin(self, title, columns, scale)
     class(table_type), intent(inout) :: self
     character(len=*), intent(in) :: title        !! of the section of the listing; empty: none
     type(column), intent(in) :: columns(:)       !! as `describe` has them
     real(wp), intent(in), optional :: scale(:)   !! as `describe` has it
-    integer, intent(in), optional :: order(:)    !! as `describe` has it
 
-    call self%describe(columns, scale, order)
-    if (self%listed .and. len(title) > 0) call heading(self%file, title)
-    call self%file%line(self%head_text())
+    call self%describe(columns, scale)
+    if (self%listed .and. len(title) > 0) call heading(self, title)
+    call self%line(self%head_text())
   end subroutine begin
 
   !> Write a row.
@@ -103,69 +95,68 @@ contains
     integer, intent(in) :: wholes(:)           !! as `row_text` has them
     real(wp), intent(in) :: numbers(:)         !! as `row_text` has them
     character(len=*), intent(in) :: words(:)   !! as `row_text` has them
-    character(len=:), allocatable :: text
 
-    text = self%row_text(wholes, numbers, words)
-    call self%file%line(text)
+    call self%line(self%row_text(wholes, numbers, words))
   end subroutine row
 
   !> The heads of the columns.
   pure function head_text(self) result(text)
     class(table_type), intent(in) :: self
     character(len=:), allocatable :: text
-    integer :: i
 
-    text = ''
-    do i = 1, size(self%column)
-      associate (one => self%column(i))
-        text = text//self%placed(i, trim(merge(one%head, one%name, self%listed .and. one%head /= '')))
-      end associate
-    end do
-    text = trim(text)
+    associate (one => self%column)
+      text = self%line_text(merge(one%head, one%name, self%listed .and. one%head /= ''))
+    end associate
   end function head_text
 
   !> A row, as `row` writes it.
   pure function row_text(self, wholes, numbers, words) result(text)
     class(table_type), intent(in) :: self
-    integer, intent(in) :: wholes(:)           !! ids and counts, in the order of the file's columns
+    integer, intent(in) :: wholes(:)           !! ids and counts, in the order of the columns
     real(wp), intent(in) :: numbers(:)         !! in that order
     character(len=*), intent(in) :: words(:)   !! in that order
     character(len=:), allocatable :: text
-    character(len=25) :: full(size(numbers))
+    character(len=25) :: cell(size(self%column)), full(size(numbers))
     integer :: i
 
-    if (.not. self%listed) full = full_numbers(numbers)
-    text = ''
-    do i = 1, size(self%column)
+    if (.not. self%listed) full = full_numbers(pack(self%column%kind, self%column%kind > whole), numbers)
+    do i = 1, size(cell)
+      if (self%listed .and. self%column(i)%width == 0) cycle
       associate (kind => self%column(i)%kind, n => self%nth(i))
         if (kind == whole) then
-          text = text//self%placed(i, text_of(wholes(n)))
+          cell(i) = text_of(wholes(n))
         else if (kind < whole) then
-          text = text//self%placed(i, trim(words(n)))
+          cell(i) = words(n)
         else if (self%listed) then
-          text = text//self%placed(i, listed_number(kind, numbers(n), self%scale(n)))
+          cell(i) = listed_number(kind, numbers(n), self%scale(n))
         else
-          if (.not. is_known(kind, numbers(n))) full(n) = ''
-          text = text//self%placed(i, trim(full(n)))
+          cell(i) = full(n)
+        end if
+      end associate
+    end do
+    text = self%line_text(cell)
+  end function row_text
+
+  !> What stands in each column, of those that the listing or the file has.
+  pure function line_text(self, cell) result(text)
+    class(table_type), intent(in) :: self
+    character(len=*), intent(in) :: cell(:)
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(cell)
+      associate (one => self%column(i))
+        if (.not. self%listed) then
+          if (one%name /= '') text = text//','//trim(cell(i))
+        else if (one%kind == state) then
+          text = text//'  '//adjustl(right(trim(cell(i)), one%width - 2))
+        else if (one%width > 0) then
+          text = text//right(trim(cell(i)), one%width)
         end if
       end associate
     end do
     text = trim(text)
-  end function row_text
-
-  !> A text in its column.
-  pure function placed(self, i, text) result(field)
-    class(table_type), intent(in) :: self
-    integer, intent(in) :: i
-    character(len=*), intent(in) :: text
-    character(len=:), allocatable :: field
-
-    if (.not. self%listed) then
-      field = trim(merge(' ', ',', i == 1))//text
-    else if (self%column(i)%kind == state) then
-      field = '  '//text//repeat(' ', max(0, self%column(i)%width - len(text) - 2))
-    else
-      field = right(text, self%column(i)%width)
-    end if
-  end function placed
+    if (.not. self%listed) text = text(2:)
+  end function line_text
 end module epcont_report_columns

@@ -172,7 +172,7 @@ contains
   !> Begin a file.
   subroutine new_text_file(path, file, error)
     character(len=*), intent(in) :: path                  !! of the file, once it is finished
-    type(text_file), intent(out) :: file                  !! open, without a line
+    class(text_file), intent(out) :: file                 !! open, without a line
     type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
 
     file%path = path

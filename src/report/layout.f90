@@ -11,7 +11,7 @@ contains
 
   !> A blank line and a heading, marked where the answer is not valid.
   subroutine heading(file, text)
-    type(text_file), intent(in) :: file    !! the listing
+    class(text_file), intent(in) :: file    !! the listing
     character(len=*), intent(in) :: text   !! of the heading
 
     call file%line('')
@@ -20,7 +20,7 @@ contains
 
   !> A named figure: its value at the right of 13 columns, and what is to be said of it.
   subroutine figure(file, name, value, note)
-    type(text_file), intent(in) :: file              !! the listing
+    class(text_file), intent(in) :: file              !! the listing
     character(len=*), intent(in) :: name, value      !! in at most 44 characters; any text
     character(len=*), intent(in), optional :: note   !! behind the value
     character(len=44) :: label
@@ -35,7 +35,7 @@ contains
 
   !> Text on lines of at most 132 columns.
   subroutine wrap(file, text)
-    type(text_file), intent(in) :: file    !! the listing
+    class(text_file), intent(in) :: file    !! the listing
     character(len=*), intent(in) :: text   !! what would be a long line
     integer, parameter :: columns = 132
     integer :: from, to

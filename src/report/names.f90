@@ -2,22 +2,14 @@
 module epcont_report_names
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
+  use epcont_model_finding, only: of_node
   use epcont_model_model, only: model_type
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: centre_name, first_grid, grid_name, joined, motion_name, point_name
+  public :: centre_name, first_grid, joined, motion_name, point_name, when
 
 contains
-
-  !> `GRID 12`.
-  pure function grid_name(model, node) result(name)
-    type(model_type), intent(in) :: model   !! whose ids are named
-    integer, intent(in) :: node             !! number of the node
-    character(len=:), allocatable :: name
-
-    name = 'GRID '//text_of(model%node_id(node))
-  end function grid_name
 
   !> `GRID 12`, of some nodes the one with the least id: bodies are named by it.
   pure function first_grid(model, chosen) result(name)
@@ -35,7 +27,7 @@ contains
     character(len=:), allocatable :: name
 
     associate (motions => scene%motions)
-      name = grid_name(scene%model, motions%node(k))//' direction '//text_of(motions%component(k))
+      name = scene%model%name_of(of_node, motions%node(k))//' direction '//text_of(motions%component(k))
     end associate
   end function motion_name
 
@@ -72,4 +64,19 @@ contains
     end do
     if (size(numbers) > named) text = text//separator//'and '//text_of(size(numbers) - named)//' more'
   end function joined
+
+  !> One text or the other, of any lengths.
+  pure function when(holds, text, otherwise) result(chosen)
+    logical, intent(in) :: holds                          !! a condition
+    character(len=*), intent(in) :: text                  !! where it holds
+    character(len=*), intent(in), optional :: otherwise   !! not given: nothing
+    character(len=:), allocatable :: chosen
+
+    chosen = ''
+    if (holds) then
+      chosen = text
+    else if (present(otherwise)) then
+      chosen = otherwise
+    end if
+  end function when
 end module epcont_report_names

@@ -6,7 +6,7 @@ module epcont_report_number
   use epcont_report_layout, only: right
   implicit none
   private
-  public :: listed_number, full_numbers, is_known, estimate_number, rounding_number, percent
+  public :: listed_number, full_numbers, estimate_number, rounding_number, percent
 
   !> What a number is, which says how it is written: in a file in full, in the listing in the digits that
   !! tell.
@@ -57,24 +57,21 @@ contains
     end select
   end function listed_number
 
-  !> Numbers in a file: 17 digits, and blanks behind them. They are written at once, since a format takes
-  !! longer than a number.
-  pure function full_numbers(values) result(text)
+  !> Numbers in a file: 17 digits, and blanks behind them; of errors, pressures and the like that are negative
+  !! nothing is known. They are written at once, since a format takes longer than a number.
+  pure function full_numbers(kinds, values) result(text)
+    integer, intent(in) :: kinds(:)     !! of each, one of those above
     real(wp), intent(in) :: values(:)   !! at least one
     character(len=25) :: text(size(values))
+    integer :: k
 
     write (text, '(es25.16e3)') merge(0.0_wp, values, values == 0.0_wp)   ! no negative zero
     text = adjustl(text)
+    do k = 1, size(values)
+      if (any(kinds(k) == [known, estimate, factor, part]) .and. .not. values(k) >= 0.0_wp .or. &
+          kinds(k) == no_number) text(k) = ''
+    end do
   end function full_numbers
-
-  !> Is a number known? Errors, pressures and the like are not where they are negative.
-  pure logical function is_known(kind, value)
-    integer, intent(in) :: kind     !! one of the kinds above
-    real(wp), intent(in) :: value   !! the number
-
-    is_known = kind /= no_number
-    if (any(kind == [known, estimate, factor, part])) is_known = value >= 0.0_wp
-  end function is_known
 
   !> A number of a listing's column, six digits in 13 characters.
   pure function column_number(value, scale) result(text)

@@ -3,16 +3,12 @@ module epcont_report_results
   use epcont_base_error, only: error_type
   use epcont_report_columns, only: table_type
   use epcont_report_file, only: new_text_file, remove_file
-  use epcont_report_listing, only: list_accuracy, list_contact, list_deck, list_iterations, &
-                                   list_outcome, list_summary
-  use epcont_report_plan_text, only: plan_text
-  use epcont_report_remarks, only: list_remarks
+  use epcont_report_listing, only: write_listing
   use epcont_report_run, only: run_results
   use epcont_report_summary, only: summarise, summary_type
-  use epcont_report_tables, only: put_bodies, put_contact, put_elements, put_history, put_lines, &
-                                  put_nodes, put_zones
-  use epcont_report_vtk_bodies, only: write_vtk_bodies
-  use epcont_report_vtk_contact, only: write_vtk_contact
+  use epcont_report_tables, only: put_bodies, put_contact, put_elements, put_history, put_nodes, &
+                                  put_zones
+  use epcont_report_vtk, only: write_vtk_bodies, write_vtk_contact
   implicit none
   private
   public :: write_results, remove_results, result_file
@@ -74,11 +70,11 @@ contains
       type(table_type) :: table
 
       if (allocated(error)) return
-      table%listed = .false.
-      call new_text_file(stem//suffix, table%file, error)
+      call new_text_file(stem//suffix, table, error)
       if (allocated(error)) return
+      table%listed = .false.
       call put(run, table)
-      call table%file%finish(error)
+      call table%finish(error)
     end subroutine write_table
   end subroutine write_results
 
@@ -92,36 +88,4 @@ contains
       call remove_file(stem//trim(result_files(i)%suffix))
     end do
   end subroutine remove_results
-
-  subroutine write_listing(run, summary, nodes, elements, path, error)
-    type(run_results), intent(in) :: run
-    type(summary_type), intent(in) :: summary
-    logical, intent(in) :: nodes, elements
-    character(len=*), intent(in) :: path
-    type(error_type), allocatable, intent(out) :: error
-    type(table_type) :: listing
-    character(len=:), allocatable :: plan
-
-    call new_text_file(path, listing%file, error)
-    if (allocated(error)) return
-    call list_deck(listing%file, run%deck)
-    call list_remarks(listing%file, run%remarks)
-    plan = plan_text(run%planned_scene)
-    call listing%file%line(plan(:len(plan) - 1))
-    call list_outcome(listing%file, run%outcome)
-    if (run%outcome%has_answer) then
-      call list_iterations(listing, run)
-      if (run%model%pairs > 0) then
-        call list_contact(listing, run)
-        call put_zones(run, listing)
-        if (size(run%answer%lines) > 0) call put_lines(run, listing)
-        call put_bodies(run, listing)
-      end if
-      if (nodes) call put_nodes(run, listing)
-      if (elements) call put_elements(run, listing)
-      call list_summary(listing%file, run, summary)
-      call list_accuracy(listing%file, run, summary)
-    end if
-    call listing%file%finish(error)
-  end subroutine write_listing
 end module epcont_report_results

@@ -53,8 +53,9 @@ module epcont_report_tables
     column(whole, 'body', '', 'its number', width=10), &
     column(whole, 'first_node', '', 'its first GRID', 'first GRID', 12), &
     column(number, 'force_x', force, 'of contact on the body; empty: rings have no x', 'force x'), &
+    column(estimate, head='error', width=12), &
     column(number, 'force_y', '', '', 'force y'), &
-    column(estimate, 'mesh_error_x', force, 'what the mesh may add to that; empty: not known', 'error', 12), &
+    column(estimate, 'mesh_error_x', force, 'what the mesh may add to that; empty: not known', width=0), &
     column(estimate, 'mesh_error_y', '', '', 'error', 12)]
 
   type(column), parameter :: node_columns(*) = [ &
@@ -85,14 +86,14 @@ module epcont_report_tables
 
   type(column), parameter :: history_columns(*) = [ &
     column(whole, 'iteration', '', 'counted through all load steps', width=0), &
-    column(whole, head='iteration', width=10), &
+    column(whole, head='iteration', width=10), column(number, head='load factor'), &
     column(rounding, 'change', '', 'of a displacement, over the largest displacement'), &
     column(off_curve, 'residual', '', 'distance of a stress from its curve, over the latter', &
            'off the curve', 15), &
     column(whole, 'pairs_in_contact', '', 'their number', 'touching', 10), &
     column(whole, 'plastic_elements', '', 'their number', 'yielded', 10), &
     column(whole, 'pivots', '', 'of the contact solver', width=10), &
-    column(number, 'load_factor', '', 'part of the loads that the iteration is for', 'load factor')]
+    column(number, 'load_factor', '', 'part of the loads that the iteration is for', width=0)]
 
   type(column), parameter :: pivot_columns(*) = [ &
     column(whole, head='pivot', width=10), column(word, head='entered', width=17), &
@@ -100,27 +101,19 @@ module epcont_report_tables
 
 contains
 
-  !> The columns of a file of results in words; empty: it is none of these tables.
+  !> The columns of a file of results, in a sentence; empty: it is none of these tables.
   pure function columns_in(suffix) result(text)
     character(len=*), intent(in) :: suffix   !! of the file's name
     character(len=:), allocatable :: text
 
-    select case (suffix)
-    case ('.contact.csv')
-      text = columns_text(contact_columns)
-    case ('.zones.csv')
-      text = columns_text(zone_columns)
-    case ('.bodies.csv')
-      text = columns_text(body_columns)
-    case ('.history.csv')
-      text = columns_text(history_columns)
-    case ('.nodes.csv')
-      text = columns_text(node_columns)
-    case ('.elements.csv')
-      text = columns_text(element_columns)
-    case default
-      text = ''
-    end select
+    text = ''
+    if (suffix == '.contact.csv') text = columns_text(contact_columns)
+    if (suffix == '.zones.csv') text = columns_text(zone_columns)
+    if (suffix == '.bodies.csv') text = columns_text(body_columns)
+    if (suffix == '.history.csv') text = columns_text(history_columns)
+    if (suffix == '.nodes.csv') text = columns_text(node_columns)
+    if (suffix == '.elements.csv') text = columns_text(element_columns)
+    if (len(text) > 0) text = 'Columns: '//text//'.'
   end function columns_in
 
   !> Forces, pressures and gaps: a row a pair.
@@ -197,15 +190,17 @@ contains
     integer :: i
 
     columns = body_columns
-    if (run%model%has_rings()) columns([3, 5])%kind = no_number
+    if (run%model%has_rings()) columns([3, 4, 6])%kind = no_number
     associate (bodies => run%answer%bodies)
       scale = maxval([(abs(bodies(i)%resultant), i=1, size(bodies))])
       call table%begin('BODIES  (force of contact on each that has elements; error: of the mesh, '// &
                        'estimated of up to '//text_of(most_bodies)//' bodies)', &
-                       columns, spread(scale, 1, 4), order=[1, 2, 3, 5, 4, 6])
+                       columns, spread(scale, 1, 5))
       do i = 1, size(bodies)
-        call table%row([bodies(i)%body, run%model%node_id(bodies(i)%node)], &
-                       [bodies(i)%resultant, run%accuracy%body_force(:, i)], [character ::])
+        associate (force => bodies(i)%resultant, error => run%accuracy%body_force(:, i))
+          call table%row([bodies(i)%body, run%model%node_id(bodies(i)%node)], &
+                         [force(1), error(1), force(2), error], [character ::])
+        end associate
       end do
     end associate
   end subroutine put_bodies
@@ -272,11 +267,11 @@ contains
     type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: k
 
-    call table%begin('ITERATIONS', history_columns, [0.0_wp, 0.0_wp, 1.0_wp], order=[2, 8, 3, 4, 5, 6, 7])
+    call table%begin('ITERATIONS', history_columns, [1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
     do k = 1, size(run%answer%history)
       associate (now => run%answer%history(k))
         call table%row([k, now%iteration, now%touching, now%yielded, now%pivots], &
-                       [now%change, now%residual, now%load_factor], [character ::])
+                       [now%load_factor, now%change, now%residual, now%load_factor], [character ::])
       end associate
     end do
   end subroutine put_history

@@ -1,0 +1,246 @@
+!> The bodies, and the boundary in contact, for ParaView: files of VTK's XML format for unstructured grids
+!> (`.vtu`), which meshio and pyvista read too.
+!>
+!> Numbers are in full, as base64 within the XML: the number of bytes (8 of its own), then the values. Points
+!> and vectors have three components, the third 0.
+module epcont_report_vtk
+  use, intrinsic :: iso_fortran_env, only: int8
+  use epcont_base_base64, only: base64
+  use epcont_base_error, only: error_type
+  use epcont_base_kinds, only: i8, wp
+  use epcont_base_text, only: text_of
+  use epcont_flexibility_flexibility, only: pair_forces
+  use epcont_report_file, only: new_text_file, text_file
+  use epcont_report_layout, only: newline
+  use epcont_report_names, only: when
+  use epcont_report_run, only: run_results
+  use epcont_result_contact_line, only: contact_line, find_contact_line
+  implicit none
+  private
+  public :: write_vtk_bodies, write_vtk_contact
+
+  !> Kinds of cells (vtkCellType.h).
+  integer, parameter :: vtk_vertex = 1, vtk_line = 3
+
+  !> How the points are joined. VTK has the nodes of an element in the order that the model has.
+  type :: vtk_cells
+    integer, allocatable :: kind(:)     !! [cells]
+    integer, allocatable :: last(:)     !! of the points of each cell [cells]
+    integer, allocatable :: point(:)    !! of one cell after the other, counted from 1
+  end type vtk_cells
+
+  !> A grid that is being written: arrays of the points, then those of the cells.
+  type, extends(text_file) :: vtk_grid
+  contains
+    procedure :: begin
+    procedure :: end_grid
+    generic :: put => put_integers, put_reals, put_fields
+    procedure, private :: put_integers, put_reals, put_fields, put_bytes
+  end type vtk_grid
+
+contains
+
+  !> DECK.vtu: nodes that belong to elements are the points, in the order of the deck; elements are the cells.
+  subroutine write_vtk_bodies(run, path, error)
+    type(run_results), intent(in) :: run                  !! what is known of the run
+    character(len=*), intent(in) :: path                  !! of the file
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
+    type(vtk_grid) :: grid
+    real(wp), allocatable :: force(:, :)
+    integer, allocatable :: last(:), node(:), point(:)
+    integer :: i
+
+    associate (model => run%model, answer => run%answer, start => run%model%around%start)
+      node = pack([(i, i=1, model%nodes)], start(2:) > start(:model%nodes))
+      allocate (point(model%nodes))
+      point(node) = [(i, i=1, size(node))]
+      last = model%order
+      do i = 2, size(last)
+        last(i) = last(i - 1) + last(i)
+      end do
+      call grid%begin(path, run%outcome%status, model%x(:, node), &
+                      vtk_cells(model%kinds(model%kind)%vtk, last, &
+                                point(pack(model%connectivity, model%connectivity > 0))), error)
+      if (allocated(error)) return
+      call grid%line('<PointData Vectors="displacement">')
+      call grid%put('node_id', model%node_id(node))
+      call grid%put('displacement', answer%displacement(:, node))
+      force = pair_forces(model, answer%contact%force)
+      call grid%put('contact_force', force(:, node))
+      call grid%put('reaction', answer%reaction(:, node))
+      call grid%line('</PointData>'//newline//'<CellData Scalars="equivalent_stress">')
+      call grid%put('element_id', model%element_id)
+      call grid%put('body', model%body(model%connectivity(1, :)))
+      call grid%put('property_id', model%property_id(model%section))
+      call grid%put('material_id', model%material_id(model%section))
+      call grid%put('stress', answer%stress)
+      call grid%put('equivalent_stress', answer%equivalent_stress)
+      call grid%put('max_equivalent_stress', answer%largest_stress)
+      call grid%put('equivalent_strain', answer%equivalent_strain)
+      call grid%put('secant_modulus', answer%secant_modulus)
+      call grid%put('yielded', merge(1, 0, answer%plastic))
+    end associate
+    call grid%end_grid(error)
+  end subroutine write_vtk_bodies
+
+  !> DECK.contact.vtu: pairs are the points, each at its node of the boundary, in the order of the deck; cells
+  !! are the lines between neighbours, and the points of pairs that have none.
+  subroutine write_vtk_contact(run, path, error)
+    type(run_results), intent(in) :: run                  !! what is known of the run
+    character(len=*), intent(in) :: path                  !! of the file
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
+    type(contact_line) :: line
+    type(vtk_cells) :: cells
+    type(vtk_grid) :: grid
+    integer, dimension(run%model%pairs) :: bconp, zone   ! 0: of a CGAP; none
+    real(wp) :: force(2, run%model%pairs)
+    integer :: k
+
+    associate (model => run%model, answer => run%answer, contact => run%answer%contact)
+      line = find_contact_line(model)
+      cells = cells_along(line)
+      call grid%begin(path, run%outcome%status, model%x(:, line%node), cells, error)
+      if (allocated(error)) return
+      do k = 1, model%pairs
+        force(:, k) = contact%force(k)*model%normal(:, k)
+        if (line%node(k) /= model%pair_node(2, k)) force(:, k) = -force(:, k)
+      end do
+      zone = 0
+      do k = 1, size(answer%zones)
+        zone(answer%zones(k)%pairs) = k
+      end do
+      bconp = 0
+      do k = 1, size(model%line_contact)
+        bconp(model%line_contact(k)%first:model%line_contact(k)%last) = model%line_contact(k)%bconp(1)
+      end do
+      call grid%line('<PointData Scalars="pressure" Vectors="displacement">')
+      call grid%put('pair_id', model%pair_id)
+      call grid%put('node_a', model%node_id(model%pair_node(1, :)))
+      call grid%put('node_b', model%node_id(model%pair_node(2, :)))
+      call grid%put('displacement', answer%displacement(:, line%node))
+      call grid%put('contact_force', force)
+      call grid%put('pressure', max(0.0_wp, answer%pressure))
+      call grid%put('has_pressure', merge(1, 0, answer%pressure >= 0.0_wp))
+      call grid%put('gap', contact%gap)
+      call grid%put('touching', merge(1, 0, contact%touching))
+      call grid%put('zone', zone)
+      call grid%line('</PointData>'//newline//'<CellData Scalars="bconp">')
+      call grid%put('bconp', bconp(cells%point(cells%last)))
+    end associate
+    call grid%end_grid(error)
+  end subroutine write_vtk_contact
+
+  !> Lines between neighbouring pairs, then pairs that have no neighbour.
+  pure function cells_along(line) result(cells)
+    type(contact_line), intent(in) :: line
+    type(vtk_cells) :: cells
+    integer, allocatable :: alone(:)
+    integer :: i, k, other, segment(2, 2*size(line%node)), segments
+    logical :: joined(size(line%node))
+
+    joined = .false.
+    segments = 0
+    do k = 1, size(line%node)
+      do i = 1, 2
+        other = line%neighbour(i, k)
+        if (other == 0) cycle
+        if (any(line%neighbour(:, other) == k)) then
+          if (other < k) cycle   ! there is this line already
+        else if (count(line%node == line%node(other)) > 1) then
+          cycle                  ! at a corner: the node's pair on the other face
+        end if
+        segments = segments + 1
+        segment(:, segments) = [k, other]
+        joined([k, other]) = .true.
+      end do
+    end do
+    alone = pack([(k, k=1, size(joined))], .not. joined)
+    cells%kind = [spread(vtk_line, 1, segments), spread(vtk_vertex, 1, size(alone))]
+    cells%last = [(2*k, k=1, segments), (2*segments + k, k=1, size(alone))]
+    cells%point = [segment(:, :segments), alone]
+  end function cells_along
+
+  !> Begin a file with the points and the cells; arrays of the points come next.
+  subroutine begin(self, path, status, x, cells, error)
+    class(vtk_grid), intent(out) :: self
+    character(len=*), intent(in) :: path    !! of the file
+    integer, intent(in) :: status           !! exit status of the run: 0 where the answer is valid
+    real(wp), intent(in) :: x(:, :)         !! of the points [length] [2, points]
+    type(vtk_cells), intent(in) :: cells    !! how the points are joined
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
+
+    call new_text_file(path, self, error)
+    if (allocated(error)) return
+    call self%line('<?xml version="1.0"?>')
+    call self%line('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
+                   when(transfer(1, 0_int8) == 1_int8, 'LittleEndian', 'BigEndian')// &
+                   '" header_type="UInt64">')
+    call self%line('<UnstructuredGrid>'//newline//'<FieldData>')
+    call self%put_bytes('Int32', 'exit_status', ' NumberOfTuples="1"', transfer([status], [0_int8]))
+    call self%line('</FieldData>')
+    call self%line('<Piece NumberOfPoints="'//text_of(size(x, 2))//'" NumberOfCells="'// &
+                   text_of(size(cells%kind))//'">')
+    call self%line('<Points>')
+    call self%put('Points', x)
+    call self%line('</Points>'//newline//'<Cells>')
+    call self%put('connectivity', cells%point - 1)
+    call self%put('offsets', cells%last)
+    call self%put_bytes('UInt8', 'types', '', int(cells%kind, int8))
+    call self%line('</Cells>')
+  end subroutine begin
+
+  !> Close the file and give it its name.
+  subroutine end_grid(self, error)
+    class(vtk_grid), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
+
+    call self%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>'//newline//'</VTKFile>')
+    call self%finish(error)
+  end subroutine end_grid
+
+  !> One integer a point or cell.
+  subroutine put_integers(self, name, values)
+    class(vtk_grid), intent(in) :: self
+    character(len=*), intent(in) :: name   !! of the array
+    integer, intent(in) :: values(:)       !! [points] or [cells]
+
+    call self%put_bytes('Int32', name, '', transfer(values, [0_int8]))
+  end subroutine put_integers
+
+  !> One real a point or cell.
+  subroutine put_reals(self, name, values)
+    class(vtk_grid), intent(in) :: self
+    character(len=*), intent(in) :: name   !! of the array
+    real(wp), intent(in) :: values(:)      !! [points] or [cells]
+
+    call self%put_bytes('Float64', name, '', transfer(values, [0_int8]))
+  end subroutine put_reals
+
+  !> One vector of the plane a point or cell, or one symmetric tensor, in VTK's order of components.
+  subroutine put_fields(self, name, values)
+    class(vtk_grid), intent(in) :: self
+    character(len=*), intent(in) :: name   !! of the array
+    real(wp), intent(in) :: values(:, :)   !! vectors [2, any], or tensors: xx, yy, zz, xy [4, any]
+    character(len=*), parameter :: tensor = ' NumberOfComponents="6" ComponentName0="XX" '// &
+      'ComponentName1="YY" ComponentName2="ZZ" ComponentName3="XY" ComponentName4="YZ" ComponentName5="XZ"'
+    real(wp), allocatable :: space(:, :)
+    logical :: is_vector
+
+    is_vector = size(values, 1) == 2
+    allocate (space(merge(3, 6, is_vector), size(values, 2)), source=0.0_wp)
+    space(:size(values, 1), :) = values
+    call self%put_bytes('Float64', name, when(is_vector, ' NumberOfComponents="3"', tensor), &
+                        transfer(space, [0_int8]))
+  end subroutine put_fields
+
+  !> One array, with further attributes, each behind a blank.
+  subroutine put_bytes(self, type, name, shape, bytes)
+    class(vtk_grid), intent(in) :: self
+    character(len=*), intent(in) :: type, name, shape
+    integer(int8), intent(in) :: bytes(:)
+
+    call self%line('<DataArray type="'//type//'" Name="'//name//'"'//shape//' format="binary">')
+    call self%line(base64([transfer(int(size(bytes), i8), bytes), bytes]))
+    call self%line('</DataArray>')
+  end subroutine put_bytes
+end module epcont_report_vtk
