@@ -32,6 +32,8 @@ METHODS, TOLERANCES = ("NEWTON", "SECANT", "MODSEC", "INISTR"), ("1.E-2", "1.E-4
 PRECISIONS, RULES = ("DOUBLE", "MIXED", "SINGLE"), ("CONRY", "BLOCK")
 #: What everything is compared with. Scenes leave out what they have no use for.
 BASE = {"METHOD": "NEWTON", "TOL": "1.E-8", "PRECIS": "DOUBLE", "RULE": "CONRY"}
+#: The way of the program of about 1980, whole.
+ORIGINAL = {"ORIGINAL": "YES"}
 #: A scene: its truth, what makes its deck, its meshes (element, parameter; the finest of each element last), whether it yields, touches.
 Scene = collections.namedtuple("Scene", "name truth make meshes yields touches")
 #: A run that ended well: errors and estimates are parts of the figure, the worst of their kind; None: no such figure, no estimate.
@@ -60,17 +62,17 @@ def scenes():
 
 
 def choices(scene):
-    """All that a scene has a use for, the base first; of methods other than NEWTON those in double precision by CONRY."""
+    """All that a scene has a use for, the base first; of methods other than NEWTON those in double precision by CONRY; and ORIGINAL."""
     of = {"METHOD": METHODS if scene.yields else (), "TOL": TOLERANCES[::-1] if scene.yields else (), "PRECIS": PRECISIONS,
           "RULE": RULES if scene.touches else ()}
     names = [name for name in of if of[name]]
     every = [dict(zip(names, values)) for values in itertools.product(*(of[name] for name in names))]
-    return [choice for choice in every if choice.get("METHOD", "NEWTON") == "NEWTON" or not {"PRECIS", "RULE"} & set(apart(choice))]
+    return [choice for choice in every if choice.get("METHOD", "NEWTON") == "NEWTON" or not {"PRECIS", "RULE"} & set(apart(choice))] + [ORIGINAL]
 
 
 def apart(choice):
     """The names in which a choice differs from the base."""
-    return [name for name in choice if choice[name] != BASE[name]]
+    return [name for name in choice if choice[name] != BASE.get(name)]
 
 
 def solve(scene, element, size, deck, choice, place):
@@ -135,7 +137,7 @@ def front(runs, cost):
 
 
 def words(choice):
-    return " ".join(choice.values())
+    return "ORIGINAL" if choice == ORIGINAL else " ".join(choice.values())
 
 
 def per_cent(part):
@@ -177,7 +179,7 @@ def one_at_a_time(runs, failed, scene):
         lost = sum(c == choice for _, _, c, _ in failed)
         if not of and not lost:
             continue
-        cells = [scene.name, " ".join(choice[name] for name in apart(choice))]
+        cells = [scene.name, words({name: choice[name] for name in apart(choice)})]
         if of:
             against = [(run, base[key(run)]) for run in of]
             moved = max(abs(run.values[k] / whole.values[k] - 1) for run, whole in against for k in run.values)

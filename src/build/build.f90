@@ -138,7 +138,7 @@ contains
     case (of_couple)
       card(1) = card_bconp
     case (of_paper_ratio)
-      card(:2) = [card_param, deck%parameter_row('MUP')]
+      card(:2) = [card_param, max(deck%parameter_row('MUP'), deck%parameter_row('ORIGINAL'))]
     end select
   end function card_of
 

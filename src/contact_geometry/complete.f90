@@ -129,9 +129,10 @@ contains
                            'METHOD SECANT, MODSEC or INISTR, or MUP EXACT')
     do s = 1, size(model%curve)
       if (model%kinematics(s) == plane_strain .or. .not. allocated(model%curve(s)%strain)) cycle
-      call found%add_error(of_paper_ratio, 0, 2, ': PAPER is for plane strain, and '// &
-                           model%name_of(of_section, s)// &
-                           ' is not', 'MUP EXACT')
+      call found%add_error(of_paper_ratio, 0, 2, &
+                           ':'//trim(merge(' its MUP', '        ', model%controls%original))// &
+                           ' PAPER is for plane strain, and '//model%name_of(of_section, s)//' is not', &
+                           trim(merge('no ORIGINAL', 'MUP EXACT  ', model%controls%original)))
       return
     end do
   end subroutine check_controls

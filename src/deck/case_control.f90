@@ -17,7 +17,7 @@ module epcont_deck_case_control
     integer :: solution = 0          !! SOL; 0: not given
     integer :: spc = 0, load = 0     !! the sets chosen; 0: no choice
     type(place_type) :: spc_place, load_place
-    logical :: echo = .false.
+    logical :: echo = .false., echo_sorted = .false.   !! the cards listed: as they stand, by their names
     logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
   end type case_control
 
@@ -151,7 +151,7 @@ contains
       control%load_place = parts%value_place
       call take_number(parts, control%load, faults)
     case ('ECHO')
-      call take_choice(parts, 'UNSORT', control%echo, faults)
+      call take_echo(parts, control, faults)
     case ('DISPLACEMENT')
       call take_choice(parts, 'ALL', control%displacement, faults)
     case ('STRESS')
@@ -194,6 +194,20 @@ contains
       call refuse(parts, 'a word', 'a word known here', other//' or NONE', faults)
     end if
   end subroutine take_choice
+
+  !> The ways in which cards are listed.
+  subroutine take_echo(parts, control, faults)
+    type(statement), intent(in) :: parts
+    type(case_control), intent(inout) :: control
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: word
+
+    word = upper(parts%value)
+    if (all(word /= [character(len=6) :: 'UNSORT', 'SORT', 'BOTH', 'NONE'])) &
+      call refuse(parts, 'a word', 'a word known here', 'UNSORT, SORT, BOTH or NONE', faults)
+    control%echo = word == 'UNSORT' .or. word == 'BOTH'
+    control%echo_sorted = word == 'SORT' .or. word == 'BOTH'
+  end subroutine take_echo
 
   !> A value that is missing, or cannot be taken.
   subroutine refuse(parts, needed, expected, remedy, faults)

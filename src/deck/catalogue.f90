@@ -258,10 +258,14 @@ contains
       integer_field('MAXIT', 'iterations of a load step; default 100', 1, 100000), &
       choice('MUP', 'EXACT PAPER', &
              'Poisson''s ratio in the equivalent strain: exact, or formula (2-4); default EXACT'), &
+      choice('ORIGINAL', 'NO YES', 'all as in about 1980: BAND, INVERT, CONRY, SECANT, TOL 0.01, MUP'// &
+                                   ' PAPER; default NO'), &
       integer_field('NLOAD', 'load steps; default 1', 1, 10000), &
       positive(real_field('SEARCH', 'how far BCONP looks for a segment; default twice the longest segment'// &
                           ' of the two lines', 'length')), &
       solver, &
+      choice('FLEXIB', 'AUTO INVERT', 'flexibility of the contact by inversion always, or by substitution'// &
+                                      ' where that is cheaper; default AUTO'), &
       choice('PRECIS', 'DOUBLE MIXED SINGLE', &
              'factors in double or single precision, these refined to double (MIXED) or not;'// &
              ' default DOUBLE'), &

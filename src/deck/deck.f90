@@ -43,12 +43,13 @@ contains
     call read_bulk(deck%source, bulk, deck%card, faults)
   end subroutine read_deck
 
-  !> The text, and the fields of all cards but the parameters, are done with: their memory is free for what
-  !! follows. How many cards there are remains known.
+  !> The text, unless it is to be listed, and the fields of all cards but the parameters are done with: their
+  !! memory is free for what follows. How many cards there are remains known.
   pure subroutine forget_text(self)
     class(deck_type), intent(inout) :: self
     integer :: k
 
+    if (self%echo .or. self%echo_sorted) return
     self%source = source()
     do k = 1, size(self%card)
       if (k /= card_param) call self%card(k)%forget_fields()

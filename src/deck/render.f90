@@ -6,7 +6,7 @@ module epcont_deck_render
   use epcont_deck_source, only: source
   implicit none
   private
-  public :: render, render_notes, printable
+  public :: render, render_notes, included_file, printable
 
   !> Errors shown, and as many warnings; of the others only the number.
   integer, parameter :: most_shown = 50
@@ -54,7 +54,7 @@ contains
     do i = 1, size(order)
       fault = faults%item(order(i))
       if (fault%severity == severity_error) cycle
-      text = text//note_file(fault, lines)//columns(fault%place, lines)//said(fault)
+      text = text//included_file(lines, fault%place%line)//columns(fault%place, lines)//said(fault)
       if (len(fault%remedy) > 0) text = text//'; '//printable(fault%remedy)
       text = text//newline
     end do
@@ -126,21 +126,21 @@ contains
     text = text//': '
   end function columns
 
-  !> The included file that a note is about, as seen from the deck, and a colon.
-  pure function note_file(fault, lines) result(text)
-    type(diagnostic), intent(in) :: fault
-    type(source), intent(in) :: lines
+  !> The included file that a line is of, as seen from the deck, and a colon; empty where it is of the deck.
+  pure function included_file(lines, line) result(text)
+    type(source), intent(in) :: lines   !! of the deck
+    integer, intent(in) :: line         !! in deck order; 0: none
     character(len=:), allocatable :: text, directory
 
     text = ''
-    if (fault%place%line == 0) return
-    if (lines%line(fault%place%line)%file == 1) return
-    text = lines%file_name(fault%place%line)//':'
+    if (line == 0) return
+    if (lines%line(line)%file == 1) return
+    text = lines%file_name(line)//':'
     directory = lines%deck_name()
     directory = directory(:index(directory, '/', back=.true.))
     if (index(text, directory) == 1) text = text(len(directory) + 1:)
     text = shown(text)
-  end function note_file
+  end function included_file
 
   !> The line of the deck, and below it carets under the value (or the whole field, where that is blank).
   !! Of a line too long to show, the part that holds the place.

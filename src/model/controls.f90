@@ -40,8 +40,15 @@ module epcont_model_controls
     real(wp) :: search = 0.0_wp
     !> PARAM CORNER, turns above it are corners [degree]; 0: by how boundaries turn
     real(wp) :: corner = 0.0_wp
+    logical :: by_inversion = .false.  !! PARAM FLEXIB INVERT: flexibility by inversion, whatever it costs
     logical :: paper_ratio = .false.   !! PARAM MUP PAPER: Poisson's ratio (2-4) in the equivalent strain
+    logical :: original = .false.      !! PARAM ORIGINAL YES: as the program of about 1980 did it all
   end type controls_type
+
+  !> What PARAM ORIGINAL YES chooses. Each contact problem is solved from the start, by pivots, too.
+  type(controls_type), parameter, public :: original_controls = controls_type( &
+    rule=rule_conry, method=method_secant, solver=solver_band, precision=precision_double, tolerance=0.01_wp, &
+    by_inversion=.true., paper_ratio=.true., original=.true.)
 
   !> Uniaxial curve of a material that yields: total strain and stress, from (0, 0) over the yield point on.
   !! Beyond the last point its last slope goes on. Not allocated: the material does not yield.

@@ -166,7 +166,7 @@ contains
       end if
     end subroutine number_band
 
-    !> Number a body anew so that the contact comes last, if that takes fewer operations.
+    !> Number a body anew so that the contact comes last, if that takes fewer operations or is asked for.
     subroutine root_at_contact(roots, body)
       integer, intent(in) :: roots(:)       !! nodes at contact
       type(body_numbering), intent(inout) :: body
@@ -182,7 +182,7 @@ contains
       call number_panels(order%node(size(own):1:-1), body)
       body%contact_last = .true.
       body%operations = body%panels%operations() + real(body%contact_equations, wp)**3
-      if (body%operations <= plain%operations) return
+      if (model%controls%by_inversion .or. body%operations <= plain%operations) return
       numbering%equation(:, own) = equation
       body = plain
     end subroutine root_at_contact

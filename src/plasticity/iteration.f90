@@ -179,7 +179,7 @@ contains
       ! A state far away is none to show: its numbers may be at the end of their range.
       answer%runs_away = .not. converged .and. scene%model%has_flat_curve() .and. travel > farthest
       if (answer%runs_away) return
-      loop%touching = found%contact%touching
+      if (.not. scene%model%controls%original) loop%touching = found%contact%touching
       loop%force = found%contact%force
       loop%yielded = now%yielded
       ! Behind the last load step nothing is linearised any more.
@@ -236,6 +236,7 @@ contains
     if (model%pairs > 0) now%force_change = ratio(maxval(abs(found%contact%force - loop%force)), maxval(found%contact%force))
     now%touching = count(found%contact%touching)
     now%pivots = found%contact%pivots
+    now%pivot = found%contact%history
     now%yielded = 0
     now%residual = 0.0_wp
     if (.not. loop%linear%materials%yields) return

@@ -2,6 +2,7 @@
 !> changes nothing.
 module epcont_plasticity_onlooker
   use epcont_base_kinds, only: wp
+  use epcont_contact_problem, only: pivot_record
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_system_stopwatch, only: stopwatch
   implicit none
@@ -21,6 +22,7 @@ module epcont_plasticity_onlooker
     integer :: touching = 0            !! pairs
     integer :: yielded = 0             !! elements
     integer :: pivots = 0
+    type(pivot_record), allocatable :: pivot(:)   !! the first of them
   end type iteration_record
 
   !> One that says nothing.

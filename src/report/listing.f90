@@ -8,6 +8,7 @@ module epcont_report_listing
   use epcont_deck_render, only: printable
   use epcont_model_controls, only: precision_single
   use epcont_report_columns, only: table_type
+  use epcont_report_echo, only: list_cards
   use epcont_report_file, only: new_text_file
   use epcont_report_layout, only: figure, heading, newline, right, wrap
   use epcont_report_names, only: centre_name, joined, point_name, when
@@ -40,6 +41,7 @@ contains
     call new_text_file(path, listing, error)
     if (allocated(error)) return
     call list_deck()
+    call list_cards(listing, run%deck)
     call list_remarks()
     plan = plan_text(run%planned_scene)
     call listing%line(plan(:len(plan) - 1))

@@ -48,6 +48,8 @@ contains
       call say('PLAN')
       call say('  '//plural(model%nodes, 'node')//', '//plural(model%elements, 'element')//', '// &
                plural(model%pairs, 'pair')//'; bodies: '//text_of(model%bodies))
+      if (model%controls%original) call say('  ORIGINAL: as the program of about 1980, each contact from its first'// &
+                                            ' pivot on')
       call say_iteration()
       call say_rule()
       do k = 1, min(most, size(model%line_contact))

@@ -7,7 +7,7 @@ module epcont_report_results
   use epcont_report_run, only: run_results
   use epcont_report_summary, only: summarise, summary_type
   use epcont_report_tables, only: put_bodies, put_contact, put_elements, put_history, put_nodes, &
-                                  put_zones
+                                  put_pivots, put_zones
   use epcont_report_vtk, only: write_vtk_bodies, write_vtk_contact
   implicit none
   private
@@ -27,6 +27,7 @@ module epcont_report_results
     result_file('.zones.csv', 'runs of touching pairs'), &
     result_file('.bodies.csv', 'what contact exerts on each body'), &
     result_file('.history.csv', 'the iterations'), &
+    result_file('.pivots.csv', 'the pivots of each iteration''s simplex, with --tables all'), &
     result_file('.nodes.csv', 'the nodes, where the deck or --tables all asks for it'), &
     result_file('.elements.csv', 'the elements, where the deck or --tables all asks for it'), &
     result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
@@ -55,6 +56,7 @@ contains
     call write_table('.zones.csv', put_zones)
     if (run%model%pairs > 0) call write_table('.bodies.csv', put_bodies)
     call write_table('.history.csv', put_history)
+    if (all_tables .and. run%model%pairs > 0) call write_table('.pivots.csv', put_pivots)
     if (nodes) call write_table('.nodes.csv', put_nodes)
     if (elements) call write_table('.elements.csv', put_elements)
     if (vtk .and. .not. allocated(error)) call write_vtk_bodies(run, stem//'.vtu', error)

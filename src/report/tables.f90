@@ -3,6 +3,7 @@ module epcont_report_tables
   use epcont_accuracy_body_shares, only: most_bodies
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
+  use epcont_contact_problem, only: pivot_record
   use epcont_model_model, only: model_type
   use epcont_report_columns, only: column, columns_text, state, table_type, whole, word
   use epcont_report_limit, only: limit_of_zone
@@ -96,8 +97,12 @@ module epcont_report_tables
     column(number, 'load_factor', '', 'part of the loads that the iteration is for', width=0)]
 
   type(column), parameter :: pivot_columns(*) = [ &
-    column(whole, head='pivot', width=10), column(word, head='entered', width=17), &
-    column(word, head='left', width=17), column(number, head='load factor'), column(number, head='ratio')]
+    column(whole, 'iteration', '', 'counted through all load steps', width=0), &
+    column(whole, 'pivot', '', 'counted in it; the first 50 are kept', width=10), &
+    column(word, 'entered', '', 'the pair whose force or gap entered the basis, or the load', width=17), &
+    column(word, 'left', '', 'that which left it', width=17), &
+    column(number, 'load_factor', '', 'part of the loads, behind it', 'load factor'), &
+    column(number, 'ratio', '', 'growth of what entered, in scaled units')]
 
 contains
 
@@ -111,6 +116,7 @@ contains
     if (suffix == '.zones.csv') text = columns_text(zone_columns)
     if (suffix == '.bodies.csv') text = columns_text(body_columns)
     if (suffix == '.history.csv') text = columns_text(history_columns)
+    if (suffix == '.pivots.csv') text = columns_text(pivot_columns)
     if (suffix == '.nodes.csv') text = columns_text(node_columns)
     if (suffix == '.elements.csv') text = columns_text(element_columns)
     if (len(text) > 0) text = 'Columns: '//text//'.'
@@ -276,19 +282,33 @@ contains
     end do
   end subroutine put_history
 
-  !> The first pivots of the simplex, below the pairs.
+  !> The first pivots of the simplex: those of the last solve, below the pairs of the listing; in a file, of all.
   subroutine put_pivots(run, table)
     type(run_results), intent(in) :: run       !! what is known of the run
     type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: k
 
     call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
-    do k = 1, size(run%answer%contact%history)
-      associate (pivot => run%answer%contact%history(k))
-        call table%row([k], [pivot%load_factor, pivot%ratio], &
-                       [variable(run%model, pivot%entered), variable(run%model, pivot%left)])
-      end associate
-    end do
+    if (table%listed) then
+      call put(0, run%answer%contact%history)
+    else
+      do k = 1, size(run%answer%history)
+        call put(k, run%answer%history(k)%pivot)
+      end do
+    end if
+
+  contains
+
+    subroutine put(iteration, pivots)
+      integer, intent(in) :: iteration
+      type(pivot_record), intent(in) :: pivots(:)
+      integer :: i
+
+      do i = 1, size(pivots)
+        call table%row([iteration, i], [pivots(i)%load_factor, pivots(i)%ratio], &
+                       [variable(run%model, pivots(i)%entered), variable(run%model, pivots(i)%left)])
+      end do
+    end subroutine put
   end subroutine put_pivots
 
   !> A variable of the simplex by the id of its pair.

@@ -35,7 +35,7 @@ class Model:
             nu = e / (2 * g) - 1 if nu is None else nu
             matrices[int(card[1])] = (e, nu)
         curves = self.curves(matrices)
-        paper = self.parameter.get("MUP") == "PAPER"
+        paper = self.parameter.get("MUP") == "PAPER" or self.parameter.get("ORIGINAL") == "YES"
         self.section = {}
         for card in self.deck.of("PSHELL"):
             strain = at(card, 4) == "-1" or self.parameter.get("PLANE") == "STRAIN"

@@ -14,13 +14,13 @@ def run(program, deck, rule, output):
     output.mkdir(parents=True, exist_ok=True)
     for old in output.glob("*"):
         old.unlink()
-    lines = [line for line in deck.read_text().splitlines() if not re.match(r"PARAM[\s,]+RULE", line, re.IGNORECASE)]
+    lines = [line for line in deck.read_text().splitlines() if not re.match(r"PARAM[\s,]+(RULE|ORIGINAL)", line, re.IGNORECASE)]
     begin = [line.strip().upper() for line in lines].index("BEGIN BULK")
     lines.insert(begin + 1, f"PARAM,RULE,{rule}")
     copy = output / deck.name
     copy.write_text("\n".join(lines) + "\n")
     status = subprocess.run([program, copy, "-o", output, "--tables", "all", "--quiet"], stderr=subprocess.DEVNULL).returncode
-    for path in [copy, *output.glob("*.lst")]:
+    for path in [copy, *output.glob("*.lst"), *output.glob("*.pivots.csv")]:
         path.unlink()
     for table in output.glob("*.csv"):
         rows = [line.split(",") for line in table.read_text().splitlines()]

@@ -28,6 +28,7 @@ INSTEAD = [
     (r"cmake --preset release && cmake --build --preset release( --target epcont)?",
      r"cmake --list-presets && cmake --build --preset release", "minutes; the build under test was made so"),
     (r"cmake --install build/release .*", None, "the ctest `package` installs"),
+    (r"cmake (-S input/library|--build build/two_blocks) .*", None, "the ctest `package` builds it"),
     (r"sudo apt install .*", None, "changes the machine; the ctest `package` unpacks the package and runs it"),
     (r"tests/slurm/run", "tests/slurm/run --help", "installs and starts Slurm"),
     (r"tools/batch (.*--slurm.*|--collect .*)", "tools/batch --help", "wants Slurm; tests/slurm/run does it"),

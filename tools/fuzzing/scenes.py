@@ -103,7 +103,8 @@ def small_scene(pick):
         scene.add("PARAM", "GAPGEOM", "YES")
     for name, values in (("METHOD", ["AUTO", "SECANT", "MODSEC", "INISTR", "NEWTON"]), ("RULE", ["AUTO", "CONRY", "BLOCK"]),
                          ("TOL", ["1.-3", "1.-6", "0.5"]), ("MAXIT", ["1", "5", "60"]), ("NLOAD", ["1", "2", "5"]),
-                         ("MUP", ["EXACT", "PAPER"]), ("SOLVER", ["AUTO", "BAND", "FRONTAL"]), ("UNITS", ["N-MM"])):
+                         ("MUP", ["EXACT", "PAPER"]), ("SOLVER", ["AUTO", "BAND", "FRONTAL"]), ("UNITS", ["N-MM"]),
+                         ("FLEXIB", ["AUTO", "INVERT"]), ("ORIGINAL", ["NO", "YES"])):
         if pick.random() < 0.12:
             scene.add("PARAM", name, pick.choice(values))
     columns = pick.randint(1, 4)

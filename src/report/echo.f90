@@ -1,0 +1,87 @@
+!> The cards of a deck in the listing, where case control asks for them by ECHO.
+module epcont_report_echo
+  use epcont_base_sorting, only: sorted_order
+  use epcont_base_text, only: text_of
+  use epcont_deck_card, only: continues
+  use epcont_deck_deck, only: deck_type
+  use epcont_deck_render, only: included_file, printable
+  use epcont_report_file, only: text_file
+  use epcont_report_layout, only: heading, right
+  implicit none
+  private
+  public :: list_cards
+
+  !> Columns of a line of the deck in one of the listing; what is longer goes on in the next.
+  integer, parameter :: width = 120
+
+contains
+
+  !> The lines of the deck that say something, as they are read and by the names of their cards.
+  subroutine list_cards(file, deck)
+    class(text_file), intent(in) :: file   !! the listing
+    type(deck_type), intent(in) :: deck   !! with its text
+    integer :: line
+
+    if (deck%echo) then
+      call heading(file, 'LINES OF THE DECK')
+      do line = 1, deck%source%count
+        call list_line(file, deck, line)
+      end do
+    end if
+    if (deck%echo_sorted) call list_sorted(file, deck)
+  end subroutine list_cards
+
+  !> The cards by name and number, with the lines that continue them.
+  subroutine list_sorted(file, deck)
+    class(text_file), intent(in) :: file
+    type(deck_type), intent(in) :: deck
+    integer, allocatable :: order(:)
+    integer :: i, k, line
+
+    call heading(file, 'CARDS OF THE DECK, SORTED')
+    do k = 1, size(deck%card)
+      associate (cards => deck%card(by_name(k)))
+        order = sorted_order(nint(cards%value(1, :cards%count)))
+        do i = 1, cards%count
+          line = cards%line(order(i))
+          call list_line(file, deck, line)
+          do line = line + 1, deck%source%count
+            if (deck%source%blank(line)) cycle
+            if (.not. continues(deck%source%text_of_line(line))) exit
+            call list_line(file, deck, line)
+          end do
+        end do
+      end associate
+    end do
+
+  contains
+
+    !> The kind of cards whose name is the k-th.
+    pure integer function by_name(k)
+      integer, intent(in) :: k
+      integer :: one
+
+      do by_name = 1, size(deck%card)
+        if (count([(lle(deck%card(one)%entry%name, deck%card(by_name)%entry%name), &
+                    one=1, size(deck%card))]) == k) return
+      end do
+    end function by_name
+  end subroutine list_sorted
+
+  !> A line with its number in its file, unless it is blank.
+  subroutine list_line(file, deck, line)
+    class(text_file), intent(in) :: file
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: line
+    character(len=:), allocatable :: place, text
+    integer :: from
+
+    if (deck%source%blank(line)) return
+    place = included_file(deck%source, line)//text_of(deck%source%line(line)%number)
+    text = printable(deck%source%text_of_line(line))
+    call file%line(right(place, 9)//'  '//text(:min(width, len(text))))
+    do from = width + 1, len(text), width
+      call file%line(repeat(' ', 11)//text(from:min(from + width - 1, len(text))))
+    end do
+  end subroutine list_line
+end module epcont_report_echo
