@@ -91,7 +91,7 @@ contains
       if (answer%contact%state /= contact_solved) return
       if (converged .or. step == 1) then
         answer%load_factor = part
-        call linear%estimate_condition(scene, answer%condition)
+        call linear%bodies%estimate_condition(scene, linear%operator, linear%law, answer%condition)
         answer%weakest = linear%bodies%weakest()
         if (plan%precision == precision_single) &
           call linear%rounding_error(scene, part, answer%scene_state, answer%rounding_error)
