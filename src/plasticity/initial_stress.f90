@@ -24,7 +24,7 @@ contains
     integer :: p
 
     do p = 1, size(about%point)
-      if (.not. linear%materials%section(linear%materials%of_point(p))%law%yields) cycle
+      if (.not. linear%materials%can_yield(p)) cycle
       associate (law => linear%law, state => about%point(p))
         law%initial_stress(:, p) = 0.0_wp
         if (state%yielded) law%initial_stress(:, p) = &

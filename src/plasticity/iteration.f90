@@ -239,11 +239,11 @@ contains
       now%residual = 0.0_wp
       allocate (yields(scene%model%elements), source=.false.)
       do p = 1, scene%model%points
-        associate (e => scene%model%point_element(p), materials => linear%materials)
-          if (.not. materials%section(materials%of_point(p))%law%yields) cycle
-          yields(e) = yields(e) .or. found%point(p)%yielded
-          now%residual = max(now%residual, materials%section(materials%of_point(p))%law%distance( &
-                                             found%point(p), found%point_stress(:, p)))
+        if (.not. linear%materials%can_yield(p)) cycle
+        associate (e => scene%model%point_element(p), state => found%point(p), &
+                   material => linear%materials%section(linear%materials%of_point(p))%law)
+          yields(e) = yields(e) .or. state%yielded
+          now%residual = max(now%residual, material%distance(state, found%point_stress(:, p)))
         end associate
       end do
       now%yielded = count(yields)

@@ -77,7 +77,7 @@ contains
     do p = 1, size(about%point)
       associate (material => linear%materials%section(linear%materials%of_point(p))%law, &
                  strain => about%strain(:, p), state => about%point(p))
-        if (.not. material%yields) cycle
+        if (.not. linear%materials%can_yield(p)) cycle
         linear%law%initial_stress(:, p) = 0.0_wp
         matrix = material%secant_matrix(state)
         if (state%yielded) then

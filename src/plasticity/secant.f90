@@ -38,8 +38,9 @@ contains
     integer :: p
 
     do p = 1, size(about%point)
+      if (.not. linear%materials%can_yield(p)) cycle
       associate (material => linear%materials%section(linear%materials%of_point(p))%law)
-        if (material%yields) call linear%law%set_matrix(p, material%secant_matrix(about%point(p)))
+        call linear%law%set_matrix(p, material%secant_matrix(about%point(p)))
       end associate
     end do
   end subroutine linearise
