@@ -1,7 +1,7 @@
-!> The factored bodies, and displacements under nodal forces.
+!> The bodies with a linear law, factored, and displacements under nodal forces.
 module epcont_assembly_bodies
   use epcont_assembly_stiffness, only: body_stiffness
-  use epcont_assembly_strain_operator, only: strain_operator
+  use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
   use epcont_material_linear_law, only: linear_law
@@ -26,6 +26,8 @@ module epcont_assembly_bodies
   end type half_solved_body
 
   type :: factored_bodies
+    type(strain_operator) :: operator
+    type(linear_law) :: law                    !! of the next factors, or the last
     type(body_stiffness), allocatable :: body(:)
     integer :: factorizations = 0              !! done so far, of bodies that have equations
     !> Forces of prescribed displacements on free freedoms [directions, nodes]
@@ -42,29 +44,30 @@ module epcont_assembly_bodies
 
 contains
 
-  !> Bodies with room for their factors.
+  !> Bodies with room for their factors, without a law.
   pure function new_bodies(model, single) result(bodies)
     type(model_type), intent(in) :: model   !! the scene
     logical, intent(in) :: single    !! factored in single precision
     type(factored_bodies) :: bodies
 
+    bodies%operator = new_strain_operator(model)
     allocate (bodies%body(model%bodies))
     bodies%body%single = single
     allocate (bodies%settlement(directions, model%nodes), source=0.0_wp)
   end function new_bodies
 
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
-  pure subroutine settle(self, model, operator, law)
+  pure subroutine settle(self, model)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model   !! the scene
-    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
-    type(linear_law), intent(in) :: law   !! stresses of strains
     real(wp), allocatable :: prescribed(:, :)
 
     if (all(model%beyond_travel == 0.0_wp)) return
     allocate (prescribed(directions, model%nodes), source=0.0_wp)
     call prescribe(model, 1.0_wp, prescribed)
-    self%settlement = -operator%nodal_forces(model, law%increment(operator%strains(model, prescribed)))
+    associate (operator => self%operator)
+      self%settlement = -operator%nodal_forces(model, self%law%increment(operator%strains(model, prescribed)))
+    end associate
   end subroutine settle
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.
@@ -96,17 +99,15 @@ contains
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
   !! not as stiff as it was when it was assembled first.
-  pure subroutine estimate_condition(self, scene, operator, law, condition)
+  pure subroutine estimate_condition(self, scene, condition)
     class(factored_bodies), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene        !! with the numbers of its equations
-    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
-    type(linear_law), intent(in) :: law   !! that the bodies were factored with
-    real(wp), intent(out) :: condition   !! 1 where all bodies are rigid
+    type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
+    real(wp), intent(out) :: condition         !! 1 where all bodies are rigid
     integer :: b
 
     condition = 1.0_wp
     do b = 1, size(self%body)
-      if (scene%numbering%body(b)%can_yield) call self%body(b)%find_norm(scene, operator, law, b)
+      if (scene%numbering%body(b)%can_yield) call self%body(b)%find_norm(scene, self%operator, self%law, b)
       condition = max(condition, self%body(b)%matrix%condition())
     end do
   end subroutine estimate_condition

@@ -43,12 +43,11 @@ contains
 
   !> Assemble the elements of a body, and factor what is complete on the way. Where only some elements have
   !! changed since it was factored, nothing is touched that does not depend on them.
-  subroutine assemble(self, scene, operator, law, changed, b)
+  subroutine assemble(self, scene, operator, law, b)
     class(body_stiffness), intent(inout) :: self
     type(planned_scene), intent(in) :: scene         !! with the numbers of its equations
     type(strain_operator), intent(in) :: operator    !! strains of nodal displacements
-    type(linear_law), intent(in) :: law              !! stresses of strains
-    logical, intent(in) :: changed(:)                !! since it was factored last [elements]
+    type(linear_law), intent(in) :: law              !! stresses of strains, and where that has changed since
     integer, intent(in) :: b                         !! the body
     real(wp) :: k(most_freedoms**2)
     real(wp), allocatable :: row_sum(:)
@@ -121,9 +120,9 @@ contains
       integer :: i
 
       stale = .false.
-      associate (element => scene%numbering%body(b)%element)
+      associate (element => scene%numbering%body(b)%element, first => scene%model%first_point)
         do e = 1, size(element)
-          if (.not. changed(element(e))) cycle
+          if (.not. any(law%changed(first(element(e)):first(element(e) + 1) - 1))) cycle
           number = scene%numbering%of_element(scene%model, element(e))
           do i = 1, size(number)
             stale(number(i)) = number(i) > 0

@@ -2,7 +2,6 @@
 !> iteration, and all of an elastic analysis.
 module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
-  use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, solved_to
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
@@ -12,14 +11,12 @@ module epcont_linear_linear_problem
     motion_columns, motion_resultants, pair_forces
   use epcont_linear_completion, only: complete_state
   use epcont_linear_scene_state, only: scene_state
-  use epcont_material_linear_law, only: linear_law
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
-  use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, &
-    stage_stiffness, stopwatch
+  use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, stopwatch
   implicit none
   private
   public :: linear_problem, new_linear_problem
@@ -28,12 +25,9 @@ module epcont_linear_linear_problem
   !! rounding is reached, or single precision leaves too little to begin with.
   real(wp), parameter :: slowest_rate = 0.5_wp
 
-  type :: linear_problem
+  type, extends(factored_bodies) :: linear_problem
     type(iteration_plan), private :: plan
-    type(strain_operator) :: operator
     type(scene_materials) :: materials
-    type(linear_law) :: law                          !! of the next solve, or the last
-    type(factored_bodies) :: bodies
     type(contact_problem) :: problem
     !> Flexibility of the bodies that cannot yield, where others can [length/force] [pairs, pairs]
     real(wp), allocatable, private :: lasting_flexibility(:, :)
@@ -56,9 +50,8 @@ contains
     type(linear_problem), intent(out) :: linear    !! all but its law
 
     linear%plan = plan
-    linear%operator = new_strain_operator(scene%model)
     call find_materials(scene%model, linear%materials)
-    linear%bodies = new_bodies(scene%model, plan%precision /= precision_double)
+    linear%factored_bodies = new_bodies(scene%model, plan%precision /= precision_double)
     linear%problem%initial_gap = scene%model%initial_gap
     linear%travel_gap = gap_opening(scene%model, scene%model%travel)
     linear%problem%motion = motion_columns(scene%model, scene%motions)
@@ -72,20 +65,13 @@ contains
     type(planned_scene), intent(in) :: scene    !! that it was made for
     integer, intent(out) :: singular            !! first body that could not be factored; 0: all could
     class(stopwatch), intent(inout) :: watch    !! takes the time
-    logical, allocatable :: changed(:)          ! the law of the element is not that of the factors
-    integer :: p
 
-    allocate (changed(scene%model%elements), source=.false.)
-    do p = 1, scene%model%points
-      if (self%law%changed(p)) changed(scene%model%point_element(p)) = .true.
-    end do
-    self%law%changed = .false.
-    call watch%lap(stage_stiffness)
     associate (yields => self%plan%body, first => .not. allocated(self%problem%flexibility))
       call factor_bodies(yields .or. first)
+      self%law%changed = .false.
       call watch%lap(stage_factor)
       if (singular > 0) return
-      call self%bodies%settle(scene%model, self%operator, self%law)
+      call self%settle(scene%model)
       call watch%lap(stage_displacements)
       if (first) then
         allocate (self%problem%flexibility(scene%model%pairs, scene%model%pairs), source=0.0_wp)
@@ -114,13 +100,13 @@ contains
         threads = threads_for(operations, self%plan%threads)
         !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
         do i = 1, size(body)
-          call self%bodies%body(body(i))%assemble(scene, self%operator, self%law, changed, body(i))
-          call self%bodies%body(body(i))%factor()
+          call self%body(body(i))%assemble(scene, self%operator, self%law, body(i))
+          call self%body(body(i))%factor()
         end do
         !$omp end parallel do
-        self%bodies%factorizations = self%bodies%factorizations + count(chosen .and. numbered%equations > 0)
+        self%factorizations = self%factorizations + count(chosen .and. numbered%equations > 0)
       end associate
-      singular = findloc([(chosen(i) .and. .not. self%bodies%body(i)%is_sound(), i=1, size(chosen))], .true., dim=1)
+      singular = findloc([(chosen(i) .and. .not. self%body(i)%is_sound(), i=1, size(chosen))], .true., dim=1)
     end subroutine factor_bodies
 
     !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are
@@ -133,7 +119,7 @@ contains
       threads = threads_for(merge(scene%numbering%body%operations, 0.0_wp, chosen), self%plan%threads)
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic) ordered private(own)
       do b = 1, scene%model%bodies
-        if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, self%bodies%body(b), own)
+        if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, self%body(b), own)
         !$omp ordered
         if (chosen(b)) call add_flexibility(own, self%problem%flexibility)
         !$omp end ordered
@@ -171,17 +157,17 @@ contains
       force = part*scene%model%load
       if (any(self%law%initial_stress /= 0.0_wp)) &
         force = force - self%operator%nodal_forces(scene%model, self%law%initial_stress)
-      call self%bodies%add_forces(scene%numbering, force, part, half)
-      self%problem%load_gap = gap_opening(scene%model, self%bodies%finish(scene, half, part, .true.)) + &
+      call self%add_forces(scene%numbering, force, part, half)
+      self%problem%load_gap = gap_opening(scene%model, self%finish(scene, half, part, .true.)) + &
                               part*self%travel_gap
       self%problem%resultant = part*self%resultant
       call watch%lap(stage_displacements)
       call solve_contact(self%problem, state%contact, start, self%plan%contact%by_blocks)
       call watch%lap(stage_contact)
       if (state%contact%state /= contact_solved) return
-      call self%bodies%add_forces(scene%numbering, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
+      call self%add_forces(scene%numbering, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
       ! Strains are of the deformation: added to a long travel it would lose their digits.
-      state%deformation = self%bodies%finish(scene, half, part, .false.)
+      state%deformation = self%finish(scene, half, part, .false.)
       state%strain = self%operator%strains(scene%model, state%deformation)
     end subroutine solve_once
 
@@ -305,7 +291,7 @@ contains
 
     force = part*scene%model%load + pair_forces(scene%model, state%contact%force) &
             - self%operator%nodal_forces(scene%model, self%law%stress(state%strain))
-    step = self%bodies%displacements(scene, force, 0.0_wp)
+    step = self%displacements(scene, force, 0.0_wp)
     strain = self%operator%strains(scene%model, step)
     state%deformation = state%deformation + step
     state%strain = state%strain + strain

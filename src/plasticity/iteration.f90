@@ -12,7 +12,6 @@ module epcont_plasticity_iteration
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_initial_stress, only: initial_stress_method
-  use epcont_plasticity_iteration_error, only: error_estimator, new_estimator, ratio
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_onlooker, only: iteration_record, onlooker
   use epcont_plasticity_secant, only: secant_method
@@ -64,11 +63,13 @@ contains
     type(followed_loads), intent(out) :: answer                !! what came of it
     class(onlooker), intent(inout) :: watch                    !! takes the time, and is told of each solve
     class(secant_method), allocatable :: method
-    type(error_estimator) :: estimator
     type(scene_state) :: about                ! that the law is about
     type(scene_state), allocatable :: state   ! found at this load
     logical, allocatable :: touching(:)       ! the last contact set: the next simplex starts from it [pairs]
     real(wp), allocatable :: force(:)         ! the last contact forces [force] [pairs]
+    ! The last displacements, g of x, and g - x; by how much both had changed: |dg|/|d(g - x)| of the steps at
+    ! this load, the contact forces' [force/length].
+    real(wp), allocatable :: displacement(:, :), rest(:, :), gain(:), force_gain(:)
     real(wp), allocatable :: strained(:)      ! e of points that yielded in the last load step, else 0 [points]
     real(wp) :: part                          ! of the loads
     real(wp) :: doubt                         ! times what was estimated is what a tangent step has shown
@@ -83,16 +84,16 @@ contains
     do step = 1, plan%load_steps
       part = real(step, wp)/plan%load_steps
       call iterate()
-      answer%factorizations = linear%bodies%factorizations
-      answer%lacks_memory = linear%bodies%lacks_memory()
+      answer%factorizations = linear%factorizations
+      answer%lacks_memory = linear%lacks_memory()
       if (answer%singular > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call answer%take(state)
       if (answer%contact%state /= contact_solved) return
       if (converged .or. step == 1) then
         answer%load_factor = part
-        call linear%bodies%estimate_condition(scene, linear%operator, linear%law, answer%condition)
-        answer%weakest = linear%bodies%weakest()
+        call linear%estimate_condition(scene, answer%condition)
+        answer%weakest = linear%weakest()
         if (plan%precision == precision_single) &
           call linear%rounding_error(scene, part, answer%scene_state, answer%rounding_error)
         call watch%lap(stage_accuracy)
@@ -141,8 +142,8 @@ contains
       allocate (state, found)
       if (.not. stiff) linear%law = elastic_law(linear%materials)   ! it may be a last step's tangent
       call method%restart()
-      ! The last steps of a plain iteration are its slowest, those of a mixture are not.
-      estimator = new_estimator(merge(huge(1), 2, allocated(method%mixer)))
+      gain = [real(wp) ::]
+      force_gain = [real(wp) ::]
       doubt = 1.0_wp
       do iteration = 1, scene%model%controls%most_iterations
         call set_law(method, answer%singular)
@@ -194,7 +195,7 @@ contains
       do
         call linear%set_stiffness(scene, singular, watch)
         stiff = .true.
-        if (singular == 0 .or. linear%bodies%lacks_memory() .or. .not. linear%materials%yields) return
+        if (singular == 0 .or. linear%lacks_memory() .or. .not. linear%materials%yields) return
         call method%stiffen(about, linear, possible)
         if (.not. possible) return
       end do
@@ -209,7 +210,7 @@ contains
 
       now%iteration = iteration
       call measure(found, now)
-      call estimator%estimate(about, found, now)
+      call estimate_errors(found, now)
       if (now%yielded + yielded == 0 .or. now%residual <= solved_to .and. now%error < 0.0_wp) then
         ! What changes is rounding, if anything.
         now%error = merge(now%change, 0.0_wp, iteration > 1)
@@ -248,6 +249,44 @@ contains
       end do
       now%yielded = count(yields)
     end subroutine measure
+
+    !> How far the iteration still is from where it goes, from what its last steps were worth.
+    !>
+    !> An iteration takes x to g(x). To first order a step dx changes g by J dx and the rest g - x by (J - 1)
+    !> dx, so that of a rest r there is J/(1 - J) r to come in g. How much that is at most, the steps behind
+    !> tell: |dg|/|d(g - x)|. In an iteration without mixing it is the sum of the changes to come, each the last
+    !> times the rate at which they fall; its last steps are the slowest.
+    subroutine estimate_errors(found, now)
+      type(scene_state), intent(in) :: found
+      type(iteration_record), intent(inout) :: now   !! its errors are set; negative: not known
+      real(wp), allocatable :: last_rest(:, :)
+      real(wp) :: step, largest
+      integer :: first
+
+      call move_alloc(rest, last_rest)
+      rest = found%displacement - about%displacement
+      largest = maxval(abs(rest))
+      now%error = -1.0_wp
+      now%force_error = -1.0_wp
+      if (now%iteration > 1) then
+        associate (u => found%displacement, now_force => found%contact%force)
+          step = maxval(abs(rest - last_rest))
+          gain = [gain, ratio(maxval(abs(u - displacement)), step)]
+          force_gain = [force_gain, ratio(maxval([0.0_wp, abs(now_force - force)]), step)]
+          if (largest < maxval(abs(last_rest)) .or. largest == 0.0_wp) then
+            first = merge(1, max(1, size(gain) - 1), allocated(method%mixer))
+            ! A step may by chance be short where much is to come: as long as stresses are off their curves, no
+            ! less than the last change.
+            now%error = max(ratio(maxval(gain(first:))*largest, maxval(abs(u))), min(now%change, now%residual))
+            now%force_error = 0.0_wp
+            if (any(now_force > 0.0_wp)) &
+              now%force_error = max(ratio(maxval(force_gain(first:))*largest, maxval(now_force)), &
+                                    min(now%force_change, now%residual))
+          end if
+        end associate
+      end if
+      displacement = found%displacement
+    end subroutine estimate_errors
 
     !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than
     !! the tolerance. Where nothing has yielded, the first solve was exact; and where stresses are on their
@@ -334,4 +373,12 @@ contains
       if (answer%first_unloaded == 0) answer%first_unloaded = findloc(fell, .true., dim=1)
     end subroutine find_unloaded
   end subroutine follow_loads
+
+  !> a/b, 0 where both are 0; finite.
+  pure real(wp) function ratio(a, b)
+    real(wp), intent(in) :: a, b
+
+    ratio = 0.0_wp
+    if (a > 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
+  end function ratio
 end module epcont_plasticity_iteration

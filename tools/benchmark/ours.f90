@@ -112,10 +112,11 @@ contains
     scene%model = model
     scene%numbering = numbering
     bodies = new_bodies(model, single=.false.)
+    bodies%law = law
     call solve_once(spent)
     spent(all_stages) = sum(spent(ordering:displacing))
     begun = now()
-    call bodies%estimate_condition(scene, operator, law, condition)
+    call bodies%estimate_condition(scene, condition)
     spent(conditioning) = lap()
     do k = 1, further
       call solve_once(again)
@@ -127,12 +128,10 @@ contains
   subroutine solve_once(spent)
     real(wp), intent(inout) :: spent(times)
     logical, allocatable :: start(:)   !! no guess
-    logical :: all_changed(model%elements)
     real(wp) :: alone                  !! seconds of the elements' matrices alone
     type(body_flexibility) :: part
     integer :: b
 
-    all_changed = .true.
     begun = now()
     spent(assembly) = 0.0_wp
     spent(factor) = 0.0_wp
@@ -142,9 +141,9 @@ contains
         alone = lap()
         spent(assembly) = spent(assembly) + alone
         spent(factor) = spent(factor) - alone
-        call bodies%body(b)%assemble(scene, operator, law, all_changed, b)
+        call bodies%body(b)%assemble(scene, operator, law, b)
       else
-        call bodies%body(b)%assemble(scene, operator, law, all_changed, b)
+        call bodies%body(b)%assemble(scene, operator, law, b)
         spent(assembly) = spent(assembly) + lap()
       end if
       call bodies%body(b)%factor()
