@@ -63,8 +63,7 @@ contains
     real(wp), allocatable :: strain(:, :)
 
     associate (model => scene%model)
-      strain = linear%operator%strains(model, linear%bodies%displacements(model, scene%numbering, &
-                                                                          pair_forces(model, force), 0.0_wp))
+      strain = linear%operator%strains(model, linear%displacements(scene, pair_forces(model, force), 0.0_wp))
     end associate
   end function unit_strains
 end module epcont_accuracy_unit_motion

@@ -1,14 +1,16 @@
-!> The factored bodies, and displacements under nodal forces.
+!> The bodies with a linear law, factored, and displacements under nodal forces.
 module epcont_assembly_bodies
-  use epcont_assembly_stiffness, only: assemble_body, body_stiffness, norm_of
-  use epcont_assembly_strain_operator, only: strain_operator
+  use epcont_assembly_stiffness, only: body_stiffness
+  use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: directions
   use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type
   use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: factored_bodies, half_solution, new_bodies, weak_pivot
+  public :: factored_bodies, half_solved_body, new_bodies, prescribe, weak_pivot
 
   !> The pivot that has lost most of its digits to rounding.
   type :: weak_pivot
@@ -23,19 +25,15 @@ module epcont_assembly_bodies
     real(wp), allocatable :: border(:, :)  !! [border, 1]
   end type half_solved_body
 
-  type :: half_solution
-    type(half_solved_body), allocatable :: body(:)
-  end type half_solution
-
   type :: factored_bodies
+    type(strain_operator) :: operator
+    type(linear_law) :: law                    !! of the next factors, or the last
     type(body_stiffness), allocatable :: body(:)
     integer :: factorizations = 0              !! done so far, of bodies that have equations
-    !> Forces of prescribed displacements on free freedoms [2, nodes]
+    !> Forces of prescribed displacements on free freedoms [directions, nodes]
     real(wp), allocatable :: settlement(:, :)
   contains
-    procedure :: factor_body
     procedure :: settle
-    procedure, nopass :: prescribe
     procedure :: displacements
     procedure :: add_forces
     procedure :: finish
@@ -46,55 +44,41 @@ module epcont_assembly_bodies
 
 contains
 
-  !> Bodies with room for their factors.
+  !> Bodies with room for their factors, without a law.
   pure function new_bodies(model, single) result(bodies)
     type(model_type), intent(in) :: model   !! the scene
     logical, intent(in) :: single    !! factored in single precision
     type(factored_bodies) :: bodies
 
+    bodies%operator = new_strain_operator(model)
     allocate (bodies%body(model%bodies))
     bodies%body%single = single
-    allocate (bodies%settlement(2, model%nodes), source=0.0_wp)
+    allocate (bodies%settlement(directions, model%nodes), source=0.0_wp)
   end function new_bodies
 
-  !> Assemble and factor one body; if it was before, as far as elements have changed. Nothing of other bodies
-  !! is touched.
-  subroutine factor_body(self, model, operator, law, changed, numbering, b)
-    class(factored_bodies), intent(inout) :: self
-    type(model_type), intent(in) :: model   !! the scene
-    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
-    type(linear_law), intent(in) :: law   !! D of each point
-    logical, intent(in) :: changed(:)         !! since the body was factored last [elements]
-    type(numbering_type), intent(in) :: numbering   !! of its equations
-    integer, intent(in) :: b   !! the body
-
-    call assemble_body(model, operator, law, changed, numbering, b, self%body(b))
-    call self%body(b)%factor()
-  end subroutine factor_body
-
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
-  pure subroutine settle(self, model, operator, law)
+  pure subroutine settle(self, model)
     class(factored_bodies), intent(inout) :: self
     type(model_type), intent(in) :: model   !! the scene
-    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
-    type(linear_law), intent(in) :: law   !! stresses of strains
     real(wp), allocatable :: prescribed(:, :)
 
     if (all(model%beyond_travel == 0.0_wp)) return
-    allocate (prescribed(2, model%nodes), source=0.0_wp)
+    allocate (prescribed(directions, model%nodes), source=0.0_wp)
     call prescribe(model, 1.0_wp, prescribed)
-    self%settlement = -operator%nodal_forces(model, law%increment(operator%strains(model, prescribed)))
+    associate (operator => self%operator)
+      self%settlement = -operator%nodal_forces(model, self%law%increment(operator%strains(model, prescribed)))
+    end associate
   end subroutine settle
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.
   pure subroutine prescribe(model, part, displacement)
     type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: part   !! of the prescribed displacements
-    real(wp), intent(inout) :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
     integer :: c, node
 
     do node = 1, model%nodes
-      do c = 1, 2
+      do c = 1, directions
         associate (leader => model%leader(c, node))
           if (model%held(c, leader)) displacement(c, node) = part*model%beyond_travel(c, leader)
         end associate
@@ -115,23 +99,16 @@ contains
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
   !! not as stiff as it was when it was assembled first.
-  pure subroutine estimate_condition(self, model, operator, law, numbering, condition)
+  pure subroutine estimate_condition(self, scene, condition)
     class(factored_bodies), intent(inout) :: self
-    type(model_type), intent(in) :: model   !! the scene
-    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
-    type(linear_law), intent(in) :: law   !! that the bodies were factored with
-    type(numbering_type), intent(in) :: numbering   !! of its equations
-    real(wp), intent(out) :: condition   !! 1 where all bodies are rigid
+    type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
+    real(wp), intent(out) :: condition         !! 1 where all bodies are rigid
     integer :: b
 
     condition = 1.0_wp
     do b = 1, size(self%body)
-      associate (stiffness => self%body(b))
-        if (numbering%body(b)%can_yield) then
-          stiffness%matrix%norm = norm_of(model, operator, law, numbering, b, stiffness)
-        end if
-        condition = max(condition, stiffness%matrix%condition())
-      end associate
+      if (scene%numbering%body(b)%can_yield) call self%body(b)%find_norm(scene, self%operator, self%law, b)
+      condition = max(condition, self%body(b)%matrix%condition())
     end do
   end subroutine estimate_condition
 
@@ -140,99 +117,95 @@ contains
     class(factored_bodies), intent(in) :: self
     integer :: b
 
-    do b = 1, size(self%body)
-      if (self%body(b)%smallest_ratio < weakest%ratio) weakest = weak_pivot(self%body(b)%smallest_ratio, b)
-    end do
+    b = minloc(self%body%smallest_ratio, dim=1)
+    if (self%body(b)%smallest_ratio < weakest%ratio) weakest = weak_pivot(self%body(b)%smallest_ratio, b)
   end function weakest
 
-  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero [2,
-  !! nodes].
-  pure function displacements(self, model, numbering, force, part) result(u)
+  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero
+  !! [directions, nodes].
+  pure function displacements(self, scene, force, part) result(u)
     class(factored_bodies), intent(in) :: self
-    type(model_type), intent(in) :: model   !! the scene
-    type(numbering_type), intent(in) :: numbering   !! of its equations
-    real(wp), intent(in) :: force(:, :)  !! [2, nodes]
+    type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
+    real(wp), intent(in) :: force(:, :)  !! [directions, nodes]
     real(wp), intent(in) :: part         !! of the prescribed displacements
     real(wp), allocatable :: u(:, :)
-    type(half_solution) :: half
+    type(half_solved_body), allocatable :: half(:)
 
-    call self%add_forces(numbering, force, part, half)
-    u = self%finish(model, numbering, half, part, .false.)
+    call self%add_forces(scene%numbering, force, part, half)
+    u = self%finish(scene, half, part, .false.)
   end function displacements
 
   !> Put forces on the bodies: the half of the solve that can be done before all of them are known.
   pure subroutine add_forces(self, numbering, force, part, half)
     class(factored_bodies), intent(in) :: self
-    type(numbering_type), intent(in) :: numbering   !! of its equations
-    real(wp), intent(in) :: force(:, :)          !! [2, nodes]
+    type(numbering_type), intent(in) :: numbering   !! of the equations
+    real(wp), intent(in) :: force(:, :)          !! [directions, nodes]
     real(wp), intent(in) :: part                 !! of the prescribed displacements, with their forces
-    type(half_solution), intent(inout) :: half   !! what has been put on before
-    real(wp) :: total(2, size(force, 2))
+    !> What has been put on before; not allocated: nothing [bodies]
+    type(half_solved_body), allocatable, intent(inout) :: half(:)
     integer :: b
 
-    if (.not. allocated(half%body)) allocate (half%body(size(numbering%body)))
-    total = force + part*self%settlement
-    do b = 1, size(half%body)
-      call add_to_body(self%body(b), numbering, b, total, half%body(b))
+    if (.not. allocated(half)) allocate (half(size(numbering%body)))
+    do b = 1, size(half)
+      call add_to_body(b, half(b))
     end do
+
+  contains
+
+    !> Put forces on one body.
+    pure subroutine add_to_body(b, half)
+      integer, intent(in) :: b
+      type(half_solved_body), intent(inout) :: half
+      real(wp), allocatable :: border(:, :), inner(:, :)
+      real(wp) :: own
+      integer :: c, i
+
+      associate (body => numbering%body(b))
+        allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
+        do i = 1, size(body%node)
+          do c = 1, directions
+            associate (number => numbering%equation(c, body%node(i)))
+              own = force(c, body%node(i)) + part*self%settlement(c, body%node(i))
+              if (number > 0) inner(number, 1) = inner(number, 1) + own
+              if (number < 0) border(-number, 1) = border(-number, 1) + own
+            end associate
+          end do
+        end do
+      end associate
+      if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
+        call self%body(b)%solve_lower(inner, border)
+        half%loaded = .true.
+      end if
+      if (allocated(half%inner)) then
+        inner = inner + half%inner
+        border = border + half%border
+      end if
+      call move_alloc(inner, half%inner)
+      call move_alloc(border, half%border)
+    end subroutine add_to_body
   end subroutine add_forces
 
-  !> Put forces on one body.
-  pure subroutine add_to_body(stiffness, numbering, b, force, half)
-    type(body_stiffness), intent(in) :: stiffness
-    type(numbering_type), intent(in) :: numbering
-    integer, intent(in) :: b
-    real(wp), intent(in) :: force(:, :)             !! [2, nodes]
-    type(half_solved_body), intent(inout) :: half
-    real(wp), allocatable :: border(:, :), inner(:, :)
-    integer :: c, i
-
-    associate (body => numbering%body(b))
-      allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
-      do i = 1, size(body%node)
-        do c = 1, 2
-          associate (number => numbering%equation(c, body%node(i)), own => force(c, body%node(i)))
-            if (number > 0) inner(number, 1) = inner(number, 1) + own
-            if (number < 0) border(-number, 1) = border(-number, 1) + own
-          end associate
-        end do
-      end do
-    end associate
-    if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
-      call stiffness%solve_lower(inner, border)
-      half%loaded = .true.
-    end if
-    if (allocated(half%inner)) then
-      inner = inner + half%inner
-      border = border + half%border
-    end if
-    call move_alloc(inner, half%inner)
-    call move_alloc(border, half%border)
-  end subroutine add_to_body
-
-  !> The other half: displacements under all that has been put on, SUPORT freedoms at zero [2, nodes].
-  pure function finish(self, model, numbering, half, part, at_contact) result(u)
+  !> The other half: displacements under all that has been put on, SUPORT freedoms at zero [directions, nodes].
+  pure function finish(self, scene, half, part, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
-    type(model_type), intent(in) :: model   !! the scene
-    type(numbering_type), intent(in) :: numbering   !! of its equations
-    type(half_solution), intent(in) :: half   !! all that has been put on
+    type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
+    type(half_solved_body), intent(in) :: half(:)  !! all that has been put on [bodies]
     real(wp), intent(in) :: part         !! of the prescribed displacements
     logical, intent(in) :: at_contact    !! only nodes of pairs are wanted
     real(wp), allocatable :: u(:, :)
     real(wp), allocatable :: border(:, :), inner(:, :)
     integer :: b, c, i
 
-    allocate (u(2, model%nodes))
-    do b = 1, model%bodies
-      associate (body => numbering%body(b))
-        inner = half%body(b)%inner
-        border = half%body(b)%border
-        if (half%body(b)%loaded) then
+    allocate (u(directions, scene%model%nodes))
+    do b = 1, size(half)
+      associate (body => scene%numbering%body(b), model => scene%model)
+        inner = half(b)%inner
+        border = half(b)%border
+        if (half(b)%loaded) &
           call self%body(b)%solve_upper(inner, border, merge(body%first_contact, 1, at_contact))
-        end if
         do i = 1, size(body%node)
-          do c = 1, 2
-            associate (node => body%node(i), number => numbering%equation(c, body%node(i)))
+          do c = 1, directions
+            associate (node => body%node(i), number => scene%numbering%equation(c, body%node(i)))
               if (number > 0) then
                 u(c, node) = inner(number, 1)
               else if (number < 0) then

@@ -7,7 +7,7 @@
 module epcont_assembly_stiffness
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_element_element_kind, only: most_nodes
+  use epcont_element_kinematics, only: directions
   use epcont_linalg_assembled, only: assembled_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   use epcont_linalg_front, only: front_matrix
@@ -16,11 +16,11 @@ module epcont_assembly_stiffness
   use epcont_linalg_single_panel, only: single_panel_matrix => panel_matrix
   use epcont_material_linear_law, only: linear_law
   use epcont_model_controls, only: solver_frontal
-  use epcont_model_model, only: model_type
-  use epcont_plan_numbering, only: body_numbering, numbering_type
+  use epcont_plan_numbering, only: most_freedoms
+  use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: body_stiffness, assemble_body, norm_of
+  public :: body_stiffness
 
   type :: body_stiffness
     class(assembled_matrix), allocatable :: matrix   !! K_bb, then its factor
@@ -30,8 +30,9 @@ module epcont_assembly_stiffness
     !> K is over this, in the range of single precision; a power of four [force/length]
     real(wp) :: unit = 1.0_wp
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
-    integer :: weakest = 0                    !! its equation
   contains
+    procedure :: assemble
+    procedure :: find_norm
     procedure :: factor
     procedure :: is_sound
     procedure :: solve_lower
@@ -42,63 +43,133 @@ contains
 
   !> Assemble the elements of a body, and factor what is complete on the way. Where only some elements have
   !! changed since it was factored, nothing is touched that does not depend on them.
-  subroutine assemble_body(model, operator, law, changed, numbering, b, stiffness)
-    type(model_type), intent(in) :: model   !! the scene
-    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
-    type(linear_law), intent(in) :: law   !! stresses of strains
-    logical, intent(in) :: changed(:)        !! since it was factored last [elements]
-    type(numbering_type), intent(in) :: numbering   !! of its equations
-    integer, intent(in) :: b                 !! the body
-    type(body_stiffness), intent(inout) :: stiffness   !! of the body, filled; what could be is factored
-    real(wp) :: k((2*most_nodes)**2)
+  subroutine assemble(self, scene, operator, law, b)
+    class(body_stiffness), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene         !! with the numbers of its equations
+    type(strain_operator), intent(in) :: operator    !! strains of nodal displacements
+    type(linear_law), intent(in) :: law              !! stresses of strains, and where that has changed since
+    integer, intent(in) :: b                         !! the body
+    real(wp) :: k(most_freedoms**2)
     real(wp), allocatable :: row_sum(:)
-    logical, allocatable :: stale(:)
-    integer :: e, n, number(2*most_nodes)
+    logical, allocatable :: stale(:)                 ! the equation is to be filled [-border:equations]
+    integer :: e, n, number(most_freedoms)
     logical :: first
 
-    first = .not. allocated(stiffness%matrix)
-    if (first .and. stiffness%single) then
-      stiffness%unit = unit_of(model, operator, law, numbering%body(b)%element)
-    end if
-    call begin(model, changed, numbering, b, stiffness, stale)
-    if (stiffness%matrix%lacks_memory) return
-    associate (body => numbering%body(b))
+    first = .not. allocated(self%matrix)
+    associate (body => scene%numbering%body(b))
+      allocate (stale(-body%border:body%equations), source=.true.)
+      stale(0) = .false.
+      if (first) then
+        call begin()
+      else
+        if (self%is_sound() .and. body%border == 0) call find_stale()
+        call self%matrix%clear(stale(1:))
+        deallocate (self%coupling, self%schur)
+      end if
+      allocate (self%coupling(body%equations, body%border), self%schur(body%border, body%border), source=0.0_wp)
+      if (self%matrix%lacks_memory) return
       allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
       do e = 1, size(body%element)
-        n = 2*model%order(body%element(e))
-        number = numbering%of_element(model, body%element(e))
-        if (body%border == 0 .and. .not. any_of(stale, number)) cycle
-        call operator%element_stiffness(model, body%element(e), law, n, k)
-        if (stiffness%single) k(:n**2) = k(:n**2)/stiffness%unit
-        call stiffness%matrix%add(n, number, k)
-        if (body%border > 0) call add_to_border(n, number, k, stiffness)
+        number = scene%numbering%of_element(scene%model, body%element(e))
+        if (.not. any(stale(number))) cycle
+        n = directions*scene%model%order(body%element(e))
+        call operator%element_stiffness(scene%model, body%element(e), law, n, k)
+        if (self%single) k(:n**2) = k(:n**2)/self%unit
+        call self%matrix%add(n, number, k)
+        if (body%border > 0) call add_to_border(n, number, k, self)
         if (first) call add_magnitudes(n, number, k, row_sum)
       end do
     end associate
-    if (first) stiffness%matrix%norm = max(0.0_wp, maxval(row_sum))
-  end subroutine assemble_body
+    if (first) self%matrix%norm = max(0.0_wp, maxval(row_sum))
 
-  !> A bound of the 1-norm of a body's stiffness as it is factored, from its elements.
-  pure real(wp) function norm_of(model, operator, law, numbering, b, stiffness) result(norm)
-    type(model_type), intent(in) :: model   !! the scene
-    type(strain_operator), intent(in) :: operator   !! strains of nodal displacements
-    type(linear_law), intent(in) :: law       !! as it was assembled with
-    type(numbering_type), intent(in) :: numbering   !! of its equations
-    integer, intent(in) :: b                  !! the body
-    type(body_stiffness), intent(in) :: stiffness   !! of the body
-    real(wp) :: k((2*most_nodes)**2), row_sum(numbering%body(b)%equations)
+  contains
+
+    !> A matrix of zeros, of the kind that the plan has chosen.
+    subroutine begin()
+      type(front_matrix), allocatable :: fronts
+      type(single_front_matrix), allocatable :: single_fronts
+      type(panel_matrix), allocatable :: panels
+      type(single_panel_matrix), allocatable :: single_panels
+
+      associate (body => scene%numbering%body(b))
+        associate (once => .not. body%can_yield, trailing => merge(body%contact_equations, 0, body%contact_last))
+          if (self%single) self%unit = unit_of(body%element)
+          if (body%solver == solver_frontal .and. self%single) then
+            allocate (single_fronts)
+            call single_fronts%begin(body%fronts, once, trailing)
+            call move_alloc(single_fronts, self%matrix)
+          else if (body%solver == solver_frontal) then
+            allocate (fronts)
+            call fronts%begin(body%fronts, once, trailing)
+            call move_alloc(fronts, self%matrix)
+          else if (self%single) then
+            allocate (single_panels)
+            call single_panels%begin(body%panels, once, trailing)
+            call move_alloc(single_panels, self%matrix)
+          else
+            allocate (panels)
+            call panels%begin(body%panels, once, trailing)
+            call move_alloc(panels, self%matrix)
+          end if
+        end associate
+      end associate
+    end subroutine begin
+
+    !> The equations of elements that have changed.
+    subroutine find_stale()
+      integer :: i
+
+      stale = .false.
+      associate (element => scene%numbering%body(b)%element, first => scene%model%first_point)
+        do e = 1, size(element)
+          if (.not. any(law%changed(first(element(e)):first(element(e) + 1) - 1))) cycle
+          number = scene%numbering%of_element(scene%model, element(e))
+          do i = 1, size(number)
+            stale(number(i)) = number(i) > 0
+          end do
+        end do
+      end associate
+    end subroutine find_stale
+
+    !> A power of four near the largest stiffness of some elements [force/length].
+    pure real(wp) function unit_of(element)
+      integer, intent(in) :: element(:)
+      real(wp) :: largest
+      integer :: e, p
+
+      largest = 0.0_wp
+      do e = 1, size(element)
+        associate (columns => directions*scene%model%order(element(e)), first => scene%model%first_point(element(e):))
+          do p = first(1), first(2) - 1
+            largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
+                          *maxval(abs(operator%b(:, operator%column(p) + 1:operator%column(p) + columns)))**2)
+          end do
+        end associate
+      end do
+      unit_of = scale(1.0_wp, exponent(largest)/2*2)
+    end function unit_of
+  end subroutine assemble
+
+  !> The 1-norm of a body's stiffness as it was factored last, or a bound of it, from its elements.
+  pure subroutine find_norm(self, scene, operator, law, b)
+    class(body_stiffness), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene         !! with the numbers of its equations
+    type(strain_operator), intent(in) :: operator    !! strains of nodal displacements
+    type(linear_law), intent(in) :: law              !! as it was assembled with
+    integer, intent(in) :: b                         !! the body
+    real(wp) :: k(most_freedoms**2), row_sum(scene%numbering%body(b)%equations)
     integer :: e, n
 
     row_sum = 0.0_wp
-    do e = 1, size(numbering%body(b)%element)
-      associate (element => numbering%body(b)%element(e))
-        n = 2*model%order(element)
-        call operator%element_stiffness(model, element, law, n, k)
-        call add_magnitudes(n, numbering%of_element(model, element), k, row_sum)
+    do e = 1, size(scene%numbering%body(b)%element)
+      associate (element => scene%numbering%body(b)%element(e))
+        n = directions*scene%model%order(element)
+        call operator%element_stiffness(scene%model, element, law, n, k)
+        call add_magnitudes(n, scene%numbering%of_element(scene%model, element), k, row_sum)
       end associate
     end do
-    norm = max(0.0_wp, maxval(row_sum))/stiffness%unit
-  end function norm_of
+    self%matrix%norm = max(0.0_wp, maxval(row_sum))/self%unit
+  end subroutine find_norm
 
   !> Add an element's part of the sums of the magnitudes of each row. (A matrix has no larger ones: where
   !! elements meet, their entries may cancel.)
@@ -118,106 +189,6 @@ contains
     end do
   end subroutine add_magnitudes
 
-  !> A power of four near the largest stiffness of some elements [force/length].
-  pure real(wp) function unit_of(model, operator, law, element)
-    type(model_type), intent(in) :: model
-    type(strain_operator), intent(in) :: operator
-    type(linear_law), intent(in) :: law
-    integer, intent(in) :: element(:)
-    real(wp) :: largest
-    integer :: e, p
-
-    largest = 0.0_wp
-    do e = 1, size(element)
-      do p = model%first_point(element(e)), model%first_point(element(e) + 1) - 1
-        associate (b => operator%b(:, operator%column(p) + 1:operator%column(p) + 2*model%order(element(e))))
-          largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
-                        *maxval(abs(b))**2)
-        end associate
-      end do
-    end do
-    unit_of = scale(1.0_wp, exponent(largest)/2*2)
-  end function unit_of
-
-  !> Is one of these equations marked? Those of number 0 and less are not.
-  pure logical function any_of(marked, number)
-    logical, intent(in) :: marked(:)
-    integer, intent(in) :: number(:)
-    integer :: i
-
-    any_of = .true.
-    do i = 1, size(number)
-      if (number(i) <= 0) cycle
-      if (marked(number(i))) return
-    end do
-    any_of = .false.
-  end function any_of
-
-  !> Make the stiffness ready to be filled: anew where elements have changed and its factor can be kept, else
-  !! all of it.
-  subroutine begin(model, changed, numbering, b, stiffness, stale)
-    type(model_type), intent(in) :: model
-    logical, intent(in) :: changed(:)
-    type(numbering_type), intent(in) :: numbering
-    integer, intent(in) :: b
-    type(body_stiffness), intent(inout) :: stiffness
-    logical, allocatable, intent(out) :: stale(:)   !! which equations are to be filled
-    integer :: e, i, number(2*most_nodes)
-
-    associate (body => numbering%body(b))
-      allocate (stale(body%equations), source=.true.)
-      if (.not. allocated(stiffness%matrix)) then
-        call begin_matrix(body, stiffness%single, stiffness%matrix)
-      else
-        if (stiffness%is_sound() .and. body%border == 0) then
-          stale = .false.
-          do e = 1, size(body%element)
-            if (.not. changed(body%element(e))) cycle
-            number = numbering%of_element(model, body%element(e))
-            do i = 1, size(number)
-              if (number(i) > 0) stale(number(i)) = .true.
-            end do
-          end do
-        end if
-        call stiffness%matrix%clear(stale)
-        deallocate (stiffness%coupling, stiffness%schur)
-      end if
-      allocate (stiffness%coupling(body%equations, body%border), stiffness%schur(body%border, body%border), &
-                source=0.0_wp)
-    end associate
-  end subroutine begin
-
-  !> A matrix of zeros, of the kind that the plan has chosen.
-  subroutine begin_matrix(body, single, matrix)
-    type(body_numbering), intent(in) :: body
-    logical, intent(in) :: single
-    class(assembled_matrix), allocatable, intent(out) :: matrix
-    type(front_matrix), allocatable :: fronts
-    type(single_front_matrix), allocatable :: single_fronts
-    type(panel_matrix), allocatable :: panels
-    type(single_panel_matrix), allocatable :: single_panels
-
-    associate (once => .not. body%can_yield, trailing => merge(body%contact_equations, 0, body%contact_last))
-      if (body%solver == solver_frontal .and. single) then
-        allocate (single_fronts)
-        call single_fronts%begin(body%fronts, once, trailing)
-        call move_alloc(single_fronts, matrix)
-      else if (body%solver == solver_frontal) then
-        allocate (fronts)
-        call fronts%begin(body%fronts, once, trailing)
-        call move_alloc(fronts, matrix)
-      else if (single) then
-        allocate (single_panels)
-        call single_panels%begin(body%panels, once, trailing)
-        call move_alloc(single_panels, matrix)
-      else
-        allocate (panels)
-        call panels%begin(body%panels, once, trailing)
-        call move_alloc(panels, matrix)
-      end if
-    end associate
-  end subroutine begin_matrix
-
   !> Add an element matrix to the coupling and the border.
   pure subroutine add_to_border(n, number, k, stiffness)
     integer, intent(in) :: n, number(n)
@@ -227,13 +198,12 @@ contains
 
     do j = 1, n
       if (number(j) >= 0) cycle
-      do i = 1, n
-        if (number(i) > 0) then
-          stiffness%coupling(number(i), -number(j)) = stiffness%coupling(number(i), -number(j)) + k(i, j)
-        else if (number(i) < 0) then
-          stiffness%schur(-number(i), -number(j)) = stiffness%schur(-number(i), -number(j)) + k(i, j)
-        end if
-      end do
+      associate (coupling => stiffness%coupling(:, -number(j)), schur => stiffness%schur(:, -number(j)))
+        do i = 1, n
+          if (number(i) > 0) coupling(number(i)) = coupling(number(i)) + k(i, j)
+          if (number(i) < 0) schur(-number(i)) = schur(-number(i)) + k(i, j)
+        end do
+      end associate
     end do
   end subroutine add_to_border
 
@@ -241,19 +211,17 @@ contains
   pure subroutine factor(self)
     class(body_stiffness), intent(inout) :: self
     real(wp), allocatable :: coupled(:, :)
-    integer :: info
+    integer :: at, info
 
     self%smallest_ratio = 0.0_wp
     if (self%matrix%lacks_memory) return
-    call self%matrix%factor(self%smallest_ratio, self%weakest)
+    call self%matrix%factor(self%smallest_ratio, at)
     if (self%smallest_ratio == 0.0_wp .or. size(self%schur) == 0) return
     coupled = self%coupling
     call self%matrix%solve(self%coupling)
     self%schur = self%schur - matmul(transpose(coupled), self%coupling)
     call cholesky_factor(self%schur, info)
-    if (info == 0) return
-    self%smallest_ratio = 0.0_wp
-    self%weakest = -info
+    if (info /= 0) self%smallest_ratio = 0.0_wp
   end subroutine factor
 
   !> Is the factor one that can be solved with?

@@ -7,15 +7,14 @@
 module epcont_material_curve
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
+  use epcont_material_elasticity, only: elasticity
   use epcont_model_controls, only: uniaxial_curve
   implicit none
   private
   public :: curve_value, deviatoric_curve, new_curve
 
   type :: deviatoric_curve
-    real(wp) :: young = 1.0_wp              !! E [stress]
-    real(wp) :: shear = 1.0_wp              !! G [stress]
-    real(wp) :: shift = 0.0_wp              !! (1 - 2 nu)/(3E): eps_i = e + shift*sigma_i
+    type(elasticity) :: elastic
     logical :: paper_ratio = .false.        !! MUP PAPER
     logical :: ends = .false.               !! beyond the last point there is no table
     ! From the yield point on; the last slope goes on without end. Not allocated: no yielding.
@@ -40,58 +39,58 @@ module epcont_material_curve
 contains
 
   !> The curve over e, from that over total strain.
-  pure function new_curve(uniaxial, young, shear, shift, paper_ratio) result(curve)
+  pure function new_curve(uniaxial, elastic, paper_ratio) result(curve)
     type(uniaxial_curve), intent(in) :: uniaxial   !! from (0, 0) on
-    real(wp), intent(in) :: young, shear           !! E, G [stress]
-    real(wp), intent(in) :: shift                  !! (1 - 2 nu)/(3E) [1/stress]
+    type(elasticity), intent(in) :: elastic        !! what it begins with
     logical, intent(in) :: paper_ratio             !! MUP PAPER
     type(deviatoric_curve) :: curve
     real(wp), allocatable :: rise(:), width(:)
     integer :: n
 
-    curve%young = young
-    curve%shear = shear
-    curve%shift = shift
+    curve%elastic = elastic
     if (.not. allocated(uniaxial%strain)) return
     curve%paper_ratio = paper_ratio
     curve%ends = uniaxial%ends
-    associate (strain => uniaxial%strain, stress => uniaxial%stress)
-      n = size(strain)
-      rise = stress(3:) - stress(2:n - 1)
-      width = strain(3:) - strain(2:n - 1)
-      curve%total = strain(2:)
-      curve%stress = stress(2:)
-      curve%deviatoric = strain(2:) - shift*stress(2:)
-      if (paper_ratio) curve%deviatoric = strain(2:)*(1.0_wp - young*shift*stress(2)/stress(2:))
-      curve%total_slope = [rise/width, rise(n - 2)/width(n - 2)]
-      curve%slope = [rise/(width - shift*rise), rise(n - 2)/(width(n - 2) - shift*rise(n - 2))]
-    end associate
+    n = size(uniaxial%strain)
+    curve%total = uniaxial%strain(2:)
+    curve%stress = uniaxial%stress(2:)
+    rise = curve%stress(2:) - curve%stress(:n - 2)
+    width = curve%total(2:) - curve%total(:n - 2)
+    rise = [rise, rise(n - 2)]
+    width = [width, width(n - 2)]
+    curve%total_slope = rise/width
+    curve%slope = rise/(width - elastic%shift*rise)
+    curve%deviatoric = curve%total - elastic%shift*curve%stress
+    if (paper_ratio) &
+      curve%deviatoric = curve%total*(1.0_wp - elastic%young*elastic%shift*curve%stress(1)/curve%stress)
   end function new_curve
 
   !> The curve at a deviatoric equivalent strain.
   pure function at_strain(self, e) result(point)
     class(deviatoric_curve), intent(in) :: self
-    real(wp), intent(in) :: e
+    real(wp), intent(in) :: e   !! that strain
     type(curve_value) :: point
     real(wp) :: secant
     integer :: k
 
-    point%modulus = 3.0_wp*self%shear
-    point%slope = point%modulus
-    point%total = e*(1.0_wp + self%shift*point%modulus)
-    if (.not. allocated(self%deviatoric)) return
-    if (e <= self%deviatoric(1)) return
-    point%yielded = .true.
-    k = segment(self%deviatoric, e)
-    if (self%ends) point%beyond = e > self%deviatoric(size(self%deviatoric))*(1.0_wp + least_difference)
-    if (self%paper_ratio) then
-      call find_paper_secant(self, k, e, point%total, secant)
-      point%modulus = self%young/(self%young/secant - self%young*self%shift)  ! (2-5)
-    else
-      point%modulus = (self%stress(k) + self%slope(k)*(e - self%deviatoric(k)))/e
-      point%slope = self%slope(k)
-      point%total = e*(1.0_wp + self%shift*point%modulus)
-    end if
+    associate (young => self%elastic%young, shift => self%elastic%shift)
+      point%modulus = 3.0_wp*self%elastic%shear
+      point%slope = point%modulus
+      point%total = e*(1.0_wp + shift*point%modulus)
+      if (.not. allocated(self%deviatoric)) return
+      if (e <= self%deviatoric(1)) return
+      point%yielded = .true.
+      if (self%ends) point%beyond = e > self%deviatoric(size(self%deviatoric))*(1.0_wp + least_difference)
+      k = segment(self%deviatoric, e)
+      if (self%paper_ratio) then
+        call find_paper_secant(self, k, e, point%total, secant)
+        point%modulus = young/(young/secant - young*shift)  ! (2-5)
+      else
+        point%modulus = (self%stress(k) + self%slope(k)*(e - self%deviatoric(k)))/e
+        point%slope = self%slope(k)
+        point%total = e*(1.0_wp + shift*point%modulus)
+      end if
+    end associate
   end function at_strain
 
   !> The last point at or below a strain; the first of them is.
@@ -122,7 +121,7 @@ contains
 
     b = self%total_slope(k)
     a = self%stress(k) - b*self%total(k)
-    c = self%young*self%shift*self%stress(1)
+    c = self%elastic%young*self%elastic%shift*self%stress(1)
     half = 0.5_wp*(a - c - b*e)
     ! The positive root, written so that nothing cancels for b = 0.
     if (half > 0.0_wp) then

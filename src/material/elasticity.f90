@@ -1,43 +1,45 @@
 !> Isotropic elasticity in the plane.
 module epcont_material_elasticity
   use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: components
   implicit none
   private
-  public :: bulk_modulus, shear_modulus, cross_modulus, isotropic_matrix, equivalent_stress
+  public :: elasticity, new_elasticity, cross_modulus, isotropic_matrix, equivalent_stress
+
+  !> The constants of a material.
+  type :: elasticity
+    real(wp) :: young = 1.0_wp   !! E [stress]
+    real(wp) :: bulk = 1.0_wp    !! K [stress]
+    real(wp) :: shear = 1.0_wp   !! G [stress]
+    real(wp) :: shift = 0.0_wp   !! (1 - 2 nu)/(3E): eps_i = e + shift*sigma_i [1/stress]
+  end type elasticity
 
 contains
 
-  !> K [stress].
-  pure real(wp) function bulk_modulus(young, poisson)
-    real(wp), intent(in) :: young, poisson
+  !> The constants from E [stress] and Poisson's ratio.
+  pure type(elasticity) function new_elasticity(young, poisson)
+    real(wp), intent(in) :: young, poisson   !! E [stress], nu
 
-    bulk_modulus = young/(3.0_wp*(1.0_wp - 2.0_wp*poisson))
-  end function bulk_modulus
-
-  !> G [stress].
-  pure real(wp) function shear_modulus(young, poisson)
-    real(wp), intent(in) :: young, poisson
-
-    shear_modulus = young/(2.0_wp*(1.0_wp + poisson))
-  end function shear_modulus
+    new_elasticity = elasticity(young, bulk=young/(3.0_wp*(1.0_wp - 2.0_wp*poisson)), &
+      shear=young/(2.0_wp*(1.0_wp + poisson)), shift=(1.0_wp - 2.0_wp*poisson)/(3.0_wp*young))
+  end function new_elasticity
 
   !> What a normal strain adds to the normal stress across: K - 2/3 G, less in a sheet, where the stress zz
   !! vanishes [stress].
   pure real(wp) function cross_modulus(bulk, shear, sheet) result(cross)
-    real(wp), intent(in) :: bulk, shear
+    real(wp), intent(in) :: bulk, shear   !! K, G [stress]
     logical, intent(in) :: sheet   !! plane stress
 
     cross = bulk - 2.0_wp*shear/3.0_wp
     if (sheet) cross = 2.0_wp*shear*cross/(cross + 2.0_wp*shear)
   end function cross_modulus
 
-  !> D of stress = D strain, components xx, yy, zz, xy (engineering shear strain) [stress] [4, 4]. With G =
-  !! E_D/3 it is the secant matrix (2-8). In a sheet the stress zz vanishes, and the strain zz is what that
-  !! takes.
+  !> D of stress = D strain, components xx, yy, zz, xy (engineering shear strain) [stress]. With G = E_D/3 it
+  !! is the secant matrix (2-8). In a sheet the stress zz vanishes, and the strain zz is what that takes.
   pure function isotropic_matrix(bulk, shear, sheet) result(d)
-    real(wp), intent(in) :: bulk, shear
+    real(wp), intent(in) :: bulk, shear   !! K, G [stress]
     logical, intent(in) :: sheet   !! plane stress
-    real(wp) :: d(4, 4)
+    real(wp) :: d(components, components)
     real(wp) :: cross
     integer :: i, normals
 
@@ -48,14 +50,14 @@ contains
     do i = 1, normals
       d(i, i) = cross + 2.0_wp*shear
     end do
-    d(4, 4) = shear
+    d(components, components) = shear
   end function isotropic_matrix
 
   !> Von Mises stress (2-1).
   pure real(wp) function equivalent_stress(stress)
-    real(wp), intent(in) :: stress(4)  !! xx, yy, zz, xy
+    real(wp), intent(in) :: stress(components)  !! xx, yy, zz, xy
 
-    equivalent_stress = sqrt(0.5_wp*((stress(1) - stress(2))**2 + (stress(2) - stress(3))**2 + (stress(3) - stress(1))**2) &
-                             + 3.0_wp*stress(4)**2)
+    equivalent_stress = sqrt(0.5_wp*((stress(1) - stress(2))**2 + (stress(2) - stress(3))**2 + &
+                                     (stress(3) - stress(1))**2) + 3.0_wp*stress(4)**2)
   end function equivalent_stress
 end module epcont_material_elasticity

@@ -10,9 +10,10 @@ module epcont_material_linear_law
 
   !> stress = matrix strain + initial_stress; components xx, yy, zz, xy (engineering shear strain).
   type :: linear_law
-    real(wp), allocatable :: matrix(:, :, :)        !! [stress] [4, 4, any]
-    integer, allocatable :: matrix_of(:)            !! each point: its own where the material yields, else its section's [points]
-    real(wp), allocatable :: initial_stress(:, :)   !! [stress] [4, points]
+    real(wp), allocatable :: matrix(:, :, :)        !! [stress] [components, components, any]
+    !> Each point: its own where the material yields, else its section's [points]
+    integer, allocatable :: matrix_of(:)
+    real(wp), allocatable :: initial_stress(:, :)   !! [stress] [components, points]
     logical, allocatable :: changed(:)              !! its matrix is not that of the last stiffness [points]
   contains
     procedure :: stress
@@ -24,7 +25,7 @@ contains
 
   !> The law of bodies that do not yield.
   pure function elastic_law(materials) result(law)
-    type(scene_materials), intent(in) :: materials
+    type(scene_materials), intent(in) :: materials   !! of the scene
     type(linear_law) :: law
     integer :: last, p, s
 
@@ -32,17 +33,16 @@ contains
     law%matrix_of = materials%of_point
     allocate (law%initial_stress(components, size(law%matrix_of)), source=0.0_wp)
     allocate (law%changed(size(law%matrix_of)), source=.true.)
-    allocate (law%matrix(components, components, last + count(materials%can_yield())))
+    allocate (law%matrix(components, components, last + count(materials%can_yield)))
     do s = 1, last
-      associate (m => materials%section(s)%law)
-        law%matrix(:, :, s) = isotropic_matrix(m%bulk, m%shear, m%sheet)
+      associate (material => materials%section(s)%law)
+        law%matrix(:, :, s) = isotropic_matrix(material%bulk, material%shear, material%sheet)
       end associate
     end do
     do p = 1, size(law%matrix_of)
-      s = law%matrix_of(p)
-      if (.not. materials%section(s)%law%yields) cycle
+      if (.not. materials%can_yield(p)) cycle
       last = last + 1
-      law%matrix(:, :, last) = law%matrix(:, :, s)
+      law%matrix(:, :, last) = law%matrix(:, :, law%matrix_of(p))
       law%matrix_of(p) = last
     end do
   end function elastic_law
@@ -50,7 +50,7 @@ contains
   !> The matrix of a point that yields.
   pure subroutine set_matrix(self, point, matrix)
     class(linear_law), intent(inout) :: self
-    integer, intent(in) :: point
+    integer, intent(in) :: point                             !! which
     real(wp), intent(in) :: matrix(components, components)   !! [stress]
 
     associate (now => self%matrix(:, :, self%matrix_of(point)))
@@ -59,30 +59,28 @@ contains
     end associate
   end subroutine set_matrix
 
-  !> Stress of each point [4, points].
+  !> Stress of each point [components, points].
   pure function stress(self, strain)
     class(linear_law), intent(in) :: self
-    real(wp), intent(in) :: strain(:, :)   !! [4, points]
+    real(wp), intent(in) :: strain(:, :)   !! [components, points]
     real(wp), allocatable :: stress(:, :)
-    integer :: p
 
     stress = self%increment(strain)
-    do p = 1, size(strain, 2)
-      stress(:, p) = stress(:, p) + self%initial_stress(:, p)
-    end do
+    stress = stress + self%initial_stress
   end function stress
 
-  !> What a strain adds to the stress of each point [4, points].
+  !> What a strain adds to the stress of each point [components, points].
   pure function increment(self, strain)
     class(linear_law), intent(in) :: self
-    real(wp), intent(in) :: strain(:, :)   !! [4, points]
+    real(wp), intent(in) :: strain(:, :)   !! [components, points]
     real(wp), allocatable :: increment(:, :)
     integer :: p
 
-    allocate (increment(4, size(strain, 2)))
+    allocate (increment(components, size(strain, 2)))
     do p = 1, size(strain, 2)
       associate (d => self%matrix(:, :, self%matrix_of(p)))
-        increment(:, p) = d(:, 1)*strain(1, p) + d(:, 2)*strain(2, p) + d(:, 3)*strain(3, p) + d(:, 4)*strain(4, p)
+        increment(:, p) = d(:, 1)*strain(1, p) + d(:, 2)*strain(2, p) + d(:, 3)*strain(3, p) + &
+                          d(:, 4)*strain(4, p)
       end associate
     end do
   end function increment

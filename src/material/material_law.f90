@@ -8,7 +8,7 @@ module epcont_material_material_law
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components
   use epcont_material_curve, only: curve_value
-  use epcont_material_elasticity, only: equivalent_stress, isotropic_matrix
+  use epcont_material_elasticity, only: elasticity, equivalent_stress, isotropic_matrix
   implicit none
   private
   public :: material_law, point_state
@@ -21,11 +21,7 @@ module epcont_material_material_law
   end type point_state
 
   !> The law of a section, with its elastic part.
-  type, abstract :: material_law
-    real(wp) :: young = 1.0_wp         !! E [stress]
-    real(wp) :: bulk = 1.0_wp          !! K [stress]
-    real(wp) :: shear = 1.0_wp         !! G [stress]
-    real(wp) :: shift = 0.0_wp         !! (1 - 2 nu)/(3E): eps_i = e + shift*sigma_i
+  type, abstract, extends(elasticity) :: material_law
     logical :: sheet = .false.         !! plane stress
     logical :: yields = .false.
     real(wp) :: yield_stress = 0.0_wp  !! [stress]

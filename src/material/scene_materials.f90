@@ -3,7 +3,7 @@ module epcont_material_scene_materials
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_stress
   use epcont_material_curve, only: new_curve
-  use epcont_material_elasticity, only: bulk_modulus, shear_modulus
+  use epcont_material_elasticity, only: new_elasticity
   use epcont_material_material_law, only: material_law, point_state
   use epcont_material_total_theory, only: total_theory
   use epcont_model_model, only: model_type
@@ -19,35 +19,33 @@ module epcont_material_scene_materials
   type :: scene_materials
     type(section_law), allocatable :: section(:)   !! [sections]
     integer, allocatable :: of_point(:)            !! section of each integration point [points]
-    logical :: yields = .false.                    !! does any?
+    logical, allocatable :: can_yield(:)           !! the point can [points]
+    logical :: yields = .false.                    !! does any section?
   contains
     procedure :: states
-    procedure :: can_yield
   end type scene_materials
 
 contains
 
   !> The law of each section, as the deck has it.
   pure subroutine find_materials(model, materials)
-    type(model_type), intent(in) :: model
-    type(scene_materials), intent(out) :: materials
+    type(model_type), intent(in) :: model             !! the scene
+    type(scene_materials), intent(out) :: materials   !! of its sections and points
     type(total_theory) :: law
     integer :: s
 
     allocate (materials%section(size(model%young)))
     do s = 1, size(model%young)
-      law%young = model%young(s)
-      law%bulk = bulk_modulus(model%young(s), model%poisson(s))
-      law%shear = shear_modulus(model%young(s), model%poisson(s))
-      law%shift = (1.0_wp - 2.0_wp*model%poisson(s))/(3.0_wp*model%young(s))
+      law%elasticity = new_elasticity(model%young(s), model%poisson(s))
       law%sheet = model%kinematics(s) == plane_stress
       law%yields = allocated(model%curve(s)%strain)
       if (law%yields) law%yield_stress = model%curve(s)%stress(2)
-      law%curve = new_curve(model%curve(s), law%young, law%shear, law%shift, model%controls%paper_ratio)
+      law%curve = new_curve(model%curve(s), law%elasticity, model%controls%paper_ratio)
       materials%section(s)%law = law
       materials%yields = materials%yields .or. law%yields
     end do
     materials%of_point = model%section(model%point_element)
+    materials%can_yield = model%can_yield(model%point_element)
   end subroutine find_materials
 
   !> The states of all points at their strains [points].
@@ -62,17 +60,4 @@ contains
       call self%section(self%of_point(p))%law%update(strain(:, p), point_state(), state(p))
     end do
   end function states
-
-  !> Which points can yield [points].
-  pure function can_yield(self)
-    class(scene_materials), intent(in) :: self
-    logical, allocatable :: can_yield(:)
-    logical :: yields(size(self%section))
-    integer :: s
-
-    do s = 1, size(yields)
-      yields(s) = self%section(s)%law%yields
-    end do
-    can_yield = yields(self%of_point)
-  end function can_yield
 end module epcont_material_scene_materials

@@ -7,7 +7,8 @@ module epcont_plan_forecast
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_numbering, only: body_numbering, numbering_type
+  use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_rigid_parts, only: part_motions
   use epcont_system_memory, only: has_memory, memory_of_libraries
   implicit none
   private
@@ -54,6 +55,15 @@ contains
       call raise(error, status_usage, 'the scene needs up to '//gigabytes(real(most_memory(bytes), wp))// &
                  ' of memory, and the system does not give it (ulimit -v)')
     end if
+
+  contains
+
+    pure function gigabytes(bytes) result(text)
+      real(wp), intent(in) :: bytes
+      character(len=:), allocatable :: text
+
+      text = short_real(bytes/giga)//' GB'
+    end function gigabytes
   end subroutine check_memory
 
   !> What a run takes of addresses, at most: of what is forecast not all is touched, and the heap has its gaps
@@ -64,13 +74,6 @@ contains
     most_memory = 2*bytes + memory_of_libraries
   end function most_memory
 
-  pure function gigabytes(bytes) result(text)
-    real(wp), intent(in) :: bytes
-    character(len=:), allocatable :: text
-
-    text = short_real(bytes/giga)//' GB'
-  end function gigabytes
-
   !> What a scene will take.
   pure function forecast(model, motions, numbering, plan) result(expected)
     type(model_type), intent(in) :: model   !! the scene
@@ -78,91 +81,70 @@ contains
     type(numbering_type), intent(in) :: numbering   !! of its equations
     type(iteration_plan), intent(in) :: plan   !! of its iteration
     type(forecast_type) :: expected
-    integer, allocatable :: own_pairs(:)
-    integer(i8) :: entries, factor, flexibility, saved
+    integer(i8), allocatable :: own_pairs(:)
+    integer(i8) :: entries, factor, flexibility, pairs, saved
     integer :: b
 
-    own_pairs = pairs_of_bodies(model)
+    pairs = model%pairs
+    own_pairs = pairs_of_bodies()
     entries = 0       ! of the factors
     saved = 0         ! bytes, by factors in single precision
     flexibility = 0   ! entries that are wanted for that of one body
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
-        factor = factor_entries(body)
+        if (body%solver == solver_frontal) then
+          factor = body%fronts%entries(kept=body%can_yield)
+        else
+          factor = body%panels%entries()
+        end if
         entries = entries + factor + int(body%equations, i8)*body%border
         if (plan%precision /= precision_double) saved = saved + factor*real_bytes/2
-        flexibility = max(flexibility, flexibility_entries(body, int(own_pairs(b), i8)))
+        ! The trailing block of the inverse, or the window that right-hand sides go through; and that part.
+        flexibility = max(flexibility, own_pairs(b)**2 + merge(int(body%contact_equations, i8)**2, &
+          own_pairs(b)*(body%half_bandwidth + own_pairs(b)), body%contact_last))
         expected%operations = expected%operations + 4.0_wp*body%border*factor + body%operations
       end associate
     end do
-    associate (pairs => int(model%pairs, i8))
-      entries = entries + max(int(pair_matrices*real(pairs, wp)**2, i8), flexibility + 2*pairs**2) + &
-                (motion_matrices*pairs + 3*motions%parts%count)*motions%count
-    end associate
-    expected%double_bytes = real_bytes*entries + memory_of_model(model, min(motions%count, loads_at_once))
+    entries = entries + max(int(pair_matrices*real(pairs, wp)**2, i8), flexibility + 2*pairs**2) + &
+              (motion_matrices*pairs + part_motions*motions%parts%count)*motions%count
+    expected%double_bytes = real_bytes*entries + beside_matrices(min(motions%count, loads_at_once))
     expected%bytes = expected%double_bytes - saved
-    if (plan%contact%by_blocks) then
-      ! The full set factored twice; the sets on the way to it are smaller, or little of them is factored.
-      expected%operations = expected%operations + 2.0_wp/3.0_wp*real(model%pairs, wp)**3
-    else
-      ! A pivot runs over the whole tableau, about one pivot a pair.
-      expected%operations = expected%operations + 2.0_wp*real(model%pairs, wp)**3
-    end if
-  end function forecast
+    ! A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice, and
+    ! the sets on the way to it are smaller, or little of them is factored.
+    expected%operations = expected%operations + &
+                          merge(2.0_wp/3.0_wp, 2.0_wp, plan%contact%by_blocks)*real(pairs, wp)**3
 
-  !> Entries of the factor of a body, and of what is kept with it.
-  pure integer(i8) function factor_entries(body) result(entries)
-    type(body_numbering), intent(in) :: body
+  contains
 
-    if (body%solver == solver_frontal) then
-      entries = body%fronts%entries(kept=body%can_yield)
-    else
-      entries = body%panels%entries()
-    end if
-  end function factor_entries
+    !> Pairs that have nodes in each body.
+    pure function pairs_of_bodies() result(own)
+      integer(i8) :: own(model%bodies)
+      integer :: last(model%bodies)   ! pair that was counted
+      integer :: i, k
 
-  !> Entries wanted while a body's part of the flexibility is found: the trailing block of the inverse, or the
-  !! window that right-hand sides go through; and that part.
-  pure integer(i8) function flexibility_entries(body, pairs) result(entries)
-    type(body_numbering), intent(in) :: body
-    integer(i8), intent(in) :: pairs   !! of this body
+      own = 0
+      last = 0
+      do k = 1, model%pairs
+        do i = model%row_start(k), model%row_start(k + 1) - 1
+          associate (b => model%body(model%row_node(i)))
+            if (last(b) < k) own(b) = own(b) + 1
+            last(b) = k
+          end associate
+        end do
+      end do
+    end function pairs_of_bodies
 
-    if (body%contact_last) then
-      entries = int(body%contact_equations, i8)**2 + pairs**2
-    else
-      entries = pairs*body%half_bandwidth + 2*pairs**2
-    end if
-  end function flexibility_entries
+    !> What a run holds besides its matrices, with so many unit loads at once [bytes].
+    pure integer(i8) function beside_matrices(loads) result(bytes)
+      integer, intent(in) :: loads
+      integer :: p
 
-  !> Pairs that have nodes in each body [bodies].
-  pure function pairs_of_bodies(model) result(pairs)
-    type(model_type), intent(in) :: model
-    integer, allocatable :: pairs(:)
-    integer, allocatable :: last(:)   !! pair that was counted
-    integer :: i, k
-
-    allocate (pairs(model%bodies), last(model%bodies), source=0)
-    do k = 1, model%pairs
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        associate (b => model%body(model%row_node(i)))
-          if (last(b) < k) pairs(b) = pairs(b) + 1
-          last(b) = k
+      bytes = of_process + (of_node + load_of_node*loads)*model%nodes + (of_point + load_of_point*loads)*model%points
+      do p = 1, model%points
+        associate (e => model%point_element(p))
+          bytes = bytes + of_node_of_point*model%order(e) + merge(of_yielding_point, 0_i8, model%can_yield(e))
         end associate
       end do
-    end do
-  end function pairs_of_bodies
-
-  !> What a run holds besides its matrices [bytes].
-  pure integer(i8) function memory_of_model(model, loads) result(bytes)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: loads   !! unit loads at once
-    integer :: e, p
-
-    bytes = of_process + (of_node + load_of_node*loads)*model%nodes + load_of_point*loads*model%points
-    do p = 1, model%points
-      e = model%point_element(p)
-      bytes = bytes + of_point + of_node_of_point*model%order(e)
-      if (model%can_yield(e)) bytes = bytes + of_yielding_point
-    end do
-  end function memory_of_model
+    end function beside_matrices
+  end function forecast
 end module epcont_plan_forecast

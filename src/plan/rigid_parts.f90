@@ -95,7 +95,8 @@ contains
         associate (first => model%around%start(i), here => parts%of_node(i))
           do k = first, model%around%start(i + 1) - 1
             associate (other => of_element(model%around%group(k)))
-              if (other == here .or. any(of_element(model%around%group(first:k - 1)) == other)) cycle
+              if (other == here) cycle
+              if (any(of_element(model%around%group(first:k - 1)) == other)) cycle
               hinges = hinges + 1
               parts%hinge(:, hinges) = [i, here, other]
             end associate

@@ -4,8 +4,9 @@
 !> does harm it is the plain iteration.
 module epcont_plasticity_anderson
   use epcont_base_kinds, only: wp
-  use epcont_model_model, only: model_type
+  use epcont_element_kinematics, only: components
   use epcont_linear_scene_state, only: scene_state
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: anderson_mixer
@@ -15,54 +16,46 @@ module epcont_plasticity_anderson
   !> A step that is the others' mixture but for this part of it tells nothing new.
   real(wp), parameter :: dependent = 1.0e-10_wp
 
+  !> What a step has found, or how that has changed.
+  type :: step_type
+    real(wp), allocatable :: rest(:, :)           !! strains of g - x [components, points]
+    real(wp), allocatable :: strain(:, :)         !! of g [components, points]
+    real(wp), allocatable :: displacement(:, :)   !! of g [directions, nodes]
+  end type step_type
+
   type :: anderson_mixer
-    integer :: steps = 0                               !! remembered
-    logical :: begun = .false.
-    logical :: mixed = .false.                         !! the last step was a mixture
-    integer :: plain = 0                               !! steps to be taken as they are before the next mixture
-    integer :: penalty = 0                             !! the same after the last mixture that misled
-    real(wp), allocatable :: weight(:)                 !! of each point in the norm [points]
-    ! The last strains of g - x, and g.
-    real(wp), allocatable :: rest(:, :), strain(:, :), displacement(:, :)
-    ! How they changed in the last steps, the latest first [., ., memory].
-    real(wp), allocatable :: rest_step(:, :, :), strain_step(:, :, :), displacement_step(:, :, :)
+    private
+    real(wp), allocatable :: weight(:)   !! of each point in the norm [points]
+    type(step_type) :: last
+    integer :: steps = 0                 !! remembered
+    type(step_type) :: change(memory)    !! in these, the latest first
+    logical :: mixed = .false.           !! the last step was a mixture
+    integer :: plain = 0                 !! steps to be taken as they are before the next mixture
+    integer :: penalty = 0               !! the same after the last mixture that misled
   contains
-    procedure :: forget
     procedure :: mix
   end type anderson_mixer
 
 contains
 
-  pure subroutine forget(self)
-    class(anderson_mixer), intent(inout) :: self
-
-    self%steps = 0
-    self%begun = .false.
-    self%mixed = .false.
-    self%plain = 0
-    self%penalty = 0
-  end subroutine forget
-
   !> The next x, when the last one was `about` and g(about) is `found`.
   pure subroutine mix(self, model, volume, found, about)
     class(anderson_mixer), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: volume(:)   !! of each point
-    type(scene_state), intent(in) :: found
-    type(scene_state), intent(inout) :: about
+    type(model_type), intent(in) :: model        !! the scene
+    real(wp), intent(in) :: volume(:)            !! of each point [length**3]
+    type(scene_state), intent(in) :: found       !! displacement and strain
+    type(scene_state), intent(inout) :: about    !! the same
+    type(step_type) :: now
     real(wp) :: share(memory)
     integer :: k
 
-    if (.not. allocated(self%weight)) then
+    now = step_type(found%strain - about%strain, found%strain, found%displacement)
+    if (allocated(self%weight)) then
+      call remember(self, now)
+    else
       self%weight = volume*model%young(model%section(model%point_element))
-      allocate (self%rest_step(4, model%points, memory), self%strain_step(4, model%points, memory))
-      allocate (self%displacement_step(2, model%nodes, memory))
     end if
-    if (self%begun) call remember(self, found%strain - about%strain, found)
-    self%begun = .true.
-    self%rest = found%strain - about%strain
-    self%strain = found%strain
-    self%displacement = found%displacement
+    self%last = now
     share = 0.0_wp
     if (self%plain == 0) share = best_shares(self)
     self%mixed = any(share /= 0.0_wp)
@@ -70,71 +63,67 @@ contains
     about%displacement = found%displacement
     about%strain = found%strain
     do k = 1, self%steps
-      about%displacement = about%displacement - share(k)*self%displacement_step(:, :, k)
-      about%strain = about%strain - share(k)*self%strain_step(:, :, k)
+      about%displacement = about%displacement - share(k)*self%change(k)%displacement
+      about%strain = about%strain - share(k)*self%change(k)%strain
     end do
   end subroutine mix
 
-  !> Add the step from the last x, with its g, to this one.
-  pure subroutine remember(self, rest, found)
-    class(anderson_mixer), intent(inout) :: self
-    real(wp), intent(in) :: rest(:, :)
-    type(scene_state), intent(in) :: found
+  !> Add the step from the last x to this one.
+  pure subroutine remember(self, now)
+    type(anderson_mixer), intent(inout) :: self
+    type(step_type), intent(in) :: now
     integer :: k
 
-    if (self%mixed .and. product_of(self, rest, rest) > product_of(self, self%rest, self%rest)) then
-      self%steps = 0
-      self%penalty = max(1, 2*self%penalty)
-      self%plain = self%penalty
-      return
-    end if
-    self%steps = min(memory, self%steps + 1)
-    do k = self%steps, 2, -1
-      self%rest_step(:, :, k) = self%rest_step(:, :, k - 1)
-      self%strain_step(:, :, k) = self%strain_step(:, :, k - 1)
-      self%displacement_step(:, :, k) = self%displacement_step(:, :, k - 1)
-    end do
-    self%rest_step(:, :, 1) = rest - self%rest
-    self%strain_step(:, :, 1) = found%strain - self%strain
-    self%displacement_step(:, :, 1) = found%displacement - self%displacement
+    associate (last => self%last)
+      if (self%mixed .and. product_of(self, now%rest, now%rest) > product_of(self, last%rest, last%rest)) then
+        self%steps = 0
+        self%penalty = max(1, 2*self%penalty)
+        self%plain = self%penalty
+        return
+      end if
+      self%steps = min(memory, self%steps + 1)
+      do k = self%steps, 2, -1
+        self%change(k) = self%change(k - 1)
+      end do
+      self%change(1) = step_type(now%rest - last%rest, now%strain - last%strain, now%displacement - last%displacement)
+    end associate
   end subroutine remember
 
   !> Shares of the steps that make the last g - x least: least squares by Gram and Schmidt.
   pure function best_shares(self) result(share)
     type(anderson_mixer), intent(in) :: self
     real(wp) :: share(memory)
-    real(wp), allocatable :: unit(:, :, :)
+    type(step_type) :: unit(memory)
     real(wp) :: factor(memory, memory), length
     integer :: j, k
 
     share = 0.0_wp
     factor = 0.0_wp
-    unit = self%rest_step(:, :, :self%steps)
     do k = 1, self%steps
-      length = sqrt(product_of(self, unit(:, :, k), unit(:, :, k)))
-      do j = 1, k - 1
-        factor(j, k) = product_of(self, unit(:, :, j), unit(:, :, k))
-        unit(:, :, k) = unit(:, :, k) - factor(j, k)*unit(:, :, j)
-      end do
-      factor(k, k) = sqrt(product_of(self, unit(:, :, k), unit(:, :, k)))
-      if (factor(k, k) <= dependent*length) then
-        factor(k, k) = 0.0_wp
-        unit(:, :, k) = 0.0_wp
-      else
-        unit(:, :, k) = unit(:, :, k)/factor(k, k)
-        share(k) = product_of(self, unit(:, :, k), self%rest)
-      end if
+      unit(k)%rest = self%change(k)%rest
+      associate (own => unit(k)%rest)
+        length = sqrt(product_of(self, own, own))
+        do j = 1, k - 1
+          factor(j, k) = product_of(self, unit(j)%rest, own)
+          own = own - factor(j, k)*unit(j)%rest
+        end do
+        factor(k, k) = sqrt(product_of(self, own, own))
+        if (factor(k, k) <= dependent*length) then
+          factor(k, k) = 0.0_wp
+          own = 0.0_wp
+        else
+          own = own/factor(k, k)
+          share(k) = product_of(self, own, self%last%rest)
+        end if
+      end associate
     end do
     do k = self%steps, 1, -1
-      if (factor(k, k) == 0.0_wp) then
-        share(k) = 0.0_wp
-      else
-        share(k) = (share(k) - dot_product(factor(k, k + 1:self%steps), share(k + 1:self%steps)))/factor(k, k)
-      end if
+      if (factor(k, k) == 0.0_wp) cycle
+      share(k) = (share(k) - dot_product(factor(k, k + 1:self%steps), share(k + 1:self%steps)))/factor(k, k)
     end do
   end function best_shares
 
-  !> Product of two strain fields [4, points].
+  !> Product of two strain fields [components, points].
   pure real(wp) function product_of(self, a, b)
     type(anderson_mixer), intent(in) :: self
     real(wp), intent(in) :: a(:, :), b(:, :)
@@ -142,7 +131,8 @@ contains
 
     product_of = 0.0_wp
     do p = 1, size(a, 2)
-      product_of = product_of + self%weight(p)*(dot_product(a(:3, p), b(:3, p)) + 0.5_wp*a(4, p)*b(4, p))
+      product_of = product_of + self%weight(p)*(dot_product(a(:3, p), b(:3, p)) &
+                                                + 0.5_wp*a(components, p)*b(components, p))
     end do
   end function product_of
 end module epcont_plasticity_anderson

@@ -1,57 +1,76 @@
-!> METHOD SECANT, the paper's: all load each time, moduli from the last strains, until nothing changes.
+!> What the loop asks of an iteration method: a linear law about a state, and from what that law finds the
+!> next state. As it stands it is METHOD SECANT, the paper's: all load each time, moduli from the last strains,
+!> until nothing changes; with a mixer MODSEC: moduli from a mixture of the last strains. Others extend it.
 module epcont_plasticity_secant
   use epcont_base_kinds, only: wp
-  use epcont_material_linear_law, only: linear_law
-  use epcont_material_scene_materials, only: scene_materials
-  use epcont_model_model, only: model_type
-  use epcont_plasticity_method, only: plastic_method
+  use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_scene_state, only: scene_state
+  use epcont_model_model, only: model_type
+  use epcont_plasticity_anderson, only: anderson_mixer
   implicit none
   private
-  public :: secant_method, set_secant_law
+  public :: secant_method
 
-  type, extends(plastic_method) :: secant_method
+  type :: secant_method
+    type(anderson_mixer), allocatable :: mixer   !! not allocated: what was found is taken as it is
   contains
+    procedure :: restart
     procedure :: linearise
+    procedure :: stiffen
     procedure :: advance
   end type secant_method
 
 contains
 
-  pure subroutine linearise(self, materials, about, law)
+  !> Forget what was learnt: another load step begins.
+  pure subroutine restart(self)
     class(secant_method), intent(inout) :: self
-    type(scene_materials), intent(in) :: materials
-    type(scene_state), intent(in) :: about
-    type(linear_law), intent(inout) :: law
 
-    call set_secant_law(materials, about, law)
-  end subroutine linearise
+    if (allocated(self%mixer)) self%mixer = anderson_mixer()
+  end subroutine restart
 
-  !> Secant matrices (2-8).
-  pure subroutine set_secant_law(materials, about, law)
-    type(scene_materials), intent(in) :: materials
-    type(scene_state), intent(in) :: about
-    type(linear_law), intent(inout) :: law
+  !> The law about a state, for the points that can yield; that of the others stays as it is. Secant matrices
+  !! (2-8).
+  pure subroutine linearise(self, about, linear)
+    class(secant_method), intent(inout) :: self
+    type(scene_state), intent(in) :: about           !! its strain, and its points
+    type(linear_problem), intent(inout) :: linear    !! its law is set
     integer :: p
 
     do p = 1, size(about%point)
-      associate (m => materials%section(materials%of_point(p))%law)
-        if (m%yields) call law%set_matrix(p, m%secant_matrix(about%point(p)))
+      if (.not. linear%materials%can_yield(p)) cycle
+      associate (material => linear%materials%section(linear%materials%of_point(p))%law)
+        call linear%law%set_matrix(p, material%secant_matrix(about%point(p)))
       end associate
     end do
-  end subroutine set_secant_law
+  end subroutine linearise
 
-  !> What was found is taken as it is.
-  pure subroutine advance(self, model, materials, part, found, about)
+  !> Another law, where a stiffness made of the last could not be factored. Most methods have none.
+  pure subroutine stiffen(self, about, linear, possible)
     class(secant_method), intent(inout) :: self
-    type(model_type), intent(in) :: model
-    type(scene_materials), intent(in) :: materials
-    real(wp), intent(in) :: part
-    type(scene_state), intent(in) :: found
-    type(scene_state), intent(inout) :: about
+    type(scene_state), intent(in) :: about           !! as above
+    type(linear_problem), intent(inout) :: linear    !! as above
+    logical, intent(out) :: possible                 !! there is one
 
-    about%displacement = found%displacement
-    about%strain = found%strain
-    about%point = found%point
+    possible = .false.
+  end subroutine stiffen
+
+  !> The state to linearise about next, when the law about `about` has led to `found`.
+  pure subroutine advance(self, model, linear, part, found, about)
+    class(secant_method), intent(inout) :: self
+    type(model_type), intent(in) :: model            !! the scene
+    type(linear_problem), intent(in) :: linear       !! that was solved
+    real(wp), intent(in) :: part                     !! of the loads
+    type(scene_state), intent(in) :: found           !! with its points
+    type(scene_state), intent(inout) :: about        !! displacement, strain and points
+
+    if (allocated(self%mixer)) then
+      call self%mixer%mix(model, linear%operator%volume, found, about)
+      about%point = linear%materials%states(about%strain)
+    else
+      about%displacement = found%displacement
+      about%strain = found%strain
+      about%point = found%point
+    end if
   end subroutine advance
 end module epcont_plasticity_secant

@@ -6,7 +6,7 @@ module element_kinds
   use epcont_element_integration_point, only: evaluate_points, integration_point
   use epcont_element_element_kinds, only: all_kinds => element_kinds
   use epcont_linalg_dense, only: lu_solve
-  use epcont_material_elasticity, only: bulk_modulus, isotropic_matrix, shear_modulus
+  use epcont_material_elasticity, only: constants => elasticity, isotropic_matrix, new_elasticity
   use epcont_element_kinematics, only: plane_stress
   use lapack_checks, only: dsyev
   implicit none
@@ -239,8 +239,10 @@ contains
     integer, intent(in) :: kinematics
     real(wp), intent(in) :: poisson
     real(wp) :: d(4, 4)
+    type(constants) :: elastic
 
-    d = isotropic_matrix(bulk_modulus(1.0_wp, poisson), shear_modulus(1.0_wp, poisson), kinematics == plane_stress)
+    elastic = new_elasticity(1.0_wp, poisson)
+    d = isotropic_matrix(elastic%bulk, elastic%shear, kinematics == plane_stress)
   end function elasticity
 
   function stiffness(x, kinematics, poisson) result(k)

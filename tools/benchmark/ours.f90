@@ -8,7 +8,6 @@
 !> SYSTEM gets what tools/benchmark/bare reads, in the order of the nodes.
 program bench_ours
   use epcont_assembly_bodies, only: factored_bodies, new_bodies
-  use epcont_assembly_stiffness, only: assemble_body
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
@@ -29,6 +28,7 @@ program bench_ours
   use epcont_plan_free_motion, only: find_free_motions, free_motions
   use epcont_plan_iteration_plan, only: contact_plan, plan_contact
   use epcont_plan_numbering, only: number_equations, numbering_type
+  use epcont_plan_planned_scene, only: planned_scene
   use statistics, only: median
   implicit none
 
@@ -43,6 +43,7 @@ program bench_ours
   type(linear_law) :: law
   type(scene_materials) :: materials
   type(numbering_type) :: numbering
+  type(planned_scene) :: scene   ! of both
   type(factored_bodies) :: bodies
   type(contact_problem) :: problem
   type(contact_solution) :: solution
@@ -108,11 +109,14 @@ contains
     begun = now()
     numbering = number_equations(model)
     spent(ordering) = lap()
+    scene%model = model
+    scene%numbering = numbering
     bodies = new_bodies(model, single=.false.)
+    bodies%law = law
     call solve_once(spent)
     spent(all_stages) = sum(spent(ordering:displacing))
     begun = now()
-    call bodies%estimate_condition(model, operator, law, numbering, condition)
+    call bodies%estimate_condition(scene, condition)
     spent(conditioning) = lap()
     do k = 1, further
       call solve_once(again)
@@ -124,12 +128,10 @@ contains
   subroutine solve_once(spent)
     real(wp), intent(inout) :: spent(times)
     logical, allocatable :: start(:)   !! no guess
-    logical :: all_changed(model%elements)
     real(wp) :: alone                  !! seconds of the elements' matrices alone
     type(body_flexibility) :: part
     integer :: b
 
-    all_changed = .true.
     begun = now()
     spent(assembly) = 0.0_wp
     spent(factor) = 0.0_wp
@@ -139,9 +141,9 @@ contains
         alone = lap()
         spent(assembly) = spent(assembly) + alone
         spent(factor) = spent(factor) - alone
-        call assemble_body(model, operator, law, all_changed, numbering, b, bodies%body(b))
+        call bodies%body(b)%assemble(scene, operator, law, b)
       else
-        call assemble_body(model, operator, law, all_changed, numbering, b, bodies%body(b))
+        call bodies%body(b)%assemble(scene, operator, law, b)
         spent(assembly) = spent(assembly) + lap()
       end if
       call bodies%body(b)%factor()
@@ -153,12 +155,12 @@ contains
       call add_flexibility(part, problem%flexibility)
     end do
     spent(flexibility) = lap()
-    problem%load_gap = gap_opening(model, bodies%displacements(model, numbering, model%load, 1.0_wp))
+    problem%load_gap = gap_opening(model, bodies%displacements(scene, model%load, 1.0_wp))
     spent(load_gap) = lap()
     call solve_contact(problem, solution, start, plan%by_blocks)
     spent(contact) = lap()
     if (solution%state /= contact_solved) error stop 'no contact found'
-    displacement = bodies%displacements(model, numbering, model%load + pair_forces(model, solution%force), 1.0_wp)
+    displacement = bodies%displacements(scene, model%load + pair_forces(model, solution%force), 1.0_wp)
     spent(displacing) = lap()
   end subroutine solve_once
 
