@@ -17,107 +17,83 @@ module epcont_build_loads
 contains
 
   !> Sum the loads of the chosen set at the nodes.
-  pure subroutine build_loads(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck   !! its cards
-    type(card_index), intent(in) :: nodes   !! ids of GRID
+  subroutine build_loads(deck, nodes, model, found)
+    type(deck_type), intent(in) :: deck        !! its cards
+    type(card_index), intent(in) :: nodes      !! ids of GRID
     type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
     integer :: set
 
     call chosen_set(deck, [card_force, card_ploadx1], deck%load, 'LOAD', found, set)
-    call add_forces(deck, nodes, set, model, found)
-    if (deck%card(card_ploadx1)%count > 0) call add_pressures(deck, nodes, set, model, found)
+    call add_forces()
+    if (deck%card(card_ploadx1)%count > 0) call add_pressures()
+
+  contains
+
+    !> FORCE.
+    subroutine add_forces()
+      integer :: i, node(deck%card(card_force)%count)
+      real(wp) :: direction(2), factor, largest
+
+      call resolve(deck, card_force, 2, nodes, found, node)
+      associate (force => deck%card(card_force))
+        do i = 1, force%count
+          if (node(i) == 0 .or. nint(force%value(1, i)) /= set) cycle
+          factor = force%number('F', i)
+          direction = [force%number('N1', i), force%number('N2', i)]
+          largest = maxval(abs(direction))
+          if (force%number('N3', i) /= 0.0_wp) &
+            call found%add_error(card_force, i, force%column('N3'), ': field 8 (N3) points off the plane', &
+                                 '0.0: scenes lie in the x-y plane')
+          ! Not zero, but of a size that no field may give it.
+          if (factor /= 0.0_wp .and. largest > 0.0_wp .and. &
+              (abs(factor)*largest < least_cause .or. abs(factor)*largest > farthest)) &
+            call found%add_error(card_force, i, force%column('F'), &
+                                 ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
+                                 'other units: forces from '//short_real(least_cause)//' to '// &
+                                 short_real(farthest)//', or 0.0')
+          ! What rounding has left of a right angle, such as the cosine of 90 degrees, is no direction.
+          where (abs(direction) < epsilon(1.0_wp)*largest) direction = 0.0_wp
+          model%load(:, node(i)) = model%load(:, node(i)) + factor*direction
+        end do
+      end associate
+    end subroutine add_forces
+
+    !> PLOADX1; one warning for all that press inside a body.
+    subroutine add_pressures()
+      integer, dimension(deck%card(card_ploadx1)%count) :: a, b, behind, element
+      type(card_index) :: elements
+      integer :: ga, i, side
+
+      elements = card_index(new_id_index(model%element_id), 'element')
+      behind = 0
+      associate (pressure => deck%card(card_ploadx1))
+        ga = pressure%column('GA')
+        call resolve(deck, card_ploadx1, 2, elements, found, element)
+        call resolve(deck, card_ploadx1, ga, nodes, found, a)
+        call resolve(deck, card_ploadx1, ga + 1, nodes, found, b)
+        do i = 1, pressure%count
+          if (element(i) == 0 .or. a(i) == 0 .or. b(i) == 0 .or. nint(pressure%value(1, i)) /= set) cycle
+          if (any(model%connectivity(:model%order(element(i)), element(i)) == 0)) cycle  ! said of the element
+          side = model%side_between(element(i), a(i), b(i))
+          if (side == 0) then
+            call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &
+                                 model%name_of(of_element, element(i)), &
+                                 'two neighbouring corners of the element')
+          else if (model%section(element(i)) > 0) then
+            call add_pressure(model, element(i), side, a(i), pressure%value(3:4, i), &
+                              pressure%number('THETA', i))
+            behind(i) = element_behind(model, element(i), side)
+          end if
+        end do
+      end associate
+      if (all(behind == 0)) return
+      i = findloc(behind > 0, .true., dim=1)
+      call found%add_warning(card_ploadx1, i, ga, ': presses inside a body, between '// &
+                             model%name_of(of_element, element(i))//' and '// &
+                             model%name_of(of_element, behind(i))// &
+                             and_more(count(behind > 0), '; so do ', ' more'), &
+                             'a side that one element alone has')
+    end subroutine add_pressures
   end subroutine build_loads
-
-  !> FORCE.
-  pure subroutine add_forces(deck, nodes, set, model, found)
-    type(deck_type), intent(in) :: deck
-    type(card_index), intent(in) :: nodes
-    integer, intent(in) :: set
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
-    integer :: f, i, n3, node(deck%card(card_force)%count)
-    real(wp) :: direction(2)
-
-    call resolve(deck, card_force, 2, nodes, found, node)
-    associate (force => deck%card(card_force))
-      f = force%column('F')
-      n3 = force%column('N3')
-      do i = 1, force%count
-        if (node(i) == 0 .or. nint(force%value(1, i)) /= set) cycle
-        direction = force%value(n3 - 2:n3 - 1, i)
-        if (force%value(n3, i) /= 0.0_wp) &
-          call found%add_error(card_force, i, n3, ': field 8 (N3) points off the plane', &
-                               '0.0: scenes lie in the x-y plane')
-        if (out_of_reach(force%value(f, i), direction)) &
-          call found%add_error(card_force, i, f, &
-                               ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
-                               'other units: forces from '//short_real(least_cause)//' to '// &
-                               short_real(farthest)//', or 0.0')
-        model%load(:, node(i)) = model%load(:, node(i)) + force%value(f, i)*along_axes(direction)
-      end do
-    end associate
-  end subroutine add_forces
-
-  !> Is a force not zero, but of a size that no field may give it?
-  pure logical function out_of_reach(factor, direction)
-    real(wp), intent(in) :: factor          !! [force]
-    real(wp), intent(in) :: direction(2)
-    real(wp) :: largest
-
-    largest = abs(factor)*maxval(abs(direction))
-    out_of_reach = factor /= 0.0_wp .and. any(direction /= 0.0_wp) .and. &
-                   (largest < least_cause .or. largest > farthest)
-  end function out_of_reach
-
-  !> A direction without what rounding has left of a right angle, such as the cosine of 90 degrees.
-  pure function along_axes(direction)
-    real(wp), intent(in) :: direction(2)
-    real(wp) :: along_axes(2)
-
-    along_axes = merge(0.0_wp, direction, abs(direction) < epsilon(1.0_wp)*maxval(abs(direction)))
-  end function along_axes
-
-  !> PLOADX1; one warning for all that press inside a body.
-  pure subroutine add_pressures(deck, nodes, set, model, found)
-    type(deck_type), intent(in) :: deck
-    type(card_index), intent(in) :: nodes
-    integer, intent(in) :: set
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
-    integer, dimension(deck%card(card_ploadx1)%count) :: a, b, behind, element
-    type(card_index) :: elements
-    integer :: first, ga, i, side
-
-    elements%id_index = new_id_index(model%element_id)
-    elements%noun = 'element'
-    behind = 0
-    associate (pressure => deck%card(card_ploadx1))
-      ga = pressure%column('GA')
-      call resolve(deck, card_ploadx1, 2, elements, found, element)
-      call resolve(deck, card_ploadx1, ga, nodes, found, a)
-      call resolve(deck, card_ploadx1, ga + 1, nodes, found, b)
-      do i = 1, pressure%count
-        if (element(i) == 0 .or. a(i) == 0 .or. b(i) == 0 .or. nint(pressure%value(1, i)) /= set) cycle
-        if (any(model%connectivity(:model%order(element(i)), element(i)) == 0)) cycle  ! said of the element
-        side = model%side_between(element(i), a(i), b(i))
-        if (side == 0) then
-          call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &
-                               model%name_of(of_element, element(i)), &
-                               'two neighbouring corners of the element')
-        else if (model%section(element(i)) > 0) then
-          call add_pressure(model, element(i), side, a(i), pressure%value(3:4, i), &
-                            pressure%value(pressure%column('THETA'), i))
-          behind(i) = element_behind(model, element(i), side)
-        end if
-      end do
-    end associate
-    if (all(behind == 0)) return
-    first = findloc(behind > 0, .true., dim=1)
-    call found%add_warning(card_ploadx1, first, ga, ': presses inside a body, between '// &
-                           model%name_of(of_element, element(first))//' and '// &
-                           model%name_of(of_element, behind(first))// &
-                           and_more(count(behind > 0), '; so do ', ' more'), &
-                           'a side that one element alone has')
-  end subroutine add_pressures
 end module epcont_build_loads

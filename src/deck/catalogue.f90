@@ -9,9 +9,9 @@ module epcont_deck_catalogue
                                     card_grid, card_kinds, card_mat1, card_mats1, card_param, card_pgap, &
                                     card_ploadx1, card_pshell, card_psolid, card_rbe2, card_spc, card_spc1, &
                                     card_suport, card_tables1
-  use epcont_deck_entry, only: any_field, below, card_entry, cause, components_field, field_entry, id_field, &
-                               integer_field, largest_id, last_field, new_card, next_field, noted, positive, &
-                               real_field, word_field, zero_field
+  use epcont_deck_entry, only: below, card_entry, cause, components_field, field_entry, id_field, &
+                               integer_field, kind_any, largest_id, last_field, new_card, next_field, noted, &
+                               positive, real_field, word_field, zero_field
   implicit none
   private
   public :: catalogue, parameters
@@ -41,8 +41,8 @@ contains
     call add_pairs(card)
     call add_lines(card)
     card(card_param) = new_card('PARAM', 'a choice for the whole deck', [ &
-      word_field('NAME', 'parameter', ''), &
-      choice('VALUE', '', 'its value')])
+      word_field('NAME', '', 'parameter'), &
+      word_field('VALUE', '', 'its value')])
   end function catalogue
 
   !> Nodes, elements and their sections.
@@ -53,11 +53,13 @@ contains
     card(card_grid) = new_card('GRID', 'node', [ &
       id_field('ID', 'node'), &
       zero('CP', 'system of X1 to X3: the basic one'), &
-      coordinate('X1', 'coordinate x'), &
-      coordinate('X2', 'coordinate y'), &
-      coordinate('X3', 'coordinate z; 0.0 in plane scenes'), &
+      zero_field('X1', 'coordinate x', 'length'), &
+      zero_field('X2', 'coordinate y', 'length'), &
+      zero_field('X3', 'coordinate z; 0.0 in plane scenes', 'length'), &
       zero('CD', 'system of the displacements: the basic one'), &
       components_field('PS', 'permanent supports', required=.false.)])
+    ! Gmsh writes coordinates in large field by %.9G of C: 3.0 is `3`, 1.0E-5 is `1E-05`.
+    card(card_grid)%field(3:5)%point_optional = .true.
     card(card_ctria3) = element('CTRIA3', 'constant-strain triangle', 'PSHELL', in_turn(:3))
     card(card_ctria6) = element('CTRIA6', 'six-node triangle', 'PSHELL', six)
     card(card_cquad4) = element('CQUAD4', 'four-node quadrilateral, B-bar', 'PSHELL', in_turn)
@@ -79,7 +81,7 @@ contains
       noted(id_field('PID', 'property, not looked up', required=.false.)), &
       noted(id_field('GA', 'first node')), &
       noted(id_field('GB', 'second node')), &
-      (any_field('', 'anything'), slot=5, 16)])
+      (field_entry('', kind_any, 'anything', used=.false.), slot=5, 16)])
   end subroutine add_mesh
 
   !> Elasticity, and how materials yield.
@@ -110,7 +112,7 @@ contains
     card(card_mats1) = new_card('MATS1', 'yielding of a MAT1: von Mises, total theory', [ &
       id_field('MID', 'its MAT1'), &
       id_field('TID', 'its TABLES1; blank: bilinear from LIMIT1 and H', required=.false.), &
-      word_field('TYPE', 'both are taken as total theory', 'PLASTIC NLELAST'), &
+      word_field('TYPE', 'PLASTIC NLELAST', 'both are taken as total theory'), &
       slope, &
       integer_field('YF', 'yield criterion: 1, von Mises', 1, 1, default=1), &
       integer_field('HR', 'hardening rule: 1', 1, 1, default=1), &
@@ -197,7 +199,7 @@ contains
       id_field('PID', 'its PGAP'), &
       id_field('GA', 'node A'), &
       id_field('GB', 'node B, pushed along the normal'), &
-      any_field('X1', 'orientation, or node G0'), &
+      field_entry('X1', kind_any, 'orientation, or node G0', used=.false.), &
       noted(real_field('X2', 'orientation', '')), &
       noted(real_field('X3', 'orientation', '')), &
       integer_field('CID', 'system whose x is the normal; blank: from GA to GB', 0, largest_id)])
@@ -241,28 +243,28 @@ contains
     type(field_entry), allocatable :: field(:)
     type(field_entry) :: corner, solver
 
-    solver = choice('SOLVER', 'AUTO BAND FRONTAL', &
+    solver = word_field('SOLVER', 'AUTO BAND FRONTAL', &
                     'matrices of the bodies: panels of a band, or nested fronts; default AUTO')
     solver%withdrawn = 'SPARSE'
     corner = positive(real_field('CORNER', 'sides of a boundary line that turn by more than this meet at'// &
                                  ' a corner; default: decided from the turns beside it', 'degree'))
     corner%highest = 180.0_wp
     field = [ &
-      choice('PLANE', 'STRAIN STRESS', 'every PSHELL with blank MID2'), &
-      choice('RULE', 'AUTO CONRY BLOCK', 'contact entry rule; default AUTO'), &
-      choice('GAPGEOM', 'NO YES', 'YES adds the distance of the nodes to each gap; default NO'), &
-      choice('UNITS', '', 'printed with the results; nothing is converted'), &
-      choice('METHOD', 'AUTO SECANT MODSEC INISTR NEWTON', 'plastic iteration; default AUTO'), &
+      word_field('PLANE', 'STRAIN STRESS', 'every PSHELL with blank MID2'), &
+      word_field('RULE', 'AUTO CONRY BLOCK', 'contact entry rule; default AUTO'), &
+      word_field('GAPGEOM', 'NO YES', 'YES adds the distance of the nodes to each gap; default NO'), &
+      word_field('UNITS', '', 'printed with the results; nothing is converted'), &
+      word_field('METHOD', 'AUTO SECANT MODSEC INISTR NEWTON', 'plastic iteration; default AUTO'), &
       below(1.0_wp, positive(real_field('TOL', 'largest change of a displacement, of the largest, that'// &
                                         ' ends the iteration; default 0.01, for NEWTON 1.E-8', ''))), &
       integer_field('MAXIT', 'iterations of a load step; default 100', 1, 100000), &
-      choice('MUP', 'EXACT PAPER', &
+      word_field('MUP', 'EXACT PAPER', &
              'Poisson''s ratio in the equivalent strain: exact, or formula (2-4); default EXACT'), &
       integer_field('NLOAD', 'load steps; default 1', 1, 10000), &
       positive(real_field('SEARCH', 'how far BCONP looks for a segment; default twice the longest segment'// &
                           ' of the two lines', 'length')), &
       solver, &
-      choice('PRECIS', 'DOUBLE MIXED SINGLE', &
+      word_field('PRECIS', 'DOUBLE MIXED SINGLE', &
              'factors in double or single precision, these refined to double (MIXED) or not;'// &
              ' default DOUBLE'), &
       below(1.0_wp, positive(real_field('ACCURACY', 'wanted relative error of contact pressures: sets'// &
@@ -282,21 +284,6 @@ contains
       id_field('PID', 'its '//property), &
       (id_field('G'//text_of(k), node(k)), k=1, size(node))])
   end function element
-
-  !> A PARAM whose value is one of the words `choices`, or any where there are none.
-  pure type(field_entry) function choice(name, choices, meaning) result(field)
-    character(len=*), intent(in) :: name, choices, meaning
-
-    field = word_field(name, meaning, choices)
-  end function choice
-
-  !> A coordinate. Gmsh writes them in large field by %.9G of C: 3.0 is `3`, 1.0E-5 is `1E-05`.
-  pure type(field_entry) function coordinate(name, meaning) result(field)
-    character(len=*), intent(in) :: name, meaning
-
-    field = zero_field(name, meaning, 'length')
-    field%point_optional = .true.
-  end function coordinate
 
   !> A whole number that is zero or blank: there is nothing to choose.
   pure type(field_entry) function zero(name, meaning) result(field)

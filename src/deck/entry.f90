@@ -5,7 +5,7 @@ module epcont_deck_entry
   implicit none
   private
   public :: field_entry, card_entry, new_card
-  public :: id_field, integer_field, real_field, zero_field, components_field, word_field, any_field
+  public :: id_field, integer_field, real_field, zero_field, components_field, word_field
   public :: positive, below, cause, noted
   public :: number_of
 
@@ -61,8 +61,6 @@ module epcont_deck_entry
     character(len=:), allocatable :: list_name, list_meaning
   contains
     procedure :: add_list
-    procedure :: has_list
-    procedure :: must_be_blank
     procedure :: field_name
     procedure :: field_text
   end type card_entry
@@ -78,10 +76,9 @@ contains
   end function number_of
 
   !> A card of these fields.
-  pure function new_card(name, meaning, fields) result(card)
+  pure type(card_entry) function new_card(name, meaning, fields) result(card)
     character(len=*), intent(in) :: name, meaning   !! of the card
     type(field_entry), intent(in) :: fields(:)      !! in their order
-    type(card_entry) :: card
 
     card%name = name
     card%meaning = meaning
@@ -98,22 +95,6 @@ contains
     self%list_name = name
     self%list_meaning = meaning
   end subroutine add_list
-
-  !> Does it end with a list?
-  pure logical function has_list(self)
-    class(card_entry), intent(in) :: self
-
-    has_list = allocated(self%list_name)
-  end function has_list
-
-  !> Has the card no field in a slot?
-  pure logical function must_be_blank(self, slot)
-    class(card_entry), intent(in) :: self
-    integer, intent(in) :: slot   !! which data field, before its list
-
-    must_be_blank = slot > size(self%field)
-    if (.not. must_be_blank) must_be_blank = self%field(slot)%kind == kind_blank
-  end function must_be_blank
 
   !> The name of the field in a slot; empty where it has none.
   pure function field_name(self, slot) result(name)
@@ -144,11 +125,10 @@ contains
   end function field_text
 
   !> An id: from 1 to 99999999.
-  pure function id_field(name, meaning, required, with) result(field)
+  pure type(field_entry) function id_field(name, meaning, required, with) result(field)
     character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     logical, intent(in), optional :: required     !! default: true, unless it goes with another
     integer, intent(in), optional :: with         !! the neighbour with which it must be filled
-    type(field_entry) :: field
 
     field = integer_field(name, meaning, 1, largest_id)
     field%required = .not. present(with)
@@ -157,11 +137,10 @@ contains
   end function id_field
 
   !> A whole number. Without default a blank has a meaning of its own.
-  pure function integer_field(name, meaning, lowest, highest, default) result(field)
+  pure type(field_entry) function integer_field(name, meaning, lowest, highest, default) result(field)
     character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     integer, intent(in) :: lowest, highest        !! the range
     integer, intent(in), optional :: default      !! what a blank means
-    type(field_entry) :: field
 
     field = field_entry(name, kind_integer, meaning, lowest=real(lowest, wp), highest=real(highest, wp), &
                         has_default=present(default))
@@ -169,52 +148,40 @@ contains
   end function integer_field
 
   !> A real; where it is not required, a blank has a meaning of its own.
-  pure function real_field(name, meaning, unit, required) result(field)
+  pure type(field_entry) function real_field(name, meaning, unit, required) result(field)
     !> as the manual of cards prints them; blank: it has no unit
     character(len=*), intent(in) :: name, meaning, unit
     logical, intent(in), optional :: required           !! may not be blank; default: it may
-    type(field_entry) :: field
 
     field = field_entry(name, kind_real, meaning, unit)
     if (present(required)) field%required = required
   end function real_field
 
   !> A real; a blank means 0.0.
-  pure function zero_field(name, meaning, unit) result(field)
+  pure type(field_entry) function zero_field(name, meaning, unit) result(field)
     !> as the manual of cards prints them; blank: it has no unit
     character(len=*), intent(in) :: name, meaning, unit
-    type(field_entry) :: field
 
     field = field_entry(name, kind_real, meaning, unit, has_default=.true.)
   end function zero_field
 
   !> Directions, digits from 1 to 6.
-  pure function components_field(name, meaning, required, with) result(field)
+  pure type(field_entry) function components_field(name, meaning, required, with) result(field)
     character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     logical, intent(in) :: required               !! may not be blank
     integer, intent(in), optional :: with         !! the neighbour with which it must be filled
-    type(field_entry) :: field
 
     field = field_entry(name, kind_components, meaning, required=required)
     if (present(with)) field%with = with
   end function components_field
 
   !> A word, one of `choices` unless these are blank.
-  pure function word_field(name, meaning, choices) result(field)
-    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
-    character(len=*), intent(in) :: choices            !! with blanks between
-    type(field_entry) :: field
+  pure type(field_entry) function word_field(name, choices, meaning) result(field)
+    !> as the manual of cards prints them; `choices` with blanks between
+    character(len=*), intent(in) :: name, choices, meaning
 
     field = field_entry(name, kind_word, meaning, required=.true., choices=choices)
   end function word_field
-
-  !> A field that may hold anything and has no effect.
-  pure function any_field(name, meaning) result(field)
-    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
-    type(field_entry) :: field
-
-    field = field_entry(name, kind_any, meaning, used=.false.)
-  end function any_field
 
   !> The field, but above zero.
   pure type(field_entry) function positive(plain) result(field)

@@ -3,7 +3,7 @@ module epcont_deck_manual
   use epcont_base_text, only: text_of, upper
   use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_catalogue, only: catalogue, parameters
-  use epcont_deck_entry, only: card_entry, field_entry, fields_a_line, kind_any, kind_real, number_of
+  use epcont_deck_entry, only: card_entry, field_entry, fields_a_line, kind_any, kind_blank, kind_real, number_of
   implicit none
   private
   public :: manual
@@ -49,7 +49,7 @@ contains
     do slot = 1, min(last, entry%list_slot - 1)
       text = text//field_row(entry, slot)
     end do
-    if (.not. entry%has_list()) return
+    if (.not. allocated(entry%list_name)) return
     number = text_of(number_of(entry%list_slot))//'..'
     if (entry%has_points) then
       text = text//row(number, columns(entry%list_slot), 'X1 ..', 'real', 'none', 'used', entry%list_meaning)
@@ -66,14 +66,13 @@ contains
     character(len=:), allocatable :: text, number
 
     number = text_of(number_of(slot))
-    if (entry%must_be_blank(slot)) then
-      text = row(number, columns(slot), '', '', '', 'blank', 'must be blank')
-    else
-      associate (field => entry%field(slot))
+    text = row(number, columns(slot), '', '', '', 'blank', 'must be blank')
+    if (slot > size(entry%field)) return
+    associate (field => entry%field(slot))
+      if (field%kind /= kind_blank) &
         text = row(number, columns(slot), field%name, kind_name(field%kind), default_text(entry, slot), &
                    merge('used ', 'noted', field%used), meaning_text(field))
-      end associate
-    end if
+    end associate
   end function field_row
 
   !> The parameters that PARAM may set.

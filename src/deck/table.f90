@@ -24,8 +24,6 @@ module epcont_deck_table
     character(len=8), allocatable :: word(:, :) !! words; only where the card has such fields [columns, count]
     logical, allocatable :: sound(:)                   !! the reader found no fault in the card [count]
     integer, allocatable :: line(:)                    !! where the card begins [count]
-    integer, allocatable :: noted(:)  !! how often each field without effect is filled [columns]
-    integer, allocatable :: noted_card(:)              !! the first card in which it is [columns]
     integer :: items = 0                               !! in all lists
     type(list_item), allocatable :: list(:)            !! of all cards [items or more]
     !> card i has the items list_start(i) to list_start(i+1)-1 [count + 1]
@@ -33,6 +31,8 @@ module epcont_deck_table
   contains
     procedure :: begin
     procedure :: column
+    procedure :: number
+    procedure :: has
     procedure :: identity
     procedure :: add_card
     procedure :: add_item
@@ -54,7 +54,6 @@ contains
     allocate (self%given(columns, cards), source=.false.)
     if (any(entry%field%kind == kind_word)) allocate (self%word(columns, cards), source=repeat(' ', 8))
     allocate (self%sound(cards), self%line(cards), self%list_start(cards + 1), self%list(16))
-    allocate (self%noted(columns), self%noted_card(columns), source=0)
     self%list_start(1) = 1
   end subroutine begin
 
@@ -68,6 +67,24 @@ contains
     end do
     error stop 'no such field in the catalogue of cards'
   end function column
+
+  !> The number in a field of a card.
+  pure real(wp) function number(self, name, i)
+    class(card_table), intent(in) :: self
+    character(len=*), intent(in) :: name   !! of the field
+    integer, intent(in) :: i               !! which card
+
+    number = self%value(self%column(name), i)
+  end function number
+
+  !> Is a field of a card not blank?
+  pure logical function has(self, name, i)
+    class(card_table), intent(in) :: self
+    character(len=*), intent(in) :: name   !! of the field
+    integer, intent(in) :: i               !! which card
+
+    has = self%given(self%column(name), i)
+  end function has
 
   !> A card as messages name it: `GRID 17`, `PARAM PLANE`; `GRID` where it has no such name.
   pure function identity(self, i) result(text)
