@@ -4,7 +4,7 @@ module epcont_deck_card_reader
   use epcont_base_text, only: text_of, upper
   use epcont_deck_card, only: card_fields
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_deck_entry, only: field_entry, id_field, integer_field, kind_blank, kind_word, number_of, real_field
+  use epcont_deck_entry, only: field, field_entry, integer_field, kind_blank, kind_word, number_of
   use epcont_deck_field, only: scan_no_point, scan_sound
   use epcont_deck_table, only: card_table, list_item
   use epcont_deck_value, only: explain, field_value, read_value
@@ -98,21 +98,26 @@ contains
       type(field_entry), intent(in) :: entry    !! what it may hold
       type(field_value), intent(out) :: value
       logical, intent(out) :: sound             !! it can be taken
+
+      call read_value(card%text(card%slot(slot)%first:card%slot(slot)%last), entry, value)
+      sound = value%outcome == scan_sound
+      if (value%outcome == scan_no_point .and. entry%point_optional) sound = card%is_large(slot)
+      if (.not. sound) call refuse_value(slot, entry, value)
+    end subroutine read_slot
+
+    !> Say why a field cannot be taken.
+    subroutine refuse_value(slot, entry, value)
+      integer, intent(in) :: slot
+      type(field_entry), intent(in) :: entry
+      type(field_value), intent(in) :: value
       character(len=:), allocatable :: what, remedy
 
-      associate (at => card%slot(slot))
-        call read_value(card%text(at%first:at%last), entry, value)
-        sound = value%outcome == scan_sound
-        if (value%outcome == scan_no_point .and. entry%point_optional) sound = card%is_large(slot)
-        if (sound) return
-        if (card%filled(slot)) then
-          call explain(card%text(at%first:at%last), entry, value, what, remedy)
-          call refuse(slot, what, remedy)
-        else
-          call refuse(slot, 'is blank', entry%allowed())
-        end if
-      end associate
-    end subroutine read_slot
+      what = 'is blank'
+      remedy = entry%allowed()
+      if (card%filled(slot)) &
+        call explain(card%text(card%slot(slot)%first:card%slot(slot)%last), entry, value, what, remedy)
+      call refuse(slot, what, remedy)
+    end subroutine refuse_value
 
     !> Does a slot hold this word?
     logical function is_word(slot, word)
@@ -132,7 +137,7 @@ contains
       integer :: slot
 
       slot = table%entry%list_slot
-      id = id_field('', '')
+      id = field('', 'id', '')
       if (.not. any(card%slot(slot:card%count)%last >= card%slot(slot:card%count)%first)) &
         call refuse(slot, 'is blank', id%allowed())
       do while (slot <= card%count)
@@ -200,7 +205,7 @@ contains
       logical :: sound
 
       slot = table%entry%list_slot
-      number = real_field('', '', '')
+      number = field('', 'real', '')
       do while (.not. is_word(slot, end_word))
         do k = 1, 2
           sound = card%filled(slot + k - 1)

@@ -49,7 +49,7 @@ contains
 
     self%source = source()
     do k = 1, size(self%card)
-      if (k /= card_param) call self%card(k)%forget_fields()
+      if (k /= card_param) self%card(k) = card_table(self%card(k)%entry, self%card(k)%count)
     end do
   end subroutine forget_text
 

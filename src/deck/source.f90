@@ -15,6 +15,8 @@ module epcont_deck_source
   integer, parameter :: deepest = 8
   !> How many INCLUDE lines a deck may have: files that include each other twice would double at every depth.
   integer, parameter :: most_files = 10000
+  !> Characters of a line, as they are mostly: that is the room for lines at first.
+  integer, parameter :: usual_line = 32
   !> What ends a line.
   character(len=*), parameter :: newline = achar(10)
 
@@ -61,13 +63,14 @@ contains
     character(len=:), allocatable :: trouble
     logical :: ended
 
-    allocate (lines%line(1024), lines%files(0))
+    allocate (lines%files(0))
     lines%text = ''
     call load(path, 0, trouble)
     if (allocated(trouble)) then
       call raise(error, status_usage, path//': '//trouble)
       return
     end if
+    allocate (lines%line(1 + lines%used/usual_line))
     call cut(1, ended)
     if (.not. ended) call faults%add_error(place_type(), 'ENDDATA is missing: the deck looks cut off', &
                                            'ENDDATA as the last line')

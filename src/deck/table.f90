@@ -21,7 +21,7 @@ module epcont_deck_table
     integer :: count = 0                               !! cards
     real(wp), allocatable :: value(:, :)               !! numbers; integers are exact [columns, count]
     logical, allocatable :: given(:, :)                !! the field is not blank [columns, count]
-    character(len=8), allocatable :: word(:, :) !! words; only where the card has such fields [columns, count]
+    character(len=8), allocatable :: word(:, :)        !! words; only where it has such fields [columns, count]
     logical, allocatable :: sound(:)                   !! the reader found no fault in the card [count]
     integer, allocatable :: line(:)                    !! where the card begins [count]
     integer :: items = 0                               !! in all lists
@@ -36,7 +36,6 @@ module epcont_deck_table
     procedure :: identity
     procedure :: add_card
     procedure :: add_item
-    procedure :: forget_fields
   end type card_table
 
 contains
@@ -121,12 +120,4 @@ contains
     self%list(self%items) = item
     self%list_start(self%count + 1) = self%items + 1
   end subroutine add_item
-
-  !> All but the count of cards.
-  pure subroutine forget_fields(self)
-    class(card_table), intent(inout) :: self
-
-    deallocate (self%value, self%given, self%sound, self%line, self%list, self%list_start)
-    if (allocated(self%word)) deallocate (self%word)
-  end subroutine forget_fields
 end module epcont_deck_table
