@@ -5,7 +5,7 @@ module epcont_deck_card_reader
   use epcont_deck_card, only: card_fields
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_entry, only: field, field_entry, integer_field, kind_blank, kind_word, number_of
-  use epcont_deck_field, only: scan_no_point, scan_sound
+  use epcont_deck_field, only: scan_sound
   use epcont_deck_table, only: card_table, list_item
   use epcont_deck_value, only: explain, field_value, read_value
   implicit none
@@ -83,26 +83,27 @@ contains
     subroutine take_value(slot)
       integer, intent(in) :: slot
       type(field_value) :: value
-      logical :: sound
 
-      call read_slot(slot, table%entry%field(slot), value, sound)
-      if (.not. sound) return
-      table%value(slot, table%count) = value%number
-      if (table%entry%field(slot)%kind == kind_word) table%word(slot, table%count) = value%word
-      table%given(slot, table%count) = .true.
+      associate (entry => table%entry%field(slot), i => table%count)
+        call read_value(card, slot, entry, value)
+        if (value%outcome == scan_sound) then
+          table%value(slot, i) = value%number
+          if (entry%kind == kind_word) table%word(slot, i) = value%word
+          table%given(slot, i) = .true.
+        else
+          call refuse_value(slot, entry, value)
+        end if
+      end associate
     end subroutine take_value
 
-    !> Read a field; one that is blank, or cannot be taken, is a fault.
-    subroutine read_slot(slot, entry, value, sound)
+    !> Read a field of a list; one that is blank, or cannot be taken, is a fault.
+    subroutine read_slot(slot, entry, value)
       integer, intent(in) :: slot
       type(field_entry), intent(in) :: entry    !! what it may hold
       type(field_value), intent(out) :: value
-      logical, intent(out) :: sound             !! it can be taken
 
-      call read_value(card%text(card%slot(slot)%first:card%slot(slot)%last), entry, value)
-      sound = value%outcome == scan_sound
-      if (value%outcome == scan_no_point .and. entry%point_optional) sound = card%is_large(slot)
-      if (.not. sound) call refuse_value(slot, entry, value)
+      call read_value(card, slot, entry, value)
+      if (value%outcome /= scan_sound) call refuse_value(slot, entry, value)
     end subroutine read_slot
 
     !> Say why a field cannot be taken.
@@ -152,17 +153,17 @@ contains
       integer, intent(inout) :: slot   !! the first of the range, then its last
       type(field_value) :: value
       type(list_item) :: item
-      logical :: is_range, sound
+      logical :: is_range
 
       item%place = card%place(slot)
-      call read_slot(slot, id, value, sound)
-      if (.not. sound) return
+      call read_slot(slot, id, value)
+      if (value%outcome /= scan_sound) return
       item%from = nint(value%number)
       is_range = table%entry%has_ranges .and. is_word(slot + 1, 'THRU')
       if (is_range) then
         slot = slot + 2
-        call read_slot(slot, id, value, sound)
-        if (.not. sound) return
+        call read_slot(slot, id, value)
+        if (value%outcome /= scan_sound) return
       end if
       item%to = nint(value%number)
       if (is_range .and. table%entry%has_steps) then
@@ -179,15 +180,14 @@ contains
       type(list_item), intent(inout) :: item
       type(field_value) :: value
       integer :: length, most
-      logical :: sound
 
       length = item%to - item%from
       item%step = merge(1, -1, length >= 0)
       if (.not. is_word(slot + 1, 'BY')) return
       slot = slot + 2
       most = item%step*max(1, abs(length))
-      call read_slot(slot, integer_field('', '', min(item%step, most), max(item%step, most)), value, sound)
-      if (.not. sound) return
+      call read_slot(slot, integer_field('', '', min(item%step, most), max(item%step, most)), value)
+      if (value%outcome /= scan_sound) return
       if (mod(length, nint(value%number)) == 0) then
         item%step = nint(value%number)
       else
@@ -202,19 +202,17 @@ contains
       type(field_entry) :: number
       type(field_value) :: value(2)
       integer :: k, slot
-      logical :: sound
 
       slot = table%entry%list_slot
       number = field('', 'real', '')
       do while (.not. is_word(slot, end_word))
         do k = 1, 2
-          sound = card%filled(slot + k - 1)
-          if (sound) then
-            call read_slot(slot + k - 1, number, value(k), sound)
-          else
+          if (.not. card%filled(slot + k - 1)) then
             call refuse(slot + k - 1, 'is blank', 'a real, or '//end_word//' behind the last point')
+            return
           end if
-          if (.not. sound) return
+          call read_slot(slot + k - 1, number, value(k))
+          if (value(k)%outcome /= scan_sound) return
         end do
         call table%add_item(list_item(point=value%number, place=card%place(slot)))
         slot = slot + 2

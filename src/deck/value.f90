@@ -2,6 +2,7 @@
 module epcont_deck_value
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: short_real
+  use epcont_deck_card, only: card_fields
   use epcont_deck_entry, only: farthest, field_entry, kind_components, kind_integer, kind_real, kind_word
   use epcont_deck_field, only: scan_components, scan_integer, scan_malformed, scan_no_point, scan_real, &
                                scan_sound, scan_too_large, scan_too_long, scan_too_small, scan_word
@@ -25,8 +26,9 @@ module epcont_deck_value
 contains
 
   !> The value of a field; a blank one is malformed.
-  pure subroutine read_value(text, entry, value)
-    character(len=*), intent(in) :: text      !! without blanks around it
+  pure subroutine read_value(card, slot, entry, value)
+    type(card_fields), intent(in) :: card     !! its fields
+    integer, intent(in) :: slot               !! which field
     type(field_entry), intent(in) :: entry    !! what it may hold
     type(field_value), intent(out) :: value   !! what it says
     integer(i8) :: whole
@@ -34,18 +36,23 @@ contains
     value%outcome = scan_sound
     value%number = 0.0_wp
     value%word = ''
-    select case (entry%kind)
-    case (kind_integer)
-      call scan_integer(text, whole, value%outcome)
-      value%number = real(whole, wp)
-    case (kind_real)
-      call scan_real(text, value%number, value%outcome)
-    case (kind_components)
-      call scan_components(text, whole, value%outcome)
-      value%number = real(whole, wp)
-    case (kind_word)
-      call scan_word(text, value%word, value%outcome)
-    end select
+    associate (first => card%slot(slot)%first, last => card%slot(slot)%last)
+      select case (entry%kind)
+      case (kind_integer)
+        call scan_integer(card%text(first:last), whole, value%outcome)
+        value%number = real(whole, wp)
+      case (kind_real)
+        call scan_real(card%text(first:last), value%number, value%outcome)
+      case (kind_components)
+        call scan_components(card%text(first:last), whole, value%outcome)
+        value%number = real(whole, wp)
+      case (kind_word)
+        call scan_word(card%text(first:last), value%word, value%outcome)
+      end select
+    end associate
+    if (value%outcome == scan_no_point .and. entry%point_optional) then
+      if (card%is_large(slot)) value%outcome = scan_sound
+    end if
     if (value%outcome /= scan_sound) return
     associate (number => value%number)
       if (entry%kind == kind_word) then

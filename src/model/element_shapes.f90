@@ -5,6 +5,7 @@ module epcont_model_element_shapes
   use epcont_base_text, only: short_real, text_of
   use epcont_base_tolerances, only: rounded_off
   use epcont_element_element_kind, only: most_nodes
+  use epcont_element_kinematics, only: axisymmetric
   use epcont_geometry_plane, only: polygon_area
   use epcont_model_finding, only: and_more, findings, of_element, of_node
   use epcont_model_model, only: model_type
@@ -36,6 +37,7 @@ contains
     end do
     model%first_point(e) = next
     model%around = new_incidence(model%connectivity, model%nodes)
+    if (all(model%kinematics == axisymmetric) .or. all(model%kinematics /= axisymmetric)) return
     ring = findloc([(model%is_ring(e), e=1, model%elements)], .true., dim=1)
     plane = findloc([(model%section(e) > 0 .and. .not. model%is_ring(e), e=1, model%elements)], .true., dim=1)
     if (ring > 0 .and. plane > 0) call found%add_error(of_element, ring, 0, &
