@@ -9,7 +9,6 @@ module epcont_app_driver
   use epcont_build_build, only: build_model, tell
   use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render
-  use epcont_model_finding, only: findings
   use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_layout, only: right
   use epcont_report_limit, only: limit_of_largest, reason_of
@@ -67,7 +66,7 @@ contains
     written = .false.
     call prepare(path, run, watch, error)
     if (.not. allocated(error)) then
-      if (run%faults%error_count() > 0) then
+      if (run%faults%errors > 0) then
         call print_error(render(run%faults, run%deck%source))
         status = status_deck
         call say(arguments, name//'  rejected', status)
@@ -143,16 +142,15 @@ contains
     type(run_results), intent(inout) :: run
     class(stopwatch), intent(inout) :: watch
     type(error_type), allocatable, intent(out) :: error
-    type(findings) :: loose
 
     call read_deck(path, run%deck, run%faults, error)
     call watch%lap(stage_reading)
     if (allocated(error)) return
     call build_model(run%deck, run%model, run%faults)
     call watch%lap(stage_model)
-    if (run%faults%error_count() > 0) return
-    call run%find_motions(loose)
-    call tell(run%deck, loose, run%faults)
+    if (run%faults%errors > 0) return
+    call run%find_motions(run%faults)
+    call tell(run%deck, run%faults)
     call watch%lap(stage_plan)
   end subroutine prepare
 

@@ -1,146 +1,254 @@
-!> Nodes, sections and elements from their cards.
+!> Nodes, materials, sections and elements from their cards.
 module epcont_build_mesh
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real
-  use epcont_build_materials, only: material_card, read_materials
-  use epcont_build_reference, only: card_index, check_unique, index_of, resolve
-  use epcont_deck_card_kinds, only: card_grid, card_mat1, card_param, card_pshell, card_psolid
+  use epcont_build_reference, only: card_index, index_of, resolve
+  use epcont_deck_card_kinds, only: card_grid, card_mat1, card_mats1, card_pshell, card_psolid, card_tables1
   use epcont_deck_deck, only: deck_type
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
+  use epcont_model_controls, only: uniaxial_curve
   use epcont_model_element_shapes, only: complete_elements
   use epcont_model_finding, only: findings
   use epcont_model_given, only: add_elements, new_scene, set_sections
   use epcont_model_model, only: model_type
+  use epcont_model_yield_curve, only: bilinear_curve, curve_fault, fault_of_curve
   implicit none
   private
-  public :: build_nodes, build_sections, build_elements, element_cards
+  public :: build_mesh, element_cards
+
+  !> LIMIT1 and the table's yield stress may differ by this part.
+  real(wp), parameter :: same_stress = 1.0e-4_wp
+  !> Moduli that are all three given agree to this part.
+  real(wp), parameter :: same_moduli = 1.0e-3_wp
+
+  type :: material_card
+    real(wp) :: young = 1.0_wp      !! [stress]
+    real(wp) :: poisson = 0.0_wp
+    type(uniaxial_curve) :: curve
+  end type material_card
 
 contains
 
-  !> GRID.
-  subroutine build_nodes(deck, model, found)
-    type(deck_type), intent(in) :: deck   !! its cards
-    type(model_type), intent(out) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer :: i, z
+  !> Nodes, materials, sections, elements.
+  subroutine build_mesh(deck, nodes, model, found)
+    type(deck_type), intent(in) :: deck       !! its cards
+    type(card_index), intent(in) :: nodes     !! ids of GRID
+    type(model_type), intent(out) :: model    !! the scene
+    type(findings), intent(inout) :: found    !! what is wrong with it is added
+    type(material_card), allocatable :: material(:)   ! of each MAT1
+    integer, allocatable :: cards(:)
+    integer :: i
 
-    call check_unique(deck, [card_grid], found)
     associate (grid => deck%card(card_grid))
       model = new_scene(grid%value([grid%column('X1'), grid%column('X2')], :))
       model%node_id = int(grid%value(1, :))
-      z = grid%column('X3')
-      do i = 1, grid%count
-        if (grid%value(z, i) /= 0.0_wp) &
-          call found%add_error(card_grid, i, z, ': field 6 (X3) is '//short_real(grid%value(z, i))// &
-                               ', off the plane', &
-                               '0.0: scenes lie in the x-y plane')
-      end do
+      associate (z => grid%value(grid%column('X3'), :))
+        do i = 1, grid%count
+          if (z(i) /= 0.0_wp) &
+            call refuse(card_grid, i, 'X3', ': field 6 (X3) is '//short_real(z(i))//', off the plane', &
+                        '0.0: scenes lie in the x-y plane')
+        end do
+      end associate
     end associate
-  end subroutine build_nodes
+    call read_materials()
+    call read_sections()
+    cards = element_cards(deck)
+    do i = 1, size(cards)
+      call read_elements(cards(i))
+    end do
+    call complete_elements(model, found)
 
-  !> PSHELL, then PSOLID, with their materials.
-  subroutine build_sections(deck, model, found)
-    type(deck_type), intent(in) :: deck   !! its cards
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    type(material_card), allocatable :: card(:)
-    type(material_card) :: material(deck%card(card_pshell)%count + deck%card(card_psolid)%count)
-    type(card_index) :: materials
-    integer, dimension(size(material)) :: kinematics, named
-    integer :: i
+  contains
 
-    call check_unique(deck, [card_pshell, card_psolid], found)
-    call read_materials(deck, card, found)
-    materials = index_of(deck, card_mat1)
-    associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
-      call resolve(deck, card_pshell, shell%column('MID1'), materials, found, named(:shell%count))
-      call resolve(deck, card_psolid, solid%column('MID'), materials, found, named(shell%count + 1:))
-      kinematics = axisymmetric
-      do i = 1, size(named)
-        if (named(i) > 0) material(i) = card(named(i))
-        if (i <= shell%count) call choose_kinematics(deck, i, kinematics(i), found)
-      end do
-      call set_sections(model, material%young, material%poisson, kinematics)
-      model%curve = material%curve
-      model%thickness(:shell%count) = shell%value(shell%column('T'), :)
-      model%property_id = nint([shell%value(1, :), solid%value(1, :)])
-      model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])
-    end associate
-  end subroutine build_sections
+    !> One material a MAT1, with its curve.
+    subroutine read_materials()
+      integer, dimension(deck%card(card_mats1)%count) :: m, table    ! the MAT1, the TABLES1; 0: none
+      integer :: i
 
-  !> Plane strain or plane stress, from PSHELL or PARAM PLANE.
-  pure subroutine choose_kinematics(deck, i, kinematics, found)
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: i             !! which PSHELL
-    integer, intent(out) :: kinematics
-    type(findings), intent(inout) :: found
-    integer :: mid2, plane
+      associate (mat1 => deck%card(card_mat1), mats1 => deck%card(card_mats1))
+        allocate (material(mat1%count))
+        do i = 1, mat1%count
+          if (mat1%sound(i)) call read_elasticity(i, material(i)%young, material(i)%poisson)
+        end do
+        call resolve(deck, card_mats1, 1, index_of(deck, card_mat1), found, m)
+        call resolve(deck, card_mats1, mats1%column('TID'), index_of(deck, card_tables1), found, table)
+        do i = 1, mats1%count
+          if (m(i) == 0 .or. .not. mats1%sound(i)) cycle
+          if (.not. mat1%sound(m(i)) .or. material(m(i))%young <= 0.0_wp) cycle   ! a fault of its MAT1
+          call read_yielding(i, table(i), material(m(i)))
+        end do
+      end associate
+    end subroutine read_materials
 
-    plane = deck%parameter_row('PLANE')
-    kinematics = plane_strain
-    if (plane > 0) then
-      if (deck%card(card_param)%word(2, plane) /= 'STRAIN') kinematics = plane_stress
-    end if
-    associate (shell => deck%card(card_pshell))
-      if (.not. shell%sound(i)) return
-      mid2 = shell%column('MID2')
-      if (shell%given(mid2, i) .and. kinematics == plane_stress) then
-        call found%add_error(card_pshell, i, mid2, &
-                             ': field 5 (MID2) says plane strain, PARAM PLANE says STRESS', &
-                             'one of the two only')
-      else if (.not. shell%given(mid2, i) .and. plane == 0) then
-        call found%add_error(card_pshell, i, mid2, ': neither plane strain nor plane stress is chosen', &
-                             '-1 here for plane strain, or PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS')
-      end if
-    end associate
-  end subroutine choose_kinematics
+    !> MAT1: E and NU from two of E, G, NU.
+    subroutine read_elasticity(i, young, poisson)
+      integer, intent(in) :: i
+      real(wp), intent(out) :: young, poisson
+      real(wp) :: shear
+
+      associate (mat1 => deck%card(card_mat1))
+        young = mat1%number('E', i)
+        shear = mat1%number('G', i)
+        poisson = mat1%number('NU', i)
+        if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
+          call refuse(card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say')
+        else if (.not. mat1%has('NU', i)) then
+          poisson = young/(2.0_wp*shear) - 1.0_wp
+          if (poisson < 0.0_wp .or. poisson >= 0.5_wp) &
+            call refuse(card_mat1, i, 'G', ': E and G give NU = '//short_real(poisson), &
+                        '0 <= NU < 0.5: G above E/3, up to E/2')
+        else if (.not. mat1%has('E', i)) then
+          young = 2.0_wp*shear*(1.0_wp + poisson)
+        else if (mat1%has('G', i) .and. &
+                 abs(2.0_wp*shear*(1.0_wp + poisson) - young) > same_moduli*young) then
+          call refuse(card_mat1, i, 'G', ': G is not E/(2(1 + NU))', 'a blank G')
+        end if
+      end associate
+    end subroutine read_elasticity
+
+    !> MATS1: the curve of its table, or the bilinear one of LIMIT1 and H.
+    subroutine read_yielding(i, table, material)
+      integer, intent(in) :: i, table   !! the MATS1, the TABLES1
+      type(material_card), intent(inout) :: material
+
+      associate (mats1 => deck%card(card_mats1))
+        if (.not. mats1%has('TID', i)) then
+          if (mats1%has('LIMIT1', i)) then
+            material%curve = bilinear_curve(material%young, mats1%number('LIMIT1', i), mats1%number('H', i))
+          else
+            call refuse(card_mats1, i, 'LIMIT1', ': neither a table nor a yield stress', &
+                        'TID, or LIMIT1 and H')
+          end if
+          return
+        end if
+        if (mats1%has('H', i)) call refuse(card_mats1, i, 'H', ': field 5 (H) is given beside a table', &
+                                           'a blank H, or a blank TID')
+        if (.not. mats1%has('LIMIT1', i) .and. mats1%word(mats1%column('TYPE'), i) == 'PLASTIC') &
+          call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is blank', &
+                      'the yield stress: the second stress of the table')
+      end associate
+      if (table == 0) return
+      if (deck%card(card_tables1)%sound(table)) &
+        call read_table(i, table, material%young, material%curve)
+    end subroutine read_yielding
+
+    !> TABLES1. Its yield stress is kept and its yield strain replaced by that over E, so that the elastic
+    !! part is MAT1's.
+    subroutine read_table(i, t, young, curve)
+      integer, intent(in) :: i, t   !! the MATS1, the TABLES1
+      real(wp), intent(in) :: young
+      type(uniaxial_curve), intent(inout) :: curve
+      type(curve_fault) :: fault
+      real(wp) :: limit
+
+      associate (tables1 => deck%card(card_tables1))
+        associate (first => tables1%list_start(t), last => tables1%list_start(t + 1) - 1)
+          associate (strain => tables1%list(first:last)%point(1), stress => tables1%list(first:last)%point(2))
+            fault = fault_of_curve(strain, stress, young)
+            if (fault%point > 0) then
+              call found%add_error(card_tables1, t, merge(1 - first - fault%point, 0, &
+                                   fault%point <= size(strain)), ': '//fault%what, fault%remedy)
+              return
+            end if
+            limit = deck%card(card_mats1)%number('LIMIT1', i)
+            if (deck%card(card_mats1)%has('LIMIT1', i) .and. abs(limit - stress(2)) > same_stress*stress(2)) &
+              call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
+                          ', the second stress of '//tables1%identity(t)//' '//short_real(stress(2)), &
+                          'the same stress in both')
+            curve%strain = [0.0_wp, stress(2)/young, strain(3:)]
+            curve%stress = stress
+            curve%ends = .true.
+          end associate
+        end associate
+      end associate
+    end subroutine read_table
+
+    !> A field is at fault.
+    subroutine refuse(card, i, name, what, remedy)
+      integer, intent(in) :: card, i
+      character(len=*), intent(in) :: name, what, remedy   !! the field's name; what is wrong; what would be right
+
+      call found%add_error(card, i, deck%card(card)%column(name), what, remedy)
+    end subroutine refuse
+
+    !> PSHELL, then PSOLID.
+    subroutine read_sections()
+      type(material_card) :: section(deck%card(card_pshell)%count + deck%card(card_psolid)%count)
+      type(card_index) :: materials
+      integer, dimension(size(section)) :: kinematics, named
+      integer :: s
+
+      materials = index_of(deck, card_mat1)
+      associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
+        call resolve(deck, card_pshell, shell%column('MID1'), materials, found, named(:shell%count))
+        call resolve(deck, card_psolid, solid%column('MID'), materials, found, named(shell%count + 1:))
+        kinematics = axisymmetric
+        do s = 1, size(named)
+          if (named(s) > 0) section(s) = material(named(s))
+          if (s <= shell%count) call choose_kinematics(s, kinematics(s))
+        end do
+        call set_sections(model, section%young, section%poisson, kinematics)
+        model%curve = section%curve
+        model%thickness(:shell%count) = shell%value(shell%column('T'), :)
+        model%property_id = nint([shell%value(1, :), solid%value(1, :)])
+        model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])
+      end associate
+    end subroutine read_sections
+
+    !> Plane strain or plane stress of a PSHELL: it says so, or PARAM PLANE.
+    subroutine choose_kinematics(i, kinematics)
+      integer, intent(in) :: i
+      integer, intent(out) :: kinematics
+
+      kinematics = merge(plane_stress, plane_strain, deck%parameter_word('PLANE', 'STRAIN') == 'STRESS')
+      associate (shell => deck%card(card_pshell))
+        if (.not. shell%sound(i)) return
+        if (shell%has('MID2', i) .and. kinematics == plane_stress) then
+          call refuse(card_pshell, i, 'MID2', ': field 5 (MID2) says plane strain, PARAM PLANE says STRESS', &
+                      'one of the two only')
+        else if (.not. shell%has('MID2', i) .and. deck%parameter_row('PLANE') == 0) then
+          call refuse(card_pshell, i, 'MID2', ': neither plane strain nor plane stress is chosen', &
+                      '-1 here for plane strain, or PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS')
+        end if
+      end associate
+    end subroutine choose_kinematics
+
+    !> The elements of a table.
+    subroutine read_elements(card)
+      integer, intent(in) :: card
+      integer :: k, n
+      integer, allocatable :: node(:, :), section(:)
+      logical :: ring
+
+      associate (table => deck%card(card))
+        ring = any(model%kinds%ring_card == table%entry%name)
+        n = size(table%entry%field) - 2   ! without id and section
+        allocate (node(n, table%count), section(table%count))
+        call resolve(deck, card, 2, index_of(deck, merge(card_psolid, card_pshell, ring)), found, section)
+        if (ring) where (section > 0) section = section + deck%card(card_pshell)%count
+        do k = 1, n
+          call resolve(deck, card, 2 + k, nodes, found, node(k, :))
+        end do
+        ! In their order along the boundary
+        if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)
+        call add_elements(model, table%entry%name, node, section)
+        model%element_id(model%elements - table%count + 1:) = int(table%value(1, :))
+      end associate
+    end subroutine read_elements
+  end subroutine build_mesh
 
   !> The cards of elements, in the order in which they are read: those that the table of elements names.
   pure function element_cards(deck) result(cards)
     type(deck_type), intent(in) :: deck   !! its cards
     integer, allocatable :: cards(:)
-    character(len=8) :: name
+    character(len=8) :: name(size(deck%card))
     integer :: c
 
-    allocate (cards(0))
+    name = deck%card%entry%name
     associate (kinds => element_kinds())
-      do c = 1, size(deck%card)
-        name = deck%card(c)%entry%name
-        if (any(kinds%plane_card == name .or. kinds%ring_card == name)) cards = [cards, c]
-      end do
+      cards = pack([(c, c=1, size(name))], &
+                   [(any(kinds%plane_card == name(c) .or. kinds%ring_card == name(c)), c=1, size(name))])
     end associate
   end function element_cards
-
-  !> All elements, card by card.
-  subroutine build_elements(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck   !! its cards
-    type(card_index), intent(in) :: nodes   !! ids of GRID
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer, allocatable :: cards(:), node(:, :), section(:)
-    integer :: c, k, n
-    logical :: ring
-
-    cards = element_cards(deck)
-    do c = 1, size(cards)
-      associate (card => deck%card(cards(c)))
-        ring = any(model%kinds%ring_card == card%entry%name)
-        ! Without id and section
-        allocate (node(size(card%entry%field) - 2, card%count), section(card%count))
-        call resolve(deck, cards(c), 2, index_of(deck, merge(card_psolid, card_pshell, ring)), found, section)
-        if (ring) where (section > 0) section = section + deck%card(card_pshell)%count
-        do k = 1, size(node, 1)
-          call resolve(deck, cards(c), 2 + k, nodes, found, node(k, :))
-        end do
-        n = size(node, 1)
-        ! In their order along the boundary
-        if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)
-        call add_elements(model, card%entry%name, node, section)
-        model%element_id(model%elements - card%count + 1:) = int(card%value(1, :))
-        deallocate (node, section)
-      end associate
-    end do
-    call complete_elements(model, found)
-  end subroutine build_elements
 end module epcont_build_mesh

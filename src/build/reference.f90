@@ -4,6 +4,7 @@ module epcont_build_reference
   use epcont_base_sorting, only: id_index, new_id_index, sorted_order
   use epcont_base_text, only: text_of
   use epcont_deck_deck, only: deck_type
+  use epcont_deck_diagnostic, only: diagnostic, severity_note
   use epcont_model_finding, only: findings, of_scene
   implicit none
   private
@@ -19,7 +20,7 @@ contains
   !> The ids in the first fields of all cards of a table.
   pure type(card_index) function index_of(deck, card) result(index)
     type(deck_type), intent(in) :: deck   !! its cards
-    integer, intent(in) :: card  !! which table
+    integer, intent(in) :: card           !! which table
 
     index%id_index = new_id_index(int(deck%card(card)%value(1, :)))
     index%noun = deck%card(card)%entry%name
@@ -27,50 +28,46 @@ contains
 
   !> Each id stands once in the first fields of these tables, which share one id space.
   pure subroutine check_unique(deck, cards, found)
-    type(deck_type), intent(in) :: deck   !! its cards
-    integer, intent(in) :: cards(:)             !! which tables
+    type(deck_type), intent(in) :: deck      !! its cards
+    integer, intent(in) :: cards(:)          !! which tables
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: id(:), order(:), row(:), table(:)
-    integer :: c, i, k, earlier
+    integer :: c, i, k
 
     id = [(int(deck%card(cards(c))%value(1, :)), c=1, size(cards))]
     table = [(spread(cards(c), 1, deck%card(cards(c))%count), c=1, size(cards))]
     row = [((i, i=1, deck%card(cards(c))%count), c=1, size(cards))]
     order = sorted_order(id)
     do k = 2, size(id)
-      i = order(k)
-      earlier = order(k - 1)
-      if (id(i) /= id(earlier)) cycle
-      if (deck%card(table(i))%given(1, row(i))) &
-        call found%add_error(table(i), row(i), 1, ': the id is taken by '// &
-                             deck%identity(table(earlier), row(earlier)), &
-                             'an id of its own')
+      associate (i => order(k), earlier => order(k - 1))
+        if (id(i) == id(earlier) .and. deck%card(table(i))%given(1, row(i))) &
+          call found%add_error(table(i), row(i), 1, ': the id is taken by '// &
+                               deck%card(table(earlier))%identity(row(earlier)), 'an id of its own')
+      end associate
     end do
   end subroutine check_unique
 
   !> Positions of what a field of each card names; 0 where there is no such thing, or where nothing is named.
   !! The former is a fault, but for the id 0, the basic system.
   pure subroutine resolve(deck, card, column, index, found, position)
-    type(deck_type), intent(in) :: deck   !! its cards
-    integer, intent(in) :: card               !! which table
-    integer, intent(in) :: column             !! the field that holds the id
-    type(card_index), intent(in) :: index     !! of what may be meant
+    type(deck_type), intent(in) :: deck      !! its cards
+    integer, intent(in) :: card              !! which table
+    integer, intent(in) :: column            !! the field that holds the id
+    type(card_index), intent(in) :: index    !! of what may be meant
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer, intent(out) :: position(:)       !! [cards]
-    character(len=:), allocatable :: noun
+    integer, intent(out) :: position(:)      !! [cards]
     integer :: i, id
 
-    noun = trim(index%noun)
-    associate (table => deck%card(card))
+    associate (table => deck%card(card), noun => index%noun)
       do i = 1, table%count
         position(i) = 0
         if (.not. table%given(column, i)) cycle   ! the reader has said so where it must be
         id = int(table%value(column, i))
         position(i) = index%find(id)
         if (position(i) > 0 .or. id == 0 .or. .not. table%sound(i)) cycle
-        call found%add_error(card, i, column, ': '//table%entry%field_text(column)// &
-                             ': there is no '//noun//' '//text_of(id), &
-                             'the id of '//trim(merge('an', 'a ', noun == 'element'))//' '//noun)
+        call found%add_error(card, i, column, ': '//table%entry%field_text(column)//': there is no '// &
+                             trim(noun)//' '//text_of(id), &
+                             'the id of '//trim(merge('an', 'a ', noun == 'element'))//' '//trim(noun))
       end do
     end associate
   end subroutine resolve
@@ -78,11 +75,11 @@ contains
   !> Positions of the nodes that an item of a card's list names: one, or some of a range; it is a fault if
   !! there are none.
   pure subroutine resolve_list(deck, card, i, item, nodes, found, position)
-    type(deck_type), intent(in) :: deck   !! its cards
-    integer, intent(in) :: card, i                      !! which table, which card of it
-    integer, intent(in) :: item                         !! of all lists of the table
-    type(card_index), intent(in) :: nodes   !! ids of GRID
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(deck_type), intent(in) :: deck        !! its cards
+    integer, intent(in) :: card, i             !! which table, which card of it
+    integer, intent(in) :: item                !! of all lists of the table
+    type(card_index), intent(in) :: nodes      !! ids of GRID
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
     integer, allocatable, intent(out) :: position(:)    !! ascending by id [any]
     character(len=:), allocatable :: ids
 
@@ -95,38 +92,40 @@ contains
     call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
   end subroutine resolve_list
 
-  !> The set that SPC = or LOAD = names; without it the only set there is. 0 where there is none.
+  !> The set that SPC = or LOAD = names; without it the only set there is.
   pure subroutine chosen_set(deck, cards, choice, word, found, set)
-    type(deck_type), intent(in) :: deck   !! its cards
-    integer, intent(in) :: cards(:)              !! tables whose first field is the set
-    integer, intent(in) :: choice                !! 0: none
-    character(len=*), intent(in) :: word         !! SPC or LOAD
+    type(deck_type), intent(in) :: deck      !! its cards
+    integer, intent(in) :: cards(:)          !! tables whose first field is the set
+    integer, intent(in) :: choice            !! 0: none
+    character(len=*), intent(in) :: word     !! SPC or LOAD
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer, intent(out) :: set   !! 0: there is none
+    integer, intent(out) :: set              !! 0: there is none
     logical :: used
     integer :: c, i, id
 
     set = choice
     used = .false.
     do c = 1, size(cards)
-      do i = 1, deck%card(cards(c))%count
-        if (.not. deck%card(cards(c))%given(1, i)) cycle
-        id = nint(deck%card(cards(c))%value(1, i))
-        if (set == 0) set = id
-        used = used .or. id == set
-        if (id == set) cycle
-        if (choice == 0) then
-          call found%add_error(cards(c), i, 1, ': the deck has several sets, '//text_of(set)//' and '// &
-                               text_of(id)// &
-                               ', and chooses none', word//' = '//text_of(set)//' before BEGIN BULK')
-          return
-        end if
-        call found%add_note(cards(c), i, 1, ': set not used')
-      end do
+      associate (table => deck%card(cards(c)))
+        do i = 1, table%count
+          if (.not. table%given(1, i)) cycle
+          id = nint(table%value(1, i))
+          if (set == 0) set = id
+          used = used .or. id == set
+          if (id == set) cycle
+          if (choice == 0) then
+            call found%add_error(cards(c), i, 1, ': the deck has several sets, '//text_of(set)//' and '// &
+                                 text_of(id)//', and chooses none', &
+                                 word//' = '//text_of(set)//' before BEGIN BULK')
+            return
+          end if
+          call found%add(diagnostic(severity_note, of=cards(c), which=i, item=1, &
+                                    what=': set not used', remedy=''))
+        end do
+      end associate
     end do
     if (choice > 0 .and. .not. used) &
       call found%add_error(of_scene, cards(1), 0, word//' = '//text_of(choice)// &
-                           ': the deck has no such set', &
-                           'the set of the cards in the deck')
+                           ': the deck has no such set', 'the set of the cards in the deck')
   end subroutine chosen_set
 end module epcont_build_reference

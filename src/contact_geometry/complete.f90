@@ -14,10 +14,11 @@ module epcont_contact_geometry_complete
   use epcont_contact_geometry_lying_together, only: warn_of_lying_together
   use epcont_contact_geometry_pair_checks, only: check_pairs
   use epcont_contact_geometry_pairs_twice, only: refuse_pairs_twice
+  use epcont_deck_diagnostic, only: severity_error
   use epcont_element_kinematics, only: plane_strain
   use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
-  use epcont_model_finding, only: findings, found_error, of_node, of_paper_ratio, of_section
+  use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_section
   use epcont_model_given, only: check_given
   use epcont_model_model, only: model_type
   use epcont_model_single_pairs, only: complete_pairs
@@ -83,7 +84,7 @@ contains
 
     do i = 1, found%count
       associate (one => found%list(i))
-        if (one%severity /= found_error) cycle
+        if (one%severity /= severity_error) cycle
         call raise(error, status_deck, model%name_of(one%of, one%which)//one%what// &
                                        ' (wanted: '//one%remedy//')')
         return

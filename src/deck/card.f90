@@ -8,7 +8,7 @@
 !>     *       0.0                                     fields 6 to 9
 !>     +       ...                                     fields 12 to 19
 module epcont_deck_card
-  use epcont_base_text, only: text_of, upper
+  use epcont_base_text, only: text_of
   use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_entry, only: fields_a_line
   use epcont_deck_source, only: source
@@ -19,16 +19,6 @@ module epcont_deck_card
   integer, parameter :: width = 8            !! columns of a small field
   integer, parameter :: longest_fixed = 80   !! columns of a fixed line
   integer, parameter :: longest_free = 256   !! columns of a free line
-
-  !> One line of a card.
-  type :: card_line
-    integer :: line       !! which it is in the deck
-    integer :: before     !! characters of the card's text before it
-    integer :: length     !! of it
-    integer :: comma = 0  !! column of its first comma; 0: fields of fixed width
-    integer :: slot = 1   !! the first of its slots
-    integer :: fields = 0 !! slots on it, 8 or 4
-  end type card_line
 
   !> One data field of a card.
   type :: card_slot
@@ -45,12 +35,9 @@ module epcont_deck_card
     type(card_slot), allocatable :: slot(:)     !! with a blank one behind the last [count + 1 or more]
     logical :: sound = .true.                   !! the lines can be cut into fields
     type(place_type), private :: name_place
-    logical, private :: half_open = .false.     !! the last line was the first half of a large-field row
-    integer, private :: used = 0                !! characters of its text
   contains
     procedure :: filled
     procedure :: is_large
-    procedure :: is_word
     procedure :: place
   end type card_fields
 
@@ -62,23 +49,151 @@ contains
     integer, intent(in) :: line   !! where it begins
     type(card_fields), intent(inout) :: card   !! its arrays are used again
     type(diagnostics), intent(inout) :: faults   !! of form; they are added
-    integer :: next
+    integer :: at                  ! one of its lines
+    integer :: before, length      ! characters of the card's text before it, and of it
+    integer :: comma               ! column of its first comma; 0: fields of fixed width
+    integer :: first_slot, fields  ! slots on it, 8 or 4
+    logical :: half_open           ! the last line was the first half of a large-field row
 
     if (.not. allocated(card%slot)) then
       allocate (card%slot(64))
       card%text = repeat(' ', longest_free)
     end if
-    card%used = 0
+    length = 0
+    before = 0
     card%count = 0
     card%sound = .true.
-    card%half_open = .false.
-    do next = line, lines%count
-      associate (at => lines%line(next))
-        if (at%last < at%first) cycle
-        if (next > line .and. .not. continues(lines%text(at%first:at%last))) exit
+    half_open = .false.
+    do at = line, lines%count
+      associate (next => lines%line(at))
+        if (next%last < next%first) cycle
+        if (at > line .and. .not. continues(lines%text(next%first:next%last))) exit
       end associate
-      call add_line(lines, next, card, faults)
+      call add_line()
     end do
+
+  contains
+
+    !> Add the fields of one line.
+    subroutine add_line()
+      logical :: large
+
+      associate (text => lines%line(at))
+        before = before + length
+        length = text%last - text%first + 1
+        do while (len(card%text) < before + length)
+          card%text = card%text//card%text
+        end do
+        card%text(before + 1:before + length) = lines%text(text%first:text%last)
+      end associate
+      call inspect()
+      if (at == line) then
+        call find_name(card%text(:length), comma, card%name_first, card%name_last, large)
+        card%name_place = place_type(line, card%name_first, max(card%name_first, card%name_last))
+      else
+        large = card%text(before + 1:before + 1) == '*'
+      end if
+      if (.not. card%sound) return
+      call open_slots(large)
+      if (comma > 0) then
+        call cut_free()
+      else
+        call cut_fixed()
+      end if
+    end subroutine add_line
+
+    !> Look through a line: its first comma, and what may not be there.
+    subroutine inspect()
+      integer :: code, column, k, longest
+
+      comma = 0
+      do k = lines%line(at)%special, lines%line(at)%last
+        code = iachar(lines%text(k:k))
+        column = k - lines%line(at)%first + 1
+        if (code == iachar(',')) then
+          if (comma == 0) comma = column
+        else if (code == 9) then
+          call refuse(column, column, 'a tab in column '//text_of(column), &
+                      'blanks: a tab has no width in columns')
+          return
+        else if (code < 32 .or. code > 126) then
+          call refuse(column, column, 'a character that is not printable ASCII (code '//text_of(code)//')', &
+                      'only comments and titles may hold such')
+          return
+        end if
+      end do
+      longest = merge(longest_free, longest_fixed, comma > 0)
+      if (length > longest) &
+        call refuse(longest + 1, length, 'the line goes on beyond column '//text_of(longest), 'nothing here')
+    end subroutine inspect
+
+    !> The line cannot be cut into fields.
+    subroutine refuse(first, last, what, remedy)
+      integer, intent(in) :: first, last   !! columns
+      character(len=*), intent(in) :: what, remedy
+
+      card%sound = .false.
+      call faults%add_error(place_type(at, first, last), what, remedy)
+    end subroutine refuse
+
+    !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are
+    !! blank, and stand behind the line's end until it is cut.
+    subroutine open_slots(large)
+      logical, intent(in) :: large
+
+      fields = merge(fields_a_line/2, fields_a_line, large)
+      first_slot = card%count + 1
+      half_open = large .and. .not. half_open
+      if (large .and. .not. half_open) then
+        first_slot = first_slot - fields
+      else
+        card%count = card%count + fields_a_line
+      end if
+      if (card%count >= size(card%slot)) card%slot = [card%slot, card%slot]
+      if (half_open .or. comma > 0) &   ! all other slots are cut, be it behind the line's end
+        card%slot(first_slot:card%count) = card_slot(place=place_type(at, length + 1, length + 1))
+      card%slot(card%count + 1)%last = 0
+    end subroutine open_slots
+
+    !> Cut a line of fields of fixed width.
+    subroutine cut_fixed()
+      integer :: slot, step, left, from, to
+
+      step = merge(width, 2*width, fields == fields_a_line)
+      left = width
+      do slot = first_slot, first_slot + fields - 1
+        from = before + left + 1
+        to = min(from + step - 1, before + length)
+        if (from <= to) call trim_blanks(card%text, from, to)
+        card%slot(slot) = card_slot(from, to, place_type(at, left + 1, left + step))
+        left = left + step
+      end do
+    end subroutine cut_fixed
+
+    !> Cut a line at its commas. Behind the data fields only a continuation mark may stand.
+    subroutine cut_free()
+      integer :: slot, from, to, left, right
+
+      slot = first_slot
+      left = comma + 1
+      do while (left <= length)
+        right = left - 2 + index(card%text(before + left:before + length), ',')
+        if (right < left - 1) right = length
+        from = before + left
+        to = before + right
+        call trim_blanks(card%text, from, to)
+        if (slot < first_slot + fields) then
+          card%slot(slot) = card_slot(from, to, place_type(at, left, max(left, right)))
+        else if (from <= to .and. &
+                 (slot > first_slot + fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
+          call refuse(from - before, length, 'more than '//text_of(fields)//' data fields on a line', &
+                      'a continuation line for the rest')
+          return
+        end if
+        slot = slot + 1
+        left = right + 2
+      end do
+    end subroutine cut_free
   end subroutine gather
 
   !> Is the line a continuation: its first field blank, `+...` or `*...`?
@@ -94,80 +209,6 @@ contains
     continues = at > width
     if (.not. continues) continues = text(at:at) == ','
   end function continues
-
-  !> Add the fields of one line.
-  subroutine add_line(lines, line, card, faults)
-    type(source), intent(in) :: lines
-    integer, intent(in) :: line
-    type(card_fields), intent(inout) :: card
-    type(diagnostics), intent(inout) :: faults
-    type(card_line) :: at
-    logical :: large
-
-    associate (text => lines%line(line))
-      at = card_line(line, card%used, text%last - text%first + 1)
-      card%used = card%used + at%length
-      do while (len(card%text) < card%used)
-        card%text = card%text//card%text
-      end do
-      card%text(at%before + 1:card%used) = lines%text(text%first:text%last)
-    end associate
-    call inspect(lines, at, card%sound, faults)
-    if (at%before == 0) then
-      call find_name(card%text(:at%length), at%comma, card%name_first, card%name_last, large)
-      card%name_place = place_type(line, card%name_first, max(card%name_first, card%name_last))
-    else
-      large = card%text(at%before + 1:at%before + 1) == '*'
-    end if
-    if (.not. card%sound) return
-    call open_slots(card, at, large)
-    if (at%comma > 0) then
-      call cut_free(card, at, faults)
-    else
-      call cut_fixed(card, at)
-    end if
-  end subroutine add_line
-
-  !> Look through a line: its first comma, and what may not be there.
-  subroutine inspect(lines, at, sound, faults)
-    type(source), intent(in) :: lines
-    type(card_line), intent(inout) :: at
-    logical, intent(inout) :: sound  !! becomes false where there is a fault
-    type(diagnostics), intent(inout) :: faults
-    integer :: k, code, column, longest
-
-    associate (line => lines%line(at%line))
-      do k = line%special, line%last
-        code = iachar(lines%text(k:k))
-        column = k - line%first + 1
-        if (code < 32 .or. code > 126) then
-          sound = .false.
-          call add_character_fault(place_type(at%line, column, column), code, faults)
-          return
-        end if
-        if (at%comma == 0 .and. lines%text(k:k) == ',') at%comma = column
-      end do
-    end associate
-    longest = merge(longest_free, longest_fixed, at%comma > 0)
-    if (at%length <= longest) return
-    sound = .false.
-    call faults%add_error(place_type(at%line, longest + 1, at%length), &
-                          'the line goes on beyond column '//text_of(longest), 'nothing here')
-  end subroutine inspect
-
-  subroutine add_character_fault(place, code, faults)
-    type(place_type), intent(in) :: place
-    integer, intent(in) :: code
-    type(diagnostics), intent(inout) :: faults
-
-    if (code == 9) then
-      call faults%add_error(place, 'a tab in column '//text_of(place%first), &
-                            'blanks: a tab has no width in columns')
-    else
-      call faults%add_error(place, 'a character that is not printable ASCII (code '//text_of(code)//')', &
-                            'only comments and titles may hold such')
-    end if
-  end subroutine add_character_fault
 
   !> The name of a card in its first line; a `*` behind it means large fields.
   pure subroutine find_name(text, comma, first, last, large)
@@ -186,74 +227,6 @@ contains
     last = last - 1
     call trim_blanks(text, first, last)
   end subroutine find_name
-
-  !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are
-  !! blank, and stand behind the line's end until it is cut.
-  pure subroutine open_slots(card, at, large)
-    type(card_fields), intent(inout) :: card
-    type(card_line), intent(inout) :: at
-    logical, intent(in) :: large
-
-    at%fields = merge(fields_a_line/2, fields_a_line, large)
-    at%slot = card%count + 1
-    card%half_open = large .and. .not. card%half_open
-    if (large .and. .not. card%half_open) then
-      at%slot = at%slot - at%fields
-    else
-      card%count = card%count + fields_a_line
-    end if
-    if (card%count >= size(card%slot)) card%slot = [card%slot, card%slot]
-    if (card%half_open .or. at%comma > 0) &   ! all other slots are cut, be it behind the line's end
-      card%slot(at%slot:card%count) = card_slot(place=place_type(at%line, at%length + 1, at%length + 1))
-    card%slot(card%count + 1)%last = 0
-  end subroutine open_slots
-
-  !> Cut a line of fields of fixed width.
-  pure subroutine cut_fixed(card, at)
-    type(card_fields), intent(inout) :: card
-    type(card_line), intent(in) :: at
-    integer :: slot, step, left, from, to
-
-    step = merge(width, 2*width, at%fields == fields_a_line)
-    left = width
-    do slot = at%slot, at%slot + at%fields - 1
-      from = at%before + left + 1
-      to = min(from + step - 1, at%before + at%length)
-      if (from <= to) call trim_blanks(card%text, from, to)
-      card%slot(slot) = card_slot(from, to, place_type(at%line, left + 1, left + step))
-      left = left + step
-    end do
-  end subroutine cut_fixed
-
-  !> Cut a line at its commas. Behind the data fields only a continuation mark may stand.
-  subroutine cut_free(card, at, faults)
-    type(card_fields), intent(inout) :: card
-    type(card_line), intent(in) :: at
-    type(diagnostics), intent(inout) :: faults
-    integer :: slot, from, to, left, right
-
-    slot = at%slot
-    left = at%comma + 1
-    do while (left <= at%length)
-      right = left - 2 + index(card%text(at%before + left:card%used), ',')
-      if (right < left - 1) right = at%length
-      from = at%before + left
-      to = at%before + right
-      call trim_blanks(card%text, from, to)
-      if (slot < at%slot + at%fields) then
-        card%slot(slot) = card_slot(from, to, place_type(at%line, left, max(left, right)))
-      else if (from <= to .and. &
-               (slot > at%slot + at%fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
-        card%sound = .false.
-        call faults%add_error(place_type(at%line, from - at%before, at%length), &
-                              'more than '//text_of(at%fields)//' data fields on a line', &
-                              'a continuation line for the rest')
-        return
-      end if
-      slot = slot + 1
-      left = right + 2
-    end do
-  end subroutine cut_free
 
   !> Move `from` and `to` inwards over blanks. These are compared by their codes: a character compared with a
   !! blank becomes a call of len_trim, which for so few characters costs more than the loop.
@@ -280,19 +253,6 @@ contains
     filled = .false.
     if (slot <= self%count) filled = self%slot(slot)%last >= self%slot(slot)%first
   end function filled
-
-  !> Does a slot hold this word?
-  pure logical function is_word(self, slot, word)
-    class(card_fields), intent(in) :: self
-    integer, intent(in) :: slot              !! which field
-    character(len=*), intent(in) :: word     !! in capitals
-
-    is_word = .false.
-    if (.not. self%filled(slot)) return
-    associate (at => self%slot(slot))
-      if (at%last - at%first + 1 == len(word)) is_word = upper(self%text(at%first:at%last)) == word
-    end associate
-  end function is_word
 
   !> Whether a slot is a large field of a fixed line: sixteen columns.
   pure logical function is_large(self, slot)

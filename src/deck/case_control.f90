@@ -17,7 +17,7 @@ module epcont_deck_case_control
     integer :: solution = 0          !! SOL; 0: not given
     integer :: spc = 0, load = 0     !! the sets chosen; 0: no choice
     type(place_type) :: spc_place, load_place
-    logical :: echo = .false., echo_sorted = .false.   !! the cards listed: as they stand, by their names
+    character(len=6) :: echo = 'NONE'   !! the cards listed: UNSORT as they stand, SORT by their names, BOTH
     logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
   end type case_control
 
@@ -29,8 +29,7 @@ module epcont_deck_case_control
   type :: statement
     character(len=:), allocatable :: word      !! in capitals
     character(len=:), allocatable :: value     !! behind `=`, or behind the word
-    type(place_type) :: word_place, option_place, value_place
-    logical :: has_option = .false.
+    type(place_type) :: word_place, option_place, value_place   !! of line 0: there is none
   end type statement
 
 contains
@@ -43,6 +42,7 @@ contains
     integer, intent(out) :: bulk   !! the first line of bulk data
     type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     logical :: stated(size(keyword))
+    type(statement) :: parts
     integer :: line
 
     control%title = ''
@@ -51,8 +51,114 @@ contains
     bulk = behind_begin_bulk(lines)
     stated = .false.
     do line = 1, bulk - 2
-      if (.not. lines%blank(line)) call read_statement(cut(lines, line), control, stated, faults)
+      if (lines%blank(line)) cycle
+      parts = cut(lines%text_of_line(line), line)
+      call check_word()
+      call take_statement()
     end do
+
+  contains
+
+    !> A statement must be known, and stand once; its options have no effect.
+    subroutine check_word()
+      integer :: k
+
+      k = findloc(keyword == parts%word, .true., dim=1)
+      if (k == 0) then
+        call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
+          suggestion(parts%word, keyword, &
+                     'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'))
+        return
+      end if
+      if (stated(k)) &
+        call faults%add_error(parts%word_place, parts%word//' is stated twice', &
+                              'one '//parts%word//trim(merge(' a deck', '       ', parts%word == 'SUBCASE')))
+      stated(k) = .true.
+      if (parts%option_place%line > 0) &
+        call faults%add_note(parts%option_place, parts%word//': options have no effect')
+    end subroutine check_word
+
+    !> Take one statement.
+    subroutine take_statement()
+      character(len=6) :: word
+      integer :: unused
+
+      word = 'NONE'
+      select case (parts%word)
+      case ('SOL')
+        call take_number(control%solution)
+      case ('CEND')
+        if (len(parts%value) > 0) &
+          call faults%add_error(parts%value_place, 'CEND takes no value', 'nothing here')
+      case ('TITLE')
+        control%title = parts%value
+      case ('SUBTITLE')
+        control%subtitle = parts%value
+      case ('LABEL')
+        control%label = parts%value
+      case ('SPC')
+        control%spc_place = parts%value_place
+        call take_number(control%spc)
+      case ('LOAD')
+        control%load_place = parts%value_place
+        call take_number(control%load)
+      case ('ECHO')
+        call take_word('UNSORT, SORT, BOTH', control%echo)
+      case ('DISPLACEMENT')
+        call take_word('ALL', word)
+        control%displacement = word == 'ALL'
+      case ('STRESS')
+        call take_word('ALL', word)
+        control%stress = word == 'ALL'
+      case ('SPCFORCES')
+        call take_word('ALL', word)
+        control%spcforces = word == 'ALL'
+      case ('SUBCASE')
+        call take_number(unused)
+      case ('NLPARM')
+        call take_number(unused)
+        call faults%add_note(parts%word_place, 'NLPARM has no effect')
+      end select
+    end subroutine take_statement
+
+    !> The number of a statement such as `SPC = 1`.
+    subroutine take_number(number)
+      integer, intent(inout) :: number
+      integer(i8) :: value
+      integer :: outcome
+
+      call scan_integer(parts%value, value, outcome)
+      if (outcome == scan_sound .and. value > 0 .and. value <= largest_id) then
+        number = int(value)
+      else
+        call refuse('a number', ' that can be used', 'a whole number from 1 to '//text_of(largest_id))
+      end if
+    end subroutine take_number
+
+    !> A statement that takes NONE or one of some words.
+    subroutine take_word(words, word)
+      character(len=*), intent(in) :: words        !! with commas between
+      character(len=*), intent(inout) :: word
+      character(len=:), allocatable :: said
+
+      said = upper(parts%value)
+      if (len(said) > 0 .and. scan(said, ', ') == 0 .and. index(', '//words//', NONE,', ', '//said//',') > 0) then
+        word = said
+      else
+        call refuse('a word', ' known here', words//' or NONE')
+      end if
+    end subroutine take_word
+
+    !> A value that is missing, or cannot be taken.
+    subroutine refuse(needed, which, remedy)
+      character(len=*), intent(in) :: needed, which, remedy
+
+      if (len(parts%value) == 0) then
+        call faults%add_error(parts%word_place, parts%word//' needs '//needed, remedy)
+      else
+        call faults%add_error(parts%value_place, parts%word//': not '//needed//which, remedy)
+      end if
+    end subroutine refuse
   end subroutine read_case_control
 
   !> The line behind BEGIN BULK; 1 where there is none.
@@ -75,21 +181,17 @@ contains
   end function behind_begin_bulk
 
   !> Cut a line into word, option and value.
-  pure function cut(lines, line) result(parts)
-    type(source), intent(in) :: lines
-    integer, intent(in) :: line
-    type(statement) :: parts
-    character(len=:), allocatable :: text
+  pure type(statement) function cut(text, line) result(parts)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: line   !! its number
     integer :: first, last, at
 
-    text = lines%text_of_line(line)
     first = verify(text, ' ')
     last = first + scan(text(first:)//' ', ' =(') - 2
     parts%word = upper(text(first:last))
     parts%word_place = place_type(line, first, max(first, last))
     at = behind_blanks(text, last + 1)
-    parts%has_option = text(at:min(at, len(text))) == '('
-    if (parts%has_option) then
+    if (text(at:min(at, len(text))) == '(') then
       last = at + index(text(at:)//')', ')') - 1
       parts%option_place = place_type(line, at, min(last, len(text)))
       at = behind_blanks(text, last + 1)
@@ -109,116 +211,4 @@ contains
     end do
     at = len(text) + 1
   end function behind_blanks
-
-  !> Take one statement.
-  subroutine read_statement(parts, control, stated, faults)
-    type(statement), intent(in) :: parts
-    type(case_control), intent(inout) :: control
-    logical, intent(inout) :: stated(:)
-    type(diagnostics), intent(inout) :: faults
-    integer :: k, unused
-
-    do k = size(keyword), 1, -1
-      if (keyword(k) == parts%word) exit
-    end do
-    if (k == 0) then
-      call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
-        suggestion(parts%word, keyword, &
-                   'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'))
-      return
-    end if
-    if (stated(k)) &
-      call faults%add_error(parts%word_place, parts%word//' is stated twice', &
-                            'one '//parts%word//trim(merge(' a deck', '       ', parts%word == 'SUBCASE')))
-    stated(k) = .true.
-    if (parts%has_option) call faults%add_note(parts%option_place, parts%word//': options have no effect')
-    select case (parts%word)
-    case ('SOL')
-      call take_number(parts, control%solution, faults)
-    case ('CEND')
-      if (len(parts%value) > 0) &
-        call faults%add_error(parts%value_place, 'CEND takes no value', 'nothing here')
-    case ('TITLE')
-      control%title = parts%value
-    case ('SUBTITLE')
-      control%subtitle = parts%value
-    case ('LABEL')
-      control%label = parts%value
-    case ('SPC')
-      control%spc_place = parts%value_place
-      call take_number(parts, control%spc, faults)
-    case ('LOAD')
-      control%load_place = parts%value_place
-      call take_number(parts, control%load, faults)
-    case ('ECHO')
-      call take_echo(parts, control, faults)
-    case ('DISPLACEMENT')
-      call take_choice(parts, 'ALL', control%displacement, faults)
-    case ('STRESS')
-      call take_choice(parts, 'ALL', control%stress, faults)
-    case ('SPCFORCES')
-      call take_choice(parts, 'ALL', control%spcforces, faults)
-    case ('SUBCASE', 'NLPARM')
-      call take_number(parts, unused, faults)
-      if (parts%word == 'NLPARM') call faults%add_note(parts%word_place, 'NLPARM has no effect')
-    end select
-  end subroutine read_statement
-
-  !> The number of a statement such as `SPC = 1`.
-  subroutine take_number(parts, number, faults)
-    type(statement), intent(in) :: parts
-    integer, intent(inout) :: number
-    type(diagnostics), intent(inout) :: faults
-    integer(i8) :: value
-    integer :: outcome
-
-    call scan_integer(parts%value, value, outcome)
-    if (outcome == scan_sound .and. value > 0 .and. value <= largest_id) then
-      number = int(value)
-    else
-      call refuse(parts, 'a number', 'a number that can be used', &
-                  'a whole number from 1 to '//text_of(largest_id), faults)
-    end if
-  end subroutine take_number
-
-  !> A statement that takes NONE or one other word.
-  subroutine take_choice(parts, other, chosen, faults)
-    type(statement), intent(in) :: parts
-    character(len=*), intent(in) :: other
-    logical, intent(inout) :: chosen  !! the other word is stated
-    type(diagnostics), intent(inout) :: faults
-
-    if (upper(parts%value) == other .or. upper(parts%value) == 'NONE') then
-      chosen = upper(parts%value) == other
-    else
-      call refuse(parts, 'a word', 'a word known here', other//' or NONE', faults)
-    end if
-  end subroutine take_choice
-
-  !> The ways in which cards are listed.
-  subroutine take_echo(parts, control, faults)
-    type(statement), intent(in) :: parts
-    type(case_control), intent(inout) :: control
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: word
-
-    word = upper(parts%value)
-    if (all(word /= [character(len=6) :: 'UNSORT', 'SORT', 'BOTH', 'NONE'])) &
-      call refuse(parts, 'a word', 'a word known here', 'UNSORT, SORT, BOTH or NONE', faults)
-    control%echo = word == 'UNSORT' .or. word == 'BOTH'
-    control%echo_sorted = word == 'SORT' .or. word == 'BOTH'
-  end subroutine take_echo
-
-  !> A value that is missing, or cannot be taken.
-  subroutine refuse(parts, needed, expected, remedy, faults)
-    type(statement), intent(in) :: parts
-    character(len=*), intent(in) :: needed, expected, remedy
-    type(diagnostics), intent(inout) :: faults
-
-    if (len(parts%value) == 0) then
-      call faults%add_error(parts%word_place, parts%word//' needs '//needed, remedy)
-    else
-      call faults%add_error(parts%value_place, parts%word//': not '//expected, remedy)
-    end if
-  end subroutine refuse
 end module epcont_deck_case_control

@@ -1,6 +1,6 @@
 !> THE table of cards and fields. The reader checks by it, and `epcont --cards` prints it: there is
 !> no other place that knows a column. The fields of a card stand in their order: fields 2 to 9, then 12 to
-!> 19, and so on; one that must be blank is `field_entry()`.
+!> 19, and so on: name, what it may hold, meaning, unit; one that must be blank is `field_entry()`.
 module epcont_deck_catalogue
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -9,9 +9,7 @@ module epcont_deck_catalogue
                                     card_grid, card_kinds, card_mat1, card_mats1, card_param, card_pgap, &
                                     card_ploadx1, card_pshell, card_psolid, card_rbe2, card_spc, card_spc1, &
                                     card_suport, card_tables1
-  use epcont_deck_entry, only: any_field, below, card_entry, cause, components_field, field_entry, id_field, &
-                               integer_field, largest_id, last_field, new_card, next_field, noted, positive, &
-                               real_field, word_field, zero_field
+  use epcont_deck_entry, only: card_entry, field, field_entry, integer_field, last_field, word_field
   implicit none
   private
   public :: catalogue, parameters
@@ -31,248 +29,248 @@ module epcont_deck_catalogue
 contains
 
   !> All cards, by their kinds.
-  pure function catalogue() result(card)
+  function catalogue() result(card)
     type(card_entry) :: card(card_kinds)
 
-    call add_mesh(card)
-    call add_materials(card)
-    call add_supports(card)
-    call add_loads(card)
-    call add_pairs(card)
-    call add_lines(card)
-    card(card_param) = new_card('PARAM', 'a choice for the whole deck', [ &
-      word_field('NAME', 'parameter', ''), &
-      choice('VALUE', '', 'its value')])
+    call add_mesh()
+    call add_materials()
+    call add_supports()
+    call add_loads()
+    call add_pairs()
+    call add_lines()
+    card(card_param) = card_entry('PARAM', 'a choice for the whole deck', [ &
+      word_field('NAME', '', 'parameter'), &
+      word_field('VALUE', '', 'its value')])
+
+  contains
+
+    !> Nodes, elements and their sections.
+    subroutine add_mesh()
+      integer :: slot
+
+      card(card_grid) = card_entry('GRID', 'node', [ &
+        field('ID', 'id', 'node'), &
+        field('CP', 'system only_zero', 'system of X1 to X3: the basic one'), &
+        field('X1', 'real zero', 'coordinate x', 'length'), &
+        field('X2', 'real zero', 'coordinate y', 'length'), &
+        field('X3', 'real zero', 'coordinate z; 0.0 in plane scenes', 'length'), &
+        field('CD', 'system only_zero', 'system of the displacements: the basic one'), &
+        field('PS', 'digits optional', 'permanent supports')])
+      ! Gmsh writes coordinates in large field by %.9G of C: 3.0 is `3`, 1.0E-5 is `1E-05`.
+      card(card_grid)%field(3:5)%point_optional = .true.
+      card(card_ctria3) = element('CTRIA3', 'constant-strain triangle', 'PSHELL', in_turn(:3))
+      card(card_ctria6) = element('CTRIA6', 'six-node triangle', 'PSHELL', six)
+      card(card_cquad4) = element('CQUAD4', 'four-node quadrilateral, B-bar', 'PSHELL', in_turn)
+      card(card_cquad8) = element('CQUAD8', 'eight-node quadrilateral', 'PSHELL', eight)
+      card(card_ctrax3) = &
+        element('CTRAX3', 'ring of a three-node triangle; x is the radius', 'PSOLID', in_turn(:3))
+      card(card_ctrax6) = &
+        element('CTRAX6', 'ring of a six-node triangle; x is the radius', 'PSOLID', six(round))
+      card(card_pshell) = card_entry('PSHELL', 'plane section', [ &
+        field('PID', 'id', 'property'), &
+        field('MID1', 'id', 'its MAT1'), &
+        field('T', 'real needed positive', 'thickness', 'length'), &
+        integer_field('MID2', '-1: plane strain; blank: as PARAM PLANE says', -1, -1)])
+      card(card_psolid) = card_entry('PSOLID', 'section of rings', [ &
+        field('PID', 'id', 'property'), &
+        field('MID', 'id', 'its MAT1')])
+      card(card_cbar) = card_entry('CBAR', 'boundary line of a mesher: counted, no effect', [ &
+        field('EID', 'id noted', 'element'), &
+        field('PID', 'id optional noted', 'property, not looked up'), &
+        field('GA', 'id noted', 'first node'), &
+        field('GB', 'id noted', 'second node'), &
+        (field('', 'any noted', 'anything'), slot=5, 16)])
+    end subroutine add_mesh
+
+    !> Elasticity, and how materials yield.
+    subroutine add_materials()
+      type(field_entry) :: ratio, slope
+      integer :: k
+
+      ratio = field('NU', 'real', 'Poisson''s ratio')
+      ratio%lowest = 0.0_wp
+      ratio%highest = 0.5_wp
+      ratio%below_highest = .true.
+      ratio%reason = 'incompressible: the bulk modulus is infinite'
+      ratio%instead = '0.4999'
+      card(card_mat1) = card_entry('MAT1', 'isotropic elastic material; two of E, G, NU', [ &
+        field('MID', 'id', 'material'), &
+        field('E', 'real positive', 'Young''s modulus', 'stress'), &
+        field('G', 'real positive', 'shear modulus', 'stress'), &
+        ratio, &
+        field('RHO', 'real noted', 'density'), &
+        field('A', 'real noted', 'thermal expansion'), &
+        field('TREF', 'real noted', 'reference temperature'), &
+        field('GE', 'real noted', 'damping'), &
+        field('ST', 'real noted', 'limit of tension', 'stress'), &
+        field('SC', 'real noted', 'limit of compression', 'stress'), &
+        field('SS', 'real noted', 'limit of shear', 'stress'), &
+        field('MCSID', 'system noted', 'material system')])
+      slope = field('H', 'real zero', 'stress over plastic strain beyond LIMIT1; blank with TID', 'stress')
+      slope%lowest = 0.0_wp
+      card(card_mats1) = card_entry('MATS1', 'yielding of a MAT1: von Mises, total theory', [ &
+        field('MID', 'id', 'its MAT1'), &
+        field('TID', 'id optional', 'its TABLES1; blank: bilinear from LIMIT1 and H'), &
+        word_field('TYPE', 'PLASTIC NLELAST', 'both are taken as total theory'), &
+        slope, &
+        integer_field('YF', 'yield criterion: 1, von Mises', 1, 1, default=1), &
+        integer_field('HR', 'hardening rule: 1', 1, 1, default=1), &
+        field('LIMIT1', 'real positive', 'yield stress; with TID that of its second point', 'stress')])
+      card(card_tables1) = card_entry('TABLES1', 'uniaxial curve of stress over total strain', [ &
+        field('TID', 'id', 'table'), &
+        (field_entry(), k=3, 9)])
+      call card(card_tables1)%add_list('', &
+        'strain and stress of each point: 0.0 0.0, the yield point, and on; ENDT behind the last')
+      card(card_tables1)%has_points = .true.
+    end subroutine add_materials
+
+    !> What holds nodes, ties them, or tells the motions of bodies that are free.
+    subroutine add_supports()
+      character(len=*), parameter :: digit = '1234'
+      type(field_entry) :: reference(8)
+      integer :: i
+
+      card(card_spc) = card_entry('SPC', 'supports, with prescribed displacements', [ &
+        field('SID', 'id', 'set'), &
+        field('G1', 'id', 'node'), &
+        field('C1', 'digits', 'directions'), &
+        field('D1', 'real zero cause', 'displacement', 'length'), &
+        field('G2', 'id with_next', 'second node'), &
+        field('C2', 'digits with_last', 'directions'), &
+        field('D2', 'real zero cause', 'displacement', 'length')])
+      card(card_spc1) = card_entry('SPC1', 'supports', [ &
+        field('SID', 'id', 'set'), &
+        field('C', 'digits', 'directions; 3 to 6 have no effect in plane scenes')])
+      call card(card_spc1)%add_list('G', 'nodes, or G1 THRU G2')
+      card(card_spc1)%has_ranges = .true.
+      card(card_rbe2) = card_entry('RBE2', 'rigid platen: nodes that move as one', [ &
+        field('EID', 'id', 'element'), &
+        field('GN', 'id', 'node that leads'), &
+        field('CM', 'digits', 'directions tied')])
+      call card(card_rbe2)%add_list('GM', 'nodes that follow')
+      do i = 1, 4
+        reference(2*i - 1) = field('ID'//digit(i:i), 'id with_next', 'node')
+        reference(2*i) = field('C'//digit(i:i), 'digits with_last', 'directions')
+      end do
+      reference(:2)%required = .true.
+      card(card_suport) = &
+        card_entry('SUPORT', 'reference freedoms of free bodies, solved for: the approach', reference)
+    end subroutine add_supports
+
+    !> Forces and pressures.
+    subroutine add_loads()
+      type(field_entry) :: pressure
+
+      card(card_force) = card_entry('FORCE', 'force F*N at a node', [ &
+        field('SID', 'id', 'set'), &
+        field('G', 'id', 'node'), &
+        field('CID', 'system only_zero', 'system of N1 to N3: the basic one'), &
+        field('F', 'real needed cause', 'factor', 'force'), &
+        field('N1', 'real zero', 'direction x'), &
+        field('N2', 'real zero', 'direction y'), &
+        field('N3', 'real zero', 'direction z; 0.0 in plane scenes')])
+      pressure = field('PB', 'real cause', 'pressure at GB', 'stress')
+      pressure%same_as = last_field
+      card(card_ploadx1) = card_entry('PLOADX1', 'pressure on the edge of an element', [ &
+        field('SID', 'id', 'set'), &
+        field('EID', 'id', 'element'), &
+        field('PA', 'real needed cause', 'pressure at GA, positive into the element', 'stress'), &
+        pressure, &
+        field('GA', 'id', 'corner at which the edge begins'), &
+        field('GB', 'id', 'corner at which it ends'), &
+        field('THETA', 'real zero', 'counter-clockwise from the inward normal', 'degree')])
+    end subroutine add_loads
+
+    !> Pairs of nodes in contact.
+    subroutine add_pairs()
+      character(len=*), parameter :: meaning(3) = &
+        [character(len=17) :: 'origin', 'point on z', 'point in x-z half']
+      integer :: i, j
+
+      card(card_cord2r) = card_entry('CORD2R', 'rectangular coordinate system, for gap directions', [ &
+        field('CID', 'id', 'system'), &
+        field('RID', 'system only_zero', 'system of the points: the basic one'), &
+        ((field('ABC'(i:i)//'123'(j:j), 'real zero', meaning(i), 'length'), j=1, 3), i=1, 3)])
+      card(card_cgap) = card_entry('CGAP', 'contact pair', [ &
+        field('EID', 'id', 'pair'), &
+        field('PID', 'id', 'its PGAP'), &
+        field('GA', 'id', 'node A'), &
+        field('GB', 'id', 'node B, pushed along the normal'), &
+        field('X1', 'any noted', 'orientation, or node G0'), &
+        field('X2', 'real noted', 'orientation'), &
+        field('X3', 'real noted', 'orientation'), &
+        field('CID', 'system', 'system whose x is the normal; blank: from GA to GB')])
+      card(card_pgap) = card_entry('PGAP', 'property of contact pairs', [ &
+        field('PID', 'id', 'property'), &
+        field('U0', 'real zero cause', 'initial gap', 'length'), &
+        field('F0', 'real only_zero', 'preload', reason='there is no preload'), &
+        field('KA', 'real noted', 'closed stiffness: contact is exact'), &
+        field('KB', 'real noted', 'open stiffness'), &
+        field('KT', 'real noted', 'tangential stiffness'), &
+        field('MU1', 'real only_zero', 'static friction', reason='there is no friction'), &
+        field('MU2', 'real only_zero', 'kinetic friction', reason='there is no friction'), &
+        field('TMAX', 'real noted', 'largest penetration'), &
+        field('MAR', 'real noted', 'largest adjustment'), &
+        field('TRMIN', 'real noted', 'smallest penetration')])
+    end subroutine add_pairs
+
+    !> Boundary lines, and which of them are in contact.
+    subroutine add_lines()
+      card(card_blseg) = card_entry('BLSEG', 'line of nodes along the boundary of a body', [ &
+        field('ID', 'id', 'line')])
+      call card(card_blseg)%add_list('G', 'nodes in their order, in either sense; G1 THRU G2, or'// &
+                                     ' G1 THRU G2 BY step; a closed line ends with its first node')
+      card(card_blseg)%has_ranges = .true.
+      card(card_blseg)%has_steps = .true.
+      card(card_bconp) = card_entry('BCONP', 'contact of the nodes of one line with the segments of another', [ &
+        field('ID', 'id', 'contact'), &
+        field('SLAVE', 'id', 'BLSEG whose nodes are held off'), &
+        field('MASTER', 'id', 'BLSEG whose segments they are held off'), &
+        field_entry(), &
+        field('SFAC', 'real noted', 'stiffness factor: contact is exact'), &
+        field('FRICID', 'system only_zero', 'friction', reason='there is no friction'), &
+        integer_field('PTYPE', 'forces from slave and master: 1', 1, 1, default=1), &
+        field('CID', 'system only_zero', 'system of the contact plane: the basic one')])
+    end subroutine add_lines
   end function catalogue
 
-  !> Nodes, elements and their sections.
-  pure subroutine add_mesh(card)
-    type(card_entry), intent(inout) :: card(:)
-    integer :: slot
-
-    card(card_grid) = new_card('GRID', 'node', [ &
-      id_field('ID', 'node'), &
-      zero('CP', 'system of X1 to X3: the basic one'), &
-      coordinate('X1', 'coordinate x'), &
-      coordinate('X2', 'coordinate y'), &
-      coordinate('X3', 'coordinate z; 0.0 in plane scenes'), &
-      zero('CD', 'system of the displacements: the basic one'), &
-      components_field('PS', 'permanent supports', required=.false.)])
-    card(card_ctria3) = element('CTRIA3', 'constant-strain triangle', 'PSHELL', in_turn(:3))
-    card(card_ctria6) = element('CTRIA6', 'six-node triangle', 'PSHELL', six)
-    card(card_cquad4) = element('CQUAD4', 'four-node quadrilateral, B-bar', 'PSHELL', in_turn)
-    card(card_cquad8) = element('CQUAD8', 'eight-node quadrilateral', 'PSHELL', eight)
-    card(card_ctrax3) = &
-      element('CTRAX3', 'ring of a three-node triangle; x is the radius', 'PSOLID', in_turn(:3))
-    card(card_ctrax6) = &
-      element('CTRAX6', 'ring of a six-node triangle; x is the radius', 'PSOLID', six(round))
-    card(card_pshell) = new_card('PSHELL', 'plane section', [ &
-      id_field('PID', 'property'), &
-      id_field('MID1', 'its MAT1'), &
-      positive(real_field('T', 'thickness', 'length', required=.true.)), &
-      integer_field('MID2', '-1: plane strain; blank: as PARAM PLANE says', -1, -1)])
-    card(card_psolid) = new_card('PSOLID', 'section of rings', [ &
-      id_field('PID', 'property'), &
-      id_field('MID', 'its MAT1')])
-    card(card_cbar) = new_card('CBAR', 'boundary line of a mesher: counted, no effect', [ &
-      noted(id_field('EID', 'element')), &
-      noted(id_field('PID', 'property, not looked up', required=.false.)), &
-      noted(id_field('GA', 'first node')), &
-      noted(id_field('GB', 'second node')), &
-      (any_field('', 'anything'), slot=5, 16)])
-  end subroutine add_mesh
-
-  !> Elasticity, and how materials yield.
-  pure subroutine add_materials(card)
-    type(card_entry), intent(inout) :: card(:)
-    type(field_entry) :: ratio, slope
-    integer :: k
-
-    ratio = below(0.5_wp, real_field('NU', 'Poisson''s ratio', ''))
-    ratio%lowest = 0.0_wp
-    ratio%reason = 'incompressible: the bulk modulus is infinite'
-    ratio%instead = '0.4999'
-    card(card_mat1) = new_card('MAT1', 'isotropic elastic material; two of E, G, NU', [ &
-      id_field('MID', 'material'), &
-      positive(real_field('E', 'Young''s modulus', 'stress')), &
-      positive(real_field('G', 'shear modulus', 'stress')), &
-      ratio, &
-      noted(real_field('RHO', 'density', '')), &
-      noted(real_field('A', 'thermal expansion', '')), &
-      noted(real_field('TREF', 'reference temperature', '')), &
-      noted(real_field('GE', 'damping', '')), &
-      noted(real_field('ST', 'limit of tension', 'stress')), &
-      noted(real_field('SC', 'limit of compression', 'stress')), &
-      noted(real_field('SS', 'limit of shear', 'stress')), &
-      noted(integer_field('MCSID', 'material system', 0, largest_id))])
-    slope = zero_field('H', 'stress over plastic strain beyond LIMIT1; blank with TID', 'stress')
-    slope%lowest = 0.0_wp
-    card(card_mats1) = new_card('MATS1', 'yielding of a MAT1: von Mises, total theory', [ &
-      id_field('MID', 'its MAT1'), &
-      id_field('TID', 'its TABLES1; blank: bilinear from LIMIT1 and H', required=.false.), &
-      word_field('TYPE', 'both are taken as total theory', 'PLASTIC NLELAST'), &
-      slope, &
-      integer_field('YF', 'yield criterion: 1, von Mises', 1, 1, default=1), &
-      integer_field('HR', 'hardening rule: 1', 1, 1, default=1), &
-      positive(real_field('LIMIT1', 'yield stress; with TID that of its second point', 'stress'))])
-    card(card_tables1) = new_card('TABLES1', 'uniaxial curve of stress over total strain', [ &
-      id_field('TID', 'table'), &
-      (field_entry(), k=3, 9)])
-    call card(card_tables1)%add_list('', &
-      'strain and stress of each point: 0.0 0.0, the yield point, and on; ENDT behind the last')
-    card(card_tables1)%has_points = .true.
-  end subroutine add_materials
-
-  !> What holds nodes, ties them, or tells the motions of bodies that are free.
-  pure subroutine add_supports(card)
-    type(card_entry), intent(inout) :: card(:)
-    character(len=*), parameter :: digit = '1234'
-    type(field_entry) :: reference(8)
-    integer :: i
-
-    card(card_spc) = new_card('SPC', 'supports, with prescribed displacements', [ &
-      id_field('SID', 'set'), &
-      id_field('G1', 'node'), &
-      components_field('C1', 'directions', required=.true.), &
-      cause(zero_field('D1', 'displacement', 'length')), &
-      id_field('G2', 'second node', with=next_field), &
-      components_field('C2', 'directions', required=.false., with=last_field), &
-      cause(zero_field('D2', 'displacement', 'length'))])
-    card(card_spc1) = new_card('SPC1', 'supports', [ &
-      id_field('SID', 'set'), &
-      components_field('C', 'directions; 3 to 6 have no effect in plane scenes', required=.true.)])
-    call card(card_spc1)%add_list('G', 'nodes, or G1 THRU G2')
-    card(card_spc1)%has_ranges = .true.
-    card(card_rbe2) = new_card('RBE2', 'rigid platen: nodes that move as one', [ &
-      id_field('EID', 'element'), &
-      id_field('GN', 'node that leads'), &
-      components_field('CM', 'directions tied', required=.true.)])
-    call card(card_rbe2)%add_list('GM', 'nodes that follow')
-    do i = 1, 4
-      reference(2*i - 1) = id_field('ID'//digit(i:i), 'node', required=i == 1, with=next_field)
-      reference(2*i) = components_field('C'//digit(i:i), 'directions', required=i == 1, with=last_field)
-    end do
-    card(card_suport) = &
-      new_card('SUPORT', 'reference freedoms of free bodies, solved for: the approach', reference)
-  end subroutine add_supports
-
-  !> Forces and pressures.
-  pure subroutine add_loads(card)
-    type(card_entry), intent(inout) :: card(:)
-    type(field_entry) :: pressure
-
-    card(card_force) = new_card('FORCE', 'force F*N at a node', [ &
-      id_field('SID', 'set'), &
-      id_field('G', 'node'), &
-      zero('CID', 'system of N1 to N3: the basic one'), &
-      cause(real_field('F', 'factor', 'force', required=.true.)), &
-      zero_field('N1', 'direction x', ''), &
-      zero_field('N2', 'direction y', ''), &
-      zero_field('N3', 'direction z; 0.0 in plane scenes', '')])
-    pressure = cause(real_field('PB', 'pressure at GB', 'stress'))
-    pressure%same_as = last_field
-    card(card_ploadx1) = new_card('PLOADX1', 'pressure on the edge of an element', [ &
-      id_field('SID', 'set'), &
-      id_field('EID', 'element'), &
-      cause(real_field('PA', 'pressure at GA, positive into the element', 'stress', required=.true.)), &
-      pressure, &
-      id_field('GA', 'corner at which the edge begins'), &
-      id_field('GB', 'corner at which it ends'), &
-      zero_field('THETA', 'counter-clockwise from the inward normal', 'degree')])
-  end subroutine add_loads
-
-  !> Pairs of nodes in contact.
-  pure subroutine add_pairs(card)
-    type(card_entry), intent(inout) :: card(:)
-    character(len=*), parameter :: meaning(3) = &
-      [character(len=17) :: 'origin', 'point on z', 'point in x-z half']
-    integer :: i, j
-
-    card(card_cord2r) = new_card('CORD2R', 'rectangular coordinate system, for gap directions', [ &
-      id_field('CID', 'system'), &
-      zero('RID', 'system of the points: the basic one'), &
-      ((zero_field('ABC'(i:i)//'123'(j:j), meaning(i), 'length'), j=1, 3), i=1, 3)])
-    card(card_cgap) = new_card('CGAP', 'contact pair', [ &
-      id_field('EID', 'pair'), &
-      id_field('PID', 'its PGAP'), &
-      id_field('GA', 'node A'), &
-      id_field('GB', 'node B, pushed along the normal'), &
-      any_field('X1', 'orientation, or node G0'), &
-      noted(real_field('X2', 'orientation', '')), &
-      noted(real_field('X3', 'orientation', '')), &
-      integer_field('CID', 'system whose x is the normal; blank: from GA to GB', 0, largest_id)])
-    card(card_pgap) = new_card('PGAP', 'property of contact pairs', [ &
-      id_field('PID', 'property'), &
-      cause(zero_field('U0', 'initial gap', 'length')), &
-      none(zero_field('F0', 'preload', ''), 'there is no preload'), &
-      noted(real_field('KA', 'closed stiffness: contact is exact', '')), &
-      noted(real_field('KB', 'open stiffness', '')), &
-      noted(real_field('KT', 'tangential stiffness', '')), &
-      none(zero_field('MU1', 'static friction', ''), 'there is no friction'), &
-      none(zero_field('MU2', 'kinetic friction', ''), 'there is no friction'), &
-      noted(real_field('TMAX', 'largest penetration', '')), &
-      noted(real_field('MAR', 'largest adjustment', '')), &
-      noted(real_field('TRMIN', 'smallest penetration', ''))])
-  end subroutine add_pairs
-
-  !> Boundary lines, and which of them are in contact.
-  pure subroutine add_lines(card)
-    type(card_entry), intent(inout) :: card(:)
-
-    card(card_blseg) = new_card('BLSEG', 'line of nodes along the boundary of a body', [ &
-      id_field('ID', 'line')])
-    call card(card_blseg)%add_list('G', 'nodes in their order, in either sense; G1 THRU G2, or'// &
-                                   ' G1 THRU G2 BY step; a closed line ends with its first node')
-    card(card_blseg)%has_ranges = .true.
-    card(card_blseg)%has_steps = .true.
-    card(card_bconp) = new_card('BCONP', 'contact of the nodes of one line with the segments of another', [ &
-      id_field('ID', 'contact'), &
-      id_field('SLAVE', 'BLSEG whose nodes are held off'), &
-      id_field('MASTER', 'BLSEG whose segments they are held off'), &
-      field_entry(), &
-      noted(real_field('SFAC', 'stiffness factor: contact is exact', '')), &
-      none(zero('FRICID', 'friction'), 'there is no friction'), &
-      integer_field('PTYPE', 'forces from slave and master: 1', 1, 1, default=1), &
-      zero('CID', 'system of the contact plane: the basic one')])
-  end subroutine add_lines
-
   !> All PARAMs: the field VALUE for each NAME.
-  pure function parameters() result(field)
-    type(field_entry), allocatable :: field(:)
+  pure function parameters() result(entry)
+    type(field_entry), allocatable :: entry(:)
     type(field_entry) :: corner, solver
 
-    solver = choice('SOLVER', 'AUTO BAND FRONTAL', &
+    solver = word_field('SOLVER', 'AUTO BAND FRONTAL', &
                     'matrices of the bodies: panels of a band, or nested fronts; default AUTO')
     solver%withdrawn = 'SPARSE'
-    corner = positive(real_field('CORNER', 'sides of a boundary line that turn by more than this meet at'// &
-                                 ' a corner; default: decided from the turns beside it', 'degree'))
+    corner = field('CORNER', 'real positive', 'sides of a boundary line that turn by more than this meet at'// &
+                   ' a corner; default: decided from the turns beside it', 'degree')
     corner%highest = 180.0_wp
-    field = [ &
-      choice('PLANE', 'STRAIN STRESS', 'every PSHELL with blank MID2'), &
-      choice('RULE', 'AUTO CONRY BLOCK', 'contact entry rule; default AUTO'), &
-      choice('GAPGEOM', 'NO YES', 'YES adds the distance of the nodes to each gap; default NO'), &
-      choice('UNITS', '', 'printed with the results; nothing is converted'), &
-      choice('METHOD', 'AUTO SECANT MODSEC INISTR NEWTON', 'plastic iteration; default AUTO'), &
-      below(1.0_wp, positive(real_field('TOL', 'largest change of a displacement, of the largest, that'// &
-                                        ' ends the iteration; default 0.01, for NEWTON 1.E-8', ''))), &
+    entry = [ &
+      word_field('PLANE', 'STRAIN STRESS', 'every PSHELL with blank MID2'), &
+      word_field('RULE', 'AUTO CONRY BLOCK', 'contact entry rule; default AUTO'), &
+      word_field('GAPGEOM', 'NO YES', 'YES adds the distance of the nodes to each gap; default NO'), &
+      word_field('UNITS', '', 'printed with the results; nothing is converted'), &
+      word_field('METHOD', 'AUTO SECANT MODSEC INISTR NEWTON', 'plastic iteration; default AUTO'), &
+      field('TOL', 'real positive below_one', 'largest change of a displacement, of the largest, that'// &
+            ' ends the iteration; default 0.01, for NEWTON 1.E-8'), &
       integer_field('MAXIT', 'iterations of a load step; default 100', 1, 100000), &
-      choice('MUP', 'EXACT PAPER', &
+      word_field('MUP', 'EXACT PAPER', &
              'Poisson''s ratio in the equivalent strain: exact, or formula (2-4); default EXACT'), &
-      choice('ORIGINAL', 'NO YES', 'all as in about 1980: BAND, INVERT, CONRY, SECANT, TOL 0.01, MUP'// &
-                                   ' PAPER; default NO'), &
+      word_field('ORIGINAL', 'NO YES', 'all as in about 1980: BAND, INVERT, CONRY, SECANT, TOL 0.01, MUP'// &
+                 ' PAPER; default NO'), &
       integer_field('NLOAD', 'load steps; default 1', 1, 10000), &
-      positive(real_field('SEARCH', 'how far BCONP looks for a segment; default twice the longest segment'// &
-                          ' of the two lines', 'length')), &
+      field('SEARCH', 'real positive', 'how far BCONP looks for a segment; default twice the longest segment'// &
+            ' of the two lines', 'length'), &
       solver, &
-      choice('FLEXIB', 'AUTO INVERT', 'flexibility of the contact by inversion always, or by substitution'// &
-                                      ' where that is cheaper; default AUTO'), &
-      choice('PRECIS', 'DOUBLE MIXED SINGLE', &
+      word_field('FLEXIB', 'AUTO INVERT', 'flexibility of the contact by inversion always, or by'// &
+                 ' substitution where that is cheaper; default AUTO'), &
+      word_field('PRECIS', 'DOUBLE MIXED SINGLE', &
              'factors in double or single precision, these refined to double (MIXED) or not;'// &
              ' default DOUBLE'), &
-      below(1.0_wp, positive(real_field('ACCURACY', 'wanted relative error of contact pressures: sets'// &
-                                        ' TOL, METHOD and PRECIS where they are left out', ''))), &
+      field('ACCURACY', 'real positive below_one', 'wanted relative error of contact pressures: sets'// &
+            ' TOL, METHOD and PRECIS where they are left out'), &
       corner]
-    field%required = .true.
+    entry%required = .true.
   end function parameters
 
   !> An element: id, property, nodes.
@@ -281,42 +279,9 @@ contains
     character(len=*), intent(in) :: node(:)   !! what each of its nodes is
     integer :: k
 
-    card = new_card(name, meaning, [ &
-      id_field('EID', 'element'), &
-      id_field('PID', 'its '//property), &
-      (id_field('G'//text_of(k), node(k)), k=1, size(node))])
+    card = card_entry(name, meaning, [ &
+      field('EID', 'id', 'element'), &
+      field('PID', 'id', 'its '//property), &
+      (field('G'//text_of(k), 'id', node(k)), k=1, size(node))])
   end function element
-
-  !> A PARAM whose value is one of the words `choices`, or any where there are none.
-  pure type(field_entry) function choice(name, choices, meaning) result(field)
-    character(len=*), intent(in) :: name, choices, meaning
-
-    field = word_field(name, meaning, choices)
-  end function choice
-
-  !> A coordinate. Gmsh writes them in large field by %.9G of C: 3.0 is `3`, 1.0E-5 is `1E-05`.
-  pure type(field_entry) function coordinate(name, meaning) result(field)
-    character(len=*), intent(in) :: name, meaning
-
-    field = zero_field(name, meaning, 'length')
-    field%point_optional = .true.
-  end function coordinate
-
-  !> A whole number that is zero or blank: there is nothing to choose.
-  pure type(field_entry) function zero(name, meaning) result(field)
-    character(len=*), intent(in) :: name, meaning
-
-    field = integer_field(name, meaning, 0, 0, default=0)
-  end function zero
-
-  !> The field, but zero or blank, and why.
-  pure type(field_entry) function none(plain, reason) result(field)
-    type(field_entry), intent(in) :: plain
-    character(len=*), intent(in) :: reason
-
-    field = plain
-    field%lowest = 0.0_wp
-    field%highest = 0.0_wp
-    field%reason = reason
-  end function none
 end module epcont_deck_catalogue

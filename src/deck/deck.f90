@@ -19,8 +19,6 @@ module epcont_deck_deck
     type(card_table), allocatable :: card(:)  !! its cards, and what the catalogue says of them [card_kinds]
   contains
     procedure :: place
-    procedure :: list_place
-    procedure :: identity
     procedure :: parameter_row
     procedure :: parameter_word
     procedure :: parameter_value
@@ -49,44 +47,30 @@ contains
     class(deck_type), intent(inout) :: self
     integer :: k
 
-    if (self%echo .or. self%echo_sorted) return
+    if (self%echo /= 'NONE') return
     self%source = source()
     do k = 1, size(self%card)
-      if (k /= card_param) call self%card(k)%forget_fields()
+      if (k /= card_param) self%card(k) = card_table(self%card(k)%entry, self%card(k)%count)
     end do
   end subroutine forget_text
 
-  !> Where a field of a card stands; the card is cut into fields once more to find out.
+  !> Where a field of a card stands; the card is cut into fields once more to find out. Items of lists, of which
+  !! a card may have ten thousands, have kept their places.
   type(place_type) function place(self, card, i, field)
     class(deck_type), intent(in) :: self
     integer, intent(in) :: card   !! which table: card_grid, ...
     integer, intent(in) :: i      !! which card of it
-    integer, intent(in) :: field  !! column in the table; 0: the name of the card
+    integer, intent(in) :: field  !! column in the table; 0: the name of the card; -k: item k of all its lists
     type(card_fields) :: fields
     type(diagnostics) :: unheard
 
-    call gather(self%source, self%card(card)%line(i), fields, unheard)
-    place = fields%place(field)
+    if (field < 0) then
+      place = self%card(card)%list(-field)%place
+    else
+      call gather(self%source, self%card(card)%line(i), fields, unheard)
+      place = fields%place(field)
+    end if
   end function place
-
-  !> Where an item of the open list of a card stands. A card may have ten thousands of them: their places are
-  !! kept.
-  pure type(place_type) function list_place(self, card, k)
-    class(deck_type), intent(in) :: self
-    integer, intent(in) :: card  !! which table
-    integer, intent(in) :: k     !! which item of its lists
-
-    list_place = self%card(card)%list(k)%place
-  end function list_place
-
-  !> The card as messages name it: `GRID 17`, `PARAM PLANE`.
-  pure function identity(self, card, i) result(text)
-    class(deck_type), intent(in) :: self
-    integer, intent(in) :: card, i  !! which table, which card of it
-    character(len=:), allocatable :: text
-
-    text = self%card(card)%identity(i)
-  end function identity
 
   !> The first PARAM card of a name; 0 where there is none.
   pure integer function parameter_row(self, name) result(row)

@@ -1,5 +1,5 @@
-!> Faults of a deck: what is wrong, where, and what would be right. They are collected, so that one
-!> run reports them all; `epcont_deck_render` turns them into text.
+!> Faults of a deck or of a scene: what is wrong, where, and what would be right. They are collected, so that
+!> one run reports them all; `epcont_deck_render` turns them into text.
 module epcont_deck_diagnostic
   use epcont_base_sorting, only: sorted_order
   implicit none
@@ -22,59 +22,71 @@ module epcont_deck_diagnostic
   type :: diagnostic
     integer :: severity = severity_error
     type(place_type) :: place
+    !> What it is about, where that is no place in a deck, or not yet: a card (above zero) or a part of a scene
+    !! (`epcont_model_finding`), which of these, which of its data
+    integer :: of = 0, which = 0, item = 0
     character(len=:), allocatable :: what    !! `GRID 17: field 4 (X1) is not a real number`
     character(len=:), allocatable :: remedy  !! `a real such as 1.5`; may be empty
+    integer, allocatable :: node(:)          !! all the nodes that it is about, if these matter [any]
   end type diagnostic
 
-  !> The faults of one deck, in the order in which they were found.
+  !> The faults of one deck or scene, in the order in which they were found.
   type :: diagnostics
-    private
+    integer :: errors = 0, warnings = 0, notes = 0   !! how many there are of each severity
     integer :: count = 0
-    integer :: counts(3) = 0  !! by severity
-    type(diagnostic), allocatable :: list(:)
+    type(diagnostic), allocatable :: list(:)         !! [count or more]
   contains
-    procedure :: add_error
+    generic :: add_error => add_error_at, add_error_of
+    procedure, private :: add_error_at
+    procedure, private :: add_error_of
     procedure :: add_warning
     procedure :: add_note
-    procedure :: error_count
-    procedure :: warning_count
-    procedure :: note_count
+    procedure :: add
     procedure :: in_deck_order
-    procedure :: item
   end type diagnostics
 
 contains
 
-  !> An error: the deck is rejected.
-  subroutine add_error(self, place, what, remedy)
+  !> An error: the deck is rejected, the scene cannot be.
+  pure subroutine add_error_at(self, place, what, remedy)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place   !! where
+    type(place_type), intent(in) :: place          !! where
     character(len=*), intent(in) :: what, remedy   !! is wrong, and what would be right (may be empty)
 
-    call add(self, diagnostic(severity_error, place, what, remedy))
-  end subroutine add_error
+    call self%add(diagnostic(severity_error, place, what=what, remedy=remedy))
+  end subroutine add_error_at
 
-  !> A warning: the deck is read all the same.
-  subroutine add_warning(self, place, what, remedy)
+  !> The same of a card or a part of a scene.
+  pure subroutine add_error_of(self, of, which, item, what, remedy)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place   !! where
-    character(len=*), intent(in) :: what, remedy !! is to be looked at, and what would be right (may be empty)
+    integer, intent(in) :: of, which, item         !! what it is about
+    character(len=*), intent(in) :: what, remedy   !! is wrong, behind its name; would be right
 
-    call add(self, diagnostic(severity_warning, place, what, remedy))
+    call self%add(diagnostic(severity_error, place_type(), of, which, item, what, remedy))
+  end subroutine add_error_of
+
+  !> A warning: the scene can be, but is hardly meant.
+  pure subroutine add_warning(self, of, which, item, what, remedy)
+    class(diagnostics), intent(inout) :: self
+    integer, intent(in) :: of, which, item         !! what it is about
+    character(len=*), intent(in) :: what, remedy   !! is to be looked at, behind its name; would be right
+
+    call self%add(diagnostic(severity_warning, place_type(), of, which, item, what, remedy))
   end subroutine add_warning
 
   !> A note: something accepted without effect, or else worth a line in the listing.
-  subroutine add_note(self, place, what)
+  pure subroutine add_note(self, place, what)
     class(diagnostics), intent(inout) :: self
     type(place_type), intent(in) :: place   !! where
-    character(len=*), intent(in) :: what   !! is worth a line
+    character(len=*), intent(in) :: what    !! is worth a line
 
-    call add(self, diagnostic(severity_note, place, what, ''))
+    call self%add(diagnostic(severity_note, place, what=what, remedy=''))
   end subroutine add_note
 
-  subroutine add(self, fault)
-    type(diagnostics), intent(inout) :: self
-    type(diagnostic), intent(in) :: fault
+  !> Behind the others; where there is no room, in a list of twice the length.
+  pure subroutine add(self, fault)
+    class(diagnostics), intent(inout) :: self
+    type(diagnostic), intent(in) :: fault   !! of any severity
     type(diagnostic), allocatable :: longer(:)
 
     if (.not. allocated(self%list)) allocate (self%list(16))
@@ -85,51 +97,26 @@ contains
     end if
     self%count = self%count + 1
     self%list(self%count) = fault
-    self%counts(fault%severity) = self%counts(fault%severity) + 1
+    select case (fault%severity)
+    case (severity_error)
+      self%errors = self%errors + 1
+    case (severity_warning)
+      self%warnings = self%warnings + 1
+    case default
+      self%notes = self%notes + 1
+    end select
   end subroutine add
-
-  !> How many errors there are.
-  pure integer function error_count(self)
-    class(diagnostics), intent(in) :: self
-
-    error_count = self%counts(severity_error)
-  end function error_count
-
-  !> How many warnings.
-  pure integer function warning_count(self)
-    class(diagnostics), intent(in) :: self
-
-    warning_count = self%counts(severity_warning)
-  end function warning_count
-
-  !> How many notes.
-  pure integer function note_count(self)
-    class(diagnostics), intent(in) :: self
-
-    note_count = self%counts(severity_note)
-  end function note_count
 
   !> The faults by line, then column, then arrival; those of the deck as a whole come last.
   pure function in_deck_order(self) result(order)
     class(diagnostics), intent(in) :: self
-    integer, allocatable :: order(:)
-    integer, allocatable :: line(:), column(:)
+    integer, allocatable :: line(:), order(:)
 
     order = [integer ::]
     if (self%count == 0) return
     line = self%list(:self%count)%place%line
     where (line == 0) line = huge(1)
-    column = self%list(:self%count)%place%first
-    order = sorted_order(column)
+    order = sorted_order(self%list(:self%count)%place%first)
     order = order(sorted_order(line(order)))
   end function in_deck_order
-
-  !> The fault that arrived as number `i`.
-  pure function item(self, i) result(fault)
-    class(diagnostics), intent(in) :: self
-    integer, intent(in) :: i   !! in the order of arrival
-    type(diagnostic) :: fault
-
-    fault = self%list(i)
-  end function item
 end module epcont_deck_diagnostic

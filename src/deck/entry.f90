@@ -4,10 +4,7 @@ module epcont_deck_entry
   use epcont_base_text, only: text_of
   implicit none
   private
-  public :: field_entry, card_entry, new_card
-  public :: id_field, integer_field, real_field, zero_field, components_field, word_field, any_field
-  public :: positive, below, cause, noted
-  public :: number_of
+  public :: field_entry, card_entry, field, integer_field, word_field, number_of
 
   !> Kinds of fields.
   integer, parameter, public :: &
@@ -25,7 +22,7 @@ module epcont_deck_entry
   !! and of what rounding leaves where loads cancel.
   real(wp), parameter, public :: farthest = 1.0e30_wp, least_divisor = 1.0e-30_wp, least_cause = 1.0e-60_wp
 
-  !> One field of a card, or one PARAM. The functions below make it, and refine it.
+  !> One field of a card, or one PARAM. The functions below make it.
   type :: field_entry
     character(len=8) :: name = ''
     integer :: kind = kind_blank       !! it must be blank
@@ -61,8 +58,6 @@ module epcont_deck_entry
     character(len=:), allocatable :: list_name, list_meaning
   contains
     procedure :: add_list
-    procedure :: has_list
-    procedure :: must_be_blank
     procedure :: field_name
     procedure :: field_text
   end type card_entry
@@ -77,17 +72,6 @@ contains
     number_of = 10*((slot - 1)/fields_a_line) + mod(slot - 1, fields_a_line) + 2
   end function number_of
 
-  !> A card of these fields.
-  pure function new_card(name, meaning, fields) result(card)
-    character(len=*), intent(in) :: name, meaning   !! of the card
-    type(field_entry), intent(in) :: fields(:)      !! in their order
-    type(card_entry) :: card
-
-    card%name = name
-    card%meaning = meaning
-    card%field = fields
-  end function new_card
-
   !> End the card with a list behind its fields.
   pure subroutine add_list(self, name, meaning)
     class(card_entry), intent(inout) :: self
@@ -98,22 +82,6 @@ contains
     self%list_name = name
     self%list_meaning = meaning
   end subroutine add_list
-
-  !> Does it end with a list?
-  pure logical function has_list(self)
-    class(card_entry), intent(in) :: self
-
-    has_list = allocated(self%list_name)
-  end function has_list
-
-  !> Has the card no field in a slot?
-  pure logical function must_be_blank(self, slot)
-    class(card_entry), intent(in) :: self
-    integer, intent(in) :: slot   !! which data field, before its list
-
-    must_be_blank = slot > size(self%field)
-    if (.not. must_be_blank) must_be_blank = self%field(slot)%kind == kind_blank
-  end function must_be_blank
 
   !> The name of the field in a slot; empty where it has none.
   pure function field_name(self, slot) result(name)
@@ -143,114 +111,66 @@ contains
     if (len(self%field_name(slot)) > 0) text = text//' ('//self%field_name(slot)//')'
   end function field_text
 
-  !> An id: from 1 to 99999999.
-  pure function id_field(name, meaning, required, with) result(field)
+  !> A field; `form` says in words what it may hold. First comes `id` (from 1 on), `system` (0 or an id), `real`,
+  !! `digits` (directions, from 1 to 6) or `any`; then, in any order, `noted` (checked, without effect), `zero` (a
+  !! blank is 0), `only_zero` (0 or blank), `positive`, `below_one`, `cause` (it loads the scene), and whether it
+  !! may be blank: ids and digits may if they are `optional`, or where their neighbour (`with_next`, `with_last`)
+  !! is, other fields if they are not `needed`.
+  pure type(field_entry) function field(name, form, meaning, unit, reason)
     character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
-    logical, intent(in), optional :: required     !! default: true, unless it goes with another
-    integer, intent(in), optional :: with         !! the neighbour with which it must be filled
-    type(field_entry) :: field
+    character(len=*), intent(in) :: form            !! as above
+    character(len=*), intent(in), optional :: unit, reason   !! default: it has none; why it is `only_zero`
 
-    field = integer_field(name, meaning, 1, largest_id)
-    field%required = .not. present(with)
-    if (present(required)) field%required = required
-    if (present(with)) field%with = with
-  end function id_field
+    field = field_entry(name, meaning=meaning, used=.not. says('noted'))
+    if (present(unit)) field%unit = unit
+    if (present(reason)) field%reason = reason
+    if (says('with_next')) field%with = next_field
+    if (says('with_last')) field%with = last_field
+    field%required = says('needed')
+    if (says('id') .or. says('digits')) field%required = .not. says('optional') .and. field%with == 0
+    if (says('id') .or. says('system')) then
+      field%kind = kind_integer
+      field%lowest = merge(1, 0, says('id'))
+      field%highest = largest_id
+    else
+      field%kind = merge(kind_components, merge(kind_any, kind_real, says('any')), says('digits'))
+    end if
+    field%has_default = says('zero') .or. says('only_zero')
+    if (says('only_zero') .or. says('positive')) field%lowest = 0.0_wp
+    if (says('only_zero')) field%highest = 0.0_wp
+    field%above_lowest = says('positive')
+    if (says('positive')) field%least = least_divisor
+    if (says('cause')) field%least = least_cause
+    field%below_highest = says('below_one')
+    if (says('below_one')) field%highest = 1.0_wp
+
+  contains
+
+    pure logical function says(word)
+      character(len=*), intent(in) :: word
+
+      says = index(' '//form//' ', ' '//word//' ') > 0
+    end function says
+  end function field
 
   !> A whole number. Without default a blank has a meaning of its own.
-  pure function integer_field(name, meaning, lowest, highest, default) result(field)
+  pure type(field_entry) function integer_field(name, meaning, lowest, highest, default) result(field)
     character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
     integer, intent(in) :: lowest, highest        !! the range
     integer, intent(in), optional :: default      !! what a blank means
-    type(field_entry) :: field
 
     field = field_entry(name, kind_integer, meaning, lowest=real(lowest, wp), highest=real(highest, wp), &
                         has_default=present(default))
     if (present(default)) field%default = real(default, wp)
   end function integer_field
 
-  !> A real; where it is not required, a blank has a meaning of its own.
-  pure function real_field(name, meaning, unit, required) result(field)
-    !> as the manual of cards prints them; blank: it has no unit
-    character(len=*), intent(in) :: name, meaning, unit
-    logical, intent(in), optional :: required           !! may not be blank; default: it may
-    type(field_entry) :: field
-
-    field = field_entry(name, kind_real, meaning, unit)
-    if (present(required)) field%required = required
-  end function real_field
-
-  !> A real; a blank means 0.0.
-  pure function zero_field(name, meaning, unit) result(field)
-    !> as the manual of cards prints them; blank: it has no unit
-    character(len=*), intent(in) :: name, meaning, unit
-    type(field_entry) :: field
-
-    field = field_entry(name, kind_real, meaning, unit, has_default=.true.)
-  end function zero_field
-
-  !> Directions, digits from 1 to 6.
-  pure function components_field(name, meaning, required, with) result(field)
-    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
-    logical, intent(in) :: required               !! may not be blank
-    integer, intent(in), optional :: with         !! the neighbour with which it must be filled
-    type(field_entry) :: field
-
-    field = field_entry(name, kind_components, meaning, required=required)
-    if (present(with)) field%with = with
-  end function components_field
-
   !> A word, one of `choices` unless these are blank.
-  pure function word_field(name, meaning, choices) result(field)
-    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
-    character(len=*), intent(in) :: choices            !! with blanks between
-    type(field_entry) :: field
+  pure type(field_entry) function word_field(name, choices, meaning) result(field)
+    !> as the manual of cards prints them; `choices` with blanks between
+    character(len=*), intent(in) :: name, choices, meaning
 
     field = field_entry(name, kind_word, meaning, required=.true., choices=choices)
   end function word_field
-
-  !> A field that may hold anything and has no effect.
-  pure function any_field(name, meaning) result(field)
-    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
-    type(field_entry) :: field
-
-    field = field_entry(name, kind_any, meaning, used=.false.)
-  end function any_field
-
-  !> The field, but above zero.
-  pure type(field_entry) function positive(plain) result(field)
-    type(field_entry), intent(in) :: plain   !! the field
-
-    field = plain
-    field%lowest = 0.0_wp
-    field%above_lowest = .true.
-    field%least = least_divisor
-  end function positive
-
-  !> The field, but below a limit.
-  pure type(field_entry) function below(limit, plain) result(field)
-    real(wp), intent(in) :: limit   !! out of range itself
-    type(field_entry), intent(in) :: plain   !! the field
-
-    field = plain
-    field%highest = limit
-    field%below_highest = .true.
-  end function below
-
-  !> The field, which loads the scene.
-  pure type(field_entry) function cause(plain) result(field)
-    type(field_entry), intent(in) :: plain   !! the field
-
-    field = plain
-    field%least = least_cause
-  end function cause
-
-  !> The field, but checked alone, without effect.
-  pure type(field_entry) function noted(plain) result(field)
-    type(field_entry), intent(in) :: plain   !! the field
-
-    field = plain
-    field%used = .false.
-  end function noted
 
   !> What the field may hold, in words: `a real above 0.0`.
   pure function allowed(self) result(text)

@@ -23,10 +23,6 @@ module epcont_deck_field
   integer(i8), parameter :: exact_mantissa = 2_i8**53
   !> Powers of ten that are exact reals: one product or quotient of two exact reals is rounded correctly.
   integer, parameter :: exact_power = 22
-  real(wp), parameter :: power_of_ten(0:exact_power) = [ &
-    1.0e0_wp, 1.0e1_wp, 1.0e2_wp, 1.0e3_wp, 1.0e4_wp, 1.0e5_wp, 1.0e6_wp, 1.0e7_wp, 1.0e8_wp, 1.0e9_wp, &
-    1.0e10_wp, 1.0e11_wp, 1.0e12_wp, 1.0e13_wp, 1.0e14_wp, 1.0e15_wp, 1.0e16_wp, 1.0e17_wp, 1.0e18_wp, &
-    1.0e19_wp, 1.0e20_wp, 1.0e21_wp, 1.0e22_wp]
   !> The largest real has 308 as decimal exponent, and these as its first 17 digits.
   integer, parameter :: largest_exponent = 308
   integer(i8), parameter :: largest_digits = 17976931348623157_i8
@@ -79,7 +75,8 @@ contains
     real(wp), intent(out) :: number       !! also where only the point is missing
     integer, intent(out) :: outcome       !! one of the outcomes above
     type(decimal) :: parts
-    integer :: power
+    integer :: k, power
+    real(wp), parameter :: power_of_ten(0:exact_power) = [(10.0_wp**k, k=0, exact_power)]
 
     number = 0.0_wp
     call take_apart(text, parts, outcome)

@@ -3,7 +3,7 @@ module epcont_deck_manual
   use epcont_base_text, only: text_of, upper
   use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_catalogue, only: catalogue, parameters
-  use epcont_deck_entry, only: card_entry, field_entry, fields_a_line, kind_any, kind_real, number_of
+  use epcont_deck_entry, only: card_entry, field_entry, fields_a_line, kind_any, kind_blank, kind_real, number_of
   implicit none
   private
   public :: manual
@@ -25,89 +25,75 @@ contains
 
     entry = catalogue()
     text = ''
-    found = name == ''
     do k = 1, card_kinds
       if (name == '') then
         text = text//entry(k)%name//'  '//entry(k)%meaning//newline
       else if (entry(k)%name == upper(name)) then
-        found = .true.
         text = card_text(entry(k))
         if (k == card_param) text = text//parameter_text()
       end if
     end do
+    found = len(text) > 0
   end function manual
 
   !> All about one card.
   function card_text(entry) result(text)
     type(card_entry), intent(in) :: entry
-    character(len=:), allocatable :: text, number
-    integer :: slot, last
+    character(len=:), allocatable :: text
+    type(field_entry), allocatable :: field(:)
+    integer :: slot
 
-    text = trim(entry%name)//': '//entry%meaning//newline//newline
-    text = text//row('field', 'columns', 'name', 'kind', 'default', 'use', 'meaning [unit], range')
-    last = fields_a_line*((size(entry%field) + fields_a_line - 1)/fields_a_line)
-    do slot = 1, min(last, entry%list_slot - 1)
-      text = text//field_row(entry, slot)
+    text = trim(entry%name)//': '//entry%meaning//newline//newline// &
+           'field  columns  name   kind     default  use    meaning [unit], range'//newline
+    if (allocated(entry%list_name)) then
+      field = entry%field
+    else   ! the rest of its last line must be blank
+      field = [entry%field, (field_entry(), slot=size(entry%field) + 1, &
+                             fields_a_line*((size(entry%field) + fields_a_line - 1)/fields_a_line))]
+    end if
+    do slot = 1, size(field)
+      if (field(slot)%kind == kind_blank) then
+        call add_row('', '', '', '', 'blank', 'must be blank')
+      else
+        call add_row('', field(slot)%name, kind_name(field(slot)%kind), default_text(entry, slot), &
+                     merge('used ', 'noted', field(slot)%used), meaning_text(field(slot)))
+      end if
     end do
-    if (.not. entry%has_list()) return
-    number = text_of(number_of(entry%list_slot))//'..'
     if (entry%has_points) then
-      text = text//row(number, columns(entry%list_slot), 'X1 ..', 'real', 'none', 'used', entry%list_meaning)
-    else
-      text = text//row(number, columns(entry%list_slot), entry%list_name//'1..', 'integer', 'none', 'used', &
-                       entry%list_meaning//', as many as needed: each a whole number from 1 to 99999999')
+      call add_row('..', 'X1 ..', 'real', 'none', 'used', entry%list_meaning)
+    else if (allocated(entry%list_name)) then
+      call add_row('..', entry%list_name//'1..', 'integer', 'none', 'used', &
+                   entry%list_meaning//', as many as needed: each a whole number from 1 to 99999999')
     end if
+
+  contains
+
+    !> The line of a slot. Columns are those of a small field, on a continuation line counted from its start.
+    subroutine add_row(more, name, kind, default, use, meaning)
+      character(len=*), intent(in) :: more   !! behind the number of the field
+      character(len=*), intent(in) :: name, kind, default, use, meaning
+      character(len=48) :: head
+      integer :: first
+
+      first = 9 + 8*mod(slot - 1, 8)
+      write (head, '(i0, a, t8, i0, "-", i0, t17, a, t24, a, t33, a, t42, a)') &
+        number_of(slot), more, first, first + 7, name, kind, default, use
+      text = text//head//meaning//newline
+    end subroutine add_row
   end function card_text
-
-  !> One field of a card.
-  function field_row(entry, slot) result(text)
-    type(card_entry), intent(in) :: entry
-    integer, intent(in) :: slot
-    character(len=:), allocatable :: text, number
-
-    number = text_of(number_of(slot))
-    if (entry%must_be_blank(slot)) then
-      text = row(number, columns(slot), '', '', '', 'blank', 'must be blank')
-    else
-      associate (field => entry%field(slot))
-        text = row(number, columns(slot), field%name, kind_name(field%kind), default_text(entry, slot), &
-                   merge('used ', 'noted', field%used), meaning_text(field))
-      end associate
-    end if
-  end function field_row
 
   !> The parameters that PARAM may set.
   function parameter_text() result(text)
     character(len=:), allocatable :: text
-    type(field_entry), allocatable :: field(:)
     integer :: i
 
-    field = parameters()
     text = newline//'NAME      VALUE'//newline
-    do i = 1, size(field)
-      text = text//field(i)%name//'  '//field(i)%allowed()//': '//trim(field(i)%meaning)//newline
-    end do
+    associate (field => parameters())
+      do i = 1, size(field)
+        text = text//field(i)%name//'  '//field(i)%allowed()//': '//trim(field(i)%meaning)//newline
+      end do
+    end associate
   end function parameter_text
-
-  !> One line of the table.
-  pure function row(field, columns, name, kind, default, use, meaning) result(text)
-    character(len=*), intent(in) :: field, columns, name, kind, default, use, meaning
-    character(len=:), allocatable :: text
-    character(len=48) :: head
-
-    write (head, '(a, t8, a, t17, a, t24, a, t33, a, t42, a)') field, columns, name, kind, default, use
-    text = head//meaning//newline
-  end function row
-
-  !> Columns of a small field; those of a continuation line are counted on that line.
-  pure function columns(slot) result(text)
-    integer, intent(in) :: slot
-    character(len=:), allocatable :: text
-    integer :: first
-
-    first = 9 + 8*mod(slot - 1, 8)
-    text = text_of(first)//'-'//text_of(first + 7)
-  end function columns
 
   !> What a blank means: a value, another field, nothing that would do, or `blank` where it has a meaning of
   !! its own.
@@ -117,16 +103,10 @@ contains
     character(len=:), allocatable :: text
 
     associate (field => entry%field(slot))
-      if (field%required) then
-        text = 'none'
-      else if (field%same_as /= 0) then
-        text = entry%field_name(slot + field%same_as)
-      else if (field%has_default) then
-        text = text_of(nint(field%default))
-        if (field%kind == kind_real) text = text//'.0'
-      else
-        text = 'blank'
-      end if
+      text = 'blank'
+      if (field%has_default) text = text_of(nint(field%default))//merge('.0', '  ', field%kind == kind_real)
+      if (field%same_as /= 0) text = entry%field_name(slot + field%same_as)
+      if (field%required) text = 'none'
     end associate
   end function default_text
 

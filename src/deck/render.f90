@@ -23,20 +23,20 @@ contains
     type(source), intent(in) :: lines   !! its lines
     character(len=:), allocatable :: text
     integer, allocatable :: order(:)
-    integer :: found(2)   !! errors, warnings
+    integer :: found(3)   !! of each severity
     integer :: i
-    type(diagnostic) :: fault
 
     text = ''
     order = faults%in_deck_order()
     found = 0
     do i = 1, size(order)
-      fault = faults%item(order(i))
-      if (fault%severity == severity_note) cycle
-      found(fault%severity) = found(fault%severity) + 1
-      if (found(fault%severity) <= most_shown) text = text//paragraph(fault, lines)
+      associate (fault => faults%list(order(i)))
+        found(fault%severity) = found(fault%severity) + 1
+        if (fault%severity /= severity_note .and. found(fault%severity) <= most_shown) &
+          text = text//paragraph(fault, lines)
+      end associate
     end do
-    if (any(found > 0)) text = text//shown(lines%deck_name())//': '//tally(found)//newline
+    if (len(text) > 0) text = text//shown(lines%file_name(0))//': '//tally(found(:2))//newline
   end function render
 
   !> Warnings and notes in deck order, one line each, for the listing: without the name of the deck, and of
@@ -47,16 +47,16 @@ contains
     character(len=:), allocatable :: text
     integer, allocatable :: order(:)
     integer :: i
-    type(diagnostic) :: fault
 
     text = ''
     order = faults%in_deck_order()
     do i = 1, size(order)
-      fault = faults%item(order(i))
-      if (fault%severity == severity_error) cycle
-      text = text//included_file(lines, fault%place%line)//columns(fault%place, lines)//said(fault)
-      if (len(fault%remedy) > 0) text = text//'; '//printable(fault%remedy)
-      text = text//newline
+      associate (fault => faults%list(order(i)))
+        if (fault%severity == severity_error) cycle
+        text = text//included_file(lines, fault%place%line)//columns(fault%place, lines)//said(fault)
+        if (len(fault%remedy) > 0) text = text//'; '//printable(fault%remedy)
+        text = text//newline
+      end associate
     end do
   end function render_notes
 
@@ -95,11 +95,11 @@ contains
     type(source), intent(in) :: lines
     character(len=:), allocatable :: text
 
+    text = shown(lines%file_name(fault%place%line))//':'
     if (fault%place%line > 0) then
-      text = shown(lines%file_name(fault%place%line))//':'//columns(fault%place, lines)// &
-             said(fault)//newline//excerpt(fault, lines)
+      text = text//columns(fault%place, lines)//said(fault)//newline//excerpt(fault, lines)
     else
-      text = shown(lines%deck_name())//': '//said(fault)//newline
+      text = text//' '//said(fault)//newline
       if (len(fault%remedy) > 0) text = text//'  '//fault%remedy//newline
     end if
   end function paragraph
@@ -136,7 +136,7 @@ contains
     if (line == 0) return
     if (lines%line(line)%file == 1) return
     text = lines%file_name(line)//':'
-    directory = lines%deck_name()
+    directory = lines%file_name(0)
     directory = directory(:index(directory, '/', back=.true.))
     if (index(text, directory) == 1) text = text(len(directory) + 1:)
     text = shown(text)
@@ -147,32 +147,22 @@ contains
   pure function excerpt(fault, lines) result(text)
     type(diagnostic), intent(in) :: fault
     type(source), intent(in) :: lines
-    character(len=:), allocatable :: text
-    character(len=:), allocatable :: line
-    integer :: left, first, last
+    character(len=:), allocatable :: line, text
+    integer :: first, last, left
 
     left = 0
     if (fault%place%last > width) left = max(0, min(fault%place%first - 1, fault%place%last - width))
     line = printable(lines%whole_line(fault%place%line, left + 1, width))
     first = fault%place%first - left
     last = min(fault%place%last - left, width)
-    call narrow(line, first, last)
+    associate (field => line(first:min(last, len(line))))
+      if (len_trim(field) > 0) then
+        last = first - 1 + len_trim(field)
+        first = first - 1 + verify(field, ' ')
+      end if
+    end associate
     text = '  '//line//newline//repeat(' ', first + 1)//repeat('^', last - first + 1)
     if (len(fault%remedy) > 0) text = text//' '//printable(fault%remedy)
     text = text//newline
   end function excerpt
-
-  !> Leave out the blanks on either side of the value in the columns `first` to `last`, if there is one.
-  pure subroutine narrow(line, first, last)
-    character(len=*), intent(in) :: line
-    integer, intent(inout) :: first, last
-    integer :: from, to
-
-    from = first
-    to = min(last, len(line))
-    if (from > to) return
-    if (line(from:to) == '') return
-    last = from - 1 + len_trim(line(from:to))
-    first = from - 1 + verify(line(from:to), ' ')
-  end subroutine narrow
 end module epcont_deck_render

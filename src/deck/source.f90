@@ -15,6 +15,8 @@ module epcont_deck_source
   integer, parameter :: deepest = 8
   !> How many INCLUDE lines a deck may have: files that include each other twice would double at every depth.
   integer, parameter :: most_files = 10000
+  !> Characters of a line, as they are mostly: that is the room for lines at first.
+  integer, parameter :: usual_line = 32
   !> What ends a line.
   character(len=*), parameter :: newline = achar(10)
 
@@ -43,7 +45,6 @@ module epcont_deck_source
     type(source_line), allocatable :: line(:)    !! [count or more]
     type(source_file), allocatable :: files(:)   !! [files]
   contains
-    procedure :: deck_name
     procedure :: file_name
     procedure :: text_of_line
     procedure :: whole_line
@@ -62,118 +63,160 @@ contains
     character(len=:), allocatable :: trouble
     logical :: ended
 
-    allocate (lines%line(1024), lines%files(0))
+    allocate (lines%files(0))
     lines%text = ''
-    call load(lines, path, 0, trouble)
+    call load(path, 0, trouble)
     if (allocated(trouble)) then
       call raise(error, status_usage, path//': '//trouble)
       return
     end if
-    call cut(lines, 1, faults, ended)
+    allocate (lines%line(1 + lines%used/usual_line))
+    call cut(1, ended)
     if (.not. ended) call faults%add_error(place_type(), 'ENDDATA is missing: the deck looks cut off', &
                                            'ENDDATA as the last line')
+
+  contains
+
+    !> Append the bytes of a file to the buffer; `trouble` says why that cannot be done.
+    subroutine load(path, parent, trouble)
+      character(len=*), intent(in) :: path
+      integer, intent(in) :: parent
+      character(len=:), allocatable, intent(out) :: trouble
+      type(source_file), allocatable :: longer(:)
+      integer(i8) :: bytes
+      integer :: last, status, unit
+      logical :: exists, is_directory
+
+      inquire (file=path, exist=exists)
+      inquire (file=path//'/.', exist=is_directory)
+      if (.not. exists) then
+        trouble = 'no such file'
+      else if (is_directory) then
+        trouble = 'a directory, not a file'
+      else
+        open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
+              iostat=status)
+        if (status /= 0) trouble = 'cannot be opened for reading'
+      end if
+      if (allocated(trouble)) return
+      inquire (unit=unit, size=bytes)
+      if (bytes < 0) then
+        trouble = 'not a file that can be read'
+      else if (lines%used + bytes >= huge(1) - 1) then   ! behind come a newline and the place of a next line
+        trouble = 'the deck is larger than 2 GiB'
+      else
+        last = lines%used + int(bytes)
+        call grow_text(last + 1)
+        read (unit, iostat=status) lines%text(lines%used + 1:max(last, lines%used + 1))
+        if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
+        if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
+      end if
+      close (unit, iostat=status)
+      if (allocated(trouble)) return
+      allocate (longer(size(lines%files) + 1))
+      longer(:size(lines%files)) = lines%files
+      longer(size(longer)) = source_file(path, parent, lines%used + 1, last)
+      call move_alloc(longer, lines%files)
+      lines%used = last + 1
+      lines%text(lines%used:lines%used) = newline
+    end subroutine load
+
+    !> Room for `length` characters. The first file gets just its size; included ones make the buffer double.
+    subroutine grow_text(length)
+      integer, intent(in) :: length
+      character(len=:), allocatable :: longer
+      integer(i8) :: wanted
+
+      if (length <= len(lines%text)) return
+      wanted = length
+      if (lines%used > 0) wanted = min(max(wanted, 2_i8*len(lines%text)), int(huge(1), i8))
+      allocate (character(len=int(wanted)) :: longer)
+      longer(:lines%used) = lines%text(:lines%used)
+      call move_alloc(longer, lines%text)
+    end subroutine grow_text
+
+    !> Cut a file into lines and, where it includes another, that one too. `ended`: it had its ENDDATA.
+    recursive subroutine cut(file, ended)
+      integer, intent(in) :: file
+      logical, intent(out) :: ended
+      integer :: at, end_of_file, last, line, next, number, special
+      character(len=7) :: word
+
+      ended = .false.
+      at = lines%files(file)%first
+      end_of_file = lines%files(file)%last
+      number = 0
+      do while (at <= end_of_file .and. .not. ended)
+        number = number + 1
+        call find_end(lines%text, at, last, special, next)
+        if (lines%count == size(lines%line)) lines%line = [lines%line, lines%line]   ! room for twice as many
+        lines%count = lines%count + 1
+        line = lines%count
+        lines%line(line) = source_line(at, last, special, number, file)
+        word = statement(lines%text(at:last))
+        ended = word == 'ENDDATA'
+        if (word == 'INCLUDE') call include_file(line)
+        if (ended .or. word == 'INCLUDE') lines%line(line)%last = at - 1
+        at = next
+      end do
+    end subroutine cut
+
+    !> Read the file that the INCLUDE line `line` names, or say why not.
+    recursive subroutine include_file(line)
+      integer, intent(in) :: line
+      character(len=:), allocatable :: name, remedy, trouble
+      type(place_type) :: place
+      integer :: parent, depth
+      logical :: ended
+
+      call find_quoted(lines%text_of_line(line), place, name)
+      place%line = line
+      if (.not. allocated(name)) then
+        call faults%add_error(place, 'INCLUDE needs the name of a file between quotes', 'INCLUDE ''file''')
+        return
+      end if
+      parent = lines%line(line)%file
+      associate (from => lines%files(parent)%name)
+        if (name(1:1) /= '/') name = from(:index(from, '/', back=.true.))//name
+      end associate
+      depth = files_above(parent, name)
+      if (depth == 0) then
+        trouble = shown(name)//' includes itself'
+        remedy = 'a file that does not lead back here'
+      else if (depth > deepest) then
+        trouble = 'files are included more than '//text_of(deepest)//' deep'
+        remedy = 'fewer levels'
+      else if (size(lines%files) > most_files) then
+        trouble = 'more than '//text_of(most_files)//' files'
+        remedy = 'fewer files'
+      else
+        call load(name, parent, trouble)
+        if (allocated(trouble)) trouble = shown(name)//': '//trouble
+        remedy = 'a name relative to the file of this line'
+      end if
+      if (allocated(trouble)) then
+        call faults%add_error(place, 'INCLUDE: '//trouble, remedy)
+      else
+        call cut(size(lines%files), ended)
+      end if
+    end subroutine include_file
+
+    !> How many files lead down to `file`, the deck and itself included; 0 where `name` is one of them.
+    pure integer function files_above(file, name) result(files)
+      integer, intent(in) :: file
+      character(len=*), intent(in) :: name
+      integer :: at
+
+      files = 0
+      at = file
+      do while (at > 0)
+        files = files + 1
+        if (lines%files(at)%name == name) exit
+        at = lines%files(at)%parent
+      end do
+      if (at > 0) files = 0
+    end function files_above
   end subroutine read_source
-
-  !> Append the bytes of a file to the buffer; `trouble` says why that cannot be done.
-  subroutine load(self, path, parent, trouble)
-    type(source), intent(inout) :: self
-    character(len=*), intent(in) :: path
-    integer, intent(in) :: parent
-    character(len=:), allocatable, intent(out) :: trouble
-    type(source_file), allocatable :: longer(:)
-    integer(i8) :: bytes
-    integer :: unit, status
-    logical :: exists
-
-    inquire (file=path, exist=exists)
-    if (.not. exists) then
-      trouble = 'no such file'
-      return
-    end if
-    inquire (file=path//'/.', exist=exists)
-    if (exists) then
-      trouble = 'a directory, not a file'
-      return
-    end if
-    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
-          iostat=status)
-    if (status /= 0) then
-      trouble = 'cannot be opened for reading'
-      return
-    end if
-    inquire (unit=unit, size=bytes)
-    if (bytes < 0) then
-      trouble = 'not a file that can be read'
-    else if (self%used + bytes >= huge(1) - 1) then   ! behind come a newline and the place of a next line
-      trouble = 'the deck is larger than 2 GiB'
-    else
-      call grow_text(self, self%used + int(bytes) + 1)
-      read (unit, iostat=status) self%text(self%used + 1:self%used + max(int(bytes), 1))
-      if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
-      if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
-    end if
-    close (unit, iostat=status)
-    if (allocated(trouble)) return
-    allocate (longer(size(self%files) + 1))
-    longer(:size(self%files)) = self%files
-    longer(size(longer)) = source_file(path, parent, self%used + 1, self%used + int(bytes))
-    call move_alloc(longer, self%files)
-    self%used = self%used + int(bytes) + 1
-    self%text(self%used:self%used) = newline
-  end subroutine load
-
-  !> Room for `length` characters. The first file gets just its size; included ones make the buffer double.
-  subroutine grow_text(self, length)
-    type(source), intent(inout) :: self
-    integer, intent(in) :: length
-    character(len=:), allocatable :: longer
-    integer(i8) :: wanted
-
-    if (length <= len(self%text)) return
-    wanted = length
-    if (self%used > 0) wanted = min(max(wanted, 2_i8*len(self%text)), int(huge(1), i8))
-    allocate (character(len=int(wanted)) :: longer)
-    longer(:self%used) = self%text(:self%used)
-    call move_alloc(longer, self%text)
-  end subroutine grow_text
-
-  !> Cut a file into lines and, where it includes another, that one too. `ended`: it had its ENDDATA.
-  recursive subroutine cut(self, file, faults, ended)
-    type(source), intent(inout) :: self
-    integer, intent(in) :: file
-    type(diagnostics), intent(inout) :: faults
-    logical, intent(out) :: ended
-    integer :: at, last, special, next, line, number, end_of_file
-    character(len=7) :: word
-
-    ended = .false.
-    at = self%files(file)%first
-    end_of_file = self%files(file)%last
-    number = 0
-    do while (at <= end_of_file .and. .not. ended)
-      number = number + 1
-      call find_end(self%text, at, last, special, next)
-      if (self%count == size(self%line)) call double_lines(self)
-      self%count = self%count + 1
-      line = self%count
-      self%line(line) = source_line(at, last, special, number, file)
-      word = statement(self%text(at:last))
-      ended = word == 'ENDDATA'
-      if (word == 'INCLUDE') call include_file(self, line, faults)
-      if (ended .or. word == 'INCLUDE') self%line(line)%last = at - 1
-      at = next
-    end do
-  end subroutine cut
-
-  !> Room for twice as many lines.
-  subroutine double_lines(self)
-    type(source), intent(inout) :: self
-    type(source_line), allocatable :: longer(:)
-
-    allocate (longer(2*self%count))
-    longer(:self%count) = self%line
-    call move_alloc(longer, self%line)
-  end subroutine double_lines
 
   !> The end of the line that begins at `first`: its last character that is neither comment nor blank, and
   !! the first character of the next line. On the way, its first comma or character that is not printable
@@ -229,108 +272,29 @@ contains
     if (scan(upper(line(at + 7:at + 7)), 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789*') > 0) word = ''
   end function statement
 
-  !> Read the file that the INCLUDE line `line` names, or say why not.
-  recursive subroutine include_file(self, line, faults)
-    type(source), intent(inout) :: self
-    integer, intent(in) :: line
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: path, trouble
-    type(place_type) :: place
-    integer :: parent
-    logical :: ended
-
-    call quoted_name(self, line, place, path)
-    if (.not. allocated(path)) then
-      call faults%add_error(place, 'INCLUDE needs the name of a file between quotes', 'INCLUDE ''file''')
-      return
-    end if
-    parent = self%line(line)%file
-    path = relative_to(self%files(parent)%name, path)
-    select case (files_above(self, parent, path))
-    case (0)
-      call faults%add_error(place, 'INCLUDE: '//shown(path)//' includes itself', &
-                            'a file that does not lead back here')
-    case (deepest + 1:)
-      call faults%add_error(place, 'INCLUDE: files are included more than '//text_of(deepest)//' deep', &
-                            'fewer levels')
-    case default
-      if (size(self%files) > most_files) then
-        call faults%add_error(place, 'INCLUDE: more than '//text_of(most_files)//' files', 'fewer files')
-        return
-      end if
-      call load(self, path, parent, trouble)
-      if (allocated(trouble)) then
-        call faults%add_error(place, 'INCLUDE: '//shown(path)//': '//trouble, &
-                              'a name relative to the file of this line')
-      else
-        call cut(self, size(self%files), faults, ended)
-      end if
-    end select
-  end subroutine include_file
-
   !> The name between the quotes of an INCLUDE line; not allocated where there is none.
-  subroutine quoted_name(self, line, place, name)
-    type(source), intent(in) :: self
-    integer, intent(in) :: line
-    type(place_type), intent(out) :: place  !! the name, or where it should be
+  pure subroutine find_quoted(text, place, name)
+    character(len=*), intent(in) :: text
+    type(place_type), intent(out) :: place  !! columns of the name, or where it should be
     character(len=:), allocatable, intent(out) :: name
-    character(len=:), allocatable :: text
     integer :: from, to
 
-    text = self%text_of_line(line)
     from = verify(text, ' ') + 7
-    if (from <= len(text)) then
-      if (verify(text(from:), ' ') > 0) from = from + verify(text(from:), ' ') - 1
-    end if
-    place = place_type(line, from, max(from, len(text)))
-    if (from >= len(text)) return
-    if (scan(text(from:from), '''"') == 0) return
+    from = from - 1 + max(1, verify(text(from:), ' '))
+    place = place_type(0, from, max(from, len(text)))
+    if (scan(text(from:min(from, len(text))), '''"') == 0) return
     to = from + index(text(from + 1:), text(from:from))
-    if (to /= len(text) .or. to == from + 1) return
-    if (verify(text(from + 1:to - 1), ' ') > 0) name = text(from + 1:to - 1)
-  end subroutine quoted_name
+    if (to == len(text) .and. verify(text(from + 1:to - 1), ' ') > 0) name = trim(text(from + 1:to - 1))
+  end subroutine find_quoted
 
-  !> `name` as seen from the directory of `file`.
-  pure function relative_to(file, name) result(path)
-    character(len=*), intent(in) :: file, name
-    character(len=:), allocatable :: path
-
-    path = trim(name)
-    if (path(1:1) /= '/') path = file(:index(file, '/', back=.true.))//path
-  end function relative_to
-
-  !> How many files lead down to `file`, the deck and itself included; 0 where `path` is one of them.
-  pure integer function files_above(self, file, path) result(files)
-    type(source), intent(in) :: self
-    integer, intent(in) :: file
-    character(len=*), intent(in) :: path
-    integer :: at
-
-    files = 0
-    at = file
-    do while (at > 0)
-      files = files + 1
-      if (self%files(at)%name == path) exit
-      at = self%files(at)%parent
-    end do
-    if (at > 0) files = 0
-  end function files_above
-
-  !> The name of the deck as the user gave it.
-  pure function deck_name(self) result(name)
+  !> The name of the file of a line, as the user gave it.
+  pure function file_name(self, line) result(name)
     class(source), intent(in) :: self
+    integer, intent(in) :: line   !! in deck order; 0: of the deck as a whole
     character(len=:), allocatable :: name
 
     name = self%files(1)%name
-  end function deck_name
-
-  !> The name of the file of a line.
-  pure function file_name(self, line) result(name)
-    class(source), intent(in) :: self
-    integer, intent(in) :: line   !! in deck order
-    character(len=:), allocatable :: name
-
-    name = self%files(self%line(line)%file)%name
+    if (line > 0) name = self%files(self%line(line)%file)%name
   end function file_name
 
   !> A line as it is read, without comment.
@@ -367,5 +331,4 @@ contains
 
     blank = self%line(line)%last < self%line(line)%first
   end function blank
-
 end module epcont_deck_source

@@ -6,36 +6,27 @@ module epcont_deck_spelling
 
 contains
 
-  !> What to say of a word that is not known: the name that was probably meant, or something else.
+  !> What to say of a word that is not known: the name nearest to it, with the same first letter and one slip
+  !! away (two for words of more than five letters); or something else where none is. Digits are no slips:
+  !! CTRIA6 is not a misspelt CTRIA3.
   pure function suggestion(word, names, otherwise) result(remedy)
     character(len=*), intent(in) :: word        !! in capitals
     character(len=*), intent(in) :: names(:)    !! those that are known
     character(len=*), intent(in) :: otherwise   !! where none is near
     character(len=:), allocatable :: remedy
+    integer :: i, least, slips
 
     remedy = otherwise
-    if (likely_name(word, names) > 0) remedy = 'did you mean '//trim(names(likely_name(word, names)))//'?'
-  end function suggestion
-
-  !> The name nearest to `word`: same first letter, and one slip away (two for words of more than five
-  !! letters). 0 where none is. Digits are no slips: CTRIA6 is not a misspelt CTRIA3.
-  pure integer function likely_name(word, names)
-    character(len=*), intent(in) :: word      !! in capitals
-    character(len=*), intent(in) :: names(:)   !! those that are known
-    integer :: slips, least, i
-
-    likely_name = 0
     if (word == '') return
     least = merge(3, 2, len_trim(word) > 5)
     do i = 1, size(names)
       if (names(i)(1:1) /= word(1:1) .or. digits_of(names(i)) /= digits_of(word)) cycle
       slips = distance(trim(word), trim(names(i)))
-      if (slips < least) then
-        least = slips
-        likely_name = i
-      end if
+      if (slips >= least) cycle
+      least = slips
+      remedy = 'did you mean '//trim(names(i))//'?'
     end do
-  end function likely_name
+  end function suggestion
 
   !> The digits of a word, in order.
   pure function digits_of(word)

@@ -21,11 +21,9 @@ module epcont_deck_table
     integer :: count = 0                               !! cards
     real(wp), allocatable :: value(:, :)               !! numbers; integers are exact [columns, count]
     logical, allocatable :: given(:, :)                !! the field is not blank [columns, count]
-    character(len=8), allocatable :: word(:, :) !! words; only where the card has such fields [columns, count]
+    character(len=8), allocatable :: word(:, :)        !! words; only where it has such fields [columns, count]
     logical, allocatable :: sound(:)                   !! the reader found no fault in the card [count]
     integer, allocatable :: line(:)                    !! where the card begins [count]
-    integer, allocatable :: noted(:)  !! how often each field without effect is filled [columns]
-    integer, allocatable :: noted_card(:)              !! the first card in which it is [columns]
     integer :: items = 0                               !! in all lists
     type(list_item), allocatable :: list(:)            !! of all cards [items or more]
     !> card i has the items list_start(i) to list_start(i+1)-1 [count + 1]
@@ -33,10 +31,11 @@ module epcont_deck_table
   contains
     procedure :: begin
     procedure :: column
+    procedure :: number
+    procedure :: has
     procedure :: identity
     procedure :: add_card
     procedure :: add_item
-    procedure :: forget_fields
   end type card_table
 
 contains
@@ -54,7 +53,6 @@ contains
     allocate (self%given(columns, cards), source=.false.)
     if (any(entry%field%kind == kind_word)) allocate (self%word(columns, cards), source=repeat(' ', 8))
     allocate (self%sound(cards), self%line(cards), self%list_start(cards + 1), self%list(16))
-    allocate (self%noted(columns), self%noted_card(columns), source=0)
     self%list_start(1) = 1
   end subroutine begin
 
@@ -68,6 +66,24 @@ contains
     end do
     error stop 'no such field in the catalogue of cards'
   end function column
+
+  !> The number in a field of a card.
+  pure real(wp) function number(self, name, i)
+    class(card_table), intent(in) :: self
+    character(len=*), intent(in) :: name   !! of the field
+    integer, intent(in) :: i               !! which card
+
+    number = self%value(self%column(name), i)
+  end function number
+
+  !> Is a field of a card not blank?
+  pure logical function has(self, name, i)
+    class(card_table), intent(in) :: self
+    character(len=*), intent(in) :: name   !! of the field
+    integer, intent(in) :: i               !! which card
+
+    has = self%given(self%column(name), i)
+  end function has
 
   !> A card as messages name it: `GRID 17`, `PARAM PLANE`; `GRID` where it has no such name.
   pure function identity(self, i) result(text)
@@ -104,12 +120,4 @@ contains
     self%list(self%items) = item
     self%list_start(self%count + 1) = self%items + 1
   end subroutine add_item
-
-  !> All but the count of cards.
-  pure subroutine forget_fields(self)
-    class(card_table), intent(inout) :: self
-
-    deallocate (self%value, self%given, self%sound, self%line, self%list, self%list_start)
-    if (allocated(self%word)) deallocate (self%word)
-  end subroutine forget_fields
 end module epcont_deck_table

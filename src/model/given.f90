@@ -7,7 +7,7 @@ module epcont_model_given
   use epcont_model_finding, only: findings, of_couple, of_element, of_line, of_node, of_pair, of_scene, &
                                   of_section
   use epcont_model_model, only: model_type
-  use epcont_model_yield_curve, only: check_curve
+  use epcont_model_yield_curve, only: curve_fault, fault_of_curve
   implicit none
   private
   public :: new_scene, set_sections, add_elements, set_pairs, check_given
@@ -90,88 +90,83 @@ contains
 
   !> Sizes, sections, numbers of nodes, sections and lines. What a deck's reader has looked at by itself is
   !! not looked at again.
-  pure subroutine check_given(model, found)
+  subroutine check_given(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer :: i, s
+    integer :: i, sections
 
-    call check_sizes(model, found)
+    sections = size(model%young)
+    call need(model%elements > 0, of_scene, 0, 'the scene has no elements', 'some of them')
+    call need(all(model%kind > 0), of_scene, 0, 'elements are of a kind that there is not', 'CTRIA3, say')
+    call need(all([size(model%kinematics), size(model%poisson), size(model%thickness)] == sections), &
+              of_scene, 0, 'the sections have arrays of different lengths', 'one number for each section')
+    call need(all([size(model%pair_node, 2), size(model%normal, 2)] == model%pairs), of_scene, 0, &
+              'the pairs have arrays of different lengths', 'one column for each pair')
     if (found%errors > 0) return
     do i = 1, model%nodes
-      if (.not. all(abs(model%x(:, i)) <= huge(1.0_wp))) &
-        call found%add_error(of_node, i, 3, ': its coordinates are no numbers', 'finite ones')
-      call check_numbers(model%leader(:, i), model%nodes, of_node, i, 'node', found)
+      call need(all(abs(model%x(:, i)) <= huge(1.0_wp)), of_node, i, ': its coordinates are no numbers', &
+                'finite ones')
+      call check_numbers(model%leader(:, i), model%nodes, of_node, i, 'node')
     end do
     do i = 1, model%elements
       call check_numbers(model%connectivity(:model%kinds(model%kind(i))%nodes, i), model%nodes, of_element, &
-                         i, 'node', found)
-      call check_numbers([model%section(i)], size(model%young), of_element, i, 'section', found)
+                         i, 'node')
+      call check_numbers([model%section(i)], sections, of_element, i, 'section')
     end do
     do i = 1, model%pairs
-      call check_numbers(model%pair_node(:, i), model%nodes, of_pair, i, 'node', found)
+      call check_numbers(model%pair_node(:, i), model%nodes, of_pair, i, 'node')
     end do
     do i = 1, size(model%line)
-      call check_numbers(model%line(i)%node, model%nodes, of_line, i, 'node', found)
+      call check_numbers(model%line(i)%node, model%nodes, of_line, i, 'node')
     end do
     do i = 1, size(model%couple)
-      call check_numbers(model%couple(i)%line, size(model%line), of_couple, i, 'line', found)
+      call check_numbers(model%couple(i)%line, size(model%line), of_couple, i, 'line')
     end do
-    do s = 1, size(model%young)
-      call check_section(model, s, found)
+    do i = 1, sections
+      call check_section(i)
     end do
+
+  contains
+
+    !> Numbers of things lie within how many of these there are.
+    subroutine check_numbers(number, most, of, which, noun)
+      integer, intent(in) :: number(:), most
+      integer, intent(in) :: of, which             !! what has these numbers
+      character(len=*), intent(in) :: noun
+      integer :: k
+
+      do k = 1, size(number)
+        if (number(k) < 1 .or. number(k) > most) &
+          call found%add_error(of, which, 0, ': there is no '//noun//' '//text_of(number(k)), &
+                               'numbers from 1 to '//text_of(most))
+      end do
+    end subroutine check_numbers
+
+    !> Stiffnesses above zero; and a curve that can be.
+    subroutine check_section(s)
+      integer, intent(in) :: s
+      type(curve_fault) :: fault
+
+      call need(model%young(s) > 0.0_wp .and. model%young(s) <= huge(1.0_wp), of_section, s, &
+                ': Young''s modulus is not above zero', 'a stiffness')
+      call need(model%poisson(s) >= 0.0_wp .and. model%poisson(s) < 0.5_wp, of_section, s, &
+                ': Poisson''s ratio is out of range', '0 or more, and less than 0.5')
+      call need(model%thickness(s) > 0.0_wp .and. model%thickness(s) <= huge(1.0_wp), of_section, s, &
+                ': the thickness is not above zero', 'a length')
+      call need(model%kinematics(s) >= plane_strain .and. model%kinematics(s) <= axisymmetric, of_section, s, &
+                ': of no known kinematics', 'plane_strain, plane_stress or axisymmetric')
+      if (found%errors > 0 .or. .not. allocated(model%curve(s)%strain)) return
+      fault = fault_of_curve(model%curve(s)%strain, model%curve(s)%stress, model%young(s))
+      if (fault%point > 0) call found%add_error(of_section, s, 0, ': '//fault%what, fault%remedy)
+    end subroutine check_section
+
+    !> It is an error where something does not hold.
+    subroutine need(holds, of, which, what, remedy)
+      logical, intent(in) :: holds
+      integer, intent(in) :: of, which
+      character(len=*), intent(in) :: what, remedy
+
+      if (.not. holds) call found%add_error(of, which, 0, what, remedy)
+    end subroutine need
   end subroutine check_given
-
-  !> Arrays must go together.
-  pure subroutine check_sizes(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
-
-    if (model%elements == 0) call found%add_error(of_scene, 0, 0, 'the scene has no elements', 'some of them')
-    if (any(model%kind == 0)) &
-      call found%add_error(of_scene, 0, 0, 'elements are of a kind that there is not', 'CTRIA3, say')
-    if (any([size(model%kinematics), size(model%poisson), size(model%thickness)] /= size(model%young))) &
-      call found%add_error(of_scene, 0, 0, 'the sections have arrays of different lengths', &
-                           'one number for each section')
-    if (any([size(model%pair_node, 2), size(model%normal, 2)] /= model%pairs)) &
-      call found%add_error(of_scene, 0, 0, 'the pairs have arrays of different lengths', &
-                           'one column for each pair')
-  end subroutine check_sizes
-
-  !> Numbers of things lie within how many of these there are.
-  pure subroutine check_numbers(number, most, of, which, noun, found)
-    integer, intent(in) :: number(:), most
-    integer, intent(in) :: of, which             !! what has these numbers
-    character(len=*), intent(in) :: noun
-    type(findings), intent(inout) :: found
-    integer :: k
-
-    do k = 1, size(number)
-      if (number(k) < 1 .or. number(k) > most) &
-        call found%add_error(of, which, 0, ': there is no '//noun//' '//text_of(number(k)), &
-                             'numbers from 1 to '//text_of(most))
-    end do
-  end subroutine check_numbers
-
-  !> Stiffnesses above zero; and a curve that can be.
-  pure subroutine check_section(model, s, found)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: s
-    type(findings), intent(inout) :: found
-    character(len=:), allocatable :: what, remedy
-    integer :: wrong
-
-    if (.not. (model%young(s) > 0.0_wp .and. model%young(s) <= huge(1.0_wp))) &
-      call found%add_error(of_section, s, 0, ': Young''s modulus is not above zero', 'a stiffness')
-    if (.not. (model%poisson(s) >= 0.0_wp .and. model%poisson(s) < 0.5_wp)) &
-      call found%add_error(of_section, s, 0, ': Poisson''s ratio is out of range', &
-                           '0 or more, and less than 0.5')
-    if (.not. (model%thickness(s) > 0.0_wp .and. model%thickness(s) <= huge(1.0_wp))) &
-      call found%add_error(of_section, s, 0, ': the thickness is not above zero', 'a length')
-    if (model%kinematics(s) < plane_strain .or. model%kinematics(s) > axisymmetric) &
-      call found%add_error(of_section, s, 0, ': of no known kinematics', &
-                           'plane_strain, plane_stress or axisymmetric')
-    if (found%errors > 0 .or. .not. allocated(model%curve(s)%strain)) return
-    call check_curve(model%curve(s)%strain, model%curve(s)%stress, model%young(s), wrong, what, remedy)
-    if (wrong > 0) call found%add_error(of_section, s, 0, ': '//what, remedy)
-  end subroutine check_section
 end module epcont_model_given

@@ -105,6 +105,7 @@ module epcont_model_model
     procedure :: side_between
     procedure :: edge_coordinates
     procedure :: depth
+    procedure :: is_ring
     procedure :: has_rings
     procedure :: is_tied
     procedure :: is_rigid
@@ -176,17 +177,24 @@ contains
     integer, intent(in) :: element   !! which element
     real(wp), intent(in) :: radius   !! x [length]
 
-    associate (section => self%section(element))
-      depth = self%thickness(section)
-      if (self%kinematics(section) == axisymmetric) depth = 2.0_wp*acos(-1.0_wp)*radius
-    end associate
+    depth = self%thickness(self%section(element))
+    if (self%is_ring(element)) depth = 2.0_wp*acos(-1.0_wp)*radius
   end function depth
+
+  !> Is an element a ring? One whose section could not be found is none.
+  pure logical function is_ring(self, element)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: element   !! which element
+
+    is_ring = self%section(element) > 0
+    if (is_ring) is_ring = self%kinematics(self%section(element)) == axisymmetric
+  end function is_ring
 
   !> Are the elements rings? (All are, or none.)
   pure logical function has_rings(self)
     class(model_type), intent(in) :: self
 
-    has_rings = self%kinematics(self%section(1)) == axisymmetric
+    has_rings = self%is_ring(1)
   end function has_rings
 
   !> Does RBE2 say where one of these nodes goes?
@@ -271,7 +279,10 @@ contains
     case (of_node)
       name = 'GRID '//text_of(self%node_id(which))
     case (of_element)
-      name = element_name(self, which)
+      associate (row => self%kinds(self%kind(which)))
+        name = trim(merge(row%ring_card, row%plane_card, self%is_ring(which)))// &
+               ' '//text_of(self%element_id(which))
+      end associate
     case (of_section)
       name = trim(merge('PSOLID', 'PSHELL', self%kinematics(which) == axisymmetric))//' '// &
              text_of(self%property_id(which))
@@ -287,18 +298,4 @@ contains
       name = ''
     end select
   end function name_of
-
-  !> The card and the id of an element.
-  pure function element_name(self, e) result(name)
-    type(model_type), intent(in) :: self
-    integer, intent(in) :: e
-    character(len=:), allocatable :: name
-    logical :: ring
-
-    ring = .false.
-    if (self%section(e) > 0) ring = self%kinematics(self%section(e)) == axisymmetric
-    associate (kind => self%kinds(self%kind(e)))
-      name = trim(merge(kind%ring_card, kind%plane_card, ring))//' '//text_of(self%element_id(e))
-    end associate
-  end function element_name
 end module epcont_model_model

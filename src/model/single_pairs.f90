@@ -13,13 +13,14 @@ contains
 
   !> From nodes, normals and gaps of each pair. Node 0 is one that could not be found; a normal of zero is one
   !! from A to B.
-  pure subroutine complete_pairs(model, by_geometry, found)
+  subroutine complete_pairs(model, by_geometry, found)
     type(model_type), intent(inout) :: model   !! the scene
     logical, intent(in) :: by_geometry       !! how far the nodes are apart along the normal counts in the gap
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    real(wp), allocatable :: edge(:)         ! the shortest at each node, found when a pair first needs it
+    real(wp), allocatable :: shortest(:)     ! edge at each node, found when a pair first needs it
+    character(len=:), allocatable :: others
     real(wp) :: between(2)
-    integer :: i
+    integer :: i, overlaps
 
     do i = 1, model%pairs
       associate (a => model%pair_node(1, i), b => model%pair_node(2, i), normal => model%normal(:, i))
@@ -32,8 +33,8 @@ contains
         end if
         between = model%x(:, b) - model%x(:, a)
         if (all(normal == 0.0_wp)) then
-          if (.not. allocated(edge)) edge = shortest_edge(model)
-          if (norm2(between) > coincident*min(edge(a), edge(b))) then
+          if (.not. allocated(shortest)) shortest = shortest_edge()
+          if (norm2(between) > coincident*min(shortest(a), shortest(b))) then
             normal = between/norm2(between)
           else
             call found%add_error(of_pair, i, 8, &
@@ -47,46 +48,36 @@ contains
     model%row_start = [(2*i - 1, i=1, model%pairs + 1)]
     model%row_node = reshape(model%pair_node([2, 1], :), [2*model%pairs])
     model%row_weight = [(1.0_wp, -1.0_wp, i=1, model%pairs)]
-    call warn_of_overlap(model, found)
-  end subroutine complete_pairs
-
-  !> One warning for all overlaps: shrink fits have many.
-  pure subroutine warn_of_overlap(model, found)
-    type(model_type), intent(in) :: model
-    type(findings), intent(inout) :: found
-    character(len=:), allocatable :: others
-    integer :: first, overlaps
-
     overlaps = count(model%initial_gap < 0.0_wp)
     if (overlaps == 0) return
-    first = findloc(model%initial_gap < 0.0_wp, .true., dim=1)
+    ! One warning for all: shrink fits have many.
+    i = findloc(model%initial_gap < 0.0_wp, .true., dim=1)
     others = ''
     if (overlaps > 1) others = '; '//text_of(overlaps)//' pairs overlap, by up to '// &
                                short_real(-minval(model%initial_gap))
-    call found%add_warning(of_pair, first, 1, ': the initial gap is '// &
-                           short_real(model%initial_gap(first))//others, &
+    call found%add_warning(of_pair, i, 1, ': the initial gap is '//short_real(model%initial_gap(i))//others, &
                            'a gap of 0.0 or more, unless a fit is meant')
-  end subroutine warn_of_overlap
 
-  !> Shortest edge at each node; 0 at nodes without elements, which say nothing of the mesh's size.
-  pure function shortest_edge(model) result(edge)
-    type(model_type), intent(in) :: model
-    real(wp), allocatable :: edge(:)
-    real(wp) :: length
-    integer :: e, k, side(3)
+  contains
 
-    allocate (edge(model%nodes), source=huge(1.0_wp))
-    do e = 1, model%elements
-      if (any(model%connectivity(:model%order(e), e) == 0)) cycle
-      do k = 1, model%corners(e)
-        side = model%edge(e, k)
-        associate (node => side(:merge(3, 2, side(3) > 0)))
-          length = norm2(model%x(:, side(1)) - model%x(:, side(2)))/(size(node) - 1)
-          edge(node) = min(edge(node), length)
-        end associate
+    !> Shortest edge at each node; 0 at nodes without elements, which say nothing of the mesh's size.
+    pure function shortest_edge() result(edge)
+      real(wp) :: edge(model%nodes), length
+      integer :: e, k, side(3)
+
+      edge = huge(1.0_wp)
+      do e = 1, model%elements
+        if (any(model%connectivity(:model%order(e), e) == 0)) cycle
+        do k = 1, model%corners(e)
+          side = model%edge(e, k)
+          associate (node => side(:merge(3, 2, side(3) > 0)))
+            length = norm2(model%x(:, side(1)) - model%x(:, side(2)))/(size(node) - 1)
+            edge(node) = min(edge(node), length)
+          end associate
+        end do
       end do
-    end do
-    where (edge == huge(1.0_wp)) edge = maxval(edge, mask=edge < huge(1.0_wp))
-    where (edge < 0.0_wp) edge = 0.0_wp
-  end function shortest_edge
+      where (edge == huge(1.0_wp)) edge = maxval(edge, mask=edge < huge(1.0_wp))
+      where (edge < 0.0_wp) edge = 0.0_wp
+    end function shortest_edge
+  end subroutine complete_pairs
 end module epcont_model_single_pairs

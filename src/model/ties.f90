@@ -7,7 +7,7 @@ module epcont_model_ties
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: tie, follow_to_the_end, set_reference, find_bodies, join_nodes
+  public :: freedom, tie, follow_to_the_end, set_reference, find_bodies, join_nodes
 
 contains
 
@@ -68,9 +68,10 @@ contains
     model%reference(c, node) = .true.
   end subroutine set_reference
 
+  !> A freedom as messages name it: `direction 1 of GRID 17`.
   pure function freedom(model, c, node) result(text)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: c, node
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: c, node          !! direction and node of the freedom
     character(len=:), allocatable :: text
 
     text = 'direction '//text_of(c)//' of '//model%name_of(of_node, node)

@@ -22,13 +22,13 @@ contains
     type(deck_type), intent(in) :: deck   !! with its text
     integer :: line
 
-    if (deck%echo) then
+    if (deck%echo == 'UNSORT' .or. deck%echo == 'BOTH') then
       call heading(file, 'LINES OF THE DECK')
       do line = 1, deck%source%count
         call list_line(file, deck, line)
       end do
     end if
-    if (deck%echo_sorted) call list_sorted(file, deck)
+    if (deck%echo == 'SORT' .or. deck%echo == 'BOTH') call list_sorted(file, deck)
   end subroutine list_cards
 
   !> The cards by name and number, with the lines that continue them.

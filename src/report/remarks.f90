@@ -26,7 +26,7 @@ contains
     type(source), intent(in) :: lines         !! of the deck
     type(remarks_type) :: remarks
 
-    remarks = remarks_type(faults%warning_count(), faults%note_count(), render_notes(faults, lines), '', '')
+    remarks = remarks_type(faults%warnings, faults%notes, render_notes(faults, lines), '', '')
   end function remarks_of_deck
 
   !> Add those of an answer: where its equations, solved as they are, are not those of the scene.

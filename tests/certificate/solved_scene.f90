@@ -49,7 +49,7 @@ contains
 
     call read_deck(path, deck, faults, error)
     call build_model(deck, solved%model, faults)
-    if (faults%error_count() > 0) error stop 'solved_scene: the deck is not sound'
+    if (faults%errors > 0) error stop 'solved_scene: the deck is not sound'
     call solved%find_motions(loose)
     if (loose%errors > 0) error stop 'solved_scene: a body is loose'
     call solved%make_plan(watch)

@@ -5,7 +5,6 @@ module deck_faults
   use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_render, only: render
   use epcont_build_build, only: build_model, tell
-  use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
@@ -38,13 +37,12 @@ contains
     type(diagnostics) :: faults
     type(error_type), allocatable :: error
     type(planned_scene) :: scene
-    type(findings) :: loose
 
     call write_deck(cards)
     call read_deck(path, deck, faults, error)
     call build_model(deck, scene%model, faults)
-    if (faults%error_count() == 0) call scene%find_motions(loose)
-    call tell(deck, loose, faults)
+    if (faults%errors == 0) call scene%find_motions(faults)
+    call tell(deck, faults)
     words = replaced(render(faults, deck%source), newline, '|')
   end function faults_of
 
@@ -59,7 +57,7 @@ contains
     call write_deck(cards)
     call read_deck(path, deck, faults, error)
     call build_model(deck, model, faults)
-    if (faults%error_count() > 0) error stop 'deck_faults: the deck is not sound'
+    if (faults%errors > 0) error stop 'deck_faults: the deck is not sound'
   end function model_of
 
   subroutine write_deck(cards)

@@ -88,7 +88,7 @@ contains
     call read_deck(path, deck, faults, error)
     if (allocated(error)) error stop 'this deck cannot be read'
     call build_model(deck, model, faults)
-    if (faults%error_count() > 0) error stop 'this deck has faults'
+    if (faults%errors > 0) error stop 'this deck has faults'
     call find_free_motions(model, motions, loose)
     plan = plan_contact(model)
     operator = new_strain_operator(model)
