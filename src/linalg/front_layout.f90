@@ -38,8 +38,8 @@ contains
     integer, intent(in) :: numbers(:, :)    !! equations of each element; 0 and less: none [any, elements]
     type(front_layout) :: layout
     type(incidence) :: at                   !! elements of each front
-    integer, allocatable :: home(:, :)
-    integer :: e, p
+    integer :: home(1, size(numbers, 2))    !! the first front that each element has equations of, or 0
+    integer :: e, lowest, p
 
     layout%first = first
     layout%own = first(2:) - first(:size(first) - 1)
@@ -47,7 +47,11 @@ contains
     do p = 1, size(layout%own)
       layout%front_of(first(p):first(p + 1) - 1) = p
     end do
-    home = lowest_front(layout%front_of, numbers)
+    home = 0
+    do e = 1, size(numbers, 2)
+      lowest = minval(numbers(:, e), mask=numbers(:, e) > 0)
+      if (lowest <= size(layout%front_of)) home(1, e) = layout%front_of(lowest)
+    end do
     at = new_incidence(home, size(layout%own))
     layout%element = [at%group, pack([(e, e=1, size(home))], home(1, :) == 0)]
     call find_rows(layout, at, numbers)
@@ -63,10 +67,14 @@ contains
     integer, intent(in) :: numbers(:, :)
     logical :: seen(size(layout%front_of))
     integer :: found(size(layout%front_of))
-    integer, allocatable :: child(:), next(:), row(:)   !! the last front below each, and the one before that
+    !> The last front below each, and the one before that
+    integer, dimension(size(layout%own)) :: child, next
+    integer, allocatable :: row(:)
     integer :: c, count, k, p
 
-    allocate (layout%parent(size(layout%own)), child(size(layout%own)), next(size(layout%own)), source=0)
+    child = 0
+    next = 0
+    allocate (layout%parent(size(layout%own)), source=0)
     allocate (layout%row_start(size(layout%first)), source=1)
     allocate (row(size(found)))
     seen = .false.
@@ -84,7 +92,7 @@ contains
       layout%row_start(p + 1) = layout%row_start(p) + count
       if (count == 0) cycle
       if (layout%row_start(p + 1) - 1 > size(row)) row = [row, row]
-      row(layout%row_start(p):layout%row_start(p + 1) - 1) = in_order(found(:count))
+      row(layout%row_start(p):layout%row_start(p + 1) - 1) = found(sorted_order(found(:count)))
       seen(found(:count)) = .false.
       associate (above => layout%parent(p))
         above = layout%front_of(row(layout%row_start(p)))
@@ -94,19 +102,6 @@ contains
     end do
     layout%row = row(:layout%row_start(size(layout%first)) - 1)
   end subroutine find_rows
-
-  !> The first front that each element has equations of; 0 where it has none [1, elements].
-  pure function lowest_front(front_of, numbers) result(front)
-    integer, intent(in) :: front_of(:), numbers(:, :)
-    integer, allocatable :: front(:, :)
-    integer :: e, lowest
-
-    allocate (front(1, size(numbers, 2)), source=0)
-    do e = 1, size(numbers, 2)
-      lowest = minval(numbers(:, e), mask=numbers(:, e) > 0)
-      if (lowest <= size(front_of)) front(1, e) = front_of(lowest)
-    end do
-  end function lowest_front
 
   !> Put equations from `from` on that are not in the list yet at its end.
   pure subroutine add_new(number, from, seen, list, length)
@@ -124,13 +119,6 @@ contains
       list(length) = number(i)
     end do
   end subroutine add_new
-
-  pure function in_order(number)
-    integer, intent(in) :: number(:)
-    integer :: in_order(size(number))
-
-    in_order = number(sorted_order(number))
-  end function in_order
 
   !> Where equations, ascending, stand among the rows of a front; they must be there.
   pure function places(self, number, front) result(place)
