@@ -4,7 +4,7 @@ module epcont_certificate_findings
   use epcont_certificate_allowance, only: meeting_type
   implicit none
   private
-  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, take_if
+  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, keep_deeper, keep_worse
 
   !> Of places that differ by less than this part the first counts: rounding decides nothing.
   real(wp), parameter :: more = 1.0_wp + 1.0e-9_wp
@@ -78,14 +78,27 @@ contains
     is_deeper = found%depth > more*than%depth
   end function is_deeper
 
-  !> Keep another place instead, if it is a better one to keep.
-  pure subroutine take_if(better, found, kept)
-    logical, intent(in) :: better                !! than what is kept
+  !> Keep another place instead, if it is worse.
+  pure subroutine keep_worse(found, kept)
     type(overlap_place), intent(in) :: found     !! its ratio is not looked at
     type(overlap_place), intent(inout) :: kept   !! with its ratio
 
-    if (.not. better) return
+    if (is_worse(found, kept)) call take(found, kept)
+  end subroutine keep_worse
+
+  !> The same if it is deeper.
+  pure subroutine keep_deeper(found, kept)
+    type(overlap_place), intent(in) :: found     !! its ratio is not looked at
+    type(overlap_place), intent(inout) :: kept   !! with its ratio
+
+    if (is_deeper(found, kept)) call take(found, kept)
+  end subroutine keep_deeper
+
+  pure subroutine take(found, kept)
+    type(overlap_place), intent(in) :: found
+    type(overlap_place), intent(inout) :: kept
+
     kept = found
     kept%ratio = found%depth/found%allowed
-  end subroutine take_if
+  end subroutine take
 end module epcont_certificate_findings

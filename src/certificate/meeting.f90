@@ -4,7 +4,7 @@ module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_gap
   use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
-  use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, take_if
+  use epcont_certificate_findings, only: is_deeper, is_worse, keep_deeper, keep_worse, overlap_place
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_box_tree, only: box_tree
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
@@ -249,15 +249,15 @@ contains
       if (present(drawn)) then
         if (found%distance > min(place%allowed, telling%allowed)) then
           was = overlap_as_drawn()
-          call take_if(was%depth > was%allowed .and. is_deeper(was, drawn), was, drawn)
+          if (was%depth > was%allowed) call keep_deeper(was, drawn)
           place%depth = found%depth - was%depth
           telling%depth = place%depth
         end if
       end if
     end associate
-    call take_if(is_worse(place, worst), place, worst)
-    call take_if(is_deeper(place, deepest), place, deepest)
-    call take_if(is_worse(telling, not_told), telling, not_told)
+    call keep_worse(place, worst)
+    call keep_deeper(place, deepest)
+    call keep_worse(telling, not_told)
 
   contains
 

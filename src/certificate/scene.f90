@@ -4,13 +4,16 @@
 !> Each side of the outlines that meets the box of another body is sampled: where it begins, at its quarter
 !> points, and between two places where it crosses the other outline. The depth of a point is its distance
 !> from the other outline.
+!>
+!> What pressed pairs press on, once displaced, is told by the gap between the outlines along the normal, how
+!> far beside the other body the node stands, and how far the two sides have slid along each other.
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: no_effect
   use epcont_certificate_beyond, only: look_beyond
-  use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, scene_type, take_if
-  use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, new_search, point_on, point_type, &
-                                       search_type, sides_meeting
-  use epcont_certificate_pressed, only: look_at_pairs
+  use epcont_certificate_findings, only: beyond_place, keep_worse, overlap_place, scene_type
+  use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, motion_at, new_search, &
+                                       part_along, point_on, point_type, search_type, sides_meeting
   use epcont_certificate_way, only: look_at_ways
   use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_geometry_plane, only: cross_product
@@ -25,6 +28,11 @@ module epcont_certificate_scene
   real(wp), parameter, public :: little = 0.01_wp
   !> Points of each side: its beginning and its quarter points.
   real(wp), parameter :: quarters(4) = [0.0_wp, 0.25_wp, 0.5_wp, 0.75_wp]
+
+  !> Sides that slide by less than this part of the longer one carry what they carried where they were drawn;
+  !! so do bodies that slide by less than that part of the smaller one. A node may stand as far beside the
+  !! other body as that.
+  real(wp), parameter :: part_of_side = 0.25_wp, part_of_body = 0.05_wp
 
 contains
 
@@ -49,7 +57,7 @@ contains
     do part = 1, model%body_outline%parts
       call look_at_middle(part)
     end do
-    call look_at_pairs(model, search, force, scene)
+    call look_at_pairs()
     call look_at_ways(search, scene)
     call look_beyond(model, displacement, search%least, scene)
     scene%changed_side = maxloc(search%allowance%change, dim=1)
@@ -131,10 +139,61 @@ contains
           found = meet(search, point, place)
           ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
           drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
-          if (drawn <= found%allowed) call take_if(is_worse(found, scene%itself), found, scene%itself)
+          if (drawn <= found%allowed) call keep_worse(found, scene%itself)
         end do
       end associate
     end subroutine look_at_itself
+
+    !> All pressed pairs of two bodies.
+    subroutine look_at_pairs()
+      real(wp) :: least
+      integer :: k, side, side_of(model%nodes)
+
+      least = no_effect*maxval(force)
+      associate (node => model%body_outline%node, part_of => model%body_outline%part_of)
+        side_of = 0
+        do side = 1, size(node, 2)
+          if (node(3, side) > 0) side_of(node(3, side)) = side
+          side_of(node(1, side)) = side
+        end do
+        do k = 1, model%pairs
+          associate (part => part_of(model%pair_node(1, k)), b => model%pair_node(2, k))
+            if (force(k) <= least .or. side_of(b) == 0 .or. part == 0 .or. part == part_of(b)) cycle
+            side = side_of(b)
+            call look_at_pair(k, point_on(search, side, merge(0.0_wp, 0.5_wp, node(1, side) == b)), part)
+          end associate
+        end do
+      end associate
+    end subroutine look_at_pairs
+
+    !> One pressed pair: its node B, at the part that A is of.
+    subroutine look_at_pair(pair, point, part)
+      integer, intent(in) :: pair, part
+      type(point_type), intent(in) :: point
+      type(near_place) :: place
+      type(overlap_place) :: found, slid
+      real(wp) :: off
+
+      place = search%now%nearest_place(part, point%x)
+      found = meet(search, point, place)
+      found%pair = pair
+      slid = found
+      slid%depth = part_along(search%now, place%side, place%s, &
+                              point%motion - motion_at(search, place%side, place%s))
+      slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
+                         part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
+      call keep_worse(slid, scene%slid)
+      if (place%inside) return
+      found%depth = abs(dot_product(point%x - place%x, model%normal(:, pair)))
+      off = abs(cross_product(point%x - place%x, model%normal(:, pair)))
+      if (off <= found%depth) then
+        call keep(search, found, scene%apart, scene%widest, scene%wide)
+      else   ! the other body ends before it
+        found%depth = off
+        found%allowed = found%allowed + slid%allowed
+        call keep_worse(found, scene%beside)
+      end if
+    end subroutine look_at_pair
   end function look_through
 
   !> Where the chord of a side crosses those of another part, ascending.

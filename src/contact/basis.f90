@@ -18,13 +18,13 @@
 module epcont_contact_basis
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_base_tolerances, only: lost_digits, negligible
+  use epcont_base_tolerances, only: lost_digits
   use epcont_contact_scaling, only: scaled_problem
   use epcont_linalg_dense, only: add_product, cholesky_factor, cholesky_solve, extend_cholesky, &
     pivoted_cholesky
   implicit none
   private
-  public :: contact_basis, new_basis, change_set, respond, regular_flexibility, rank_tolerance
+  public :: contact_basis, new_basis, change_set, respond, regular_flexibility
 
   !> Part of a set from which on its factor is kept. With 1/2, where pairs that come as the candidates are
   !! doubled stand behind edges that go, block pivoting takes half as long again; without keeping anything it
@@ -54,13 +54,12 @@ contains
     integer :: info, k, rank
 
     basis%pairs = pack([(k, k=1, size(chosen))], chosen)
-    basis%gamma = weight_of_motions(problem)
-    basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
+    basis%factor = regular_flexibility(problem, basis%pairs, basis%pairs)
     call cholesky_factor(basis%factor, info)
-    if (.not. has_pivots(basis, info, lost_digits*largest_flexibility(problem))) then
+    if (.not. has_pivots(basis, info, lost_digits*problem%softest)) then
       ! The order of pivots, which takes longer, tells who depends on whom.
-      basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
-      call pivoted_cholesky(basis%factor, rank_tolerance(problem), order, rank)
+      basis%factor = regular_flexibility(problem, basis%pairs, basis%pairs)
+      call pivoted_cholesky(basis%factor, problem%rank_tolerance, order, rank)
       basis%pairs = basis%pairs(order(:rank))
       basis%factor = basis%factor(:rank, :rank)
     end if
@@ -80,7 +79,6 @@ contains
     n = count(closed)
     if (.not. allocated(basis%factor)) then   ! room for all pairs
       allocate (basis%pairs(0), basis%factor(size(closed), size(closed)))
-      basis%gamma = weight_of_motions(problem)
     end if
     kept = findloc([closed(basis%pairs), .false.], .false., dim=1) - 1
     ! Where much is new, all are put into order, so that the next sets keep most of it.
@@ -90,9 +88,9 @@ contains
     added = pack([(k, k=1, size(closed))], missing)
     added = added(sorted_order(nint(-firmness_steps*firmness(added))))
     basis%pairs = [basis%pairs(:kept), added]
-    basis%factor(kept + 1:n, :n) = regular_flexibility(problem, basis%gamma, added, basis%pairs)
+    basis%factor(kept + 1:n, :n) = regular_flexibility(problem, added, basis%pairs)
     call extend_cholesky(size(closed), basis%factor, kept, n, info)
-    if (has_pivots(basis, info, rank_tolerance(problem))) then
+    if (has_pivots(basis, info, problem%rank_tolerance)) then
       call hold_motions(basis, problem)
     else
       basis%sound = .false.
@@ -118,6 +116,7 @@ contains
     real(wp) :: resistance(size(problem%resultant), size(problem%resultant))
     integer :: info
 
+    basis%gamma = problem%gamma
     basis%carried = problem%motion(basis%pairs, :)
     call cholesky_solve(basis%factor, basis%carried)
     resistance = 0.0_wp
@@ -145,39 +144,12 @@ contains
   end subroutine respond
 
   !> A block of F_g = F + gamma A A'.
-  pure function regular_flexibility(problem, gamma, rows, columns) result(block)
+  pure function regular_flexibility(problem, rows, columns) result(block)
     type(scaled_problem), intent(in) :: problem   !! in its own units
-    real(wp), intent(in) :: gamma                  !! that of a basis
     integer, intent(in) :: rows(:), columns(:)     !! pairs
     real(wp), allocatable :: block(:, :)
 
     block = problem%flexibility(rows, columns)
-    call add_product(gamma, problem%motion(rows, :), transpose(problem%motion(columns, :)), block)
+    call add_product(problem%gamma, problem%motion(rows, :), transpose(problem%motion(columns, :)), block)
   end function regular_flexibility
-
-  !> gamma, such that F and gamma A A' are of one size.
-  pure real(wp) function weight_of_motions(problem) result(gamma)
-    type(scaled_problem), intent(in) :: problem
-    real(wp) :: largest
-
-    largest = maxval([sum(problem%motion**2, dim=2), 0.0_wp])
-    gamma = largest_flexibility(problem)
-    if (largest > 0.0_wp) gamma = gamma/largest
-  end function weight_of_motions
-
-  !> A pivot of F_g up to this is rounding: a hundredth of a negligible flexibility, or that of n sums.
-  pure real(wp) function rank_tolerance(problem)
-    type(scaled_problem), intent(in) :: problem   !! in its own units
-
-    rank_tolerance = max(negligible/100, 4*size(problem%gap)*epsilon(1.0_wp))*largest_flexibility(problem)
-  end function rank_tolerance
-
-  !> max F_kk; 1 if nothing is flexible.
-  pure real(wp) function largest_flexibility(problem) result(largest)
-    type(scaled_problem), intent(in) :: problem
-    integer :: k
-
-    largest = maxval([(problem%flexibility(k, k), k=1, size(problem%gap)), 0.0_wp])
-    if (largest <= 0.0_wp) largest = 1.0_wp
-  end function largest_flexibility
 end module epcont_contact_basis

@@ -16,7 +16,7 @@ module epcont_contact_simplex
     has_right_signs, solve_set
   use epcont_contact_loading, only: follow_load, path_complete, path_ray
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
-  use epcont_contact_scaling, only: scaled_problem
+  use epcont_contact_scaling, only: measure, scaled_problem
   implicit none
   private
   public :: find_contacts
@@ -104,6 +104,7 @@ contains
       do k = 1, size(scaled%gap)
         softer%flexibility(k, k) = softer%flexibility(k, k) + own*maxval(abs(scaled%flexibility))
       end do
+      call measure(softer)
       trial%pivots = solution%pivots
       call find_by_blocks(softer, trial, better, found)
       if (.not. found) return

@@ -2,7 +2,7 @@
 module epcont_contact_uniqueness
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, null_component
-  use epcont_contact_basis, only: contact_basis, new_basis, rank_tolerance, regular_flexibility
+  use epcont_contact_basis, only: contact_basis, new_basis, regular_flexibility
   use epcont_contact_equilibrium, only: can_carry
   use epcont_contact_scaling, only: scaled_problem
   use epcont_linalg_dense, only: add_product, cholesky_solve, null_space, pivoted_cholesky
@@ -36,13 +36,13 @@ contains
     idle = pack([(k, k=1, size(touching))], touching .and. .not. pressed)
     if (size(idle) == 0) return
     basis = new_basis(problem, pressed)
-    coupling = regular_flexibility(problem, basis%gamma, idle, idle)
-    answer = regular_flexibility(problem, basis%gamma, basis%pairs, idle)
+    coupling = regular_flexibility(problem, idle, idle)
+    answer = regular_flexibility(problem, basis%pairs, idle)
     loose = transpose(answer)
     call cholesky_solve(basis%factor, answer)
     call add_product(-1.0_wp, loose, answer, coupling)
 
-    zero = amplification*rank_tolerance(problem)
+    zero = amplification*problem%rank_tolerance
     growing = forces_that_can_grow(coupling, zero)
     indeterminate(idle(growing)) = .true.
     loose = null_space(coupling(growing, growing), zero)
@@ -54,9 +54,8 @@ contains
   function forces_that_can_grow(coupling, zero) result(growing)
     real(wp), intent(in) :: coupling(:, :)   !! M, semidefinite [e, e]
     real(wp), intent(in) :: zero             !! an entry up to this is rounding
-    integer, allocatable :: growing(:)
+    integer, allocatable :: growing(:), order(:)
     real(wp), allocatable :: factor(:, :), rows(:, :)
-    integer, allocatable :: order(:)
     logical, allocatable :: grows(:)
     integer :: j, rank
 

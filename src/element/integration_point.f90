@@ -28,8 +28,7 @@ contains
     integer, intent(in) :: kinematics        !! plane_strain, plane_stress or axisymmetric
     real(wp), intent(in) :: thickness        !! of plane ones [length]
     type(integration_point), intent(out) :: point(:)   !! [kind%points]
-    real(wp) :: jacobian(directions, directions), determinant, radius
-    real(wp) :: from_first(directions, kind%nodes)
+    real(wp) :: jacobian(directions, directions), determinant, radius, from_first(directions, kind%nodes)
     integer :: c, i, n, p
 
     n = kind%nodes

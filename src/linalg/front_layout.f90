@@ -105,8 +105,7 @@ contains
 
   !> Put equations from `from` on that are not in the list yet at its end.
   pure subroutine add_new(number, from, seen, list, length)
-    integer, intent(in) :: number(:)
-    integer, intent(in) :: from
+    integer, intent(in) :: number(:), from
     logical, intent(inout) :: seen(:)   !! those that are in it [order]
     integer, intent(inout) :: list(:), length
     integer :: i
@@ -124,8 +123,7 @@ contains
   pure function places(self, number, front) result(place)
     class(front_layout), intent(in) :: self
     integer, intent(in) :: number(:), front   !! equations, ascending
-    integer :: place(size(number))
-    integer :: at, i
+    integer :: place(size(number)), at, i
 
     at = self%row_start(front)
     do i = 1, size(number)
@@ -154,7 +152,7 @@ contains
     integer(i8) :: start(size(self%first))
 
     start = self%update_starts(kept)
-    entries = sum(int(self%own, i8)*(self%own + self%reached)) + start(size(start)) - 1
+    entries = start(size(start)) - 1
   end function entries
 
   !> Whether the fronts below each stand right before it: else what one leaves may still be wanted when
@@ -174,22 +172,22 @@ contains
     end do
   end function stand_in_sequence
 
-  !> Where the update matrix of each front, what it leaves to the later equations, begins: in its own place
-  !! where all are kept, else behind that of its parent, where those that are done with were before. And one
-  !! behind the last [fronts + 1].
+  !> Where the update matrix of each front, what it leaves to the later equations, begins behind the factor:
+  !! in its own place where all are kept, else behind that of its parent, where those that are done with were
+  !! before. And one behind the last [fronts + 1].
   pure function update_starts(self, kept) result(start)
     class(front_layout), intent(in) :: self
     logical, intent(in) :: kept   !! all update matrices are kept
-    integer(i8) :: start(size(self%first))
-    integer(i8) :: last
+    integer(i8) :: start(size(self%first)), factor, last
     integer :: p
 
-    last = 0
+    factor = sum(int(self%own, i8)*(self%own + self%reached))
+    last = factor
     do p = size(self%parent), 1, -1
       if (kept .or. .not. self%in_sequence) then
         start(p) = last + 1
       else if (self%parent(p) == 0) then
-        start(p) = 1
+        start(p) = factor + 1
       else
         start(p) = start(self%parent(p)) + int(self%reached(self%parent(p)), i8)**2
       end if

@@ -140,9 +140,8 @@ module epcont_linalg_lapack
     pure subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
       import :: wp
       integer, intent(in) :: n, nrhs, lda, ldb
-      real(wp), intent(inout) :: a(lda, *)
+      real(wp), intent(inout) :: a(lda, *), b(ldb, *)
       integer, intent(out) :: ipiv(*), info
-      real(wp), intent(inout) :: b(ldb, *)
     end subroutine dgesv
 
     !> Singular values, descending, and singular vectors

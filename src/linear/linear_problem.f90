@@ -7,8 +7,8 @@ module epcont_linear_linear_problem
   use epcont_base_tolerances, only: negligible, solved_to
   use epcont_contact_problem, only: contact_problem, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
-  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
-                                            motion_resultants, pair_forces
+  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, &
+    gap_opening, pair_forces, see_motions
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed
@@ -70,8 +70,7 @@ contains
     linear%by_blocks = plan%contact%by_blocks
     linear%problem%initial_gap = scene%model%initial_gap
     linear%travel_gap = gap_opening(scene%model, scene%model%travel)
-    linear%problem%motion = motion_columns(scene%model, scene%motions)
-    linear%resultant = motion_resultants(scene%model, scene%motions)
+    call see_motions(scene%model, scene%motions, linear%problem%motion, linear%resultant)
   end subroutine new_linear_problem
 
   !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far
