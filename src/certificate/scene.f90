@@ -6,15 +6,16 @@
 !> from the other outline.
 !>
 !> What pressed pairs press on, once displaced, is told by the gap between the outlines along the normal, how
-!> far beside the other body the node stands, and how far the two sides have slid along each other.
+!> far beside the other body the node stands, and how far the two sides have slid along each other. Last,
+!> nodes may be displaced beyond a line at which their body ends: the axis of rings, or a line of symmetry.
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: no_effect
-  use epcont_certificate_beyond, only: look_beyond
+  use epcont_base_tolerances, only: no_effect, same_place
   use epcont_certificate_findings, only: beyond_place, keep_worse, overlap_place, scene_type
   use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, motion_at, new_search, &
                                        part_along, point_on, point_type, search_type, sides_meeting
   use epcont_certificate_way, only: look_at_ways
+  use epcont_element_kinematics, only: directions
   use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
@@ -59,7 +60,7 @@ contains
     end do
     call look_at_pairs()
     call look_at_ways(search, scene)
-    call look_beyond(model, displacement, search%least, scene)
+    call look_beyond()
     scene%changed_side = maxloc(search%allowance%change, dim=1)
     scene%change = search%allowance%change(scene%changed_side)
 
@@ -194,6 +195,58 @@ contains
         call keep_worse(found, scene%beside)
       end if
     end subroutine look_at_pair
+
+    !> Of rings: the node of least radius, if that is below 0. Of all bodies: the node farthest beyond a line
+    !! along which all of an end of its body is held across and somewhere free.
+    subroutine look_beyond()
+      type(beyond_place) :: found
+      integer :: c, node, part, way
+
+      if (model%has_rings()) then
+        node = minloc(model%x(1, :) + displacement(1, :), dim=1, mask=model%body_outline%part_of > 0)
+        found = beyond_place(-(model%x(1, node) + displacement(1, node)), 0.0_wp, 1, node)
+        if (found%depth > search%least) scene%axis = found
+      end if
+      do c = 1, directions
+        do way = -1, 1, 2
+          do part = 1, model%body_outline%parts
+            found = beyond_end(part, c, way)
+            if (found%depth > max(search%least, scene%mirror%depth)) scene%mirror = found
+          end do
+        end do
+      end do
+    end subroutine look_beyond
+
+    !> The node farthest beyond the end of a part towards lower coordinates (`way` 1), or towards higher ones
+    !! (-1), where all that was drawn on that line is held there, and is free to slide along it somewhere;
+    !! else none, 0 deep.
+    pure type(beyond_place) function beyond_end(part, c, way) result(place)
+      integer, intent(in) :: part, c, way
+      real(wp), allocatable :: u(:), x(:)
+      real(wp) :: edge
+
+      associate (first => model%body_outline%first(part), last => model%body_outline%first(part + 1) - 1)
+        associate (node => model%body_outline%node(1, first:last), &
+                   next => model%body_outline%node(2, first:last))
+          x = way*model%x(c, node)
+          u = way*displacement(c, node)
+          edge = minval(x) + same_place*(maxval(x) - minval(x))
+          if (.not. all(x > edge .or. is_held(c, node) .and. abs(u) <= search%least)) return
+          if (all(x > edge .or. way*model%x(c, next) > edge &
+                  .or. is_held(3 - c, node) .and. is_held(3 - c, next))) return
+          associate (farthest => minloc(x + u, dim=1))
+            place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
+          end associate
+        end associate
+      end associate
+    end function beyond_end
+
+    !> Does a support hold a node?
+    elemental logical function is_held(direction, node)
+      integer, intent(in) :: direction, node
+
+      is_held = model%held(direction, model%leader(direction, node))
+    end function is_held
   end function look_through
 
   !> Where the chord of a side crosses those of another part, ascending.
@@ -201,7 +254,8 @@ contains
     type(outline_shape), intent(in) :: now
     integer, intent(in) :: side, part
     real(wp), allocatable :: crossing(:)
-    real(wp) :: across, along(2), from(2), other(2), s, t
+    real(wp), dimension(directions) :: along, from, other
+    real(wp) :: across, s, t
     integer, allocatable :: near(:)
     integer :: k
 
