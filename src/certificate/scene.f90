@@ -11,7 +11,7 @@
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect, same_place
-  use epcont_certificate_findings, only: beyond_place, keep_worse, overlap_place, scene_type
+  use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, rated, scene_type
   use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, motion_at, new_search, &
                                        part_along, point_on, point_type, search_type, sides_meeting
   use epcont_certificate_way, only: look_at_ways
@@ -40,7 +40,7 @@ contains
   !> Look through the whole scene.
   function look_through(model, displacement, force) result(scene)
     type(model_type), intent(in) :: model        !! what is looked through
-    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
     type(scene_type) :: scene
     type(search_type) :: search
@@ -140,7 +140,7 @@ contains
           found = meet(search, point, place)
           ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
           drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
-          if (drawn <= found%allowed) call keep_worse(found, scene%itself)
+          if (drawn <= found%allowed .and. is_worse(found, scene%itself)) scene%itself = rated(found)
         end do
       end associate
     end subroutine look_at_itself
@@ -183,7 +183,7 @@ contains
                               point%motion - motion_at(search, place%side, place%s))
       slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
                          part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
-      call keep_worse(slid, scene%slid)
+      if (is_worse(slid, scene%slid)) scene%slid = rated(slid)
       if (place%inside) return
       found%depth = abs(dot_product(point%x - place%x, model%normal(:, pair)))
       off = abs(cross_product(point%x - place%x, model%normal(:, pair)))
@@ -192,7 +192,7 @@ contains
       else   ! the other body ends before it
         found%depth = off
         found%allowed = found%allowed + slid%allowed
-        call keep_worse(found, scene%beside)
+        if (is_worse(found, scene%beside)) scene%beside = rated(found)
       end if
     end subroutine look_at_pair
 
