@@ -20,8 +20,7 @@ contains
   !> The permutation that puts `key` in ascending order; equal keys keep their order (merge sort).
   pure function sorted_order(key) result(order)
     integer, intent(in) :: key(:)   !! in any order
-    integer, allocatable :: order(:)
-    integer, allocatable :: merged(:)
+    integer, allocatable :: order(:), merged(:)
     integer, parameter :: run = 8   ! so many are put in order by insertion
     integer :: n, width, left, i, j, k
 
@@ -51,8 +50,7 @@ contains
 
   !> Merge two runs that are in order, from `left` and from `middle` on; what follows begins at `right`.
   pure subroutine merge_runs(key, order, left, middle, right, merged)
-    integer, intent(in) :: key(:), order(:)
-    integer, intent(in) :: left, middle, right
+    integer, intent(in) :: key(:), order(:), left, middle, right
     integer, intent(inout) :: merged(:)
     integer :: i, j, k
     logical :: is_second
@@ -153,8 +151,7 @@ contains
 
   !> The first place in the ascending list `key` that is not below `id` (size + 1: none).
   pure integer function first_not_below(key, id) result(low)
-    integer, intent(in) :: key(:)
-    integer, intent(in) :: id
+    integer, intent(in) :: key(:), id
     integer :: middle, high
 
     low = 1

@@ -70,17 +70,15 @@ contains
     !> in UTF-8 the controls from 128 to 159 begin with a byte of 194
     integer, parameter :: delete = 127, first_of_c1 = 194
     character(len=2) :: code
-    logical :: control
-    integer :: i
+    integer :: byte(0:len(name) + 1), i
 
+    byte = 255
+    byte(1:len(name)) = [(iachar(name(i:i)), i=1, len(name))]
     text = ''
     do i = 1, len(name)
-      control = name(i:i) < ' ' .or. iachar(name(i:i)) == delete
-      if (i > 1) control = control .or. iachar(name(i - 1:i - 1)) == first_of_c1 .and. iachar(name(i:i)) < 160
-      if (i < len(name)) &
-        control = control .or. iachar(name(i:i)) == first_of_c1 .and. iachar(name(i + 1:i + 1)) < 160
-      write (code, '(z2.2)') iachar(name(i:i))
-      if (control) then
+      if (byte(i) < 32 .or. byte(i) == delete .or. byte(i - 1) == first_of_c1 .and. byte(i) < 160 &
+          .or. byte(i) == first_of_c1 .and. byte(i + 1) < 160) then
+        write (code, '(z2.2)') byte(i)
         text = text//'\x'//code
       else
         text = text//name(i:i)

@@ -63,9 +63,9 @@ contains
     integer, intent(in) :: side                 !! of the outlines
     type(meeting_type), intent(in) :: meeting   !! how it meets that
 
-    of = bend_over(self, side, max(self%length(side), meeting%longest))
-    if (is_curve(self, side, meeting)) of = self%sag(side) + of
-    of = factor*of + self%of_motion(side, meeting) + self%gap(side)
+    of = factor*(curve(self, side, meeting)*self%sag(side) &
+                 + bend_over(self, side, max(self%length(side), meeting%longest))) &
+         + self%of_motion(side, meeting) + self%gap(side)
   end function of
 
   !> What of that no shorter sides would heal: slides and turns [length].
@@ -76,8 +76,7 @@ contains
     real(wp) :: explained   ! by the slide
 
     associate (slide => meeting%slide, length => self%length(side))
-      explained = slide*self%turn(side)
-      if (is_curve(self, side, meeting)) explained = explained + 0.5_wp*slide**2*self%curvature(side)
+      explained = slide*self%turn(side) + curve(self, side, meeting)*(0.5_wp*slide**2*self%curvature(side))
       of_motion = factor*(min(explained, most_by_slide*length) + 0.5_wp*length*self%change(side)**2)
     end associate
   end function of_motion
@@ -89,9 +88,18 @@ contains
     integer, intent(in) :: side                 !! of the outlines
     type(meeting_type), intent(in) :: meeting   !! how it meets another
 
-    of_drawing = self%gap(side)
-    if (is_curve(self, side, meeting)) of_drawing = self%sag(side) + self%gap(side)
+    of_drawing = curve(self, side, meeting)*self%sag(side) + self%gap(side)
   end function of_drawing
+
+  !> Does the smooth curve above a side's chord count (1 or 0)? It does where it lies on that side, or pairs
+  !! take it.
+  pure real(wp) function curve(self, side, meeting)
+    type(allowance_type), intent(in) :: self
+    integer, intent(in) :: side
+    type(meeting_type), intent(in) :: meeting
+
+    curve = merge(1.0_wp, 0.0_wp, meeting%joined .or. self%hollow(side))
+  end function curve
 
   !> How far the outline bends over so long a part of it, from a side on, either way [length].
   pure real(wp) function bend_over(self, side, length) result(bend)
@@ -121,15 +129,6 @@ contains
     bend = length*theta/8.0_wp
   end function bend_over
 
-  !> Does the smooth curve above a side's chord count? It does where it lies on that side, or pairs take it.
-  pure logical function is_curve(self, side, meeting)
-    type(allowance_type), intent(in) :: self
-    integer, intent(in) :: side
-    type(meeting_type), intent(in) :: meeting
-
-    is_curve = meeting%joined .or. self%hollow(side)
-  end function is_curve
-
   !> For all sides of the outlines.
   pure function new_allowance(model, drawn, now) result(allowance)
     type(model_type), intent(in) :: model           !! the scene
@@ -138,7 +137,7 @@ contains
     real(wp), dimension(drawn%outline%sides) :: length, sag, bend, arch, turn, change, curvature
     real(wp) :: joint(drawn%outline%sides)   ! turn as drawn where a side ends, 0 at corners [rad]
     logical :: smooth(drawn%outline%sides)
-    real(wp) :: curve
+    real(wp) :: own_arch
     integer :: s
 
     associate (before => drawn%outline%before, after => drawn%outline%after)
@@ -146,9 +145,9 @@ contains
         length(s) = norm2(drawn%chord(s))
         turn(s) = abs(angle(drawn%chord(s), now%chord(s)))
         change(s) = max(turn(s), abs(norm2(now%chord(s))/length(s) - 1.0_wp))
-        curve = angle(drawn%tangent(s, 0.0_wp), drawn%tangent(s, 1.0_wp))
-        curvature(s) = abs(curve)/length(s)
-        arch(s) = angle(now%tangent(s, 0.0_wp), now%tangent(s, 1.0_wp)) - curve
+        own_arch = angle(drawn%tangent(s, 0.0_wp), drawn%tangent(s, 1.0_wp))
+        curvature(s) = abs(own_arch)/length(s)
+        arch(s) = angle(now%tangent(s, 0.0_wp), now%tangent(s, 1.0_wp)) - own_arch
         joint(s) = angle(drawn%tangent(s, 1.0_wp), drawn%tangent(after(s), 0.0_wp))
         bend(s) = angle(now%tangent(s, 1.0_wp), now%tangent(after(s), 0.0_wp)) - joint(s)
       end do

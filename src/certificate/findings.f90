@@ -2,9 +2,10 @@
 module epcont_certificate_findings
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
+  use epcont_element_kinematics, only: directions
   implicit none
   private
-  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, take_if
+  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, rated
 
   !> Of places that differ by less than this part the first counts: rounding decides nothing.
   real(wp), parameter :: more = 1.0_wp + 1.0e-9_wp
@@ -15,8 +16,8 @@ module epcont_certificate_findings
     real(wp) :: depth = 0.0_wp     !! [length]
     real(wp) :: allowed = 0.0_wp   !! [length]
     real(wp) :: distance = 0.0_wp  !! of the point from the other outline: mostly the depth [length]
-    real(wp) :: x(2) = 0.0_wp      !! of the point that lies inside, displaced [length]
-    real(wp) :: drawn(2) = 0.0_wp  !! where that point was drawn [length]
+    real(wp) :: x(directions) = 0.0_wp      !! of the point that lies inside, displaced [length]
+    real(wp) :: drawn(directions) = 0.0_wp  !! where that point was drawn [length]
     integer :: side = 0            !! of the outlines, on which the point is; 0: there is no such place
     integer :: other = 0           !! the side of the other body that it is nearest to
     type(meeting_type) :: meeting  !! of these two
@@ -78,14 +79,11 @@ contains
     is_deeper = found%depth > more*than%depth
   end function is_deeper
 
-  !> Keep another place instead, if it is a better one to keep.
-  pure subroutine take_if(better, found, kept)
-    logical, intent(in) :: better                !! than what is kept
+  !> A place with its ratio, to be kept.
+  elemental type(overlap_place) function rated(found)
     type(overlap_place), intent(in) :: found     !! its ratio is not looked at
-    type(overlap_place), intent(inout) :: kept   !! with its ratio
 
-    if (.not. better) return
-    kept = found
-    kept%ratio = found%depth/found%allowed
-  end subroutine take_if
+    rated = found
+    rated%ratio = found%depth/found%allowed
+  end function rated
 end module epcont_certificate_findings

@@ -4,8 +4,9 @@ module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_gap
   use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
-  use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, take_if
+  use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, rated
   use epcont_contact_geometry_mates, only: find_mates, is_mate
+  use epcont_element_kinematics, only: directions
   use epcont_geometry_box_tree, only: box_tree
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
   use epcont_model_model, only: model_type
@@ -28,15 +29,15 @@ module epcont_certificate_meeting
     integer :: side = 0                !! of the outlines
     real(wp) :: s = 0.5_wp             !! along it, from 0 to 1
     logical :: in_element = .false.    !! it is the middle of that side's element
-    real(wp) :: drawn(2) = 0.0_wp      !! where it was drawn [length]
-    real(wp) :: motion(2) = 0.0_wp     !! its displacement [length]
-    real(wp) :: x(2) = 0.0_wp          !! where it is then [length]
+    real(wp) :: drawn(directions) = 0.0_wp      !! where it was drawn [length]
+    real(wp) :: motion(directions) = 0.0_wp     !! its displacement [length]
+    real(wp) :: x(directions) = 0.0_wp          !! where it is then [length]
   end type point_type
 
   !> What is worked with.
   type :: search_type
     type(outline_shape) :: drawn, now      !! the outlines as drawn, and displaced
-    real(wp), allocatable :: motion(:, :, :)   !! of begin, end, middle of each side [length] [2, 3, sides]
+    real(wp), allocatable :: motion(:, :, :)   !! of begin, end, middle of each side [length] [directions, 3, sides]
     type(allowance_type) :: allowance
     type(point_type), allocatable :: middle(:)    !! a point within each part [parts]
     !> Of a circle whose outline is as long as the part's: however it lies, it is the same [length] [parts]
@@ -52,7 +53,7 @@ contains
   !> For a scene that has outlines.
   pure function new_search(model, displacement) result(search)
     type(model_type), intent(in) :: model        !! the scene
-    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     type(search_type) :: search
     integer :: k
 
@@ -60,7 +61,7 @@ contains
       search%drawn = new_outline_shape(outline, x)
       search%now = new_outline_shape(outline, x + displacement)
       ! A middle that is not there has that of the first node, for which nobody asks.
-      search%motion = reshape(displacement(:, [max(outline%node, 1)]), [2, 3, outline%sides])
+      search%motion = reshape(displacement(:, [max(outline%node, 1)]), [directions, 3, outline%sides])
       search%allowance = new_allowance(model, search%drawn, search%now)
       search%mate = find_mates(model)
       search%moved = maxval(norm2(displacement, dim=1))
@@ -108,7 +109,7 @@ contains
   !> The boxes of a tree that meet the one from `low` to `high`.
   pure function boxes_meeting(tree, low, high) result(box)
     type(box_tree), intent(in) :: tree        !! of the boxes
-    real(wp), intent(in) :: low(2), high(2)   !! [length]
+    real(wp), intent(in) :: low(directions), high(directions)   !! [length]
     integer, allocatable :: box(:)
 
     box = tree%meeting(low, high)
@@ -118,7 +119,7 @@ contains
   pure function sides_meeting(shape, part, low, high) result(side)
     type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
     integer, intent(in) :: part                !! of the outlines
-    real(wp), intent(in) :: low(2), high(2)    !! [length]
+    real(wp), intent(in) :: low(directions), high(directions)    !! [length]
     integer, allocatable :: side(:)
 
     side = boxes_meeting(shape%side_tree(part), low, high)
@@ -130,7 +131,7 @@ contains
     type(search_type), intent(in) :: search   !! the outlines
     integer, intent(in) :: side               !! of the outlines
     real(wp), intent(in) :: s                 !! from 0 to 1
-    real(wp) :: motion(2)
+    real(wp) :: motion(directions)
 
     associate (own => search%motion(:, :, side))
       motion = (1.0_wp - s)*own(:, 1) + s*own(:, 2)
@@ -144,7 +145,7 @@ contains
     type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
     integer, intent(in) :: side                !! of the outlines
     real(wp), intent(in) :: s                  !! where on it, from 0 to 1
-    real(wp), intent(in) :: motion(2)          !! [length]
+    real(wp), intent(in) :: motion(directions)          !! [length]
 
     associate (along => shape%tangent(side, s))
       part = abs(dot_product(along, motion))/max(norm2(along), tiny(1.0_wp))
@@ -158,7 +159,7 @@ contains
     type(point_type), intent(in) :: point     !! displaced
     type(near_place), intent(in) :: place     !! the nearest one of the other outline
     integer, allocatable :: own(:), other(:)   ! sides
-    real(wp) :: longest(2), moved(2)
+    real(wp) :: longest(2), moved(directions)
 
     found = overlap_place(depth=place%distance, distance=place%distance, x=point%x, drawn=point%drawn, &
                           side=point%side, other=place%side)
@@ -249,15 +250,15 @@ contains
       if (present(drawn)) then
         if (found%distance > min(place%allowed, telling%allowed)) then
           was = overlap_as_drawn()
-          call take_if(was%depth > was%allowed .and. is_deeper(was, drawn), was, drawn)
+          if (was%depth > was%allowed .and. is_deeper(was, drawn)) drawn = rated(was)
           place%depth = found%depth - was%depth
           telling%depth = place%depth
         end if
       end if
     end associate
-    call take_if(is_worse(place, worst), place, worst)
-    call take_if(is_deeper(place, deepest), place, deepest)
-    call take_if(is_worse(telling, not_told), telling, not_told)
+    if (is_worse(place, worst)) worst = rated(place)
+    if (is_deeper(place, deepest)) deepest = rated(place)
+    if (is_worse(telling, not_told)) not_told = rated(telling)
 
   contains
 

@@ -4,14 +4,18 @@
 !> Each side of the outlines that meets the box of another body is sampled: where it begins, at its quarter
 !> points, and between two places where it crosses the other outline. The depth of a point is its distance
 !> from the other outline.
+!>
+!> What pressed pairs press on, once displaced, is told by the gap between the outlines along the normal, how
+!> far beside the other body the node stands, and how far the two sides have slid along each other. Last,
+!> nodes may be displaced beyond a line at which their body ends: the axis of rings, or a line of symmetry.
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
-  use epcont_certificate_beyond, only: look_beyond
-  use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, scene_type, take_if
-  use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, new_search, point_on, point_type, &
-                                       search_type, sides_meeting
-  use epcont_certificate_pressed, only: look_at_pairs
+  use epcont_base_tolerances, only: no_effect, same_place
+  use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, rated, scene_type
+  use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, motion_at, new_search, &
+                                       part_along, point_on, point_type, search_type, sides_meeting
   use epcont_certificate_way, only: look_at_ways
+  use epcont_element_kinematics, only: directions
   use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
@@ -26,12 +30,17 @@ module epcont_certificate_scene
   !> Points of each side: its beginning and its quarter points.
   real(wp), parameter :: quarters(4) = [0.0_wp, 0.25_wp, 0.5_wp, 0.75_wp]
 
+  !> Sides that slide by less than this part of the longer one carry what they carried where they were drawn;
+  !! so do bodies that slide by less than that part of the smaller one. A node may stand as far beside the
+  !! other body as that.
+  real(wp), parameter :: part_of_side = 0.25_wp, part_of_body = 0.05_wp
+
 contains
 
   !> Look through the whole scene.
   function look_through(model, displacement, force) result(scene)
     type(model_type), intent(in) :: model        !! what is looked through
-    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
     type(scene_type) :: scene
     type(search_type) :: search
@@ -49,9 +58,9 @@ contains
     do part = 1, model%body_outline%parts
       call look_at_middle(part)
     end do
-    call look_at_pairs(model, search, force, scene)
+    call look_at_pairs()
     call look_at_ways(search, scene)
-    call look_beyond(model, displacement, search%least, scene)
+    call look_beyond()
     scene%changed_side = maxloc(search%allowance%change, dim=1)
     scene%change = search%allowance%change(scene%changed_side)
 
@@ -131,10 +140,113 @@ contains
           found = meet(search, point, place)
           ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
           drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
-          if (drawn <= found%allowed) call take_if(is_worse(found, scene%itself), found, scene%itself)
+          if (drawn <= found%allowed .and. is_worse(found, scene%itself)) scene%itself = rated(found)
         end do
       end associate
     end subroutine look_at_itself
+
+    !> All pressed pairs of two bodies.
+    subroutine look_at_pairs()
+      real(wp) :: least
+      integer :: k, side, side_of(model%nodes)
+
+      least = no_effect*maxval(force)
+      associate (node => model%body_outline%node, part_of => model%body_outline%part_of)
+        side_of = 0
+        do side = 1, size(node, 2)
+          if (node(3, side) > 0) side_of(node(3, side)) = side
+          side_of(node(1, side)) = side
+        end do
+        do k = 1, model%pairs
+          associate (part => part_of(model%pair_node(1, k)), b => model%pair_node(2, k))
+            if (force(k) <= least .or. side_of(b) == 0 .or. part == 0 .or. part == part_of(b)) cycle
+            side = side_of(b)
+            call look_at_pair(k, point_on(search, side, merge(0.0_wp, 0.5_wp, node(1, side) == b)), part)
+          end associate
+        end do
+      end associate
+    end subroutine look_at_pairs
+
+    !> One pressed pair: its node B, at the part that A is of.
+    subroutine look_at_pair(pair, point, part)
+      integer, intent(in) :: pair, part
+      type(point_type), intent(in) :: point
+      type(near_place) :: place
+      type(overlap_place) :: found, slid
+      real(wp) :: off
+
+      place = search%now%nearest_place(part, point%x)
+      found = meet(search, point, place)
+      found%pair = pair
+      slid = found
+      slid%depth = part_along(search%now, place%side, place%s, &
+                              point%motion - motion_at(search, place%side, place%s))
+      slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
+                         part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
+      if (is_worse(slid, scene%slid)) scene%slid = rated(slid)
+      if (place%inside) return
+      found%depth = abs(dot_product(point%x - place%x, model%normal(:, pair)))
+      off = abs(cross_product(point%x - place%x, model%normal(:, pair)))
+      if (off <= found%depth) then
+        call keep(search, found, scene%apart, scene%widest, scene%wide)
+      else   ! the other body ends before it
+        found%depth = off
+        found%allowed = found%allowed + slid%allowed
+        if (is_worse(found, scene%beside)) scene%beside = rated(found)
+      end if
+    end subroutine look_at_pair
+
+    !> Of rings: the node of least radius, if that is below 0. Of all bodies: the node farthest beyond a line
+    !! along which all of an end of its body is held across and somewhere free.
+    subroutine look_beyond()
+      type(beyond_place) :: found
+      integer :: c, node, part, way
+
+      if (model%has_rings()) then
+        node = minloc(model%x(1, :) + displacement(1, :), dim=1, mask=model%body_outline%part_of > 0)
+        found = beyond_place(-(model%x(1, node) + displacement(1, node)), 0.0_wp, 1, node)
+        if (found%depth > search%least) scene%axis = found
+      end if
+      do c = 1, directions
+        do way = -1, 1, 2
+          do part = 1, model%body_outline%parts
+            found = beyond_end(part, c, way)
+            if (found%depth > max(search%least, scene%mirror%depth)) scene%mirror = found
+          end do
+        end do
+      end do
+    end subroutine look_beyond
+
+    !> The node farthest beyond the end of a part towards lower coordinates (`way` 1), or towards higher ones
+    !! (-1), where all that was drawn on that line is held there, and is free to slide along it somewhere;
+    !! else none, 0 deep.
+    pure type(beyond_place) function beyond_end(part, c, way) result(place)
+      integer, intent(in) :: part, c, way
+      real(wp), allocatable :: u(:), x(:)
+      real(wp) :: edge
+
+      associate (first => model%body_outline%first(part), last => model%body_outline%first(part + 1) - 1)
+        associate (node => model%body_outline%node(1, first:last), &
+                   next => model%body_outline%node(2, first:last))
+          x = way*model%x(c, node)
+          u = way*displacement(c, node)
+          edge = minval(x) + same_place*(maxval(x) - minval(x))
+          if (.not. all(x > edge .or. is_held(c, node) .and. abs(u) <= search%least)) return
+          if (all(x > edge .or. way*model%x(c, next) > edge &
+                  .or. is_held(3 - c, node) .and. is_held(3 - c, next))) return
+          associate (farthest => minloc(x + u, dim=1))
+            place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
+          end associate
+        end associate
+      end associate
+    end function beyond_end
+
+    !> Does a support hold a node?
+    elemental logical function is_held(direction, node)
+      integer, intent(in) :: direction, node
+
+      is_held = model%held(direction, model%leader(direction, node))
+    end function is_held
   end function look_through
 
   !> Where the chord of a side crosses those of another part, ascending.
@@ -142,7 +254,8 @@ contains
     type(outline_shape), intent(in) :: now
     integer, intent(in) :: side, part
     real(wp), allocatable :: crossing(:)
-    real(wp) :: across, along(2), from(2), other(2), s, t
+    real(wp), dimension(directions) :: along, from, other
+    real(wp) :: across, s, t
     integer, allocatable :: near(:)
     integer :: k
 

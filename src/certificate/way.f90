@@ -7,7 +7,7 @@
 !> anew.
 module epcont_certificate_way
   use epcont_base_kinds, only: wp
-  use epcont_certificate_findings, only: is_worse, overlap_place, scene_type, take_if
+  use epcont_certificate_findings, only: is_worse, overlap_place, rated, scene_type
   use epcont_certificate_meeting, only: boxes_meeting, insert, meet, point_on, point_type, search_type, &
                                        sides_meeting
   use epcont_element_kinematics, only: directions
@@ -145,7 +145,7 @@ contains
       found%x = point%drawn + middle*point%motion
       if (.not. point%in_element) &
         found%node = search%now%outline%node(merge(3, 1, point%s > 0.0_wp), found%side)
-      call take_if(is_worse(found, scene%passed), found, scene%passed)
+      if (is_worse(found, scene%passed)) scene%passed = rated(found)
     end subroutine look_between
 
     !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none.
@@ -181,7 +181,8 @@ contains
     type(point_type), intent(in) :: point
     integer, intent(in) :: side
     real(wp), allocatable, intent(inout) :: time(:)   !! ascending
-    real(wp) :: a(2), b(2), da(2), db(2), root(2)
+    real(wp), dimension(directions) :: a, b, da, db
+    real(wp) :: root(2)
     integer :: chord, ends(3), i
 
     ends = [1, 2, 0]
@@ -203,8 +204,7 @@ contains
   !> The real roots of a + b t + c t**2 between -1 and 1; 2 stands for one that is not there.
   pure function roots_of_square(a, b, c) result(root)
     real(wp), intent(in) :: a, b, c
-    real(wp) :: root(2)
-    real(wp) :: discriminant, q
+    real(wp) :: root(2), discriminant, q
 
     root = 2.0_wp
     discriminant = b**2 - 4.0_wp*a*c

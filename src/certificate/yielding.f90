@@ -20,8 +20,7 @@ contains
     type(model_type), intent(in) :: model   !! its sections, their curves and PARAM MUP
     integer, intent(in) :: section          !! of the model
     real(wp), intent(in) :: strain(components)       !! xx, yy, zz, xy (engineering)
-    real(wp) :: stress(components)
-    real(wp) :: across, lambda, mu, secant, shear, total
+    real(wp) :: stress(components), across, lambda, mu, secant, shear, total
 
     associate (young => model%young(section), nu => model%poisson(section))
       secant = young

@@ -1,4 +1,5 @@
-!> The contact equations for a given set S of pairs in contact, factored from F and A.
+!> The contact equations for a given set S of pairs in contact, factored from F and A, their solution, and the
+!> test of its signs.
 !>
 !>     F_SS R_S - A_S q = -h,   A_S' R_S = p
 !>
@@ -18,14 +19,19 @@
 module epcont_contact_basis
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_base_tolerances, only: lost_digits, negligible
+  use epcont_base_tolerances, only: cancelled, lost_digits
   use epcont_contact_scaling, only: scaled_problem
   use epcont_linalg_dense, only: add_product, cholesky_factor, cholesky_solve, extend_cholesky, &
     pivoted_cholesky
   implicit none
   private
-  public :: contact_basis, new_basis, change_set, respond, regular_flexibility, rank_tolerance
+  public :: contact_basis, new_basis, change_set, respond, regular_flexibility
+  public :: contact_state, fresh_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
 
+  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can
+  !! be asked where the flexibility is badly conditioned (1e10: tests/contact/hard_problem), and what is asked
+  !! of a guess, from which better sets may be found.
+  real(wp), parameter, public :: guess_tolerance = 1.0e-12_wp
   !> Part of a set from which on its factor is kept. With 1/2, where pairs that come as the candidates are
   !! doubled stand behind edges that go, block pivoting takes half as long again; without keeping anything it
   !! does so too.
@@ -44,6 +50,13 @@ module epcont_contact_basis
     real(wp), allocatable :: resistance(:, :) !! Cholesky factor of A_S' F_g,SS^-1 A_S [m, m]
   end type contact_basis
 
+  !> A set with its solution at full load; without forces where the basis is not sound.
+  type, extends(contact_basis) :: contact_state
+    real(wp), allocatable :: force(:)           !! zero outside the basis [n]
+    real(wp), allocatable :: gap(:)             !! zero up to rounding in the basis [n]
+    real(wp), allocatable :: approach(:)        !! [m]
+  end type contact_state
+
 contains
 
   !> Factor the equations of the chosen pairs. Pairs whose force depends on that of others are left out.
@@ -54,13 +67,12 @@ contains
     integer :: info, k, rank
 
     basis%pairs = pack([(k, k=1, size(chosen))], chosen)
-    basis%gamma = weight_of_motions(problem)
-    basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
+    basis%factor = regular_flexibility(problem, basis%pairs, basis%pairs)
     call cholesky_factor(basis%factor, info)
-    if (.not. has_pivots(basis, info, lost_digits*largest_flexibility(problem))) then
+    if (.not. has_pivots(basis, info, lost_digits*problem%softest)) then
       ! The order of pivots, which takes longer, tells who depends on whom.
-      basis%factor = regular_flexibility(problem, basis%gamma, basis%pairs, basis%pairs)
-      call pivoted_cholesky(basis%factor, rank_tolerance(problem), order, rank)
+      basis%factor = regular_flexibility(problem, basis%pairs, basis%pairs)
+      call pivoted_cholesky(basis%factor, problem%rank_tolerance, order, rank)
       basis%pairs = basis%pairs(order(:rank))
       basis%factor = basis%factor(:rank, :rank)
     end if
@@ -80,7 +92,6 @@ contains
     n = count(closed)
     if (.not. allocated(basis%factor)) then   ! room for all pairs
       allocate (basis%pairs(0), basis%factor(size(closed), size(closed)))
-      basis%gamma = weight_of_motions(problem)
     end if
     kept = findloc([closed(basis%pairs), .false.], .false., dim=1) - 1
     ! Where much is new, all are put into order, so that the next sets keep most of it.
@@ -90,9 +101,9 @@ contains
     added = pack([(k, k=1, size(closed))], missing)
     added = added(sorted_order(nint(-firmness_steps*firmness(added))))
     basis%pairs = [basis%pairs(:kept), added]
-    basis%factor(kept + 1:n, :n) = regular_flexibility(problem, basis%gamma, added, basis%pairs)
+    basis%factor(kept + 1:n, :n) = regular_flexibility(problem, added, basis%pairs)
     call extend_cholesky(size(closed), basis%factor, kept, n, info)
-    if (has_pivots(basis, info, rank_tolerance(problem))) then
+    if (has_pivots(basis, info, problem%rank_tolerance)) then
       call hold_motions(basis, problem)
     else
       basis%sound = .false.
@@ -118,6 +129,7 @@ contains
     real(wp) :: resistance(size(problem%resultant), size(problem%resultant))
     integer :: info
 
+    basis%gamma = problem%gamma
     basis%carried = problem%motion(basis%pairs, :)
     call cholesky_solve(basis%factor, basis%carried)
     resistance = 0.0_wp
@@ -145,39 +157,105 @@ contains
   end subroutine respond
 
   !> A block of F_g = F + gamma A A'.
-  pure function regular_flexibility(problem, gamma, rows, columns) result(block)
+  pure function regular_flexibility(problem, rows, columns) result(block)
     type(scaled_problem), intent(in) :: problem   !! in its own units
-    real(wp), intent(in) :: gamma                  !! that of a basis
     integer, intent(in) :: rows(:), columns(:)     !! pairs
     real(wp), allocatable :: block(:, :)
 
     block = problem%flexibility(rows, columns)
-    call add_product(gamma, problem%motion(rows, :), transpose(problem%motion(columns, :)), block)
+    call add_product(problem%gamma, problem%motion(rows, :), transpose(problem%motion(columns, :)), block)
   end function regular_flexibility
 
-  !> gamma, such that F and gamma A A' are of one size.
-  pure real(wp) function weight_of_motions(problem) result(gamma)
-    type(scaled_problem), intent(in) :: problem
-    real(wp) :: largest
+  !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every
+  !! motion.
+  pure type(contact_state) function fresh_state(scaled, closed) result(state)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    logical, intent(in) :: closed(:)   !! [n]
 
-    largest = maxval([sum(problem%motion**2, dim=2), 0.0_wp])
-    gamma = largest_flexibility(problem)
-    if (largest > 0.0_wp) gamma = gamma/largest
-  end function weight_of_motions
+    state%contact_basis = new_basis(scaled, closed)
+    if (.not. state%sound) state%contact_basis = new_basis(scaled, closed .or. scaled%first_touching)
+    call solve_set(state, scaled, scaled%gap, scaled%resultant, refinements=1)
+  end function fresh_state
 
-  !> A pivot of F_g up to this is rounding: a hundredth of a negligible flexibility, or that of n sums.
-  pure real(wp) function rank_tolerance(problem)
-    type(scaled_problem), intent(in) :: problem   !! in its own units
+  !> Forces, gaps and motions with the pairs of the basis closed and the others free of force.
+  pure subroutine solve_set(state, scaled, opening, load, refinements)
+    type(contact_state), intent(inout) :: state   !! its basis is solved with
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    real(wp), intent(in) :: opening(:)            !! gaps without forces [n]
+    real(wp), intent(in) :: load(:)               !! [m]
+    integer, intent(in) :: refinements            !! steps that follow the solution
+    real(wp), allocatable :: force(:, :), approach(:, :)
+    real(wp) :: unbalanced(size(load), 1)         ! what is not carried yet
+    integer :: step
 
-    rank_tolerance = max(negligible/100, 4*size(problem%gap)*epsilon(1.0_wp))*largest_flexibility(problem)
-  end function rank_tolerance
+    state%gap = opening
+    state%force = spread(0.0_wp, 1, size(opening))
+    state%approach = spread(0.0_wp, 1, size(load))
+    if (.not. state%sound) return
+    unbalanced(:, 1) = load
+    associate (pairs => state%pairs)
+      do step = 0, refinements
+        call respond(state%contact_basis, reshape(state%gap(pairs), [size(pairs), 1]), unbalanced, &
+                     force, approach)
+        state%force(pairs) = state%force(pairs) + force(:, 1)
+        state%approach = state%approach + approach(:, 1)
+        state%gap = gaps_under(scaled, opening, state%force, state%approach)
+        unbalanced(:, 1) = load - matmul(state%force, scaled%motion)
+      end do
+    end associate
+  end subroutine solve_set
 
-  !> max F_kk; 1 if nothing is flexible.
-  pure real(wp) function largest_flexibility(problem) result(largest)
-    type(scaled_problem), intent(in) :: problem
+  !> w = g + F R - A q.
+  pure function gaps_under(scaled, opening, force, approach) result(gap)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    real(wp), intent(in) :: opening(:)            !! g [n]
+    real(wp), intent(in) :: force(:)              !! R [n]
+    real(wp), intent(in) :: approach(:)           !! q [m]
+    real(wp), allocatable :: gap(:)
     integer :: k
 
-    largest = maxval([(problem%flexibility(k, k), k=1, size(problem%gap)), 0.0_wp])
-    if (largest <= 0.0_wp) largest = 1.0_wp
-  end function largest_flexibility
+    gap = opening - matmul(scaled%motion, approach)
+    do k = 1, size(force)
+      if (force(k) /= 0.0_wp) gap = gap + force(k)*scaled%flexibility(:, k)
+    end do
+  end function gaps_under
+
+  !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
+  pure function basic_values(state) result(values)
+    type(contact_state), intent(in) :: state   !! set and solution
+    real(wp), allocatable :: values(:)
+
+    values = state%gap
+    values(state%pairs) = state%force(state%pairs)
+  end function basic_values
+
+  !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the
+  !! largest force and gap.
+  pure logical function has_right_signs(scaled, state, tolerance) result(right)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    type(contact_state), intent(in) :: state   !! set and solution
+    real(wp), intent(in) :: tolerance   !! one of the above
+    real(wp) :: force_tolerance, gap_noise
+
+    force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
+    gap_noise = cancelled*maxval([abs(scaled%gap), 0.0_wp])
+    right = state%sound .and. all(state%force >= -force_tolerance) .and. &
+        all(state%gap >= -(force_tolerance + gap_noise))
+    if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
+    ! The largest force, at a stop that hardly gives way, says nothing of gaps that it has no part in.
+    right = all(state%gap >= -(tolerance*max(terms_of_gaps(scaled, state), 1.0_wp) + gap_noise))
+  end function has_right_signs
+
+  !> The sum of the magnitudes that each gap is the sum of.
+  pure function terms_of_gaps(scaled, state) result(terms)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    type(contact_state), intent(in) :: state   !! set and solution
+    real(wp), allocatable :: terms(:)
+    integer :: k
+
+    terms = scaled%gap_terms + matmul(abs(scaled%motion), abs(state%approach))
+    do k = 1, size(state%force)
+      if (state%force(k) /= 0.0_wp) terms = terms + abs(state%force(k)*scaled%flexibility(:, k))
+    end do
+  end function terms_of_gaps
 end module epcont_contact_basis

@@ -12,9 +12,8 @@
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: solved_to
-  use epcont_contact_basis, only: change_set
-  use epcont_contact_contact_state, only: contact_state, fresh_state, guess_tolerance, &
-                                          has_right_signs, solve_set
+  use epcont_contact_basis, only: change_set, contact_state, fresh_state, guess_tolerance, &
+    has_right_signs, solve_set
   use epcont_contact_problem, only: contact_solution, contact_solved
   use epcont_contact_scaling, only: scaled_problem
   implicit none
@@ -75,7 +74,7 @@ contains
       real(wp), intent(in) :: tolerance
 
       state = fresh_state(scaled, closed)
-      found = size(state%basis%pairs) == count(closed)
+      found = size(state%pairs) == count(closed)
       if (found) found = has_right_signs(scaled, state, tolerance)
     end subroutine test_afresh
 
@@ -93,8 +92,8 @@ contains
       do step = 1, step_limit
         if (repairs > repair_limit) exit
         solution%block_steps = solution%block_steps + 1
-        call change_set(trial%basis, scaled, closed, firmness)
-        if (trial%basis%sound) then
+        call change_set(trial%contact_basis, scaled, closed, firmness)
+        if (trial%sound) then
           call solve_set(trial, scaled, scaled%gap, scaled%resultant, refinements=0)
           call find_wrong(trial)
           if (.not. any(wrong)) exit

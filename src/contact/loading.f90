@@ -19,8 +19,7 @@
 module epcont_contact_loading
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, solved_to
-  use epcont_contact_basis, only: respond
-  use epcont_contact_contact_state, only: basic_values, contact_state
+  use epcont_contact_basis, only: basic_values, contact_state, respond
   use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
   use epcont_contact_scaling, only: scaled_problem
   use epcont_linalg_dense, only: add_product
@@ -63,7 +62,7 @@ contains
     real(wp) :: slope(size(start))                      ! change of the basic variables with the entering one
     real(wp) :: load_rate                               ! and of the load factor
     integer :: column, count, entering, n, row
-    real(wp) :: ratio                                   ! increase of the entering variable up to the next event
+    real(wp) :: ratio                                   ! the entering variable grows by up to the next event
 
     n = size(start)
     call begin_tableau()
@@ -96,7 +95,7 @@ contains
       real(wp), allocatable :: opening(:, :), load(:, :), force(:, :), approach(:, :)
       integer :: i
 
-      associate (pairs => state%basis%pairs)
+      associate (pairs => state%pairs)
         basic = [(-i, i=1, n)]
         basic(pairs) = pairs
         first_basic = basic
@@ -113,7 +112,7 @@ contains
         end do
         load(:, pairs) = 0.0_wp
         settled(:, pairs) = 0.0_wp
-        call respond(state%basis, opening, load, force, approach)
+        call respond(state%contact_basis, opening, load, force, approach)
         call add_product(1.0_wp, scaled%flexibility(:, pairs), force, settled(:, :n))
         call add_product(-1.0_wp, scaled%motion, approach, settled(:, :n))
         settled(pairs, :n) = force
@@ -155,8 +154,8 @@ contains
 
     !> The one of the tied rows that would block first if the basic variables of the start were larger by e,
     !! e^2, ... (lexicographic order). Without it ties could make the simplex go round in circles. Row i
-    !! changes with such a variable by 1 if it is basic in it, not at all if it is basic elsewhere, and else by
-    !! minus the entry of its column.
+    !! changes with such a variable by 1 if it is basic in it, not at all if it is basic elsewhere, and else
+    !! by minus the entry of its column.
     pure integer function least_row(tied) result(row)
       logical, intent(in) :: tied(:)     !! [n]
       logical :: left(size(tied))
@@ -215,11 +214,12 @@ contains
         call add_product(1.0_wp, pivot_columns, pivot_rows, settled)
         pending = 0
       end if
-      ! The entering row and the leaving column are replaced as a whole by the product; the others change by it.
+      ! The entering row and the leaving column are replaced as a whole by the product; the others change by
+      ! it.
       associate (p => pending + 1)
         do j = 1, n + 1
-          pivot_rows(p, j) = -(settled(row, j) + dot_product(pivot_columns(row, :p - 1), pivot_rows(:p - 1, j))) &
-                             /slope(row)
+          pivot_rows(p, j) = -(settled(row, j) &
+                               + dot_product(pivot_columns(row, :p - 1), pivot_rows(:p - 1, j)))/slope(row)
           settled(row, j) = 0.0_wp
         end do
         pivot_rows(:p - 1, column) = 0.0_wp

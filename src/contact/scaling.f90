@@ -10,10 +10,11 @@
 !> because translations and rotations have different units.
 module epcont_contact_scaling
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: negligible
   use epcont_contact_problem, only: contact_problem, contact_solution
   implicit none
   private
-  public :: scaled_problem, scale_problem, drop_motions, restore_units
+  public :: scaled_problem, scale_problem, drop_motions, measure, restore_units
 
   !> The problem in its own units, over the motions that are kept.
   type :: scaled_problem
@@ -27,6 +28,11 @@ module epcont_contact_scaling
     real(wp) :: gap_unit = 1.0_wp               !! omega
     real(wp), allocatable :: motion_size(:)     !! largest entry of each column of the given A [all motions]
     integer, allocatable :: kept(:)             !! which of the given motions these are [m]
+    real(wp) :: softest = 1.0_wp         !! max F_kk; 1 if nothing is flexible
+    !> gamma: F and gamma A A' are of one size, and their sum F_g is definite wherever forces are unique
+    real(wp) :: gamma = 1.0_wp
+    !> A pivot of F_g up to this is rounding: a hundredth of a negligible flexibility, or that of n sums.
+    real(wp) :: rank_tolerance = 0.0_wp
     logical, allocatable :: first_touching(:)   !! pairs that hold every motion [n]
     logical, allocatable :: guess(:)   !! of the pairs in contact; not allocated where there is none [n]
   end type scaled_problem
@@ -63,6 +69,7 @@ contains
       scaled%resultant = problem%resultant/scaled%motion_size/rho
     end associate
     scaled%motion = problem%motion/spread(scaled%motion_size, 1, size(scaled%gap))
+    call measure(scaled)
 
   contains
 
@@ -93,7 +100,21 @@ contains
     scaled%motion = scaled%motion(:, kept)
     scaled%resultant = scaled%resultant(kept)
     scaled%kept = scaled%kept(kept)
+    call measure(scaled)
   end subroutine drop_motions
+
+  !> What is large and what is rounding, of flexibilities and motions as they now are.
+  pure subroutine measure(scaled)
+    type(scaled_problem), intent(inout) :: scaled   !! the problem in its own units
+    integer :: k, n
+
+    n = size(scaled%gap)
+    associate (softest => scaled%softest)
+      softest = or_else(largest_of([(scaled%flexibility(k, k), k=1, n)]), 1.0_wp)
+      scaled%gamma = softest/or_else(largest_of(sum(scaled%motion**2, dim=2)), 1.0_wp)
+      scaled%rank_tolerance = max(negligible/100, 4*n*epsilon(1.0_wp))*softest
+    end associate
+  end subroutine measure
 
   !> Put forces, gaps and approach into `solution` in the deck's units; dropped motions stay at zero.
   pure subroutine restore_units(scaled, force, gap, approach, solution)

@@ -11,12 +11,12 @@
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible, null_component, solved_to
-  use epcont_contact_block_pivoting, only: find_by_blocks
-  use epcont_contact_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, &
+  use epcont_contact_basis, only: basic_values, contact_state, fresh_state, guess_tolerance, &
     has_right_signs, solve_set
+  use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_loading, only: follow_load, path_complete, path_ray
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
-  use epcont_contact_scaling, only: scaled_problem
+  use epcont_contact_scaling, only: measure, scaled_problem
   implicit none
   private
   public :: find_contacts
@@ -43,9 +43,9 @@ contains
     closed = scaled%first_touching
     if (allocated(scaled%guess)) closed = closed .or. scaled%guess
     call take_set(closed)
-    if (state%basis%sound .and. .not. allocated(scaled%guess)) lifted = unloaded_values()
+    if (state%sound .and. .not. allocated(scaled%guess)) lifted = unloaded_values()
     do attempt = 0, restart_limit
-      if (.not. state%basis%sound) exit   ! the motions are held too badly to be computed
+      if (.not. state%sound) exit   ! the motions are held too badly to be computed
       solution%state = contact_solved
       if (has_right_signs(scaled, state, merge(guess_tolerance, solved_to, attempt == 0))) return
       solution%restarts = attempt
@@ -84,7 +84,7 @@ contains
       real(wp) :: values(size(scaled%gap))
       type(contact_state) :: rest
 
-      rest%basis = state%basis
+      rest%contact_basis = state%contact_basis
       call solve_set(rest, scaled, scaled%unloaded_gap, 0.0_wp*scaled%resultant, refinements=1)
       values = max(basic_values(rest), 0.0_wp)
     end function unloaded_values
@@ -104,11 +104,12 @@ contains
       do k = 1, size(scaled%gap)
         softer%flexibility(k, k) = softer%flexibility(k, k) + own*maxval(abs(scaled%flexibility))
       end do
+      call measure(softer)
       trial%pivots = solution%pivots
       call find_by_blocks(softer, trial, better, found)
       if (.not. found) return
       closed = scaled%first_touching
-      closed(better%basis%pairs) = .true.
+      closed(better%pairs) = .true.
       better = fresh_state(scaled, closed)
       found = has_right_signs(scaled, better, solved_to)
       if (.not. found) return

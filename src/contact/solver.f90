@@ -3,9 +3,8 @@
 module epcont_contact_solver
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component
-  use epcont_contact_basis, only: new_basis
+  use epcont_contact_basis, only: contact_state, gaps_under, new_basis, solve_set, terms_of_gaps
   use epcont_contact_block_pivoting, only: find_by_blocks
-  use epcont_contact_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
     contact_solution, contact_stalled
@@ -113,7 +112,7 @@ contains
     zero = negligible*maxval([state%force, 1.0_wp])
     call cut_rounding(scaled, state, terms)
     where (state%force > 0.0_wp) state%gap = 0.0_wp
-    solution%touching = state%gap <= negligible*max(terms, maxval([terms(state%basis%pairs), 0.0_wp]))
+    solution%touching = state%gap <= negligible*max(terms, maxval([terms(state%pairs), 0.0_wp]))
     where (solution%touching) state%gap = 0.0_wp
     pressed = state%force > zero
     solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
@@ -137,15 +136,15 @@ contains
       pressed = state%force > cancelled
       where (.not. pressed) state%force = 0.0_wp
       terms = terms_of_gaps(scaled, state)
-      moving = abs(state%approach) > cancelled*maxval([terms(state%basis%pairs), cancelled])
-      if (all(moving) .and. all(pressed(state%basis%pairs))) return
+      moving = abs(state%approach) > cancelled*maxval([terms(state%pairs), cancelled])
+      if (all(moving) .and. all(pressed(state%pairs))) return
       where (.not. moving) state%approach = 0.0_wp
       terms = terms_of_gaps(scaled, state)
       state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
       if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. &
-          all(pressed(state%basis%pairs))) return
-      fewer%basis = new_basis(scaled, pressed)
-      if (.not. fewer%basis%sound) return   ! a motion is held by rounding
+          all(pressed(state%pairs))) return
+      fewer%contact_basis = new_basis(scaled, pressed)
+      if (.not. fewer%sound) return   ! a motion is held by rounding
       call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
       state = fewer
     end do

@@ -2,7 +2,7 @@
 module epcont_contact_uniqueness
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, null_component
-  use epcont_contact_basis, only: contact_basis, new_basis, rank_tolerance, regular_flexibility
+  use epcont_contact_basis, only: contact_basis, new_basis, regular_flexibility
   use epcont_contact_equilibrium, only: can_carry
   use epcont_contact_scaling, only: scaled_problem
   use epcont_linalg_dense, only: add_product, cholesky_solve, null_space, pivoted_cholesky
@@ -27,7 +27,9 @@ contains
     logical, intent(in) :: pressed(:)       !! force beyond rounding; of a basis, so unique by themselves [n]
     logical, allocatable :: indeterminate(:)
     type(contact_basis) :: basis
-    real(wp), allocatable :: answer(:, :), change(:, :), coupling(:, :), loose(:, :)
+    !> M [idle, idle], and what z makes of the forces of the pressed pairs
+    real(wp), allocatable :: answer(:, :), coupling(:, :)
+    real(wp), allocatable :: change(:, :), loose(:, :)
     integer, allocatable :: growing(:), idle(:)
     real(wp) :: zero   !! part of M that is rounding
     integer :: k
@@ -36,40 +38,37 @@ contains
     idle = pack([(k, k=1, size(touching))], touching .and. .not. pressed)
     if (size(idle) == 0) return
     basis = new_basis(problem, pressed)
-    coupling = regular_flexibility(problem, basis%gamma, idle, idle)
-    answer = regular_flexibility(problem, basis%gamma, basis%pairs, idle)
-    loose = transpose(answer)
+    coupling = regular_flexibility(problem, idle, idle)
+    loose = regular_flexibility(problem, basis%pairs, idle)
+    answer = loose
     call cholesky_solve(basis%factor, answer)
-    call add_product(-1.0_wp, loose, answer, coupling)
+    call add_product(-1.0_wp, transpose(loose), answer, coupling)
 
-    zero = amplification*rank_tolerance(problem)
-    growing = forces_that_can_grow(coupling, zero)
+    zero = amplification*problem%rank_tolerance
+    growing = forces_that_can_grow()
     indeterminate(idle(growing)) = .true.
-    loose = null_space(coupling(growing, growing), zero)
-    change = matmul(answer(:, growing), loose)
+    change = matmul(answer(:, growing), null_space(coupling(growing, growing), zero))
     indeterminate(basis%pairs) = [(any(abs(change(k, :)) > null_component), k=1, size(change, 1))]
-  end function find_indeterminate_forces
 
-  !> The j for which some z >= 0 with M z = 0 has z_j > 0.
-  function forces_that_can_grow(coupling, zero) result(growing)
-    real(wp), intent(in) :: coupling(:, :)   !! M, semidefinite [e, e]
-    real(wp), intent(in) :: zero             !! an entry up to this is rounding
-    integer, allocatable :: growing(:)
-    real(wp), allocatable :: factor(:, :), rows(:, :)
-    integer, allocatable :: order(:)
-    logical, allocatable :: grows(:)
-    integer :: j, rank
+  contains
 
-    factor = coupling
-    call pivoted_cholesky(factor, zero, order, rank)
-    allocate (grows(size(order)), source=.false.)
-    if (rank < size(order)) then
+    !> The j for which some z >= 0 with M z = 0 has z_j > 0.
+    function forces_that_can_grow() result(growing)
+      integer, allocatable :: growing(:), order(:)
+      real(wp), allocatable :: factor(:, :), rows(:, :)
+      integer :: j, rank
+
+      factor = coupling
+      call pivoted_cholesky(factor, zero, order, rank)
+      growing = [integer ::]
+      if (rank == size(order)) return
       rows = coupling(:, order(:rank))/max(maxval(abs(coupling)), zero)
       where (abs(coupling(:, order(:rank))) <= zero) rows = 0.0_wp
-      grows = [(can_carry(rows, -rows(j, :)), j=1, size(order))]
-    end if
-    growing = pack([(j, j=1, size(order))], grows)
-  end function forces_that_can_grow
+      do j = 1, size(order)
+        if (can_carry(rows, -rows(j, :))) growing = [growing, j]
+      end do
+    end function forces_that_can_grow
+  end function find_indeterminate_forces
 
   !> Pairs with equal rows in F and A share their force equally.
   pure subroutine share_equally(problem, indeterminate, force)

@@ -21,16 +21,17 @@ module epcont_element_element_kind
     integer :: nodes = 0
     integer :: corners = 0                  !! and sides
     integer :: degree = 1                   !! of the polynomials along a side
-    logical :: mean_dilatation = .false.    !! the change of volume is averaged over the element (B-bar), but in plane stress
+    !> The change of volume is averaged over the element (B-bar), but in plane stress.
+    logical :: mean_dilatation = .false.
     logical :: locks = .false.              !! where the material keeps its volume
     integer :: vtk = 0                      !! VTK's number of the cell
-    procedure(shape_functions), pointer, nopass :: shape => null()   !! at a local place
-    procedure(shape_slopes), pointer, nopass :: slope => null()      !! and its derivatives there
+    procedure(shape_functions), pointer, nopass :: shape => null()
     integer :: points = 0                               !! of integration
     real(wp) :: point(directions, most_points) = 0.0_wp !! their local places
     real(wp) :: weight(most_points) = 0.0_wp            !! their parts of the local area
     real(wp) :: values(most_nodes, most_points) = 0.0_wp               !! shape functions at the points
-    real(wp) :: slopes(directions, most_nodes, most_points) = 0.0_wp   !! and their derivatives by the local coordinates
+    !> And their derivatives by the local coordinates
+    real(wp) :: slopes(directions, most_nodes, most_points) = 0.0_wp
     ! For the estimate of the error (accuracy/):
     integer :: estimated_as = by_linear_triangles       !! which weights it has
     !> Smooth strains are fitted to samples: strain(points) sample_of, where the shape functions are
@@ -41,7 +42,8 @@ module epcont_element_element_kind
     !> Strains are compared at places. There the smooth one is smooth(nodes) n, the element's own
     !! strain(points) p, and the place has the parts v of the points' volumes.
     integer :: places = 0
-    logical :: sees_points = .true.   !! its own strain at a place is that of the only point, or of the one with the same number
+    !> Its own strain at a place is that of the only point, or of the one with the same number.
+    logical :: sees_points = .true.
     real(wp) :: n(most_nodes, most_places) = 0.0_wp
     real(wp) :: p(most_points, most_places) = 0.0_wp
     real(wp) :: v(most_points, most_places) = 0.0_wp
@@ -51,28 +53,22 @@ module epcont_element_element_kind
   end type element_kind
 
   abstract interface
-    !> Something of each node at a local place.
-    pure function shape_functions(place) result(n)
+    !> Shape functions at a local place, and their derivatives by the local coordinates; 0 beyond the last
+    !! node.
+    pure subroutine shape_functions(place, n, slope)
       import :: directions, most_nodes, wp
       real(wp), intent(in) :: place(directions)
-      real(wp) :: n(most_nodes)
-    end function shape_functions
-    !> Derivatives of that.
-    pure function shape_slopes(place) result(slopes)
-      import :: directions, most_nodes, wp
-      real(wp), intent(in) :: place(directions)
-      real(wp) :: slopes(directions, most_nodes)
-    end function shape_slopes
+      real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
+    end subroutine shape_functions
   end interface
 
 contains
 
   !> A kind by its nodes, shape functions and integration points; its strains are sampled and compared at
   !! these.
-  pure function new_kind(corners, nodes, shape, slope, point, weight) result(kind)
+  pure function new_kind(corners, nodes, shape, point, weight) result(kind)
     integer, intent(in) :: corners, nodes      !! how many
-    procedure(shape_functions) :: shape        !! of the nodes, at a local place
-    procedure(shape_slopes) :: slope           !! their derivatives there
+    procedure(shape_functions) :: shape        !! of the nodes
     real(wp), intent(in) :: point(:, :)        !! local places [directions, points]
     real(wp), intent(in) :: weight(:)          !! [points]
     type(element_kind) :: kind
@@ -83,14 +79,12 @@ contains
     kind%nodes = nodes
     kind%degree = nodes/corners
     kind%shape => shape
-    kind%slope => slope
     kind%points = size(weight)
     kind%point(:, :kind%points) = point
     kind%weight(:kind%points) = weight
     unit = 0.0_wp
     do p = 1, kind%points
-      kind%values(:, p) = shape(point(:, p))
-      kind%slopes(:, :, p) = slope(point(:, p))
+      call shape(point(:, p), kind%values(:, p), kind%slopes(:, :, p))
       unit(p, p) = 1.0_wp
     end do
     call kind%compare_at(point, unit, unit)
@@ -103,12 +97,13 @@ contains
     class(element_kind), intent(inout) :: self
     real(wp), intent(in) :: place(:, :)        !! local [directions, places]
     real(wp), intent(in) :: p(:, :), v(:, :)   !! as in the type [points, places]
+    real(wp) :: slope(directions, most_nodes)   !! not wanted
     integer :: k
 
     self%places = size(place, 2)
     self%sees_points = self%points == 1
     do k = 1, self%places
-      self%n(:, k) = self%shape(place(:, k))
+      call self%shape(place(:, k), self%n(:, k), slope)
     end do
     self%p(:self%points, :self%places) = p
     self%v(:self%points, :self%places) = v
@@ -119,11 +114,12 @@ contains
     class(element_kind), intent(inout) :: self
     real(wp), intent(in) :: place(:, :)        !! local [directions, samples]
     real(wp), intent(in) :: sample_of(:, :)    !! as in the type [points, samples]
+    real(wp) :: slope(directions, most_nodes)   !! not wanted
     integer :: k
 
     self%samples = size(place, 2)
     do k = 1, self%samples
-      self%sample_values(:, k) = self%shape(place(:, k))
+      call self%shape(place(:, k), self%sample_values(:, k), slope)
     end do
     self%sample_of(:self%points, :self%samples) = sample_of
   end subroutine sample_at

@@ -18,29 +18,24 @@ contains
   pure function quad4() result(kind)
     type(element_kind) :: kind
 
-    kind = new_kind(4, 4, values, slopes, point, weight)
+    kind = new_kind(4, 4, shape, point, weight)
     kind%plane_card = 'CQUAD4'
     kind%vtk = 9
     kind%mean_dilatation = .true.
     kind%estimated_as = by_quadrilaterals
   end function quad4
 
-  !> Shape functions at a local place.
-  pure function values(place) result(n)
+  !> Shape functions and their derivatives at a local place.
+  pure subroutine shape(place, n, slope)
     real(wp), intent(in) :: place(directions)
-    real(wp) :: n(most_nodes)
+    real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
 
-    n(:4) = 0.25_wp*(1.0_wp + place(1)*corner(1, :))*(1.0_wp + place(2)*corner(2, :))
-    n(5:) = 0.0_wp
-  end function values
-
-  !> Their derivatives by the local coordinates.
-  pure function slopes(place) result(slope)
-    real(wp), intent(in) :: place(directions)
-    real(wp) :: slope(directions, most_nodes)
-
-    slope(1, :4) = 0.25_wp*corner(1, :)*(1.0_wp + place(2)*corner(2, :))
-    slope(2, :4) = 0.25_wp*corner(2, :)*(1.0_wp + place(1)*corner(1, :))
-    slope(:, 5:) = 0.0_wp
-  end function slopes
+    n = 0.0_wp
+    slope = 0.0_wp
+    associate (a => 1.0_wp + place(1)*corner(1, :), b => 1.0_wp + place(2)*corner(2, :))
+      n(:4) = 0.25_wp*a*b
+      slope(1, :4) = 0.25_wp*corner(1, :)*b
+      slope(2, :4) = 0.25_wp*corner(2, :)*a
+    end associate
+  end subroutine shape
 end module epcont_element_quad4

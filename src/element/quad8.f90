@@ -13,7 +13,8 @@ module epcont_element_quad8
              0.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, -1.0_wp, 0.0_wp], [directions, 8])
   !> Places and weights of Gauss along a line. Three by three points integrate the stiffness; two by two would
   !! leave a motion without energy, but there the strains are best (Barlow 1976), and there they are sampled.
-  real(wp), parameter :: three(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)], part(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
+  real(wp), parameter :: three(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
+  real(wp), parameter :: part(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
   real(wp), parameter :: two(2) = [-1.0_wp, 1.0_wp]/sqrt(3.0_wp)
 
 contains
@@ -24,7 +25,7 @@ contains
     real(wp) :: sample_of(9, 4)
     integer :: i, j
 
-    kind = new_kind(4, 8, values, slopes, grid(three), reshape(spread(part, 1, 3)*spread(part, 2, 3), [9]))
+    kind = new_kind(4, 8, shape, grid(three), reshape(spread(part, 1, 3)*spread(part, 2, 3), [9]))
     kind%plane_card = 'CQUAD8'
     kind%vtk = 23
     kind%estimated_as = by_quadratics
@@ -53,48 +54,26 @@ contains
     n = [0.5_wp*at*(at - three(3)), 0.6_wp - at**2, 0.5_wp*at*(at + three(3))]/0.6_wp
   end function between
 
-  !> Shape functions at a local place.
-  pure function values(place) result(n)
+  !> Shape functions and their derivatives at a local place.
+  pure subroutine shape(place, n, slope)
     real(wp), intent(in) :: place(directions)
-    real(wp) :: n(most_nodes)
+    real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
+    real(wp) :: across   !! the local coordinate in which a node between corners lies in the middle
     integer :: i
 
+    n = 0.0_wp
+    slope = 0.0_wp
     do i = 1, 8
-      associate (a => node(1, i)*place(1), b => node(2, i)*place(2))
+      associate (a => node(1, i)*place(1), b => node(2, i)*place(2), in_middle => node(:, i) == 0.0_wp)
         if (i <= 4) then
           n(i) = 0.25_wp*(1.0_wp + a)*(1.0_wp + b)*(a + b - 1.0_wp)
-        else
-          n(i) = 0.5_wp*(1.0_wp + a + b)*(1.0_wp - across(i, place)**2)
-        end if
-      end associate
-    end do
-    n(9:) = 0.0_wp
-  end function values
-
-  !> The local coordinate in which a node between corners lies in the middle.
-  pure real(wp) function across(i, place)
-    integer, intent(in) :: i
-    real(wp), intent(in) :: place(directions)
-
-    across = place(merge(1, 2, node(1, i) == 0.0_wp))
-  end function across
-
-  !> Their derivatives by the local coordinates.
-  pure function slopes(place) result(slope)
-    real(wp), intent(in) :: place(directions)
-    real(wp) :: slope(directions, most_nodes)
-    integer :: i
-
-    do i = 1, 8
-      associate (a => node(1, i)*place(1), b => node(2, i)*place(2))
-        if (i <= 4) then
           slope(:, i) = 0.25_wp*node(:, i)*[(1.0_wp + b)*(2.0_wp*a + b), (1.0_wp + a)*(2.0_wp*b + a)]
         else
-          slope(:, i) = merge(-(1.0_wp + a + b)*across(i, place), 0.5_wp*node(:, i)*(1.0_wp - across(i, place)**2), &
-                              node(:, i) == 0.0_wp)
+          across = place(merge(1, 2, in_middle(1)))
+          n(i) = 0.5_wp*(1.0_wp + a + b)*(1.0_wp - across**2)
+          slope(:, i) = merge(-(1.0_wp + a + b)*across, 0.5_wp*node(:, i)*(1.0_wp - across**2), in_middle)
         end if
       end associate
     end do
-    slope(:, 9:) = 0.0_wp
-  end function slopes
+  end subroutine shape
 end module epcont_element_quad8

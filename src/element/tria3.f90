@@ -10,7 +10,8 @@ module epcont_element_tria3
   !> Integration point and weight: exact for constant strain.
   real(wp), parameter :: point(directions, 1) = 1.0_wp/3.0_wp, weight(1) = 0.5_wp
   !> Strains are compared in the middles of the sides: exact for quadratics.
-  real(wp), parameter :: middle(directions, 3) = reshape([0.5_wp, 0.5_wp, 0.0_wp, 0.5_wp, 0.5_wp, 0.0_wp], [directions, 3])
+  real(wp), parameter :: middle(directions, 3) = &
+    reshape([0.5_wp, 0.5_wp, 0.0_wp, 0.5_wp, 0.5_wp, 0.0_wp], [directions, 3])
 
 contains
 
@@ -18,7 +19,7 @@ contains
   pure function tria3() result(kind)
     type(element_kind) :: kind
 
-    kind = new_kind(3, 3, values, slopes, point, weight)
+    kind = new_kind(3, 3, shape, point, weight)
     kind%plane_card = 'CTRIA3'
     kind%ring_card = 'CTRAX3'
     kind%vtk = 5
@@ -27,21 +28,14 @@ contains
     call kind%compare_at(middle, spread([1.0_wp], 2, 3), spread([1.0_wp/3.0_wp], 2, 3))
   end function tria3
 
-  !> Shape functions at a local place.
-  pure function values(place) result(n)
+  !> Shape functions and their derivatives at a local place.
+  pure subroutine shape(place, n, slope)
     real(wp), intent(in) :: place(directions)
-    real(wp) :: n(most_nodes)
+    real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
 
-    n(:3) = [1.0_wp - place(1) - place(2), place(1), place(2)]
-    n(4:) = 0.0_wp
-  end function values
-
-  !> Their derivatives by the local coordinates.
-  pure function slopes(place) result(slope)
-    real(wp), intent(in) :: place(directions)
-    real(wp) :: slope(directions, most_nodes)
-
+    n = 0.0_wp
+    slope = 0.0_wp
+    n(:3) = [1.0_wp - place(1) - place(2), place]
     slope(:, :3) = reshape([-1.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [directions, 3])
-    slope(:, 4:) = 0.0_wp
-  end function slopes
+  end subroutine shape
 end module epcont_element_tria3

@@ -29,43 +29,35 @@ contains
     real(wp) :: from_points(3, 6)
     integer :: k
 
-    kind = new_kind(3, 6, values, slopes, point, weight)
+    kind = new_kind(3, 6, shape, point, weight)
     kind%plane_card = 'CTRIA6'
     kind%ring_card = 'CTRAX6'
     kind%vtk = 22
     kind%estimated_as = by_quadratics
     do k = 1, size(part)
-      from_points(:, k) = 2.0_wp*[1.0_wp - sum(place(:, k)), place(:, k)] - 1.0_wp/3.0_wp   ! linear between the points
+      ! Linear between the points
+      from_points(:, k) = 2.0_wp*[1.0_wp - sum(place(:, k)), place(:, k)] - 1.0_wp/3.0_wp
     end do
     call kind%compare_at(place, from_points, spread(part, 1, 3))
   end function tria6
 
-  !> Shape functions at a local place.
-  pure function values(place) result(n)
+  !> Shape functions and their derivatives at a local place.
+  pure subroutine shape(place, n, slope)
     real(wp), intent(in) :: place(directions)
-    real(wp) :: n(most_nodes)
-    real(wp) :: l(3)
-
-    l = [1.0_wp - place(1) - place(2), place(1), place(2)]
-    n(:6) = [l*(2.0_wp*l - 1.0_wp), 4.0_wp*l*cshift(l, 1)]
-    n(7:) = 0.0_wp
-  end function values
-
-  !> Their derivatives by the local coordinates.
-  pure function slopes(place) result(slope)
-    real(wp), intent(in) :: place(directions)
-    real(wp) :: slope(directions, most_nodes)
+    real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
     integer, parameter :: next(3) = [2, 3, 1]
     real(wp), parameter :: l_slope(directions, 3) = &
       reshape([-1.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [directions, 3])
     real(wp) :: l(3)
     integer :: i
 
-    l = [1.0_wp - place(1) - place(2), place(1), place(2)]
+    n = 0.0_wp
+    slope = 0.0_wp
+    l = [1.0_wp - place(1) - place(2), place]
+    n(:6) = [l*(2.0_wp*l - 1.0_wp), 4.0_wp*l*cshift(l, 1)]
     do i = 1, 3
       slope(:, i) = (4.0_wp*l(i) - 1.0_wp)*l_slope(:, i)
       slope(:, 3 + i) = 4.0_wp*(l(next(i))*l_slope(:, i) + l(i)*l_slope(:, next(i)))
     end do
-    slope(:, 7:) = 0.0_wp
-  end function slopes
+  end subroutine shape
 end module epcont_element_tria6

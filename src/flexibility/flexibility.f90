@@ -3,6 +3,7 @@ module epcont_flexibility_flexibility
   use epcont_assembly_stiffness, only: body_stiffness
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled
+  use epcont_element_kinematics, only: directions
   use epcont_linalg_assembled, only: sparse_rows
   use epcont_linalg_dense, only: cholesky_solve
   use epcont_model_model, only: model_type
@@ -10,8 +11,8 @@ module epcont_flexibility_flexibility
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
-    motion_resultants, pair_forces
+  public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, pair_forces, &
+    see_motions
 
   !> One body's part of F, between the pairs that it gives way at.
   type :: body_flexibility
@@ -30,12 +31,69 @@ contains
     type(body_flexibility), intent(out) :: part   !! no pairs where the body has none
     type(sparse_rows) :: rows
 
-    call find_rows(model, numbering, b, part%pair, rows)
+    call find_rows(part%pair, rows)
     allocate (part%matrix(size(part%pair), size(part%pair)), source=0.0_wp)
     if (size(part%pair) == 0) return
     rows%weight = rows%weight/sqrt(stiffness%unit)
     call stiffness%matrix%add_compliance(rows, part%matrix)
-    if (numbering%body(b)%border > 0) call add_border(stiffness, rows, part%matrix)
+    if (numbering%body(b)%border > 0) part%matrix = part%matrix + border_part()
+
+  contains
+
+    !> Rows of N in the body, of the pairs that have any entry there; negative equations are of the border.
+    !! Freedoms that are held, across the normal or of another body are left out.
+    pure subroutine find_rows(pair, rows)
+      integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
+      type(sparse_rows), intent(out) :: rows
+      integer :: c, found, i, k, last
+
+      allocate (pair(model%pairs), rows%start(model%pairs + 1), source=1)
+      allocate (rows%equation(directions*size(model%row_node)), rows%weight(directions*size(model%row_node)))
+      last = 0
+      found = 0
+      do k = 1, model%pairs
+        do i = model%row_start(k), model%row_start(k + 1) - 1
+          if (model%body(model%row_node(i)) /= b) cycle
+          do c = 1, directions
+            associate (number => numbering%equation(c, model%row_node(i)))
+              if (number == 0 .or. model%normal(c, k) == 0.0_wp) cycle
+              last = last + 1
+              rows%equation(last) = number
+              rows%weight(last) = model%row_weight(i)*model%normal(c, k)
+            end associate
+          end do
+        end do
+        if (last < rows%start(found + 1)) cycle
+        found = found + 1
+        pair(found) = k
+        rows%start(found + 1) = last + 1
+      end do
+      pair = pair(:found)
+      rows = sparse_rows(rows%start(:found + 1), rows%equation(:last), rows%weight(:last))
+    end subroutine find_rows
+
+    !> What the border adds: K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'.
+    pure function border_part() result(flexibility)
+      real(wp), allocatable :: flexibility(:, :), solved(:, :)
+      real(wp) :: response(size(part%pair), size(stiffness%schur, 1))
+      integer :: i, k
+
+      response = 0.0_wp
+      do k = 1, size(part%pair)
+        do i = rows%start(k), rows%start(k + 1) - 1
+          associate (equation => rows%equation(i))
+            if (equation > 0) then
+              response(k, :) = response(k, :) + rows%weight(i)*stiffness%coupling(equation, :)
+            else
+              response(k, -equation) = response(k, -equation) - rows%weight(i)
+            end if
+          end associate
+        end do
+      end do
+      solved = transpose(response)
+      call cholesky_solve(stiffness%schur, solved)
+      flexibility = matmul(response, solved)
+    end function border_part
   end subroutine find_flexibility
 
   !> Add a body's part to F.
@@ -51,74 +109,13 @@ contains
     end do
   end subroutine add_flexibility
 
-  !> Rows of N in one body, of the pairs that have any entry there; negative equations are of the border.
-  !! Freedoms that are held, across the normal or of another body are left out.
-  pure subroutine find_rows(model, numbering, b, pair, rows)
-    type(model_type), intent(in) :: model
-    type(numbering_type), intent(in) :: numbering
-    integer, intent(in) :: b
-    integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
-    type(sparse_rows), intent(out) :: rows
-    integer :: c, found, i, k, last
-
-    allocate (pair(model%pairs), rows%start(model%pairs + 1), source=1)
-    allocate (rows%equation(2*size(model%row_node)), rows%weight(2*size(model%row_node)))
-    last = 0
-    found = 0
-    do k = 1, model%pairs
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        if (model%body(model%row_node(i)) /= b) cycle
-        do c = 1, 2
-          associate (number => numbering%equation(c, model%row_node(i)))
-            if (number == 0 .or. model%normal(c, k) == 0.0_wp) cycle
-            last = last + 1
-            rows%equation(last) = number
-            rows%weight(last) = model%row_weight(i)*model%normal(c, k)
-          end associate
-        end do
-      end do
-      if (last < rows%start(found + 1)) cycle
-      found = found + 1
-      pair(found) = k
-      rows%start(found + 1) = last + 1
-    end do
-    pair = pair(:found)
-    rows = sparse_rows(rows%start(:found + 1), rows%equation(:last), rows%weight(:last))
-  end subroutine find_rows
-
-  !> What the border adds: K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'.
-  pure subroutine add_border(stiffness, rows, flexibility)
-    type(body_stiffness), intent(in) :: stiffness
-    type(sparse_rows), intent(in) :: rows
-    real(wp), intent(inout) :: flexibility(:, :)
-    real(wp), allocatable :: response(:, :), solved(:, :)
-    integer :: i, k
-
-    allocate (response(size(flexibility, 1), size(stiffness%schur, 1)), source=0.0_wp)
-    do k = 1, size(response, 1)
-      do i = rows%start(k), rows%start(k + 1) - 1
-        associate (equation => rows%equation(i))
-          if (equation > 0) then
-            response(k, :) = response(k, :) + rows%weight(i)*stiffness%coupling(equation, :)
-          else
-            response(k, -equation) = response(k, -equation) - rows%weight(i)
-          end if
-        end associate
-      end do
-    end do
-    solved = transpose(response)
-    call cholesky_solve(stiffness%schur, solved)
-    flexibility = flexibility + matmul(response, solved)
-  end subroutine add_border
-
   !> Opening of the gaps by displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)
     type(model_type), intent(in) :: model   !! the scene
-    real(wp), intent(in) :: displacement(:, :)  !! [2, nodes]
-    real(wp), allocatable :: opening(:)
+    real(wp), intent(in) :: displacement(:, :)  !! [directions, nodes]
+    real(wp) :: opening(model%pairs)
     integer :: k
 
-    allocate (opening(model%pairs))
     do k = 1, model%pairs
       associate (node => model%row_node(model%row_start(k):model%row_start(k + 1) - 1))
         opening(k) = model%opening(k, displacement(:, node))
@@ -126,14 +123,14 @@ contains
     end do
   end function gap_opening
 
-  !> Forces of the pairs on the nodes: N' R [force] [2, nodes].
+  !> Forces of the pairs on the nodes: N' R [force] [directions, nodes].
   pure function pair_forces(model, force) result(nodal)
     type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: force(:)  !! [pairs]
-    real(wp), allocatable :: nodal(:, :)
+    real(wp) :: nodal(directions, model%nodes)
     integer :: i, k
 
-    allocate (nodal(2, model%nodes), source=0.0_wp)
+    nodal = 0.0_wp
     do k = 1, model%pairs
       do i = model%row_start(k), model%row_start(k + 1) - 1
         associate (node => model%row_node(i))
@@ -143,54 +140,39 @@ contains
     end do
   end function pair_forces
 
-  !> A = -N Phi, the closing of the gaps by unit rigid motions [pairs, motions]. There is none of a pair that
-  !! moves as a whole, or along itself, but for rounding: else a large force on it would drive the body.
-  pure function motion_columns(model, motions) result(columns)
+  !> A = -N Phi, the closing of the gaps by unit rigid motions, and P = Phi' f, the loads along these. There is
+  !! no closing of a pair that moves as a whole, or along itself, but for rounding: else a large force on it
+  !! would drive the body. Nor is there a load where loads cancel, or act across the motion: else rounding
+  !! would tell whether the body moves off. What acts on a held freedom does not count: its support has it.
+  pure subroutine see_motions(model, motions, closing, resultant)
     type(model_type), intent(in) :: model   !! the scene
     type(free_motions), intent(in) :: motions   !! free ones
-    real(wp), allocatable :: columns(:, :)
-    real(wp), allocatable :: moved(:, :)
-    integer :: first, i, k, m
+    real(wp), allocatable, intent(out) :: closing(:, :)   !! A [pairs, motions]
+    real(wp), allocatable, intent(out) :: resultant(:)    !! P [motions]
+    real(wp) :: all_loads, load(directions), moved(directions, model%nodes)
+    integer :: c, i, k, m
 
-    allocate (columns(model%pairs, motions%count))
+    allocate (closing(model%pairs, motions%count), resultant(motions%count))
     do m = 1, motions%count
-      do k = 1, model%pairs
-        first = model%row_start(k)
-        allocate (moved(2, model%row_start(k + 1) - first))
-        do i = 1, size(moved, 2)
-          moved(:, i) = motions%displacement(model, model%row_node(first + i - 1), m)
-        end do
-        columns(k, m) = -model%opening(k, moved)
-        associate (weight => model%row_weight(first:model%row_start(k + 1) - 1))
-          if (abs(columns(k, m)) <= cancelled*sum(abs(weight)*norm2(moved, dim=1))) columns(k, m) = 0.0_wp
-        end associate
-        deallocate (moved)
+      do i = 1, model%nodes
+        moved(:, i) = motions%displacement(model, i, m)
       end do
-    end do
-  end function motion_columns
-
-  !> P = Phi' f, the loads along the free motions [motions]. Where they cancel, or act across the motion, but
-  !! for rounding, there are none: else rounding would tell whether the body moves off. What acts on a held
-  !! freedom does not count: its support has it.
-  pure function motion_resultants(model, motions) result(resultant)
-    type(model_type), intent(in) :: model   !! the scene
-    type(free_motions), intent(in) :: motions   !! free ones
-    real(wp), allocatable :: resultant(:)
-    real(wp) :: all_loads, load(2), moved(2)
-    integer :: c, i, m
-
-    allocate (resultant(motions%count), source=0.0_wp)
-    do m = 1, motions%count
+      closing(:, m) = -gap_opening(model, moved)
+      do k = 1, model%pairs
+        associate (node => model%row_node(model%row_start(k):model%row_start(k + 1) - 1), &
+                   weight => model%row_weight(model%row_start(k):model%row_start(k + 1) - 1))
+          if (abs(closing(k, m)) <= cancelled*sum(abs(weight)*norm2(moved(:, node), dim=1))) &
+            closing(k, m) = 0.0_wp
+        end associate
+      end do
+      resultant(m) = 0.0_wp
       all_loads = 0.0_wp
       do i = 1, model%nodes
-        if (model%body(i) /= motions%body(m)) cycle
-        load = [(merge(0.0_wp, model%load(c, i), model%held(c, model%leader(c, i))), c=1, 2)]
-        if (all(load == 0.0_wp)) cycle
-        moved = motions%displacement(model, i, m)
-        resultant(m) = resultant(m) + dot_product(moved, load)
-        all_loads = all_loads + norm2(moved)*norm2(load)
+        load = [(merge(0.0_wp, model%load(c, i), model%held(c, model%leader(c, i))), c=1, directions)]
+        resultant(m) = resultant(m) + dot_product(moved(:, i), load)
+        all_loads = all_loads + norm2(moved(:, i))*norm2(load)
       end do
       if (abs(resultant(m)) <= cancelled*all_loads) resultant(m) = 0.0_wp
     end do
-  end function motion_resultants
+  end subroutine see_motions
 end module epcont_flexibility_flexibility

@@ -7,9 +7,10 @@
 !> most of the work, `factor` the rest.
 module epcont_linalg_assembled
   use epcont_base_kinds, only: wp
+  use epcont_linalg_dense, only: cholesky_inverse
   implicit none
   private
-  public :: assembled_matrix, sparse_rows, add_seen_through, probes
+  public :: assembled_matrix, sparse_rows, add_compliance, probes
 
   !> Rows of a sparse matrix N: entries start(k) to start(k+1)-1 of row k are equations and weights. Equations
   !! that are not positive count for nothing.
@@ -33,10 +34,11 @@ module epcont_linalg_assembled
     procedure :: factor
     procedure(first_half), deferred :: solve_lower
     procedure(second_half), deferred :: solve_upper
-    procedure(solved_probes), deferred :: half_solved_probes
+    procedure(columns_of_factor), deferred :: half_solved_probes
+    procedure(columns_of_factor), deferred :: trailing_factor
     procedure :: solve
     procedure :: condition
-    procedure(add_seen), deferred :: add_compliance
+    procedure :: add_compliance
   end type assembled_matrix
 
   abstract interface
@@ -82,21 +84,13 @@ module epcont_linalg_assembled
       integer, intent(in) :: first
     end subroutine second_half
 
-    !> `probes` with the first half of the solve behind them; they were taken along when the factor was made,
-    !! perhaps.
-    pure function solved_probes(self) result(x)
+    !> `half_solved_probes`: `probes` with the first half of the solve behind them; they were taken along when
+    !! the factor was made, perhaps. `trailing_factor`: L22, the last rows and columns of the factor.
+    pure function columns_of_factor(self) result(x)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
       real(wp), allocatable :: x(:, :)
-    end function solved_probes
-
-    !> Add N K^-1 N' from the factor.
-    pure subroutine add_seen(self, rows, compliance)
-      import :: assembled_matrix, sparse_rows, wp
-      class(assembled_matrix), intent(in) :: self
-      type(sparse_rows), intent(in) :: rows       !! N
-      real(wp), intent(inout) :: compliance(:, :)       !! [rows, rows]
-    end subroutine add_seen
+    end function columns_of_factor
   end interface
 
 contains
@@ -163,16 +157,19 @@ contains
     x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
   end function probes
 
-  !> Add N C N', C being the trailing block of an inverse.
-  pure subroutine add_seen_through(inverse, before, rows, compliance)
-    real(wp), intent(in) :: inverse(:, :)       !! C
-    integer, intent(in) :: before   !! equations that stand before those of C, and count for nothing
-    type(sparse_rows), intent(in) :: rows       !! N
+  !> Add N K^-1 N' from the factor, by the trailing block of the inverse: with L22 that of the factor it is
+  !! (L22 L22')^-1, since all that stands before has been eliminated from it.
+  pure subroutine add_compliance(self, rows, compliance)
+    class(assembled_matrix), intent(in) :: self
+    type(sparse_rows), intent(in) :: rows       !! N; equations before the trailing ones count for nothing
     real(wp), intent(inout) :: compliance(:, :)       !! [rows, rows]
-    real(wp) :: opening, response(size(inverse, 1))
+    real(wp), allocatable :: inverse(:, :)
+    real(wp) :: opening, response(self%trailing)
     integer :: i, k, l
 
-    associate (start => rows%start, at => rows%equation - before)
+    inverse = self%trailing_factor()
+    call cholesky_inverse(inverse)
+    associate (start => rows%start, at => rows%equation - (self%order - self%trailing))
       do l = 1, size(compliance, 2)
         response = 0.0_wp
         do i = start(l), start(l + 1) - 1
@@ -188,5 +185,5 @@ contains
         end do
       end do
     end associate
-  end subroutine add_seen_through
+  end subroutine add_compliance
 end module epcont_linalg_assembled

@@ -14,8 +14,7 @@
 !> full matrices.
 module epcont_linalg_front
   use epcont_base_kinds, only: i8, rp => wp, wp
-  use epcont_linalg_assembled, only: add_seen_through, assembled_matrix, probes, sparse_rows
-  use epcont_linalg_dense, only: cholesky_inverse
+  use epcont_linalg_assembled, only: assembled_matrix, probes
   use epcont_linalg_front_layout, only: front_layout
   use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
   use epcont_system_large_pages, only: use_large_pages

@@ -38,8 +38,8 @@ contains
     integer, intent(in) :: numbers(:, :)    !! equations of each element; 0 and less: none [any, elements]
     type(front_layout) :: layout
     type(incidence) :: at                   !! elements of each front
-    integer, allocatable :: home(:, :)
-    integer :: e, p
+    integer :: home(1, size(numbers, 2))    !! the first front that each element has equations of, or 0
+    integer :: e, lowest, p
 
     layout%first = first
     layout%own = first(2:) - first(:size(first) - 1)
@@ -47,7 +47,11 @@ contains
     do p = 1, size(layout%own)
       layout%front_of(first(p):first(p + 1) - 1) = p
     end do
-    home = lowest_front(layout%front_of, numbers)
+    home = 0
+    do e = 1, size(numbers, 2)
+      lowest = minval(numbers(:, e), mask=numbers(:, e) > 0)
+      if (lowest <= size(layout%front_of)) home(1, e) = layout%front_of(lowest)
+    end do
     at = new_incidence(home, size(layout%own))
     layout%element = [at%group, pack([(e, e=1, size(home))], home(1, :) == 0)]
     call find_rows(layout, at, numbers)
@@ -63,10 +67,14 @@ contains
     integer, intent(in) :: numbers(:, :)
     logical :: seen(size(layout%front_of))
     integer :: found(size(layout%front_of))
-    integer, allocatable :: child(:), next(:), row(:)   !! the last front below each, and the one before that
+    !> The last front below each, and the one before that
+    integer, dimension(size(layout%own)) :: child, next
+    integer, allocatable :: row(:)
     integer :: c, count, k, p
 
-    allocate (layout%parent(size(layout%own)), child(size(layout%own)), next(size(layout%own)), source=0)
+    child = 0
+    next = 0
+    allocate (layout%parent(size(layout%own)), source=0)
     allocate (layout%row_start(size(layout%first)), source=1)
     allocate (row(size(found)))
     seen = .false.
@@ -84,7 +92,7 @@ contains
       layout%row_start(p + 1) = layout%row_start(p) + count
       if (count == 0) cycle
       if (layout%row_start(p + 1) - 1 > size(row)) row = [row, row]
-      row(layout%row_start(p):layout%row_start(p + 1) - 1) = in_order(found(:count))
+      row(layout%row_start(p):layout%row_start(p + 1) - 1) = found(sorted_order(found(:count)))
       seen(found(:count)) = .false.
       associate (above => layout%parent(p))
         above = layout%front_of(row(layout%row_start(p)))
@@ -95,23 +103,9 @@ contains
     layout%row = row(:layout%row_start(size(layout%first)) - 1)
   end subroutine find_rows
 
-  !> The first front that each element has equations of; 0 where it has none [1, elements].
-  pure function lowest_front(front_of, numbers) result(front)
-    integer, intent(in) :: front_of(:), numbers(:, :)
-    integer, allocatable :: front(:, :)
-    integer :: e, lowest
-
-    allocate (front(1, size(numbers, 2)), source=0)
-    do e = 1, size(numbers, 2)
-      lowest = minval(numbers(:, e), mask=numbers(:, e) > 0)
-      if (lowest <= size(front_of)) front(1, e) = front_of(lowest)
-    end do
-  end function lowest_front
-
   !> Put equations from `from` on that are not in the list yet at its end.
   pure subroutine add_new(number, from, seen, list, length)
-    integer, intent(in) :: number(:)
-    integer, intent(in) :: from
+    integer, intent(in) :: number(:), from
     logical, intent(inout) :: seen(:)   !! those that are in it [order]
     integer, intent(inout) :: list(:), length
     integer :: i
@@ -125,19 +119,11 @@ contains
     end do
   end subroutine add_new
 
-  pure function in_order(number)
-    integer, intent(in) :: number(:)
-    integer :: in_order(size(number))
-
-    in_order = number(sorted_order(number))
-  end function in_order
-
   !> Where equations, ascending, stand among the rows of a front; they must be there.
   pure function places(self, number, front) result(place)
     class(front_layout), intent(in) :: self
     integer, intent(in) :: number(:), front   !! equations, ascending
-    integer :: place(size(number))
-    integer :: at, i
+    integer :: place(size(number)), at, i
 
     at = self%row_start(front)
     do i = 1, size(number)
@@ -166,7 +152,7 @@ contains
     integer(i8) :: start(size(self%first))
 
     start = self%update_starts(kept)
-    entries = sum(int(self%own, i8)*(self%own + self%reached)) + start(size(start)) - 1
+    entries = start(size(start)) - 1
   end function entries
 
   !> Whether the fronts below each stand right before it: else what one leaves may still be wanted when
@@ -186,22 +172,22 @@ contains
     end do
   end function stand_in_sequence
 
-  !> Where the update matrix of each front, what it leaves to the later equations, begins: in its own place
-  !! where all are kept, else behind that of its parent, where those that are done with were before. And one
-  !! behind the last [fronts + 1].
+  !> Where the update matrix of each front, what it leaves to the later equations, begins behind the factor:
+  !! in its own place where all are kept, else behind that of its parent, where those that are done with were
+  !! before. And one behind the last [fronts + 1].
   pure function update_starts(self, kept) result(start)
     class(front_layout), intent(in) :: self
     logical, intent(in) :: kept   !! all update matrices are kept
-    integer(i8) :: start(size(self%first))
-    integer(i8) :: last
+    integer(i8) :: start(size(self%first)), factor, last
     integer :: p
 
-    last = 0
+    factor = sum(int(self%own, i8)*(self%own + self%reached))
+    last = factor
     do p = size(self%parent), 1, -1
       if (kept .or. .not. self%in_sequence) then
         start(p) = last + 1
       else if (self%parent(p) == 0) then
-        start(p) = 1
+        start(p) = factor + 1
       else
         start(p) = start(self%parent(p)) + int(self%reached(self%parent(p)), i8)**2
       end if

@@ -17,8 +17,7 @@ module epcont_linalg_lapack
       import :: wp
       character, intent(in) :: transa, transb
       integer, intent(in) :: m, n, k, lda, ldb, ldc
-      real(wp), intent(in) :: alpha, beta
-      real(wp), intent(in) :: a(lda, *), b(ldb, *)
+      real(wp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
       real(wp), intent(inout) :: c(ldc, *)
     end subroutine dgemm
 
@@ -27,8 +26,7 @@ module epcont_linalg_lapack
       import :: wp
       character, intent(in) :: trans
       integer, intent(in) :: m, n, lda, incx, incy
-      real(wp), intent(in) :: alpha, beta
-      real(wp), intent(in) :: a(lda, *), x(*)
+      real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
       real(wp), intent(inout) :: y(*)
     end subroutine dgemv
 
@@ -37,8 +35,7 @@ module epcont_linalg_lapack
       import :: wp
       character, intent(in) :: uplo, trans
       integer, intent(in) :: n, k, lda, ldc
-      real(wp), intent(in) :: alpha, beta
-      real(wp), intent(in) :: a(lda, *)
+      real(wp), intent(in) :: alpha, beta, a(lda, *)
       real(wp), intent(inout) :: c(ldc, *)
     end subroutine dsyrk
 
@@ -47,8 +44,7 @@ module epcont_linalg_lapack
       import :: wp
       character, intent(in) :: side, uplo, transa, diag
       integer, intent(in) :: m, n, lda, ldb
-      real(wp), intent(in) :: alpha
-      real(wp), intent(in) :: a(lda, *)
+      real(wp), intent(in) :: alpha, a(lda, *)
       real(wp), intent(inout) :: b(ldb, *)
     end subroutine dtrsm
   end interface
@@ -101,8 +97,7 @@ module epcont_linalg_lapack
       import :: sp
       character, intent(in) :: trans
       integer, intent(in) :: m, n, lda, incx, incy
-      real(sp), intent(in) :: alpha, beta
-      real(sp), intent(in) :: a(lda, *), x(*)
+      real(sp), intent(in) :: alpha, beta, a(lda, *), x(*)
       real(sp), intent(inout) :: y(*)
     end subroutine sgemv
 
@@ -110,8 +105,7 @@ module epcont_linalg_lapack
       import :: sp
       character, intent(in) :: uplo, trans
       integer, intent(in) :: n, k, lda, ldc
-      real(sp), intent(in) :: alpha, beta
-      real(sp), intent(in) :: a(lda, *)
+      real(sp), intent(in) :: alpha, beta, a(lda, *)
       real(sp), intent(inout) :: c(ldc, *)
     end subroutine ssyrk
 
@@ -119,8 +113,7 @@ module epcont_linalg_lapack
       import :: sp
       character, intent(in) :: transa, transb
       integer, intent(in) :: m, n, k, lda, ldb, ldc
-      real(sp), intent(in) :: alpha, beta
-      real(sp), intent(in) :: a(lda, *), b(ldb, *)
+      real(sp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
       real(sp), intent(inout) :: c(ldc, *)
     end subroutine sgemm
 
@@ -128,8 +121,7 @@ module epcont_linalg_lapack
       import :: sp
       character, intent(in) :: side, uplo, transa, diag
       integer, intent(in) :: m, n, lda, ldb
-      real(sp), intent(in) :: alpha
-      real(sp), intent(in) :: a(lda, *)
+      real(sp), intent(in) :: alpha, a(lda, *)
       real(sp), intent(inout) :: b(ldb, *)
     end subroutine strsm
 
@@ -148,9 +140,8 @@ module epcont_linalg_lapack
     pure subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
       import :: wp
       integer, intent(in) :: n, nrhs, lda, ldb
-      real(wp), intent(inout) :: a(lda, *)
+      real(wp), intent(inout) :: a(lda, *), b(ldb, *)
       integer, intent(out) :: ipiv(*), info
-      real(wp), intent(inout) :: b(ldb, *)
     end subroutine dgesv
 
     !> Singular values, descending, and singular vectors

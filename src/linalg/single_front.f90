@@ -2,8 +2,7 @@
 !> time to factor them.
 module epcont_linalg_single_front
   use epcont_base_kinds, only: i8, rp => sp, wp
-  use epcont_linalg_assembled, only: add_seen_through, assembled_matrix, probes, sparse_rows
-  use epcont_linalg_dense, only: cholesky_inverse
+  use epcont_linalg_assembled, only: assembled_matrix, probes
   use epcont_linalg_front_layout, only: front_layout
   use epcont_linalg_lapack, only: gemm => sgemm, gemv => sgemv, potrf => spotrf, syrk => ssyrk, trsm => strsm
   use epcont_system_large_pages, only: use_large_pages

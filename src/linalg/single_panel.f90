@@ -3,8 +3,7 @@
 module epcont_linalg_single_panel
   use epcont_base_kinds, only: i8, rp => sp, wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_assembled, only: add_seen_through, assembled_matrix, probes, sparse_rows
-  use epcont_linalg_dense, only: cholesky_inverse
+  use epcont_linalg_assembled, only: add_last => add_compliance, assembled_matrix, probes, sparse_rows
   use epcont_linalg_lapack, only: gemm => sgemm, gemv => sgemv, potrf => spotrf, syrk => ssyrk, trsm => strsm
   use epcont_linalg_panel_layout, only: panel_layout
   use epcont_system_large_pages, only: use_large_pages

@@ -8,7 +8,7 @@ module epcont_linear_linear_problem
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, &
-    motion_columns, motion_resultants, pair_forces
+    pair_forces, see_motions
   use epcont_linear_completion, only: complete_state
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
@@ -54,8 +54,7 @@ contains
     linear%factored_bodies = new_bodies(scene%model, plan%precision /= precision_double)
     linear%problem%initial_gap = scene%model%initial_gap
     linear%travel_gap = gap_opening(scene%model, scene%model%travel)
-    linear%problem%motion = motion_columns(scene%model, scene%motions)
-    linear%resultant = motion_resultants(scene%model, scene%motions)
+    call see_motions(scene%model, scene%motions, linear%problem%motion, linear%resultant)
   end subroutine new_linear_problem
 
   !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far

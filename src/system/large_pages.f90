@@ -2,7 +2,7 @@
 !> sooner. Nothing but speed depends on them.
 module epcont_system_large_pages
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_loc, c_size_t
-  use epcont_base_kinds, only: sp, wp
+  use epcont_base_kinds, only: wp
   implicit none
   private
   public :: use_large_pages, prepare_heap
@@ -17,10 +17,6 @@ module epcont_system_large_pages
   integer(c_int), parameter :: heap_step = 67108864
   !> arrays up to here are in the heap: glibc's own limit [bytes]
   integer(c_int), parameter :: largest_in_heap = 33554432
-
-  interface use_large_pages
-    module procedure use_under_double, use_under_single
-  end interface use_large_pages
 
   interface
     integer(c_int) function madvise(address, length, advice) bind(c)
@@ -44,17 +40,12 @@ module epcont_system_large_pages
 contains
 
   !> Ask for large pages under an array that has not been touched yet.
-  subroutine use_under_double(array)
-    real(wp), contiguous, target, intent(in) :: array(:)
+  subroutine use_large_pages(array, bits)
+    type(*), contiguous, target, intent(in) :: array(:)   !! of numbers
+    integer, intent(in) :: bits                           !! that one of them takes
 
-    call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*storage_size(array)/8)
-  end subroutine use_under_double
-
-  subroutine use_under_single(array)
-    real(sp), contiguous, target, intent(in) :: array(:)
-
-    call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*storage_size(array)/8)
-  end subroutine use_under_single
+    call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*bits/8)
+  end subroutine use_large_pages
 
   !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them.
   !! Threads have no heaps of their own: each would take 128 MB of addresses, and keep what it frees from the

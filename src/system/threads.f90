@@ -19,6 +19,8 @@ module epcont_system_threads
   end interface
 
   interface
+    !> Where a procedure of the program or its libraries is; null: nowhere. Which BLAS there is, is not known
+    !! before.
     function c_dlsym(library, name) bind(c, name='dlsym') result(address)
       import :: c_char, c_funptr, c_ptr
       type(c_ptr), value :: library
@@ -55,7 +57,7 @@ contains
     procedure(set_threads), pointer :: set
     type(c_funptr) :: address
 
-    address = procedure_of('openblas_set_num_threads')
+    address = c_dlsym(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set)
     call set(1_c_int)
@@ -68,17 +70,9 @@ contains
     type(c_funptr) :: address
 
     blas_may_be_shared = .false.
-    address = procedure_of('openblas_get_parallel')
+    address = c_dlsym(c_null_ptr, 'openblas_get_parallel'//c_null_char)
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, parallel)
     blas_may_be_shared = parallel() /= 0   ! 0 sequential, 1 threads, 2 OpenMP
   end function blas_may_be_shared
-
-  !> Where a procedure of the program or its libraries is; null: nowhere. Which BLAS there is, is not known
-  !! before.
-  type(c_funptr) function procedure_of(name) result(address)
-    character(len=*), intent(in) :: name
-
-    address = c_dlsym(c_null_ptr, name//c_null_char)
-  end function procedure_of
 end module epcont_system_threads

@@ -2,7 +2,7 @@
 module element_kinds
   use epcont_geometry_plane, only: polygon_area
   use epcont_base_kinds, only: wp
-  use epcont_element_element_kind, only: element_kind
+  use epcont_element_element_kind, only: element_kind, most_nodes
   use epcont_element_integration_point, only: evaluate_points, integration_point
   use epcont_element_element_kinds, only: all_kinds => element_kinds
   use epcont_linalg_dense, only: lu_solve
@@ -149,10 +149,10 @@ contains
     real(wp), intent(in) :: place(2)
     real(wp) :: n(nodes)
     type(element_kind) :: kind
-    real(wp), allocatable :: all_values(:)
+    real(wp) :: all_values(most_nodes), all_slopes(2, most_nodes)
 
     kind = kind_with(nodes)
-    all_values = kind%shape(place)
+    call kind%shape(place, all_values, all_slopes)
     n = all_values(:nodes)
   end function shape_values
 
@@ -161,10 +161,10 @@ contains
     real(wp), intent(in) :: place(2)
     real(wp) :: slope(2, nodes)
     type(element_kind) :: kind
-    real(wp), allocatable :: all_slopes(:, :)
+    real(wp) :: all_values(most_nodes), all_slopes(2, most_nodes)
 
     kind = kind_with(nodes)
-    all_slopes = kind%slope(place)
+    call kind%shape(place, all_values, all_slopes)
     slope = all_slopes(:, :nodes)
   end function slopes
 
