@@ -247,15 +247,14 @@ contains
       logical :: beside(scene%model%elements)
       integer :: seen(scene%model%elements)
       integer, allocatable :: patch(:)
-      integer :: count, j
+      integer :: j
 
       beside = .false.
       seen = 0
-      allocate (patch(64))
       do j = 1, scene%motions%count
         if (.not. is_point_load(j)) cycle
-        call wide_patch(scene%model, table, scene%motions%node(j), seen, patch, count)
-        beside(patch(:count)) = .true.
+        call wide_patch(scene%model, table, scene%motions%node(j), seen, patch)
+        beside(patch) = .true.
       end do
     end function beside_point_loads
 

@@ -21,87 +21,82 @@ module epcont_accuracy_patches
 
 contains
 
+  !> The places of a scene.
   pure function new_patch_table(model) result(table)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(patch_table) :: table
     integer, allocatable :: turn(:)
-    integer :: corners, e, k
+    integer :: corners, e
 
-    table%place = model%connectivity
-    table%places = model%nodes
-    table%node = [(k, k=1, model%nodes)]
-    call split_places(model, table)
+    call split_places(table%place, table%node)
+    table%places = size(table%node)
     table%around = new_incidence(table%place, table%places)
     ! Around a place inside, the corner after it in one element is the corner before it in another.
     allocate (turn(table%places), source=0)
     do e = 1, model%elements
       corners = model%corners(e)
-      associate (place => table%place(:, e))
-        do k = 1, corners
-          turn(place(k)) = turn(place(k)) + place(mod(k, corners) + 1) - place(mod(k + corners - 2, corners) + 1)
-        end do
+      associate (place => table%place(:corners, e))
+        turn(place) = turn(place) + cshift(place, 1) - cshift(place, -1)
       end associate
     end do
     table%inside = turn == 0
+
+  contains
+
+    !> A node has one place for each section that it belongs to, the first of which is the node's own number.
+    pure subroutine split_places(place, node)
+      integer, allocatable, intent(out) :: place(:, :), node(:)   !! of each element, of each place
+      integer, allocatable :: next(:), section(:)   !! of each place the next place of its node, its section
+      integer :: at, e, k, places
+
+      place = model%connectivity
+      node = [(k, k=1, model%nodes)]
+      if (all(model%section == model%section(1))) return
+      node = [node, spread(0, 1, size(place))]
+      allocate (next(size(node)), section(size(node)), source=0)
+      places = model%nodes
+      do e = 1, model%elements
+        do k = 1, model%order(e)
+          at = place(k, e)
+          if (section(at) == 0) section(at) = model%section(e)
+          do while (section(at) /= model%section(e))
+            if (next(at) == 0) then
+              places = places + 1
+              next(at) = places
+              section(places) = model%section(e)
+              node(places) = place(k, e)
+            end if
+            at = next(at)
+          end do
+          place(k, e) = at
+        end do
+      end do
+      node = node(:places)
+    end subroutine split_places
   end function new_patch_table
 
-  !> A node has one place for each section that it belongs to, the first of which is the node's own number.
-  pure subroutine split_places(model, table)
-    type(model_type), intent(in) :: model
-    type(patch_table), intent(inout) :: table
-    integer, allocatable :: next(:), node(:), section(:)   !! of each place the next place of its node, its node, its section
-    integer :: at, e, k
+  !> The elements around a place and around the corners of these.
+  pure subroutine wide_patch(model, table, place, seen, patch)
+    type(model_type), intent(in) :: model             !! the scene
+    type(patch_table), intent(in) :: table            !! of its elements
+    integer, intent(in) :: place                      !! which place
+    integer, intent(inout) :: seen(:)                 !! the last place that each element was taken for [elements]
+    integer, allocatable, intent(out) :: patch(:)     !! elements
+    integer :: i, j, k
 
-    if (all(model%section == model%section(1))) return
-    allocate (next(size(model%connectivity) + model%nodes), source=0)
-    node = next
-    section = next
-    node(:model%nodes) = table%node
-    do e = 1, model%elements
-      do k = 1, model%order(e)
-        at = table%place(k, e)
-        if (section(at) == 0) section(at) = model%section(e)
-        do while (section(at) /= model%section(e))
-          if (next(at) == 0) then
-            table%places = table%places + 1
-            next(at) = table%places
-            section(next(at)) = model%section(e)
-            node(next(at)) = model%connectivity(k, e)
-          end if
-          at = next(at)
+    allocate (patch(0))
+    associate (start => table%around%start, group => table%around%group)
+      do i = start(place), start(place + 1) - 1
+        do k = 1, model%corners(group(i))
+          associate (corner => table%place(k, group(i)))
+            do j = start(corner), start(corner + 1) - 1
+              if (seen(group(j)) == place) cycle
+              seen(group(j)) = place
+              patch = [patch, group(j)]
+            end do
+          end associate
         end do
-        table%place(k, e) = at
       end do
-    end do
-    table%node = node(:table%places)
-  end subroutine split_places
-
-  !> The elements around a place and around the corners of these; `seen` is the last place that each was taken
-  !! for.
-  pure subroutine wide_patch(model, table, place, seen, patch, count)
-    type(model_type), intent(in) :: model
-    type(patch_table), intent(in) :: table
-    integer, intent(in) :: place
-    integer, intent(inout) :: seen(:)                !! [elements]
-    integer, allocatable, intent(inout) :: patch(:)  !! room for them
-    integer, intent(out) :: count
-    integer :: e, f, i, j, k
-
-    count = 0
-    do i = table%around%start(place), table%around%start(place + 1) - 1
-      e = table%around%group(i)
-      do k = 1, model%corners(e)
-        associate (corner => table%place(k, e))
-          do j = table%around%start(corner), table%around%start(corner + 1) - 1
-            f = table%around%group(j)
-            if (seen(f) == place) cycle
-            seen(f) = place
-            count = count + 1
-            if (count > size(patch)) patch = [patch, patch]
-            patch(count) = f
-          end do
-        end associate
-      end do
-    end do
+    end associate
   end subroutine wide_patch
 end module epcont_accuracy_patches
