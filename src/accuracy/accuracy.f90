@@ -2,20 +2,17 @@
 !> total contact force and what of it each body bears, in the largest pressure and the half-width of each
 !> zone; what rounding may have done to the contact forces; pairs that may as well be open.
 module epcont_accuracy_accuracy
-  use epcont_accuracy_body_shares, only: find_shares
   use epcont_accuracy_error_fields, only: compare_fields, error_fields
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
   use epcont_accuracy_surface_line, only: new_surface_line, smooth_pressures, surface_line
-  use epcont_accuracy_unit_motion, only: closing_forces, unit_forces
+  use epcont_accuracy_unit_motion, only: find_unit_loads, unit_loads
   use epcont_accuracy_weights, only: concentrated, estimate_weights, least_energy, of_shares, uncancelled, unresolved, &
                                      wave_height, weights_of
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: alike, least_difference
-  use epcont_contact_basis, only: contact_basis, new_basis
-  use epcont_contact_scaling, only: scale_problem, scaled_problem
   use epcont_element_element_kind, only: by_quadratics
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
@@ -53,91 +50,64 @@ contains
     type(answer_type), intent(in) :: answer        !! with its pressures and zones
     type(accuracy_type), intent(out) :: accuracy
     type(patch_table) :: table
+    type(unit_loads) :: loads
     type(error_fields) :: field
     type(surface_line) :: surface
-    type(scaled_problem) :: problem
-    type(contact_basis) :: basis
-    real(wp), allocatable :: share(:, :)        !! of pairs in the sum of all, and in what bodies bear [pairs, any]
-    real(wp), allocatable :: unit_force(:, :)   !! contact forces of unit loads, closing gaps [pairs, any]
+    real(wp) :: relative
     real(wp), allocatable :: off(:)             !! error of each approach, of the sum of forces, of what bodies bear
-    integer, allocatable :: column(:, :)        !! of what bodies bear, of each body [2, bodies]
-    integer, allocatable :: moved(:)            !! unit loads that say something
     logical :: carried, pressed
     integer :: j, z
 
-    associate (model => scene%model, motions => scene%motions)
-      pressed = any(answer%contact%force > 0.0_wp)
-      carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
-      allocate (moved(0), unit_force(model%pairs, 0))
-      if (carried) then
-        problem = scale_problem(linear%problem)
-        basis = new_basis(problem, answer%contact%force > 0.0_wp)
-        call find_shares(model, motions, answer%contact%touching, answer%bodies, share, column)
-        unit_force = reshape([unit_forces(problem, basis, motions%count), closing_forces(problem, basis, share)], &
-                             [model%pairs, motions%count + size(share, 2)])
-        moved = pack([(j, j=1, size(unit_force, 2))], any(unit_force /= 0.0_wp, dim=1) .and. &
-                     [.not. answer%contact%motion_free, spread(.true., 1, size(share, 2))])
-      end if
-      table = new_patch_table(model)
-      call compare_fields(scene, linear, answer, table, unit_force(:, moved), field)
-      accuracy%element = field%element
-      accuracy%energy_norm = sqrt(part(sum(field%element), sum(field%element) + abs(field%energy)))
-      if (accuracy%energy_norm > least_difference) then
-        accuracy%worst = worst_of(accuracy%element)
-      else
-        accuracy%energy_norm = 0.0_wp
-        accuracy%element = 0.0_wp
-        accuracy%worst = [integer ::]
-        field%along = 0.0_wp
-      end if
-      allocate (accuracy%approach(motions%count), accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
-      allocate (accuracy%approach_unbounded(motions%count), accuracy%weak(model%pairs), source=.false.)
-      allocate (accuracy%zone(0))
+    pressed = any(answer%contact%force > 0.0_wp)
+    carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
+    if (carried) then
+      loads = find_unit_loads(scene, linear, answer)
+    else
+      allocate (loads%force(scene%model%pairs, 0), loads%moved(0))
+    end if
+    table = new_patch_table(scene%model)
+    call compare_fields(scene, linear, answer, table, loads%force(:, loads%moved), field)
+    call assess_mesh(field, accuracy)
+    associate (model => scene%model, motions => scene%motions%count)
+      allocate (accuracy%approach(motions), accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
+      allocate (accuracy%approach_unbounded(motions), accuracy%weak(model%pairs), source=.false.)
+      allocate (accuracy%zone(merge(size(answer%zones), 0, pressed)))
       if (.not. pressed) return
-
       surface = new_surface_line(model, line, smooth_pressures(model, linear%materials, field%smooth))
       call assess_zones(accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads()), &
                                                      sum(accuracy%element)), accuracy%zone)
       if (carried) then
-        accuracy%sensitivity = find_sensitivity(problem, basis, answer%contact%force, travel(), answer%condition)
+        accuracy%sensitivity = find_sensitivity(loads%problem, loads%basis, answer%contact%force, travel(), answer%condition)
         ! What the last step of refinement has not changed is right.
         accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
-        allocate (off(size(unit_force, 2)), source=0.0_wp)
-        do j = 1, size(moved)
-          off(moved(j)) = error_along(j)
-        end do
-        associate (of_motions => matmul(transpose(share), unit_force(:, :motions%count)))
-          off(motions%count + 1:) = off(motions%count + 1:) &
-                                    + sum(abs(matmul(of_motions, shifted_loads(model, line, motions, answer))), dim=2)
-        end associate
-        do j = 1, motions%count
-          if (.not. any(moved == j)) cycle
+        off = errors()
+        do j = 1, motions
+          if (.not. any(loads%moved == j)) cycle
           accuracy%approach(j) = off(j)
           accuracy%approach_unbounded(j) = is_point_load(j)
         end do
-        call assess_forces(off(motions%count + 1:), accuracy%total_force, accuracy%body_force)
+        call assess_forces(off(motions + 1:), accuracy%total_force, accuracy%body_force)
         ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones nothing
         ! else tells.
-        associate (relative => accuracy%total_force/sum(answer%contact%force), pressure => accuracy%zone%pressure)
-          where (pressure >= 0.0_wp) pressure = max(pressure, relative*answer%zones%max_pressure)
-        end associate
+        relative = accuracy%total_force/sum(answer%contact%force)
+        where (accuracy%zone%pressure >= 0.0_wp) &
+          accuracy%zone%pressure = max(accuracy%zone%pressure, relative*answer%zones%max_pressure)
         accuracy%weak = find_weak()
       end if
-      if (size(accuracy%zone) == 0) return
-      z = maxloc(answer%zones%max_pressure, dim=1)
-      accuracy%max_pressure = accuracy%zone(z)%pressure
-      accuracy%pressure_unbounded = accuracy%zone(z)%unbounded
     end associate
+    if (size(accuracy%zone) == 0) return
+    z = maxloc(answer%zones%max_pressure, dim=1)
+    accuracy%max_pressure = accuracy%zone(z)%pressure
+    accuracy%pressure_unbounded = accuracy%zone(z)%unbounded
 
   contains
 
     !> Largest pressures and half-widths.
     pure subroutine assess_zones(energy, zone)
       real(wp), intent(in) :: energy               !! error of the mesh over all of it
-      type(zone_error), allocatable, intent(out) :: zone(:)
+      type(zone_error), intent(out) :: zone(:)
       integer :: z
 
-      allocate (zone(size(answer%zones)))
       do z = 1, size(zone)
         zone(z) = estimate_zone(scene%model, surface, answer, energy, answer%zones(z))
         zone(z)%too_near = too_near(scene%model, surface, answer%contact%force, zone(z), answer%zones(z)%pairs)
@@ -153,11 +123,28 @@ contains
       end associate
     end function travel
 
+    !> Errors of approaches, then of sums of forces.
+    pure function errors() result(off)
+      real(wp) :: off(size(loads%force, 2))
+      integer :: j
+
+      off = 0.0_wp
+      do j = 1, size(loads%moved)
+        off(loads%moved(j)) = error_along(j)
+      end do
+      associate (motions => scene%motions)
+        associate (of_motions => matmul(transpose(loads%share), loads%force(:, :motions%count)))
+          off(motions%count + 1:) = off(motions%count + 1:) &
+                                    + sum(abs(matmul(of_motions, shifted_loads(scene%model, line, motions, answer))), dim=2)
+        end associate
+      end associate
+    end function errors
+
     !> Error of an approach, or of a sum of contact forces: the product of the errors of the scene and of its
     !! answer to a unit load along the motion, or to closing gaps, signed, with what contact at nodes alone
     !! lets the bodies come too near.
     pure real(wp) function error_along(j) result(error)
-      integer, intent(in) :: j   !! in `moved`
+      integer, intent(in) :: j   !! in `loads%moved`
       type(estimate_weights) :: weights
       real(wp) :: at_end, end_error, near, short, vague
       integer :: z
@@ -167,7 +154,7 @@ contains
       vague = 1.0_wp
       weights = weights_of(by_quadratics, scene%model%has_rings(), any(answer%plastic))   ! without a zone
       do z = 1, size(accuracy%zone)
-        associate (zone => accuracy%zone(z), force => unit_force(answer%zones(z)%pairs, moved(j)))
+        associate (zone => accuracy%zone(z), force => loads%force(answer%zones(z)%pairs, loads%moved(j)))
           weights = zone%weights
           at_end = answer%zones(z)%max_pressure*zone%half_length*surface%compliance(zone%peak)
           ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says
@@ -182,7 +169,7 @@ contains
       associate (signed => field%along(1, j), unsigned => field%along(2, j))
         short = max(abs(signed - near), uncancelled*unsigned)
         ! Of what pairs or bodies share no part cancels another.
-        if (moved(j) > max(1, scene%motions%count)) short = of_shares*(unsigned + abs(near))
+        if (loads%moved(j) > max(1, scene%motions%count)) short = of_shares*(unsigned + abs(near))
       end associate
       ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its
       ! field is too small.
@@ -199,35 +186,37 @@ contains
       logical :: given(2, scene%model%bodies)
       integer :: c, i
 
-      given = .false.
-      given(:, answer%bodies%body) = column == 0
-      if (scene%model%has_rings()) given(1, :) = .false.
-      call find_turned(scene%model, line, answer, given, turned, turned_on)
-      total = with_waves(off(1), share(:, 1)) + turned
-      do i = 1, size(column, 2)
-        do c = 1, 2
-          associate (k => column(c, i))
-            if (k >= 0) of_body(c, i) = 0.0_wp
-            if (k > 0) of_body(c, i) = with_waves(off(k), share(:, k)) + turned_on(c, answer%bodies(i)%body)
-          end associate
+      associate (column => loads%column)
+        given = .false.
+        given(:, answer%bodies%body) = column == 0
+        if (scene%model%has_rings()) given(1, :) = .false.
+        call find_turned(scene%model, line, answer, given, turned, turned_on)
+        total = with_waves(off, 1) + turned
+        do i = 1, size(answer%bodies)
+          do c = 1, 2
+            if (column(c, i) >= 0) of_body(c, i) = 0.0_wp
+            if (column(c, i) > 0) of_body(c, i) = with_waves(off, column(c, i)) + turned_on(c, answer%bodies(i)%body)
+          end do
         end do
-      end do
+      end associate
     end subroutine assess_forces
 
     !> Where motions are given, waves of the gap that are not pressed flat bear more than what is meant: the
     !! higher they are the more, and none of it where they are flat; nothing where loads alone make the sum
     !! [force].
-    pure real(wp) function with_waves(off, share) result(force)
-      real(wp), intent(in) :: off, share(:)   !! error, without waves; of each pair in the sum [pairs]
+    pure real(wp) function with_waves(off, k) result(force)
+      real(wp), intent(in) :: off(:)   !! errors, without waves
+      integer, intent(in) :: k         !! which sum
       integer :: z
 
       force = 0.0_wp
-      do z = 1, size(accuracy%zone)
+      do z = 1, merge(size(accuracy%zone), 0, off(k) > least_difference*sum(answer%contact%force))
         associate (pairs => answer%zones(z)%pairs)
-          force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)*sum(abs(share(pairs))*answer%contact%force(pairs))
+          force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)* &
+                          sum(abs(loads%share(pairs, k))*answer%contact%force(pairs))
         end associate
       end do
-      force = off + merge(force, 0.0_wp, off > least_difference*sum(answer%contact%force))
+      force = off(k) + force
     end function with_waves
 
     !> Is a SUPORT freedom the one node of its body's mesh that bears a load?
@@ -283,6 +272,23 @@ contains
       end associate
     end function find_weak
   end subroutine assess
+
+  !> The error of the mesh in the energy norm, and the elements that have the most of it.
+  pure subroutine assess_mesh(field, accuracy)
+    type(error_fields), intent(inout) :: field   !! nothing where it is rounding
+    type(accuracy_type), intent(inout) :: accuracy
+
+    accuracy%element = field%element
+    accuracy%energy_norm = sqrt(part(sum(field%element), sum(field%element) + abs(field%energy)))
+    if (accuracy%energy_norm > least_difference) then
+      accuracy%worst = worst_of(accuracy%element)
+    else
+      accuracy%energy_norm = 0.0_wp
+      accuracy%element = 0.0_wp
+      accuracy%worst = [integer ::]
+      field%along = 0.0_wp
+    end if
+  end subroutine assess_mesh
 
   !> a/b, 0 where a is 0.
   pure real(wp) function part(a, b)

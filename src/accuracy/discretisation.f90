@@ -9,7 +9,7 @@ module epcont_accuracy_discretisation
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_places
   use epcont_material_elasticity, only: cross_modulus
-  use epcont_material_material_law, only: material_law, point_state
+  use epcont_material_material_law, only: point_state
   use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
   implicit none
@@ -28,16 +28,18 @@ contains
   !! times what the strain of each field is off by. Of the first field that is the square of its error. Each
   !! of the other fields by itself misses a part of its energy, too.
   pure function error_products(model, table, materials, volume, strain, smooth, state) result(product)
-    type(model_type), intent(in) :: model
-    type(patch_table), intent(in) :: table
-    type(scene_materials), intent(in) :: materials
+    type(model_type), intent(in) :: model                 !! the scene
+    type(patch_table), intent(in) :: table                !! of its elements
+    type(scene_materials), intent(in) :: materials        !! of its sections
     real(wp), intent(in) :: volume(:)                     !! of the integration points [points]
     real(wp), contiguous, intent(in) :: strain(:, :, :)   !! [4, points, fields]
     real(wp), contiguous, intent(in) :: smooth(:, :, :)   !! [4, places, fields]
     type(point_state), allocatable, intent(in) :: state(:)   !! of the first field, where anything yields [points]
     type(error_product) :: product
-    real(wp) :: own(4, most_places), error(4, most_places, size(strain, 3)), part(most_places), cross
+    type(point_state) :: before, after
+    real(wp) :: own(4, most_places), error(4, most_places, size(strain, 3)), part(most_places), cross, one
     real(wp) :: energy(2, size(strain, 3))   !! of each field's error, and of its own strain
+    logical :: yielded
     integer :: e, f, k
 
     allocate (product%element(model%elements, size(strain, 3)), product%missing(size(strain, 3)), source=0.0_wp)
@@ -57,50 +59,30 @@ contains
                                                    elastic_product(cross, law%shear, own(:, k), own(:, k))]
           end do
         end do
-        if (law%yields) then
-          call add_yielding(kind, law, state(first:last), own, error, part, product%element(e, :))
-        else
-          do k = 1, kind%places
-            do f = 1, size(strain, 3)
-              product%element(e, f) = product%element(e, f) + &
-                                      part(k)*elastic_product(cross, law%shear, error(:, k, 1), error(:, k, f))
-            end do
+        do k = 1, kind%places
+          yielded = .false.
+          if (law%yields) then
+            if (kind%sees_points) then
+              before = state(first - 1 + min(k, kind%points))
+            else
+              call law%update(own(:, k), point_state(), before)
+            end if
+            call law%update(own(:, k) + error(:, k, 1), point_state(), after)
+            yielded = before%yielded .or. after%yielded
+          end if
+          do f = 1, size(strain, 3)
+            if (yielded) then
+              one = dot_product(after%stress - before%stress, error(:, k, f))
+            else
+              one = elastic_product(cross, law%shear, error(:, k, 1), error(:, k, f))
+            end if
+            product%element(e, f) = product%element(e, f) + part(k)*one
           end do
-        end if
+        end do
       end associate
     end do
     where (energy(1, :) > 0.0_wp) product%missing = energy(1, :)/sum(energy, dim=1)
   end function error_products
-
-  !> Add the products of an element that can yield.
-  pure subroutine add_yielding(kind, law, state, own, error, part, product)
-    type(element_kind), intent(in) :: kind
-    class(material_law), intent(in) :: law
-    type(point_state), intent(in) :: state(:)           !! of its points [points]
-    real(wp), intent(in) :: own(:, :), error(:, :, :)   !! [4, places], [4, places, fields]
-    real(wp), intent(in) :: part(:)                     !! of the volume [places]
-    real(wp), intent(inout) :: product(:)               !! [energy] [fields]
-    type(point_state) :: before, after
-    real(wp) :: cross
-    integer :: f, k
-
-    cross = cross_modulus(law%bulk, law%shear, law%sheet)
-    do k = 1, kind%places
-      if (kind%sees_points) then
-        before = state(min(k, kind%points))
-      else
-        call law%update(own(:, k), point_state(), before)
-      end if
-      call law%update(own(:, k) + error(:, k, 1), point_state(), after)
-      do f = 1, size(product)
-        if (before%yielded .or. after%yielded) then
-          product(f) = product(f) + part(k)*dot_product(after%stress - before%stress, error(:, k, f))
-        else
-          product(f) = product(f) + part(k)*elastic_product(cross, law%shear, error(:, k, 1), error(:, k, f))
-        end if
-      end do
-    end do
-  end subroutine add_yielding
 
   !> An element's own strain at its places, and what the smooth one is beyond it.
   pure subroutine compare(kind, place, strain, smooth, own, error)
@@ -143,7 +125,8 @@ contains
 
   !> Work of the stresses on the strains, as `error_products` measures it [energy].
   pure real(wp) function stored_energy(volume, strain, stress) result(energy)
-    real(wp), intent(in) :: volume(:), strain(:, :), stress(:, :)
+    real(wp), intent(in) :: volume(:)                    !! of the integration points [points]
+    real(wp), intent(in) :: strain(:, :), stress(:, :)   !! [-], [stress] [4, points]
     integer :: p
 
     energy = 0.0_wp

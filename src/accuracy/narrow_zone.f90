@@ -131,9 +131,9 @@ contains
     logical, intent(in) :: given(:, :)                  !! loads make that component of the resultant [2, bodies]
     real(wp), intent(out) :: total                      !! of the total contact force [force]
     real(wp), intent(out) :: of_body(2, model%bodies)   !! of the resultant on each body [force]
-    real(wp) :: along, change(2), lean(2, model%bodies), more, resultant(2, model%bodies)
+    real(wp) :: along, change(2), own(2), on(2), lean(2, model%bodies), more, resultant(2, model%bodies)
     logical :: is_narrow
-    integer :: i, z
+    integer :: b, body(2), i, z
 
     total = 0.0_wp
     of_body = 0.0_wp
@@ -144,17 +144,25 @@ contains
       associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
         is_narrow = bearing_pairs(model, force(pairs)) <= narrow
         do i = 1, size(pairs)
-          associate (k => pairs(i), bodies => model%body(model%pair_node(:, pairs(i))))
-            call turn_pair(k, kept(resultant(:, bodies), given(:, bodies)), no_effect*sum(force), &
-                           merge(0.0_wp, bears_on, is_narrow), along, change)
-            if (is_narrow) then
-              total = total + askew*force(k)*abs(along)
-              call add_to_both(askew*force(k)*abs(change), bodies, of_body)
-            else
-              more = more + force(k)*along
-              lean(:, bodies(1)) = lean(:, bodies(1)) - force(k)*change
-              lean(:, bodies(2)) = lean(:, bodies(2)) + force(k)*change
-            end if
+          associate (k => pairs(i), normal => model%normal(:, pairs(i)))
+            body = model%body(model%pair_node(:, k))
+            own = -smooth_normal(k)
+            on = kept(resultant(:, body), given(:, body))
+            if (all(own == 0.0_wp) .or. norm2(on) <= no_effect*sum(force)) cycle
+            ! The pair bears the same along `on`, if it bears anything there.
+            along = 0.0_wp
+            if (is_narrow .or. abs(dot_product(on, own)) >= bears_on*norm2(on)) &
+              along = excess(dot_product(on, normal), dot_product(on, own))
+            change = (1.0_wp + along)*own - normal
+            if (is_narrow) total = total + askew*force(k)*abs(along)
+            more = more + merge(0.0_wp, force(k)*along, is_narrow)
+            do b = 1, 2   ! A is pushed against the normal, B along it
+              if (is_narrow) then
+                of_body(:, body(b)) = of_body(:, body(b)) + askew*force(k)*abs(change)
+              else
+                lean(:, body(b)) = lean(:, body(b)) + (2*b - 3)*force(k)*change
+              end if
+            end do
           end associate
         end do
       end associate
@@ -165,35 +173,15 @@ contains
 
   contains
 
-    !> Of a force of one at a pair: by how much it grows, and how it changes, where it presses along the node's
-    !! own normal and bears the same along `on`. Nothing where there is no such normal, or no resultant.
-    pure subroutine turn_pair(pair, on, least, bears, along, change)
-      integer, intent(in) :: pair
-      real(wp), intent(in) :: on(2)    !! what stays the same [force]
-      real(wp), intent(in) :: least    !! resultants up to this are none [force]
-      real(wp), intent(in) :: bears    !! part of the normal along `on` from which on the pair bears it
-      real(wp), intent(out) :: along, change(2)
-      real(wp) :: own(2)
-
-      along = 0.0_wp
-      change = 0.0_wp
-      own = -smooth_normal(model, pair)
-      if (all(own == 0.0_wp) .or. norm2(on) <= least) return
-      associate (normal => model%normal(:, pair))
-        if (abs(dot_product(on, own)) >= bears*norm2(on)) along = excess(dot_product(on, normal), dot_product(on, own))
-        change = (1.0_wp + along)*own - normal
-      end associate
-    end subroutine turn_pair
-
     !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the
     !! strongest there does.
     pure subroutine turn_shared_places(total, of_body)
       real(wp), intent(inout) :: total, of_body(:, :)
       real(wp) :: change(2), way
-      integer :: k
+      integer :: b, body(2), k
       integer :: strongest(model%pairs)   !! at the place of each
 
-      associate (start => line%at_place%start, force => answer%contact%force, body => model%body, node => model%pair_node)
+      associate (start => line%at_place%start, force => answer%contact%force)
         do k = 1, size(start) - 1
           associate (pairs => line%at_place%group(start(k):start(k + 1) - 1))
             strongest(pairs) = pairs(maxloc(force(pairs), dim=1))
@@ -201,25 +189,33 @@ contains
         end do
         do k = 1, model%pairs
           if (force(k) <= 0.0_wp .or. strongest(k) == k) cycle
-          way = merge(1.0_wp, -1.0_wp, body(node(2, strongest(k))) == body(node(2, k)))
+          body = model%body(model%pair_node(:, k))
+          way = merge(1.0_wp, -1.0_wp, model%body(model%pair_node(2, strongest(k))) == body(2))
           change = force(k)*abs(model%normal(:, k) - way*model%normal(:, strongest(k)))
           total = total + norm2(change)
-          call add_to_both(change, body(node(:, k)), of_body)
+          do b = 1, 2
+            of_body(:, body(b)) = of_body(:, body(b)) + change
+          end do
         end do
       end associate
     end subroutine turn_shared_places
 
-    !> What both bodies of a pair may have more.
-    pure subroutine add_to_both(change, bodies, of_body)
-      real(wp), intent(in) :: change(2)
-      integer, intent(in) :: bodies(2)
-      real(wp), intent(inout) :: of_body(:, :)
-      integer :: i
+    !> The normal of a line in contact at the node of a pair that stands on the other line; none at a corner,
+    !! or without lines.
+    pure function smooth_normal(pair) result(normal)
+      integer, intent(in) :: pair
+      real(wp) :: normal(2)
+      integer :: c
 
-      do i = 1, 2
-        of_body(:, bodies(i)) = of_body(:, bodies(i)) + change
+      normal = 0.0_wp
+      do c = 1, size(model%line_contact)
+        associate (contact => model%line_contact(c), node => model%pair_node(2, pair))
+          if (pair < contact%first .or. pair > contact%last) cycle
+          if (pair < contact%first_of_master) normal = normal_at(contact%slave, node)
+          if (pair >= contact%first_of_master) normal = normal_at(contact%master, node)
+        end associate
       end do
-    end subroutine add_to_both
+    end function smooth_normal
   end subroutine find_turned
 
   !> What stays the same of the resultants on two bodies where their contact turns: what loads make, else the
@@ -227,8 +223,7 @@ contains
   pure function kept(resultant, given) result(on)
     real(wp), intent(in) :: resultant(2, 2)
     logical, intent(in) :: given(2, 2)
-    real(wp) :: on(2)
-    real(wp) :: of_loads(2, 2)
+    real(wp) :: on(2), of_loads(2, 2)
 
     of_loads = merge(resultant, 0.0_wp, given)
     if (all(of_loads == 0.0_wp)) of_loads = resultant
@@ -243,28 +238,7 @@ contains
     if (abs(a - b) < abs(b)) excess = (a - b)/b
   end function excess
 
-  !> The normal of a line in contact at the node of a pair that stands on the other line; none at a corner, or
-  !! without lines.
-  pure function smooth_normal(model, pair) result(normal)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: pair
-    real(wp) :: normal(2)
-    integer :: c
-
-    normal = 0.0_wp
-    do c = 1, size(model%line_contact)
-      associate (contact => model%line_contact(c))
-        if (pair < contact%first .or. pair > contact%last) cycle
-        if (pair < contact%first_of_master) then
-          normal = normal_at(contact%slave, model%pair_node(2, pair))
-        else
-          normal = normal_at(contact%master, model%pair_node(2, pair))
-        end if
-      end associate
-    end do
-  end function smooth_normal
-
-  !> The same of one line.
+  !> The normal of a line at one of its nodes; none at a corner, or elsewhere.
   pure function normal_at(line, node) result(normal)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: node
