@@ -4,7 +4,7 @@
 module epcont_accuracy_accuracy
   use epcont_accuracy_error_fields, only: compare_fields, error_fields
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
-  use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
+  use epcont_accuracy_recovery, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
   use epcont_accuracy_surface_line, only: new_surface_line, smooth_pressures, surface_line
   use epcont_accuracy_unit_motion, only: find_unit_loads, unit_loads

@@ -5,7 +5,7 @@
 !> bend of the gap, or of the other body's outline, at one node alone: arcs and fillets bend at each of their
 !> nodes. At an edge the contact reaches the last of its pairs and the pressure does not fall towards it.
 module epcont_accuracy_limits
-  use epcont_accuracy_surface_line, only: surface_line
+  use epcont_accuracy_surface_line, only: corner, surface_line
   use epcont_accuracy_weights, only: tip_matters, tip_stands_out
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: same_place
@@ -17,8 +17,6 @@ module epcont_accuracy_limits
   public :: edge_pairs, has_tip
 
   real(wp), parameter :: pi = acos(-1.0_wp)
-  !> An outline that turns by more than this ends [rad].
-  real(wp), parameter, public :: corner = 35.0_wp*pi/180.0_wp
   !> Bodies that end together in corners of so much in all, or one alone on what is rigid, have no edge: what
   !! the quarter plane on a frictionless floor is a half of [rad].
   real(wp), parameter :: straight = pi*(1.0_wp + 1.0e-3_wp)

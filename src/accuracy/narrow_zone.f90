@@ -1,8 +1,7 @@
 !> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which
 !> way it presses; and which way pairs beside a corner, and wide zones as a whole, may press.
 module epcont_accuracy_narrow_zone
-  use epcont_accuracy_limits, only: corner
-  use epcont_accuracy_surface_line, only: first_element, surface_line
+  use epcont_accuracy_surface_line, only: corner, first_element, surface_line
   use epcont_accuracy_weights, only: askew, bears_on, finer
   use epcont_accuracy_zone_error, only: zone_error
   use epcont_base_kinds, only: wp

@@ -7,13 +7,12 @@ module epcont_accuracy_unit_motion
   use epcont_base_tolerances, only: solved_to
   use epcont_contact_basis, only: contact_basis, new_basis, respond
   use epcont_contact_scaling, only: scale_problem, scaled_problem
-  use epcont_flexibility_flexibility, only: pair_forces
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
   implicit none
   private
-  public :: closing_forces, find_unit_loads, forces_under, unit_loads, unit_strains
+  public :: closing_forces, find_unit_loads, forces_under, unit_loads
 
   !> A unit load along each free motion, then gaps that shrink by what each pair counts in a sum of forces.
   type :: unit_loads
@@ -97,15 +96,4 @@ contains
     load = 0.0_wp
     call respond(basis, opening, load, carried, approach)
   end function forces_under
-
-  !> Strains of such forces [4, points].
-  pure function unit_strains(scene, linear, force) result(strain)
-    type(planned_scene), intent(in) :: scene     !! that was solved
-    type(linear_problem), intent(in) :: linear   !! of the last solve
-    real(wp), intent(in) :: force(:)             !! [pairs]
-    real(wp), allocatable :: strain(:, :)
-
-    strain = linear%operator%strains(scene%model, linear%bodies%displacements(scene%model, scene%numbering, &
-                                                                              pair_forces(scene%model, force), 0.0_wp))
-  end function unit_strains
 end module epcont_accuracy_unit_motion

@@ -7,8 +7,7 @@
 !> said of it.
 module epcont_accuracy_zone_error
   use epcont_accuracy_limits, only: edge_pairs, has_tip
-  use epcont_accuracy_surface_line, only: elements_behind, first_element, surface_line
-  use epcont_accuracy_waves, only: find_waves
+  use epcont_accuracy_surface_line, only: elements_behind, find_waves, first_element, surface_line
   use epcont_accuracy_weights, only: beyond_mean, estimate_weights, stretched, waves_alone, weights_of
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: alike, dependent, least_difference
