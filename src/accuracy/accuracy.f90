@@ -54,6 +54,7 @@ contains
     type(error_fields) :: field
     type(surface_line) :: surface
     real(wp) :: relative
+    real(wp), allocatable :: travel(:)          !! what the gaps of the pairs are the sum of, added up [length] [pairs]
     real(wp), allocatable :: off(:)             !! error of each approach, of the sum of forces, of what bodies bear
     logical :: carried, pressed
     integer :: j, z
@@ -77,15 +78,17 @@ contains
       call assess_zones(accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads()), &
                                                      sum(accuracy%element)), accuracy%zone)
       if (carried) then
-        accuracy%sensitivity = find_sensitivity(loads%problem, loads%basis, answer%contact%force, travel(), answer%condition)
+        associate (problem => linear%problem)
+          travel = abs(problem%initial_gap) + abs(problem%load_gap) + matmul(abs(problem%motion), abs(answer%contact%approach))
+        end associate
+        accuracy%sensitivity = find_sensitivity(loads%problem, loads%basis, answer%contact%force, travel, answer%condition)
         ! What the last step of refinement has not changed is right.
         accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
         off = errors()
-        do j = 1, motions
-          if (.not. any(loads%moved == j)) cycle
-          accuracy%approach(j) = off(j)
-          accuracy%approach_unbounded(j) = is_point_load(j)
-        end do
+        associate (known => [(any(loads%moved == j), j=1, motions)])
+          accuracy%approach = merge(off(:motions), -1.0_wp, known)
+          accuracy%approach_unbounded = known .and. [(is_point_load(j), j=1, motions)]
+        end associate
         call assess_forces(off(motions + 1:), accuracy%total_force, accuracy%body_force)
         ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones nothing
         ! else tells.
@@ -113,15 +116,6 @@ contains
         zone(z)%too_near = too_near(scene%model, surface, answer%contact%force, zone(z), answer%zones(z)%pairs)
       end do
     end subroutine assess_zones
-
-    !> What the gaps of the pairs are the sum of, added up [length] [pairs].
-    pure function travel() result(length)
-      real(wp), allocatable :: length(:)
-
-      associate (problem => linear%problem)
-        length = abs(problem%initial_gap) + abs(problem%load_gap) + matmul(abs(problem%motion), abs(answer%contact%approach))
-      end associate
-    end function travel
 
     !> Errors of approaches, then of sums of forces.
     pure function errors() result(off)
@@ -251,19 +245,15 @@ contains
     pure function find_weak() result(weak)
       logical, allocatable :: weak(:)
       real(wp) :: off(scene%model%pairs)   !! error of the pressure [stress]
-      integer :: i, k, z
+      integer :: k, z
 
       off = 0.0_wp
       do z = 1, size(accuracy%zone)
-        associate (pairs => answer%zones(z)%pairs, pressure => accuracy%zone(z)%pressure)
-          off(pairs) = max(0.0_wp, pressure)
-          associate (beside => line%neighbour(:, pairs([1, size(pairs)])))
-            do k = 1, 2
-              do i = 1, 2
-                if (beside(i, k) > 0) off(beside(i, k)) = max(off(beside(i, k)), pressure)
-              end do
-            end do
-          end associate
+        associate (pairs => answer%zones(z)%pairs, beyond => answer%zones(z)%beyond, error => accuracy%zone(z)%pressure)
+          off(pairs) = max(0.0_wp, error)
+          do k = 1, size(beyond)
+            off(beyond(k)) = max(off(beyond(k)), error)
+          end do
         end associate
       end do
       associate (contact => answer%contact, stiffest => [(linear%problem%flexibility(k, k), k=1, size(off))])

@@ -12,6 +12,7 @@ module epcont_accuracy_limits
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
   use epcont_result_contact_line, only: contact_line, outer_sides
+  use epcont_result_zones, only: contact_zone
   implicit none
   private
   public :: edge_pairs, has_tip
@@ -38,26 +39,24 @@ module epcont_accuracy_limits
 contains
 
   !> Is there a tip in a zone?
-  pure logical function has_tip(model, line, pairs, largest)
+  pure logical function has_tip(model, line, zone, largest)
     type(model_type), intent(in) :: model    !! the scene
     type(surface_line), intent(in) :: line   !! of its pairs
-    integer, intent(in) :: pairs(:)          !! of the zone, from end to end
+    type(contact_zone), intent(in) :: zone   !! of these pairs
     real(wp), intent(in) :: largest          !! pressure there [stress]
-    integer, allocatable :: ends(:), within(:)
+    integer, allocatable :: within(:)
     integer :: across, i, k
     real(wp) :: mirror(2, 2)   !! places of lines of symmetry at the ends, across x and across y [length]
 
     has_tip = .true.
     mirror = nowhere
     do k = 1, 2
-      associate (pair => pairs(merge(1, size(pairs), k == 1)))
+      associate (pair => merge(zone%first, zone%last, k == 1))
         across = merge(1, 2, abs(model%normal(2, pair)) > abs(model%normal(1, pair)))
         if (line%mirrored(pair)) mirror(across, k) = line%x(across, pair)
       end associate
     end do
-    ends = reshape(line%neighbour(:, pairs([1, size(pairs)])), [4])
-    ends = pack(ends, ends > 0)
-    within = [pairs, pack(ends, line%tributary(ends) == 0.0_wp)]   ! a corner on the axis bears nothing by itself
+    within = [zone%pairs, pack(zone%beyond, line%tributary(zone%beyond) == 0.0_wp)]   ! a corner on the axis bears nothing by itself
     do k = 1, size(within)
       associate (pair => within(k), least => tip_matters*largest*line%compliance(within(k)))
         if (least <= 0.0_wp) cycle
@@ -126,9 +125,11 @@ contains
       is_flush = .false.
       here = turn_at(model, node, nowhere)
       if (here%angle <= corner) return
-      do k = 1, size(pairs), max(1, size(pairs) - 1)
-        is_flush = is_flush .or. corner_inside(model, line%node(pairs(k))) > 0.0_wp .and. &
-                   norm2(line%x(:, pairs(k)) - model%x(:, node)) <= flush*here%reach
+      do k = 1, 2
+        associate (pair => merge(zone%first, zone%last, k == 1))
+          is_flush = is_flush .or. corner_inside(model, line%node(pair)) > 0.0_wp .and. &
+                     norm2(line%x(:, pair) - model%x(:, node)) <= flush*here%reach
+        end associate
       end do
     end function is_flush
   end function has_tip

@@ -56,7 +56,9 @@ contains
     norm = 0.0_wp
     if (size(d) <= few_pairs) then
       do k = 1, size(d)
-        norm = max(norm, sum(abs(d*change(unit(k)))))
+        x = 0.0_wp
+        x(k) = 1.0_wp
+        norm = max(norm, sum(abs(d*change(x))))
       end do
       return
     end if
@@ -68,7 +70,8 @@ contains
       turned = change(d*sign(1.0_wp, y))
       k = maxloc(abs(turned), dim=1)
       if (abs(turned(k)) <= dot_product(turned, x)) exit
-      x = unit(k)
+      x = 0.0_wp
+      x(k) = 1.0_wp
     end do
     ! Where all pairs are alike that stays at the start: forces of alternating sign are looked at, too.
     x = [(merge(1.0_wp, -1.0_wp, mod(k, 2) == 0)*(1.0_wp + (k - 1.0_wp)/(size(d) - 1.0_wp)), k=1, size(d))]
@@ -83,13 +86,5 @@ contains
 
       change = reshape(forces_under(basis, reshape(gap, [size(gap), 1])), [size(gap)])
     end function change
-
-    pure function unit(k)
-      integer, intent(in) :: k
-      real(wp) :: unit(size(d))
-
-      unit = 0.0_wp
-      unit(k) = 1.0_wp
-    end function unit
   end function largest_change
 end module epcont_accuracy_sensitivity

@@ -97,8 +97,9 @@ contains
     else
       if (error%half_length > spacing .and. n > 1) error%resolution = spacing/error%half_length   ! of a single pair it stays 1
       error%unbounded = any(ends%edge)
-      if (.not. error%unbounded) error%unbounded = has_tip(model, line, zone%pairs, largest)
-      error%resolved = error%unbounded .or. has_enough_pairs() .and. .not. any(ends%cut_off)
+      if (.not. error%unbounded) error%unbounded = has_tip(model, line, zone, largest)
+      error%resolved = error%unbounded .or. .not. any(ends%cut_off) .and. n + count(mirrored)*(n - 1) >= few .and. &
+                       (model%kinds(kind)%degree == 1 .or. n > one_side)
     end if
     error%end_resolution = error%resolution
     if (spacing > 0.0_wp .and. maxval(ends%step) > spacing) &
@@ -132,11 +133,6 @@ contains
         if (peak == first) found%short = beyond_mean*(largest - p(second))
       end if
     end function end_at
-
-    !> Are there so many pairs that one sees where the pressure is largest?
-    pure logical function has_enough_pairs()
-      has_enough_pairs = n + count(mirrored)*(n - 1) >= few .and. (model%kinds(kind)%degree == 1 .or. n > one_side)
-    end function has_enough_pairs
 
     !> Of the largest pressure [stress].
     pure real(wp) function pressure_error() result(off)
