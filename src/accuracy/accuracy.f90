@@ -43,7 +43,7 @@ module epcont_accuracy_accuracy
 contains
 
   !> What the figures of an answer are worth.
-  pure subroutine assess(scene, linear, line, answer, accuracy)
+  subroutine assess(scene, linear, line, answer, accuracy)
     type(planned_scene), intent(in) :: scene       !! that was solved
     type(linear_problem), intent(in) :: linear     !! of the last solve
     type(contact_line), intent(in) :: line         !! of the pairs
@@ -53,11 +53,7 @@ contains
     type(unit_loads) :: loads
     type(error_fields) :: field
     type(surface_line) :: surface
-    real(wp) :: relative
-    real(wp), allocatable :: travel(:)          !! what the gaps of the pairs are the sum of, added up [length] [pairs]
-    real(wp), allocatable :: off(:)             !! error of each approach, of the sum of forces, of what bodies bear
     logical :: carried, pressed
-    integer :: j, z
 
     pressed = any(answer%contact%force > 0.0_wp)
     carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
@@ -66,56 +62,76 @@ contains
     else
       allocate (loads%force(scene%model%pairs, 0), loads%moved(0))
     end if
-    table = new_patch_table(scene%model)
-    call compare_fields(scene, linear, answer, table, loads%force(:, loads%moved), field)
-    call assess_mesh(field, accuracy)
-    associate (model => scene%model, motions => scene%motions%count)
-      allocate (accuracy%approach(motions), accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
-      allocate (accuracy%approach_unbounded(motions), accuracy%weak(model%pairs), source=.false.)
-      allocate (accuracy%zone(merge(size(answer%zones), 0, pressed)))
-      if (.not. pressed) return
-      surface = new_surface_line(model, line, smooth_pressures(model, linear%materials, field%smooth))
-      call assess_zones(accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads()), &
-                                                     sum(accuracy%element)), accuracy%zone)
-      if (carried) then
-        associate (problem => linear%problem)
-          travel = abs(problem%initial_gap) + abs(problem%load_gap) + matmul(abs(problem%motion), abs(answer%contact%approach))
-        end associate
-        accuracy%sensitivity = find_sensitivity(loads%problem, loads%basis, answer%contact%force, travel, answer%condition)
-        ! What the last step of refinement has not changed is right.
-        accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
-        off = errors()
-        associate (known => [(any(loads%moved == j), j=1, motions)])
-          accuracy%approach = merge(off(:motions), -1.0_wp, known)
-          accuracy%approach_unbounded = known .and. [(is_point_load(j), j=1, motions)]
-        end associate
-        call assess_forces(off(motions + 1:), accuracy%total_force, accuracy%body_force)
-        ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones nothing
-        ! else tells.
-        relative = accuracy%total_force/sum(answer%contact%force)
-        where (accuracy%zone%pressure >= 0.0_wp) &
-          accuracy%zone%pressure = max(accuracy%zone%pressure, relative*answer%zones%max_pressure)
-        accuracy%weak = find_weak()
-      end if
-    end associate
+    allocate (accuracy%approach(scene%motions%count), accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
+    allocate (accuracy%approach_unbounded(scene%motions%count), accuracy%weak(scene%model%pairs), source=.false.)
+    allocate (accuracy%zone(0))
+    call assess_mesh()
+    if (pressed) call assess_zones()
+    if (carried) call assess_sums()
     if (size(accuracy%zone) == 0) return
-    z = maxloc(answer%zones%max_pressure, dim=1)
-    accuracy%max_pressure = accuracy%zone(z)%pressure
-    accuracy%pressure_unbounded = accuracy%zone(z)%unbounded
+    associate (largest => accuracy%zone(maxloc(answer%zones%max_pressure, dim=1)))
+      accuracy%max_pressure = largest%pressure
+      accuracy%pressure_unbounded = largest%unbounded
+    end associate
 
   contains
 
+    !> The error of the mesh in the energy norm, and the elements that have the most of it.
+    subroutine assess_mesh()
+      table = new_patch_table(scene%model)
+      call compare_fields(scene, linear, answer, table, loads%force(:, loads%moved), field)
+      accuracy%element = field%element
+      accuracy%energy_norm = sqrt(part(sum(field%element), sum(field%element) + abs(field%energy)))
+      if (accuracy%energy_norm > least_difference) then
+        accuracy%worst = worst_of(accuracy%element)
+      else
+        accuracy%energy_norm = 0.0_wp
+        accuracy%element = 0.0_wp
+        accuracy%worst = [integer ::]
+        field%along = 0.0_wp
+      end if
+    end subroutine assess_mesh
+
     !> Largest pressures and half-widths.
-    pure subroutine assess_zones(energy, zone)
-      real(wp), intent(in) :: energy               !! error of the mesh over all of it
-      type(zone_error), intent(out) :: zone(:)
+    subroutine assess_zones()
+      real(wp) :: energy   !! error of the mesh over all of it, but for that of point loads
       integer :: z
 
-      do z = 1, size(zone)
-        zone(z) = estimate_zone(scene%model, surface, answer, energy, answer%zones(z))
-        zone(z)%too_near = too_near(scene%model, surface, answer%contact%force, zone(z), answer%zones(z)%pairs)
+      surface = new_surface_line(scene%model, line, smooth_pressures(scene%model, linear%materials, field%smooth))
+      energy = accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads()), sum(accuracy%element))
+      accuracy%zone = [(estimate_zone(scene%model, surface, answer, energy, answer%zones(z)), z=1, size(answer%zones))]
+      do z = 1, size(accuracy%zone)
+        accuracy%zone(z)%too_near = &
+          too_near(scene%model, surface, answer%contact%force, accuracy%zone(z), answer%zones(z)%pairs)
       end do
     end subroutine assess_zones
+
+    !> Approaches and forces, and what errors may do to pairs.
+    subroutine assess_sums()
+      real(wp) :: off(size(loads%force, 2))   !! error of each approach, of the sum of forces, of what bodies bear
+      real(wp) :: relative
+      real(wp), allocatable :: travel(:)      !! what the gaps of the pairs are the sum of, added up [length] [pairs]
+      integer :: j
+
+      associate (problem => linear%problem)
+        travel = abs(problem%initial_gap) + abs(problem%load_gap) + matmul(abs(problem%motion), abs(answer%contact%approach))
+      end associate
+      accuracy%sensitivity = find_sensitivity(loads%problem, loads%basis, answer%contact%force, travel, answer%condition)
+      ! What the last step of refinement has not changed is right.
+      accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
+      off = errors()
+      associate (motions => scene%motions%count, known => [(any(loads%moved == j), j=1, scene%motions%count)])
+        accuracy%approach = merge(off(:motions), -1.0_wp, known)
+        accuracy%approach_unbounded = known .and. [(is_point_load(j), j=1, motions)]
+        call assess_forces(off(motions + 1:))
+      end associate
+      ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones nothing
+      ! else tells.
+      relative = accuracy%total_force/sum(answer%contact%force)
+      where (accuracy%zone%pressure >= 0.0_wp) &
+        accuracy%zone%pressure = max(accuracy%zone%pressure, relative*answer%zones%max_pressure)
+      accuracy%weak = find_weak()
+    end subroutine assess_sums
 
     !> Errors of approaches, then of sums of forces.
     pure function errors() result(off)
@@ -173,9 +189,8 @@ contains
     end function error_along
 
     !> The total contact force, and what of it each body bears: nothing is off where loads alone make it.
-    pure subroutine assess_forces(off, total, of_body)
-      real(wp), intent(in) :: off(:)                !! errors of sums that come from errors of gaps [force] [any]
-      real(wp), intent(inout) :: total, of_body(:, :)   !! errors [force] [2, answer's bodies]
+    subroutine assess_forces(off)
+      real(wp), intent(in) :: off(:)   !! errors of sums that come from errors of gaps [force] [any]
       real(wp) :: turned, turned_on(2, scene%model%bodies)
       logical :: given(2, scene%model%bodies)
       integer :: c, i
@@ -185,11 +200,12 @@ contains
         given(:, answer%bodies%body) = column == 0
         if (scene%model%has_rings()) given(1, :) = .false.
         call find_turned(scene%model, line, answer, given, turned, turned_on)
-        total = with_waves(off, 1) + turned
+        accuracy%total_force = with_waves(off, 1) + turned
         do i = 1, size(answer%bodies)
           do c = 1, 2
-            if (column(c, i) >= 0) of_body(c, i) = 0.0_wp
-            if (column(c, i) > 0) of_body(c, i) = with_waves(off, column(c, i)) + turned_on(c, answer%bodies(i)%body)
+            if (column(c, i) >= 0) accuracy%body_force(c, i) = 0.0_wp
+            if (column(c, i) > 0) &
+              accuracy%body_force(c, i) = with_waves(off, column(c, i)) + turned_on(c, answer%bodies(i)%body)
           end do
         end do
       end associate
@@ -262,23 +278,6 @@ contains
       end associate
     end function find_weak
   end subroutine assess
-
-  !> The error of the mesh in the energy norm, and the elements that have the most of it.
-  pure subroutine assess_mesh(field, accuracy)
-    type(error_fields), intent(inout) :: field   !! nothing where it is rounding
-    type(accuracy_type), intent(inout) :: accuracy
-
-    accuracy%element = field%element
-    accuracy%energy_norm = sqrt(part(sum(field%element), sum(field%element) + abs(field%energy)))
-    if (accuracy%energy_norm > least_difference) then
-      accuracy%worst = worst_of(accuracy%element)
-    else
-      accuracy%energy_norm = 0.0_wp
-      accuracy%element = 0.0_wp
-      accuracy%worst = [integer ::]
-      field%along = 0.0_wp
-    end if
-  end subroutine assess_mesh
 
   !> a/b, 0 where a is 0.
   pure real(wp) function part(a, b)
