@@ -14,34 +14,34 @@ module epcont_accuracy_body_shares
 
 contains
 
-  !> One column for each resultant that may be off by itself; what two bodies exert on each other is one. Of
-  !! bodies that no pair touches, though some might, nothing is known.
+  !> One column for the sum of all forces, then one for each resultant that may be off by itself; what two
+  !! bodies exert on each other is one. Of bodies that no pair touches, though some might, nothing is known.
   pure subroutine find_shares(model, motions, touching, bodies, share, column)
-    type(model_type), intent(in) :: model
-    type(free_motions), intent(in) :: motions
-    logical, intent(in) :: touching(:)   !! [pairs]
-    type(body_force), intent(in) :: bodies(:)
+    type(model_type), intent(in) :: model        !! the scene
+    type(free_motions), intent(in) :: motions    !! of its bodies
+    logical, intent(in) :: touching(:)           !! [pairs]
+    type(body_force), intent(in) :: bodies(:)    !! those that have elements
     real(wp), allocatable, intent(out) :: share(:, :)   !! of a unit force at each pair [pairs, any]
     !> The column of each component; 0: loads alone make it; negative: not known [2, bodies].
     integer, allocatable, intent(out) :: column(:, :)
     real(wp), allocatable :: one(:)
     integer :: c, i, k
 
-    allocate (share(model%pairs, 0))
-    allocate (column(2, size(bodies)), source=-1)
+    allocate (share(model%pairs, 1), source=1.0_wp)
+    allocate (column(2, size(bodies)), source=merge(-1, 0, size(bodies) > most_bodies))
     if (size(bodies) > most_bodies) return
-    column = 0
     do i = 1, size(bodies)
       do c = merge(2, 1, model%has_rings()), 2
         if (is_free(model, motions, bodies(i)%body, c)) cycle
         one = shares_of_pairs(model, bodies(i)%body, c)
-        if (any(abs(one) > least_difference) .and. all(bodies(i)%resultant == 0.0_wp) .and. &
-            .not. any(abs(one) > least_difference .and. touching)) then
-          column(c, i) = -1
-          cycle
-        end if
-        do k = 1, size(share, 2)
-          if (all(abs(share(:, k) - one) <= least_difference) .or. all(abs(share(:, k) + one) <= least_difference)) exit
+        associate (counts => abs(one) > least_difference)
+          if (any(counts) .and. all(bodies(i)%resultant == 0.0_wp) .and. .not. any(counts .and. touching)) then
+            column(c, i) = -1
+            cycle
+          end if
+        end associate
+        do k = 2, size(share, 2)
+          if (any([all(abs(share(:, k) - one) <= least_difference), all(abs(share(:, k) + one) <= least_difference)])) exit
         end do
         if (k > size(share, 2)) share = reshape([share, one], [model%pairs, k])
         column(c, i) = k

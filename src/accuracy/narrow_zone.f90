@@ -1,9 +1,8 @@
 !> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which
 !> way it presses; and which way pairs beside a corner, and wide zones as a whole, may press.
 module epcont_accuracy_narrow_zone
-  use epcont_accuracy_contact_stress, only: surface_compliance
-  use epcont_accuracy_limits, only: gap_bulge
-  use epcont_accuracy_patches, only: patch_table
+  use epcont_accuracy_surface_line, only: corner, first_element, surface_line
+  use epcont_accuracy_weights, only: askew, bears_on, finer
   use epcont_accuracy_zone_error, only: zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
@@ -19,35 +18,60 @@ module epcont_accuracy_narrow_zone
 
   !> Pairs up to which a zone is too narrow to tell where its contact begins.
   integer, parameter :: narrow = 2
-  !> A force on one pair is one on a contact narrower than a side: by each three times finer mesh the bodies
-  !! come nearer by this times the force over depth and modulus, (2/pi) log 3 of the half-plane.
-  real(wp), parameter :: finer = 0.7_wp
-  !> The place where the bodies touch is farther from a pair than the normals there tell, by this much at
-  !! most.
-  real(wp), parameter :: askew = 1.25_wp
-  !> A zone whose normals are across what stays the same, but for this part, does not bear it.
-  real(wp), parameter :: bears_on = 0.3_wp
 
 contains
 
   !> What contact on few pairs says too little: how much nearer the bodies come on a three times finer mesh,
   !! and how high a smooth gap may bulge between one pair and the next, where contact truly begins; of two
   !! pairs, half of that between them [length].
-  pure real(wp) function too_near(model, line, answer, table, zone, pairs)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    type(answer_type), intent(in) :: answer
-    type(patch_table), intent(in) :: table
-    type(zone_error), intent(in) :: zone
-    integer, intent(in) :: pairs(:)
+  pure real(wp) function too_near(model, line, force, zone, pairs)
+    type(model_type), intent(in) :: model     !! the scene
+    type(surface_line), intent(in) :: line    !! of its pairs
+    real(wp), intent(in) :: force(:)          !! of all [force] [pairs]
+    type(zone_error), intent(in) :: zone      !! what is known of it
+    integer, intent(in) :: pairs(:)           !! of the zone
     integer :: bearing
 
     too_near = 0.0_wp
-    bearing = bearing_pairs(model, answer%contact%force(pairs))
+    bearing = bearing_pairs(model, force(pairs))
     if (bearing > narrow) return
-    if (.not. zone%unbounded) too_near = gap_bulge(model, line, zone%peak)/bearing   ! a tip is where contact begins
-    if (bearing == 1) too_near = too_near + finer*surface_compliance(model, table, zone%peak)* &
-                                 force_of_depth(model, table, zone%peak, answer%contact%force(zone%peak))
+    if (.not. zone%unbounded) too_near = bulge()/bearing   ! a tip is where contact begins
+    if (bearing == 1) too_near = too_near + finer*line%compliance(zone%peak)*force_of_depth()
+
+  contains
+
+    !> How far a smooth gap may fall below its values at the peak and beside it, by the most that it bends at
+    !! one of them [length].
+    pure real(wp) function bulge()
+      integer :: k
+
+      bulge = 0.0_wp
+      associate (near => [zone%peak, line%neighbour(:, zone%peak)])
+        do k = 1, 3
+          if (near(k) == 0) cycle
+          associate (angle => line%bend(near(k)), curvature => line%curvature(near(k)))
+            if (curvature <= 0.0_wp .or. angle > corner) cycle   ! beyond, one pair faces a step, or another side
+            bulge = max(bulge, angle**2/curvature/8.0_wp)   ! an eighth of angle times spacing
+          end associate
+        end do
+      end associate
+    end function bulge
+
+    !> Force of the peak over the depth of its elements [force/length].
+    pure real(wp) function force_of_depth()
+      real(wp) :: depth
+      integer :: element, k
+
+      force_of_depth = 0.0_wp
+      do k = 1, 2
+        associate (node => model%pair_node(k, zone%peak))
+          element = first_element(model, node)
+          if (element == 0) cycle
+          depth = model%depth(element, model%x(1, node))
+          if (depth > 0.0_wp) force_of_depth = force(zone%peak)/depth
+        end associate
+      end do
+    end function force_of_depth
   end function too_near
 
   !> How many pairs bear the force of a zone: as many as would if all bore the same. (In rings forces grow
@@ -61,33 +85,14 @@ contains
     bearing_pairs = max(bearing_pairs, 1)
   end function bearing_pairs
 
-  !> Force of a pair over the depth of its elements [force/length].
-  pure real(wp) function force_of_depth(model, table, pair, force)
-    type(model_type), intent(in) :: model
-    type(patch_table), intent(in) :: table
-    integer, intent(in) :: pair
-    real(wp), intent(in) :: force
-    real(wp) :: depth
-    integer :: k
-
-    force_of_depth = 0.0_wp
-    do k = 1, 2
-      associate (node => model%pair_node(k, pair))
-        if (table%around%start(node + 1) == table%around%start(node)) cycle
-        depth = model%depth(table%around%group(table%around%start(node)), model%x(1, node))
-        if (depth > 0.0_wp) force_of_depth = force/depth
-      end associate
-    end do
-  end function force_of_depth
-
   !> What the force of a narrow zone does along each motion, more or less, where it is half a side aside, of
   !! two pairs a quarter: where in its sides contact is, nothing tells [force*length or force] [motions,
   !! zones].
   pure function shifted_loads(model, line, motions, answer) result(load)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    type(free_motions), intent(in) :: motions
-    type(answer_type), intent(in) :: answer
+    type(model_type), intent(in) :: model        !! the scene
+    class(contact_line), intent(in) :: line      !! of its pairs
+    type(free_motions), intent(in) :: motions    !! of its bodies
+    type(answer_type), intent(in) :: answer      !! with forces and zones
     real(wp) :: load(motions%count, size(answer%zones))
     real(wp) :: aside
     integer :: bearing, i, k, m, z
@@ -98,15 +103,14 @@ contains
         bearing = bearing_pairs(model, force(pairs))
         if (bearing > narrow) cycle
         k = pairs(maxloc(force(pairs), dim=1))
-        aside = 0.0_wp
-        do i = 1, 2
-          if (line%neighbour(i, k) > 0) aside = max(aside, 0.5_wp*line%distance(k, line%neighbour(i, k))/bearing)
-        end do
+        associate (beside => pack(line%neighbour(:, k), line%neighbour(:, k) > 0))
+          aside = maxval([0.0_wp, (0.5_wp*line%distance(k, beside(i))/bearing, i=1, size(beside))])
+        end associate
         do i = 1, 2   ! A is pushed against the normal, B along it
           associate (node => model%pair_node(i, k))
             do m = 1, motions%count
-              if (motions%body(m) /= model%body(node)) cycle
-              load(m, z) = load(m, z) + (2*i - 3)*sum(force(pairs))*aside*motions%coefficient(3, motions%parts%of_node(node), m)
+              if (motions%body(m) == model%body(node)) load(m, z) = load(m, z) + &
+                (2*i - 3)*sum(force(pairs))*aside*motions%coefficient(3, motions%parts%of_node(node), m)
             end do
           end associate
         end do
@@ -115,32 +119,23 @@ contains
   end function shifted_loads
 
   !> How much more or less force there would be if pairs pressed another way that may be the right one.
+  !!
+  !! Pairs may press along the node's own normal instead of that of what it faces: of smooth boundaries these
+  !! are the same only where the bodies touch. In narrow zones each pair by itself; in wide ones all normals
+  !! of the one body, or of the other.
   pure subroutine find_turned(model, line, answer, given, total, of_body)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    type(answer_type), intent(in) :: answer
+    type(model_type), intent(in) :: model               !! the scene
+    class(contact_line), intent(in) :: line             !! of its pairs
+    type(answer_type), intent(in) :: answer             !! with forces and zones
     logical, intent(in) :: given(:, :)                  !! loads make that component of the resultant [2, bodies]
     real(wp), intent(out) :: total                      !! of the total contact force [force]
     real(wp), intent(out) :: of_body(2, model%bodies)   !! of the resultant on each body [force]
+    real(wp) :: along, change(2), own(2), on(2), lean(2, model%bodies), more, resultant(2, model%bodies)
+    logical :: is_narrow
+    integer :: b, body(2), i, z
 
     total = 0.0_wp
     of_body = 0.0_wp
-    call turn_zones(model, answer, given, total, of_body)
-    call turn_shared_places(model, line, answer%contact%force, total, of_body)
-  end subroutine find_turned
-
-  !> Pairs may press along the node's own normal instead of that of what it faces: of smooth boundaries these
-  !! are the same only where the bodies touch. In narrow zones each pair by itself; in wide ones all normals
-  !! of the one body, or of the other.
-  pure subroutine turn_zones(model, answer, given, total, of_body)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    logical, intent(in) :: given(:, :)
-    real(wp), intent(inout) :: total, of_body(:, :)
-    real(wp) :: along, change(2), lean(2, model%bodies), more, resultant(2, model%bodies)
-    logical :: is_narrow
-    integer :: i, z
-
     lean = 0.0_wp
     resultant = resultants(model, answer%contact%force)
     do z = 1, size(answer%zones)
@@ -148,82 +143,86 @@ contains
       associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
         is_narrow = bearing_pairs(model, force(pairs)) <= narrow
         do i = 1, size(pairs)
-          associate (k => pairs(i), a => model%body(model%pair_node(1, pairs(i))), b => model%body(model%pair_node(2, pairs(i))))
-            call turn_pair(model, k, kept(resultant(:, [a, b]), given(:, [a, b])), no_effect*sum(force), &
-                           merge(0.0_wp, bears_on, is_narrow), along, change)
-            if (is_narrow) then
-              total = total + askew*force(k)*abs(along)
-              of_body(:, a) = of_body(:, a) + askew*force(k)*abs(change)
-              of_body(:, b) = of_body(:, b) + askew*force(k)*abs(change)
-            else
-              more = more + force(k)*along
-              lean(:, a) = lean(:, a) - force(k)*change
-              lean(:, b) = lean(:, b) + force(k)*change
-            end if
+          associate (k => pairs(i), normal => model%normal(:, pairs(i)))
+            body = model%body(model%pair_node(:, k))
+            own = -smooth_normal(k)
+            on = kept(resultant(:, body), given(:, body))
+            if (all(own == 0.0_wp) .or. norm2(on) <= no_effect*sum(force)) cycle
+            ! The pair bears the same along `on`, if it bears anything there.
+            along = 0.0_wp
+            if (is_narrow .or. abs(dot_product(on, own)) >= bears_on*norm2(on)) &
+              along = excess(dot_product(on, normal), dot_product(on, own))
+            change = (1.0_wp + along)*own - normal
+            if (is_narrow) total = total + askew*force(k)*abs(along)
+            more = more + merge(0.0_wp, force(k)*along, is_narrow)
+            do b = 1, 2   ! A is pushed against the normal, B along it
+              if (is_narrow) then
+                of_body(:, body(b)) = of_body(:, body(b)) + askew*force(k)*abs(change)
+              else
+                lean(:, body(b)) = lean(:, body(b)) + (2*b - 3)*force(k)*change
+              end if
+            end do
           end associate
         end do
       end associate
       total = total + abs(more)
     end do
     of_body = of_body + abs(lean)
-  end subroutine turn_zones
+    call turn_shared_places(total, of_body)
 
-  !> Of a force of one at a pair: by how much it grows, and how it changes, where it presses along the node's
-  !! own normal and bears the same along `on`. Nothing where there is no such normal, or no resultant.
-  pure subroutine turn_pair(model, pair, on, least, bears, along, change)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: pair
-    real(wp), intent(in) :: on(2)    !! what stays the same [force]
-    real(wp), intent(in) :: least    !! resultants up to this are none [force]
-    real(wp), intent(in) :: bears    !! part of the normal along `on` from which on the pair bears it
-    real(wp), intent(out) :: along, change(2)
-    real(wp) :: own(2)
+  contains
 
-    along = 0.0_wp
-    change = 0.0_wp
-    own = -smooth_normal(model, pair)
-    if (all(own == 0.0_wp) .or. norm2(on) <= least) return
-    associate (normal => model%normal(:, pair))
-      if (abs(dot_product(on, own)) >= bears*norm2(on)) along = excess(dot_product(on, normal), dot_product(on, own))
-      change = (1.0_wp + along)*own - normal
-    end associate
-  end subroutine turn_pair
+    !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the
+    !! strongest there does.
+    pure subroutine turn_shared_places(total, of_body)
+      real(wp), intent(inout) :: total, of_body(:, :)
+      real(wp) :: change(2), way
+      integer :: b, body(2), k
+      integer :: strongest(model%pairs)   !! at the place of each
 
-  !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the
-  !! strongest there does.
-  pure subroutine turn_shared_places(model, line, force, total, of_body)
-    type(model_type), intent(in) :: model
-    type(contact_line), intent(in) :: line
-    real(wp), intent(in) :: force(:)   !! [pairs]
-    real(wp), intent(inout) :: total, of_body(:, :)
-    real(wp) :: change(2)
-    integer :: k
-    integer :: strongest(size(force))   !! at the place of each pair
-
-    do k = 1, size(line%at_place%start) - 1
-      associate (pairs => line%at_place%group(line%at_place%start(k):line%at_place%start(k + 1) - 1))
-        strongest(pairs) = pairs(maxloc(force(pairs), dim=1))
+      associate (start => line%at_place%start, force => answer%contact%force)
+        do k = 1, size(start) - 1
+          associate (pairs => line%at_place%group(start(k):start(k + 1) - 1))
+            strongest(pairs) = pairs(maxloc(force(pairs), dim=1))
+          end associate
+        end do
+        do k = 1, model%pairs
+          if (force(k) <= 0.0_wp .or. strongest(k) == k) cycle
+          body = model%body(model%pair_node(:, k))
+          way = merge(1.0_wp, -1.0_wp, model%body(model%pair_node(2, strongest(k))) == body(2))
+          change = force(k)*abs(model%normal(:, k) - way*model%normal(:, strongest(k)))
+          total = total + norm2(change)
+          do b = 1, 2
+            of_body(:, body(b)) = of_body(:, body(b)) + change
+          end do
+        end do
       end associate
-    end do
-    do k = 1, size(force)
-      if (force(k) <= 0.0_wp .or. strongest(k) == k) cycle
-      associate (first => strongest(k), a => model%body(model%pair_node(1, k)), b => model%body(model%pair_node(2, k)))
-        change = force(k)*abs(model%normal(:, k) - merge(1.0_wp, -1.0_wp, model%body(model%pair_node(2, first)) == b) &
-                                                   *model%normal(:, first))
-        total = total + norm2(change)
-        of_body(:, a) = of_body(:, a) + change
-        of_body(:, b) = of_body(:, b) + change
-      end associate
-    end do
-  end subroutine turn_shared_places
+    end subroutine turn_shared_places
+
+    !> The normal of a line in contact at the node of a pair that stands on the other line; none at a corner,
+    !! or without lines.
+    pure function smooth_normal(pair) result(normal)
+      integer, intent(in) :: pair
+      real(wp) :: normal(2)
+      integer :: c
+
+      normal = 0.0_wp
+      do c = 1, size(model%line_contact)
+        associate (contact => model%line_contact(c), node => model%pair_node(2, pair))
+          if (pair < contact%first .or. pair > contact%last) cycle
+          if (pair < contact%first_of_master) normal = normal_at(contact%slave, node)
+          if (pair >= contact%first_of_master) normal = normal_at(contact%master, node)
+        end associate
+      end do
+    end function smooth_normal
+  end subroutine find_turned
 
   !> What stays the same of the resultants on two bodies where their contact turns: what loads make, else the
   !! larger one.
   pure function kept(resultant, given) result(on)
     real(wp), intent(in) :: resultant(2, 2)
     logical, intent(in) :: given(2, 2)
-    real(wp) :: on(2)
-    real(wp) :: of_loads(2, 2)
+    real(wp) :: on(2), of_loads(2, 2)
 
     of_loads = merge(resultant, 0.0_wp, given)
     if (all(of_loads == 0.0_wp)) of_loads = resultant
@@ -238,28 +237,7 @@ contains
     if (abs(a - b) < abs(b)) excess = (a - b)/b
   end function excess
 
-  !> The normal of a line in contact at the node of a pair that stands on the other line; none at a corner, or
-  !! without lines.
-  pure function smooth_normal(model, pair) result(normal)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: pair
-    real(wp) :: normal(2)
-    integer :: c
-
-    normal = 0.0_wp
-    do c = 1, size(model%line_contact)
-      associate (contact => model%line_contact(c))
-        if (pair < contact%first .or. pair > contact%last) cycle
-        if (pair < contact%first_of_master) then
-          normal = normal_at(contact%slave, model%pair_node(2, pair))
-        else
-          normal = normal_at(contact%master, model%pair_node(2, pair))
-        end if
-      end associate
-    end do
-  end function smooth_normal
-
-  !> The same of one line.
+  !> The normal of a line at one of its nodes; none at a corner, or elsewhere.
   pure function normal_at(line, node) result(normal)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: node

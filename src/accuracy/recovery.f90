@@ -3,14 +3,27 @@
 !> At each corner a polynomial is fitted by least squares to the strains of the elements around it, at the
 !> points where they are best: the middles of three- and four-node elements (linear), places within those with
 !> nodes between corners (quadratic). Nodes between corners take the mean of the polynomials of both.
+!>
+!> Which elements tell of the strain at a node: those around it of one section, since strains jump where
+!> materials change. A node where sections meet has a place in each of them. A place at the boundary of its
+!> section has elements on one side only, too few to tell how the strain changes: the elements around its
+!> neighbours are added there.
 module epcont_accuracy_recovery
-  use epcont_accuracy_patches, only: patch_table, wide_patch
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: recover_strains
+  public :: new_patch_table, patch_table, recover_strains, wide_patch
+
+  type :: patch_table
+    integer :: places = 0
+    integer, allocatable :: node(:)        !! of each place [places]
+    integer, allocatable :: place(:, :)    !! of each node of an element, 0 where it has no more [most_nodes, elements]
+    type(incidence) :: around              !! elements at each place
+    logical, allocatable :: inside(:)      !! elements go all around the place [places]
+  end type patch_table
 
   !> Terms of a quadratic polynomial: 1, x, y, x**2, xy, y**2.
   integer, parameter :: quadratic = 6
@@ -19,90 +32,198 @@ module epcont_accuracy_recovery
 
 contains
 
+  !> The places of a scene.
+  pure function new_patch_table(model) result(table)
+    type(model_type), intent(in) :: model   !! the scene
+    type(patch_table) :: table
+    integer, allocatable :: turn(:)
+    integer :: corners, e
+
+    call split_places(table%place, table%node)
+    table%places = size(table%node)
+    table%around = new_incidence(table%place, table%places)
+    ! Around a place inside, the corner after it in one element is the corner before it in another.
+    allocate (turn(table%places), source=0)
+    do e = 1, model%elements
+      corners = model%corners(e)
+      associate (place => table%place(:corners, e))
+        turn(place) = turn(place) + cshift(place, 1) - cshift(place, -1)
+      end associate
+    end do
+    table%inside = turn == 0
+
+  contains
+
+    !> A node has one place for each section that it belongs to, the first of which is the node's own number.
+    pure subroutine split_places(place, node)
+      integer, allocatable, intent(out) :: place(:, :), node(:)   !! of each element, of each place
+      integer, allocatable :: next(:), section(:)   !! of each place the next place of its node, its section
+      integer :: at, e, k, places
+
+      place = model%connectivity
+      node = [(k, k=1, model%nodes)]
+      if (all(model%section == model%section(1))) return
+      node = [node, spread(0, 1, size(place))]
+      allocate (next(size(node)), section(size(node)), source=0)
+      places = model%nodes
+      do e = 1, model%elements
+        do k = 1, model%order(e)
+          at = place(k, e)
+          if (section(at) == 0) section(at) = model%section(e)
+          do while (section(at) /= model%section(e))
+            if (next(at) == 0) then
+              places = places + 1
+              next(at) = places
+              section(places) = model%section(e)
+              node(places) = place(k, e)
+            end if
+            at = next(at)
+          end do
+          place(k, e) = at
+        end do
+      end do
+      node = node(:places)
+    end subroutine split_places
+  end function new_patch_table
+
+  !> The elements around a place and around the corners of these.
+  pure subroutine wide_patch(model, table, place, seen, patch)
+    type(model_type), intent(in) :: model             !! the scene
+    type(patch_table), intent(in) :: table            !! of its elements
+    integer, intent(in) :: place                      !! which place
+    integer, intent(inout) :: seen(:)                 !! the last place that each element was taken for [elements]
+    integer, allocatable, intent(out) :: patch(:)     !! elements
+    integer :: i, j, k
+
+    allocate (patch(0))
+    associate (start => table%around%start, group => table%around%group)
+      do i = start(place), start(place + 1) - 1
+        do k = 1, model%corners(group(i))
+          associate (corner => table%place(k, group(i)))
+            do j = start(corner), start(corner + 1) - 1
+              if (seen(group(j)) == place) cycle
+              seen(group(j)) = place
+              patch = [patch, group(j)]
+            end do
+          end associate
+        end do
+      end do
+    end associate
+  end subroutine wide_patch
+
   !> Strains at the places of a table, of several fields at once [4, places, fields].
   pure function recover_strains(model, table, volume, strain) result(smooth)
-    type(model_type), intent(in) :: model
-    type(patch_table), intent(in) :: table
+    type(model_type), intent(in) :: model    !! the scene
+    type(patch_table), intent(in) :: table   !! of its elements
     real(wp), intent(in) :: volume(:)        !! of the integration points [points]
     real(wp), intent(in) :: strain(:, :, :)  !! xx, yy, zz, xy [4, points, fields]
     real(wp), allocatable :: smooth(:, :, :)
     real(wp), allocatable :: x(:, :), sample(:, :, :)
-    integer, allocatable :: seen(:), patch(:)
-    integer, allocatable :: fitted(:)        !! of a node between corners: -1, less one for each polynomial; else 0 [places]
-    integer :: count, e, p
-    logical :: curved
+    integer, allocatable :: patch(:)
+    integer :: seen(model%elements), e, p
+    integer :: fits(table%places)            !! of a node between corners: polynomials that reach it; of others -1
 
-    call take_samples(model, volume, strain, x, sample)
+    call take_samples(x, sample)
     allocate (smooth(4, table%places, size(strain, 3)), source=0.0_wp)
-    allocate (fitted(table%places), source=0)
+    fits = -1
     do e = 1, model%elements
-      fitted(table%place(model%corners(e) + 1:model%order(e), e)) = -1
+      fits(table%place(model%corners(e) + 1:model%order(e), e)) = 0
     end do
-    allocate (seen(model%elements), source=0)
-    allocate (patch(64))
+    seen = 0
     do p = 1, table%places
-      count = table%around%start(p + 1) - table%around%start(p)
-      if (count == 0 .or. fitted(p) /= 0) cycle
-      curved = is_quadratic(model, table%around%group(table%around%start(p)))
-      if (table%inside(p) .and. count >= merge(least_quadratic/3, least_linear, curved)) then
-        if (count > size(patch)) patch = [patch, table%around%group]
-        patch(:count) = table%around%group(table%around%start(p):table%around%start(p + 1) - 1)
-      else
-        call wide_patch(model, table, p, seen, patch, count)
-      end if
-      if (curved) then
-        call fit_quadratic(model, table, x, sample, patch(:count), p, smooth, fitted)
-      else
-        call fit_linear(model, x, sample, patch(:count), model%x(:, table%node(p)), smooth(:, p, :))
-      end if
-    end do
-    do p = 1, table%places
-      if (fitted(p) < -1) smooth(:, p, :) = smooth(:, p, :)/(-1 - fitted(p))
-    end do
-  end function recover_strains
-
-  !> Are the strains around an element fitted by quadratic polynomials?
-  pure logical function is_quadratic(model, element)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: element
-
-    is_quadratic = model%kinds(model%kind(element))%degree > 1
-  end function is_quadratic
-
-  !> Where the strains of the elements are best, and what they are there: the samples of an element have the
-  !! numbers of its first points.
-  pure subroutine take_samples(model, volume, strain, x, sample)
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: volume(:), strain(:, :, :)
-    real(wp), allocatable, intent(out) :: x(:, :)           !! [length] [2, points]
-    real(wp), allocatable, intent(out) :: sample(:, :, :)   !! [4, points, fields]
-    integer :: e, f, k, p
-
-    allocate (x(2, model%points))
-    allocate (sample, source=strain)
-    do e = 1, model%elements
-      associate (node => model%connectivity(:model%order(e), e), kind => model%kinds(model%kind(e)), &
-                 first => model%first_point(e), last => model%first_point(e + 1) - 1)
-        if (kind%degree > 1) then
-          do k = 1, kind%samples
-            x(:, first + k - 1) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
-            do f = 1, size(strain, 3)
-              sample(:, first + k - 1, f) = matmul(strain(:, first:last, f), kind%sample_of(:kind%points, k))
-            end do
-          end do
-          cycle
+      patch = table%around%group(table%around%start(p):table%around%start(p + 1) - 1)
+      if (size(patch) == 0 .or. fits(p) >= 0) cycle
+      associate (curved => model%kinds(model%kind(patch(1)))%degree > 1)
+        if (.not. table%inside(p) .or. size(patch) < merge(least_quadratic/3, least_linear, curved)) &
+          call wide_patch(model, table, p, seen, patch)
+        if (curved) then
+          call fit_quadratic(p, smooth, fits)
+        else
+          call fit_linear(model, x, sample, patch, model%x(:, table%node(p)), smooth(:, p, :))
         end if
-        x(:, first) = sum(model%x(:, node), dim=2)/kind%nodes
-        if (first == last) cycle
-        sample(:, first, :) = 0.0_wp
-        do f = 1, size(strain, 3)
-          do p = first, last
-            sample(:, first, f) = sample(:, first, f) + strain(:, p, f)*(volume(p)/sum(volume(first:last)))
-          end do
-        end do
       end associate
     end do
-  end subroutine take_samples
+    do p = 1, table%places
+      if (fits(p) > 0) smooth(:, p, :) = smooth(:, p, :)/fits(p)
+    end do
+
+  contains
+
+    !> Where the strains of the elements are best, and what they are there: the samples of an element have the
+    !! numbers of its first points.
+    pure subroutine take_samples(x, sample)
+      real(wp), allocatable, intent(out) :: x(:, :)           !! [length] [2, points]
+      real(wp), allocatable, intent(out) :: sample(:, :, :)   !! [4, points, fields]
+      integer :: e, f, k, p
+
+      allocate (x(2, model%points))
+      sample = strain
+      do e = 1, model%elements
+        associate (node => model%connectivity(:model%order(e), e), kind => model%kinds(model%kind(e)), &
+                   first => model%first_point(e), last => model%first_point(e + 1) - 1)
+          if (kind%degree > 1) then
+            do k = 1, kind%samples
+              x(:, first + k - 1) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
+              do f = 1, size(strain, 3)
+                sample(:, first + k - 1, f) = matmul(strain(:, first:last, f), kind%sample_of(:kind%points, k))
+              end do
+            end do
+            cycle
+          end if
+          x(:, first) = sum(model%x(:, node), dim=2)/kind%nodes
+          if (first == last) cycle
+          sample(:, first, :) = 0.0_wp
+          do p = first, last
+            sample(:, first, :) = sample(:, first, :) + strain(:, p, :)*(volume(p)/sum(volume(first:last)))
+          end do
+        end associate
+      end do
+    end subroutine take_samples
+
+    !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
+    !! meet there.
+    pure subroutine fit_quadratic(p, smooth, fits)
+      integer, intent(in) :: p    !! the place
+      real(wp), intent(inout) :: smooth(:, :, :)
+      integer, intent(inout) :: fits(:)
+      real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic), at(2), reach, weight
+      integer :: f, i, j, k, s
+
+      at = model%x(:, table%node(p))
+      reach = 0.0_wp
+      do i = 1, size(patch)
+        reach = max(reach, norm2(x(:, model%first_point(patch(i))) - at))   ! in any direction: a scene may be turned
+      end do
+      matrix = 0.0_wp
+      coefficient = 0.0_wp
+      do i = 1, size(patch)
+        associate (first => model%first_point(patch(i)))
+          do s = first, first + model%kinds(model%kind(patch(i)))%samples - 1
+            term = terms((x(:, s) - at)/reach)
+            weight = 1.0_wp/(0.1_wp + sum(term(2:3)**2))**2
+            do j = 1, quadratic
+              matrix(:, j) = matrix(:, j) + term*term(j)*weight
+              coefficient(:, :, j) = coefficient(:, :, j) + sample(:, s, :)*term(j)*weight
+            end do
+          end do
+        end associate
+      end do
+      call solve(matrix, size(coefficient, 1)*size(coefficient, 2), coefficient)
+      smooth(:, p, :) = coefficient(:, :, 1)
+      do i = table%around%start(p), table%around%start(p + 1) - 1
+        associate (place => table%place(:, table%around%group(i)), corners => model%corners(table%around%group(i)))
+          do k = corners + 1, model%order(table%around%group(i))
+            if (place(k - corners) /= p .and. place(mod(k - corners, corners) + 1) /= p) cycle
+            term = terms((model%x(:, table%node(place(k))) - at)/reach)
+            do f = 1, size(sample, 3)
+              smooth(:, place(k), f) = smooth(:, place(k), f) + matmul(coefficient(:, f, :), term)
+            end do
+            fits(place(k)) = fits(place(k)) + 1
+          end do
+        end associate
+      end do
+    end subroutine fit_quadratic
+  end function recover_strains
 
   !> The linear polynomials of one sample an element, at a place. A direction in which the samples do not
   !! spread is constant.
@@ -112,7 +233,8 @@ contains
     integer, intent(in) :: patch(:)          !! elements
     real(wp), intent(in) :: at(2)
     real(wp), intent(out) :: value(:, :)     !! [4, fields]
-    real(wp) :: mean(4), along(4), across(4), d(2), m(2), xx, xy, yy, determinant
+    real(wp) :: mean(4), along(4), across(4), d(2), determinant
+    real(wp) :: m(2), xx, xy, yy   !! moments of the samples about the place, then about their middle
     integer :: f, i, s
 
     m = 0.0_wp
@@ -150,56 +272,7 @@ contains
     end do
   end subroutine fit_linear
 
-  !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
-  !! meet there.
-  pure subroutine fit_quadratic(model, table, x, sample, patch, p, smooth, fitted)
-    type(model_type), intent(in) :: model
-    type(patch_table), intent(in) :: table
-    real(wp), intent(in) :: x(:, :), sample(:, :, :)
-    integer, intent(in) :: patch(:), p    !! elements; the place
-    real(wp), intent(inout) :: smooth(:, :, :)
-    integer, intent(inout) :: fitted(:)
-    real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic), at(2), reach, weight
-    integer :: corners, e, f, i, j, k, s
-
-    at = model%x(:, table%node(p))
-    reach = 0.0_wp
-    do i = 1, size(patch)
-      reach = max(reach, norm2(x(:, model%first_point(patch(i))) - at))   ! in any direction: a scene may be turned
-    end do
-    matrix = 0.0_wp
-    coefficient = 0.0_wp
-    do i = 1, size(patch)
-      associate (first => model%first_point(patch(i)))
-        do s = first, first + model%kinds(model%kind(patch(i)))%samples - 1
-          term = terms((x(:, s) - at)/reach)
-          weight = 1.0_wp/(0.1_wp + sum(term(2:3)**2))**2
-          do j = 1, quadratic
-            matrix(:, j) = matrix(:, j) + term*term(j)*weight
-            coefficient(:, :, j) = coefficient(:, :, j) + sample(:, s, :)*term(j)*weight
-          end do
-        end do
-      end associate
-    end do
-    call solve(matrix, size(coefficient, 1)*size(coefficient, 2), coefficient)
-    smooth(:, p, :) = coefficient(:, :, 1)
-    do i = table%around%start(p), table%around%start(p + 1) - 1
-      e = table%around%group(i)
-      if (.not. is_quadratic(model, e)) cycle
-      corners = model%corners(e)
-      do k = 1, corners
-        if (table%place(k, e) /= p .and. table%place(mod(k, corners) + 1, e) /= p) cycle
-        associate (middle => table%place(corners + k, e))
-          term = terms((model%x(:, table%node(middle)) - at)/reach)
-          do f = 1, size(sample, 3)
-            smooth(:, middle, f) = smooth(:, middle, f) + matmul(coefficient(:, f, :), term)
-          end do
-          fitted(middle) = fitted(middle) - 1
-        end associate
-      end do
-    end do
-  end subroutine fit_quadratic
-
+  !> Terms of a quadratic polynomial at a place.
   pure function terms(x) result(term)
     real(wp), intent(in) :: x(2)
     real(wp) :: term(quadratic)

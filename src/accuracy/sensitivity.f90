@@ -5,8 +5,9 @@
 !> (Skeel 1979). Its largest entry is the 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs
 !> are few, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_accuracy_sensitivity
+  use epcont_accuracy_unit_motion, only: forces_under
   use epcont_base_kinds, only: wp
-  use epcont_contact_basis, only: contact_basis, respond
+  use epcont_contact_basis, only: contact_basis
   use epcont_contact_scaling, only: scaled_problem
   implicit none
   private
@@ -25,9 +26,10 @@ module epcont_accuracy_sensitivity
 
 contains
 
+  !> What errors of the stiffness and of the gaps do to the forces.
   pure function find_sensitivity(problem, basis, force, travel, condition) result(found)
-    type(scaled_problem), intent(in) :: problem
-    type(contact_basis), intent(in) :: basis
+    type(scaled_problem), intent(in) :: problem   !! of the contact
+    type(contact_basis), intent(in) :: basis      !! of the pairs in contact
     real(wp), intent(in) :: force(:)     !! [force] [pairs]
     real(wp), intent(in) :: travel(:)    !! what the gap of each pair is the sum of, added up [length] [pairs]
     real(wp), intent(in) :: condition    !! of the stiffness
@@ -48,26 +50,24 @@ contains
   pure real(wp) function largest_change(basis, d) result(norm)
     type(contact_basis), intent(in) :: basis
     real(wp), intent(in) :: d(:)
-    real(wp), allocatable :: x(:), y(:), turned(:)
+    real(wp) :: x(size(d)), y(size(d)), turned(size(d))
     integer :: k, product
 
-    allocate (x(size(d)))
+    norm = 0.0_wp
     if (size(d) <= few_pairs) then
-      norm = 0.0_wp
       do k = 1, size(d)
         x = 0.0_wp
         x(k) = 1.0_wp
-        norm = max(norm, sum(abs(d*forces_under(basis, x))))
+        norm = max(norm, sum(abs(d*change(x))))
       end do
       return
     end if
     x = 1.0_wp/size(d)
-    norm = 0.0_wp
     do product = 1, most_products
-      y = d*forces_under(basis, x)
+      y = d*change(x)
       if (sum(abs(y)) <= norm) exit
       norm = sum(abs(y))
-      turned = forces_under(basis, d*sign(1.0_wp, y))
+      turned = change(d*sign(1.0_wp, y))
       k = maxloc(abs(turned), dim=1)
       if (abs(turned(k)) <= dot_product(turned, x)) exit
       x = 0.0_wp
@@ -75,20 +75,16 @@ contains
     end do
     ! Where all pairs are alike that stays at the start: forces of alternating sign are looked at, too.
     x = [(merge(1.0_wp, -1.0_wp, mod(k, 2) == 0)*(1.0_wp + (k - 1.0_wp)/(size(d) - 1.0_wp)), k=1, size(d))]
-    norm = max(norm, sum(abs(d*forces_under(basis, x)))/(1.5_wp*size(d)))
+    norm = max(norm, sum(abs(d*change(x)))/(1.5_wp*size(d)))
+
+  contains
+
+    !> M g, but for its sign.
+    pure function change(gap)
+      real(wp), intent(in) :: gap(:)
+      real(wp) :: change(size(gap))
+
+      change = reshape(forces_under(basis, reshape(gap, [size(gap), 1])), [size(gap)])
+    end function change
   end function largest_change
-
-  !> M g.
-  pure function forces_under(basis, gap) result(force)
-    type(contact_basis), intent(in) :: basis
-    real(wp), intent(in) :: gap(:)
-    real(wp), allocatable :: force(:)
-    real(wp) :: opening(size(gap), 1), load(size(basis%resistance, 1), 1)
-    real(wp), allocatable :: change(:, :), approach(:, :)
-
-    opening(:, 1) = gap
-    load = 0.0_wp
-    call respond(basis, opening, load, change, approach)
-    force = -change(:, 1)
-  end function forces_under
 end module epcont_accuracy_sensitivity

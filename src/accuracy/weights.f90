@@ -1,5 +1,7 @@
-!> THE table of what the parts of an estimate count, measured on scenes whose answers are known
-!> (tests/accuracy).
+!> THE table of what the parts of an estimate count, and from where on something counts. Those that differ
+!> from kind to kind are measured on scenes whose answers are known (tests/accuracy/score.py, its sets `tuned`
+!> to `third`) and on scenes drawn by chance (score_by_chance.py), and scored on others (`unseen`); each has a
+!> say in a figure of tests/accuracy/estimates.csv. Of the others, each line says whence it comes.
 module epcont_accuracy_weights
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: by_linear_triangles, by_quadrilaterals
@@ -7,58 +9,104 @@ module epcont_accuracy_weights
   private
   public :: estimate_weights, weights_of
 
+  !> Weights that differ from one kind of elements to another.
   type :: estimate_weights
-    !> Of the largest pressure: its distance from a parabola through the nearest pairs, that from the smooth
-    !! stress, the smaller of the two; h/b, (h/b)**2, how much larger that is over the zone and into the
-    !! bodies than at the peak, and the part of the energy that the mesh is off by, of it.
-    real(wp) :: parabola, stress, smaller, spacing, square, graded, pressure_energy
-    !> Of the half-width: the spacing at its end, and the same part of the energy of it.
-    real(wp) :: step, width_energy
-    !> Of the approach: the product of two fields of errors, whose parts may cancel; of pressure (h/b)**2
-    !! b/E*, by which bodies come too near since their nodes touch and not the line between them; and the same
-    !! for contact that ends at a node: a distance d from the true end counts as d**2.
-    real(wp) :: product, between, end
+    real(wp) :: parabola, stress, smaller, spacing, square, graded, pressure_energy   !! of the largest pressure
+    real(wp) :: step, width_energy                                                    !! of the half-width
+    real(wp) :: product, between, end                                                 !! of the approach
   end type estimate_weights
 
-  !> Each for elastic scenes, then for those with something beyond yield. Sides of six-node elements are two
-  !! spacings long.
-  ! Of p_max: parabola, stress, smaller, spacing, square, graded, energy; of b: step, energy; of the approach:
-  ! product, between, end.
-  type(estimate_weights), parameter :: tria3(2) = [ &
-    estimate_weights(0.5_wp, 0.0_wp, 1.2_wp, 0.1_wp, 0.0_wp, 0.6_wp, 0.2_wp, 0.05_wp, 3.2_wp, 1.6_wp, 0.0_wp, 0.1_wp), &
-    estimate_weights(1.3_wp, 0.1_wp, 0.1_wp, 0.02_wp, 0.0_wp, 0.4_wp, 1.6_wp, 0.08_wp, 3.4_wp, 2.6_wp, 0.0_wp, 0.4_wp)]
-  type(estimate_weights), parameter :: quad4(2) = [ &
-    estimate_weights(1.05_wp, 0.02_wp, 1.1_wp, 0.006_wp, 0.0_wp, 0.08_wp, 0.45_wp, 0.3_wp, 0.1_wp, 1.6_wp, 0.3_wp, 0.15_wp), &
-    estimate_weights(1.2_wp, 0.35_wp, 0.0_wp, 0.02_wp, 0.0_wp, 0.12_wp, 0.7_wp, 0.27_wp, 0.8_wp, 1.5_wp, 0.4_wp, 0.3_wp)]
-  type(estimate_weights), parameter :: tria6(2) = [ &
-    estimate_weights(0.4_wp, 0.04_wp, 1.3_wp, 0.024_wp, 0.0_wp, 0.16_wp, 0.0_wp, 0.29_wp, 0.2_wp, 1.8_wp, 0.0_wp, 0.14_wp), &
-    estimate_weights(0.5_wp, 0.8_wp, 0.5_wp, 0.006_wp, 0.0_wp, 0.06_wp, 2.5_wp, 0.3_wp, 0.5_wp, 1.7_wp, 0.0_wp, 0.75_wp)]
-  type(estimate_weights), parameter :: trax3(2) = [ &
-    estimate_weights(1.3_wp, 0.0_wp, 0.3_wp, 0.2_wp, 0.0_wp, 0.6_wp, 0.3_wp, 0.2_wp, 0.75_wp, 1.4_wp, 0.0_wp, 0.2_wp), &
-    estimate_weights(1.5_wp, 0.0_wp, 0.2_wp, 0.03_wp, 0.0_wp, 0.45_wp, 1.2_wp, 0.16_wp, 0.65_wp, 1.3_wp, 0.0_wp, 0.12_wp)]
-  type(estimate_weights), parameter :: trax6(2) = [ &
-    estimate_weights(1.2_wp, 0.02_wp, 0.5_wp, 0.003_wp, 0.36_wp, 0.05_wp, 2.8_wp, 0.31_wp, 0.5_wp, 1.4_wp, 0.0_wp, 0.35_wp), &
-    estimate_weights(0.7_wp, 0.17_wp, 0.8_wp, 0.0_wp, 0.2_wp, 0.05_wp, 3.2_wp, 0.33_wp, 0.5_wp, 2.1_wp, 0.0_wp, 0.4_wp)]
+  !> They, in thousandths, of linear triangles, quadrilaterals, quadratic elements, rings of linear triangles
+  !! and of quadratic elements: each in elastic scenes, then in those with something beyond yield.
+  integer, parameter :: thousandths(10, 12) = reshape([ &
+    ! Largest pressure: its distance from a parabola through the nearest pairs
+    500, 1300, 1050, 1200, 400, 500, 1300, 1500, 1200, 700, &
+    ! that from the smooth stress
+    0, 100, 20, 350, 40, 800, 0, 0, 20, 170, &
+    ! the smaller of the two
+    1200, 100, 1100, 0, 1300, 500, 300, 200, 500, 800, &
+    ! h/b, the spacing of the pairs over half of the zone (sides of six-node elements are two spacings long)
+    100, 20, 6, 20, 24, 6, 200, 30, 3, 0, &
+    ! (h/b)**2
+    0, 0, 0, 0, 0, 0, 0, 0, 360, 200, &
+    ! how much larger h/b is over the zone and into the bodies than at the peak
+    600, 400, 80, 120, 160, 60, 600, 450, 50, 50, &
+    ! the part of the energy that the mesh is off by
+    200, 1600, 450, 700, 0, 2500, 300, 1200, 2800, 3200, &
+    ! Half-width: the spacing at its end
+    50, 80, 300, 270, 290, 300, 200, 160, 310, 330, &
+    ! the same part of the energy
+    3200, 3400, 100, 800, 200, 500, 750, 650, 500, 500, &
+    ! Approach: the product of two fields of errors, whose parts may cancel
+    1600, 2600, 1600, 1500, 1800, 1700, 1400, 1300, 1400, 2100, &
+    ! of pressure (h/b)**2 b/E*, by which bodies come too near since their nodes touch and not the line between
+    0, 0, 300, 400, 0, 0, 0, 0, 0, 0, &
+    ! the same for contact that ends at a node: a distance d from the true end counts as d**2
+    100, 400, 150, 300, 140, 750, 200, 120, 350, 400], [10, 12])
+
+  ! Weights that all kinds have.
+
+  !> Largest pressure: an element so many times deeper than its side is wide is not graded
+  !! (score_curved.py, elements that grow by a power).
+  real(wp), parameter, public :: stretched = 1.8_wp
+  !> At the last candidate: of what it is above the next pair. The last has half a side, and its own is the
+  !! mean over that, short of the pressure at the end: of a straight rise by half of it, of a steeper one by
+  !! more (columns pressed at a corner: score_by_chance.py, "stack").
+  real(wp), parameter, public :: beyond_mean = 0.625_wp
+  !> What flattens waves of the gap, over E* r: waves 2 d long take a pressure of pi E* a/(2 d). Theory
+  !! (Westergaard 1939); tests/accuracy/test_waves.
+  real(wp), parameter, public :: waves_flattened = acos(-1.0_wp)/16.0_wp
+  !> Approach: height of waves from the gap that is meant. They are as high above as below it
+  !! (score_curved.py, sides of chords).
+  real(wp), parameter, public :: wave_height = 2.0_wp
+  !> Part of the products of elements that may not be trusted to cancel (set with that of the total
+  !! contact force; no measurement on record).
+  real(wp), parameter, public :: uncancelled = 1.0_wp/3.0_wp
+  !> Errors are so much larger where a zone has too few pairs to see its pressures (no measurement on
+  !! record).
+  real(wp), parameter, public :: unresolved = 1.4_wp
+  !> Force on one pair, a contact narrower than a side: by each three times finer mesh the bodies come nearer
+  !! by this times the force over depth and modulus. Theory: (2/pi) log 3 of the half-plane.
+  real(wp), parameter, public :: finer = 0.7_wp
+  !> Forces that pairs or bodies share, over an approach of the same products (no measurement on record).
+  real(wp), parameter, public :: of_shares = 1.3_wp
+  !> Force that turns with the node's own normal: the place where the bodies touch is farther from a pair than
+  !! the normals there tell, by this at most (tests/accuracy/test_narrow_zone).
+  real(wp), parameter, public :: askew = 1.25_wp
+
+  ! From where on something counts.
+
+  !> Part of the energy that a mesh has at least for its errors to be measured by it (a choice).
+  real(wp), parameter, public :: least_energy = 0.5_wp
+  !> Part of the resultant at one node of the mesh from which on it is a point load (a choice).
+  real(wp), parameter, public :: concentrated = 0.5_wp
+  !> A tip's curvature is so many times that of the nodes around it (test_limits.py).
+  real(wp), parameter, public :: tip_stands_out = 4.0_wp
+  !> The pressure that its bend adds, E* times its angle, is at least this part of the largest (test_limits.py).
+  real(wp), parameter, public :: tip_matters = 0.1_wp
+  !> Part of a zone's pairs at which the gap bends by turns from which on that is waves
+  !! (tests/accuracy/test_waves).
+  real(wp), parameter, public :: waves_are_common = 1.0_wp/3.0_wp
+  !> Part of the largest pressure from which on that is one of the waves (score_curved.py,
+  !! polygons of unlike divisions).
+  real(wp), parameter, public :: waves_alone = 0.5_wp
+  !> A zone whose normals are across what stays the same, but for this part, does not bear it (a disc in a V,
+  !! beams on posts).
+  real(wp), parameter, public :: bears_on = 0.3_wp
 
 contains
 
   !> Those of a kind of elements.
   pure type(estimate_weights) function weights_of(estimated_as, rings, yielded) result(weights)
     integer, intent(in) :: estimated_as   !! as the table of elements says
-    logical, intent(in) :: rings
-    logical, intent(in) :: yielded    !! something in the scene has
-    integer :: state
+    logical, intent(in) :: rings          !! the elements are
+    logical, intent(in) :: yielded        !! something in the scene has
+    real(wp) :: w(12)
+    integer :: kind
 
-    state = merge(2, 1, yielded)
-    select case (estimated_as)
-    case (by_linear_triangles)
-      weights = tria3(state)
-      if (rings) weights = trax3(state)
-    case (by_quadrilaterals)
-      weights = quad4(state)
-    case default
-      weights = tria6(state)
-      if (rings) weights = trax6(state)
-    end select
+    kind = estimated_as
+    if (rings .and. kind /= by_quadrilaterals) kind = merge(4, 5, kind == by_linear_triangles)
+    w = thousandths(2*kind - merge(0, 1, yielded), :)/1000.0_wp
+    weights = estimate_weights(w(1), w(2), w(3), w(4), w(5), w(6), w(7), w(8), w(9), w(10), w(11), w(12))
   end function weights_of
 end module epcont_accuracy_weights

@@ -7,7 +7,6 @@ module epcont_result_contact_line
   use epcont_geometry_edge, only: edge_point, edge_point_count, edge_points
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: line_contact, model_type
-  use epcont_result_symmetry, only: is_on_symmetry
   implicit none
   private
   public :: contact_line, find_contact_line, outer_sides, shares_of_nodes
@@ -15,6 +14,11 @@ module epcont_result_contact_line
   !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's
   !! corner's too.
   real(wp), parameter :: along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp)
+
+  !> A normal is across a line of symmetry where this part of it, or more, is along the line.
+  real(wp), parameter :: along_line = 0.9_wp
+  !> A node of the other body is on the same line of symmetry within this part of a side.
+  real(wp), parameter :: beside_line = 1.0e-3_wp
 
   !> A pair of the master stands at the place of one that is nearer than this part of the way from node to
   !! node.
@@ -116,8 +120,51 @@ contains
         end associate
       end do
       if (any(line%neighbour(:, pair) == 0)) &
-        line%mirrored(pair) = is_on_symmetry(model, pair, line%node(pair), longest)
+        line%mirrored(pair) = is_on_symmetry(pair, line%node(pair), longest)
     end do
+
+  contains
+
+    !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there, and
+    !! so is the other body where it ends at the same line, or all over if it is rigid; a body that goes on
+    !! beyond the line is not mirrored. One of the two is held along the boundary alone: one held all over, or
+    !! tied by RBE2, does not tell.
+    pure logical function is_on_symmetry(pair, node, side)
+      integer, intent(in) :: pair, node
+      real(wp), intent(in) :: side   !! length of the longest side at the node [length]
+      logical :: ends, guided, rigid
+      integer :: along, i
+
+      is_on_symmetry = .false.
+      along = merge(1, 2, abs(model%normal(2, pair)) > abs(model%normal(1, pair)))
+      if (abs(model%normal(3 - along, pair)) <= along_line .or. .not. is_held(along, node)) return
+      ends = .false.
+      guided = is_guided(along, node)
+      rigid = .true.
+      do i = model%row_start(pair), model%row_start(pair + 1) - 1
+        associate (other => model%row_node(i))
+          if (other == node) cycle
+          rigid = rigid .and. is_held(along, other)
+          if (.not. is_held(along, other) .or. abs(model%x(along, other) - model%x(along, node)) > beside_line*side) cycle
+          ends = .true.
+          guided = guided .or. is_guided(along, other)
+        end associate
+      end do
+      is_on_symmetry = guided .and. (ends .or. rigid)
+    end function is_on_symmetry
+
+    pure logical function is_held(along, node)
+      integer, intent(in) :: along, node
+
+      is_held = model%held(along, model%leader(along, node))
+    end function is_held
+
+    !> Is a node held by itself along the boundary, and free across it?
+    pure logical function is_guided(along, node)
+      integer, intent(in) :: along, node
+
+      is_guided = model%held(along, node) .and. .not. is_held(3 - along, node)
+    end function is_guided
   end subroutine find_edges
 
   !> The sides of the outline at a node: nodes at their start, their end, and between or 0, and whose they are
@@ -258,7 +305,7 @@ contains
       integer, intent(in) :: run(:)
       type(contact_line), intent(inout) :: line
       type(partition), intent(inout) :: places
-      real(wp) :: apart, share(3), width
+      real(wp) :: apart, width
       integer :: i, k
 
       associate (element => contact%slave%element(segment), side => contact%slave%segment(:, segment), &
@@ -268,9 +315,9 @@ contains
         do i = 1, size(run)
           associate (pair => run(i))
             if (pair >= contact%first_of_master) cycle
-            share = shares_of_nodes(model, element, side, model%normal(:, pair))
             if (is_along(model, side, model%normal(:, pair))) &
-              line%tributary(pair) = line%tributary(pair) - share(findloc(side, line%node(pair), dim=1))
+              line%tributary(pair) = line%tributary(pair) - sum(shares_of_nodes(model, element, side, model%normal(:, pair)), &
+                                                                mask=side == line%node(pair))
             do k = 1, 2
               if (.not. (line%middle(pair) .or. any(run == line%neighbour(k, pair)))) cycle
               line%neighbour(k, pair) = 0

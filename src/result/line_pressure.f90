@@ -50,7 +50,13 @@ contains
         received(model%pair_node(2, k)) = received(model%pair_node(2, k)) + force(k)
       end do
       where (area > 0.0_wp) received = received/area
-      call complete(contact%master, area, received)
+      do i = 1, size(contact%master%element)
+        ! Corners on the axis of rings, which no boundary belongs to, have the pressure of the middle beside them.
+        associate (corner => contact%master%segment(:2, i), middle => contact%master%segment(3, i))
+          if (middle == 0) cycle
+          where (area(corner) == 0.0_wp) received(corner) = received(middle)
+        end associate
+      end do
       associate (first => contact%first, last => contact%last)
         found%touching = count(touching(first:last))
         found%force = sum(force(first:last))
@@ -86,20 +92,4 @@ contains
       end do
     end function node_areas
   end function compare_sides
-
-  !> Corners on the axis of rings, which no boundary belongs to, have the pressure of the middle beside them.
-  pure subroutine complete(line, area, received)
-    class(boundary_line), intent(in) :: line
-    real(wp), intent(in) :: area(:)
-    real(wp), intent(inout) :: received(:)
-    integer :: i, k
-
-    do i = 1, size(line%element)
-      associate (side => line%segment(:, i))
-        do k = 1, 2
-          if (side(3) > 0 .and. area(side(k)) == 0.0_wp) received(side(k)) = received(side(3))
-        end do
-      end associate
-    end do
-  end subroutine complete
 end module epcont_result_line_pressure

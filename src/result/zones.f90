@@ -19,6 +19,7 @@ module epcont_result_zones
     real(wp) :: half_width = -1.0_wp        !! to where the pressure vanishes; negative: unknown [length]
     integer, allocatable :: pairs(:)        !! from end to end
     real(wp), allocatable :: along(:)       !! place of each, from the first on [length] [its pairs]
+    integer, allocatable :: beyond(:)       !! pairs next to those at its ends
     real(wp) :: open(2) = 0.0_wp            !! from each end to the first open pair; 0: the end is the last candidate [length]
   end type contact_zone
 
@@ -69,6 +70,8 @@ contains
       zone%pairs = run
       zone%first = run(1)
       zone%last = run(n)
+      zone%beyond = [line%neighbour(:, run(1)), line%neighbour(:, run(n))]
+      zone%beyond = pack(zone%beyond, zone%beyond > 0)
       zone%force = sum(force(run))
       zone%max_pressure = maxval(pressure(run))
       allocate (zone%along(n), source=0.0_wp)
