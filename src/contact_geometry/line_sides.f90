@@ -143,7 +143,7 @@ contains
   end function first_passed_twice
 
   !> All sides of the bodies, numbered as those of the outlines.
-  pure type(boundary_line) function find_boundary(model) result(line)
+  type(boundary_line) function find_boundary(model) result(line)
     type(model_type), intent(in) :: model
     integer :: i, k
 

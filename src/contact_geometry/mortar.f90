@@ -11,8 +11,8 @@ module epcont_contact_geometry_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_area, rounded_off
   use epcont_contact_geometry_faces, only: faces_type
-  use epcont_geometry_boundary_line, only: beyond, boundary_line, facing_place
-  use epcont_geometry_facing, only: facing_type, find_facing, looking_point, rise_of
+  use epcont_geometry_boundary_line, only: beyond, boundary_line, facing_type
+  use epcont_geometry_facing, only: find_facing, looking_point, rise_of
   use epcont_model_model, only: line_contact
   implicit none
   private
@@ -144,10 +144,10 @@ contains
     pure function cuts_of(s) result(cut)
       integer, intent(in) :: s
       real(wp), allocatable :: cut(:)
-      type(facing_place) :: place
+      type(facing_type) :: place
       real(wp) :: middle(2), reach, within
       integer, allocatable :: near(:)
-      integer :: i, k, n
+      integer :: i, k
 
       reach = contact%search
       associate (row => faces%row_of(:, s), slave => contact%slave, master => contact%master)
@@ -156,21 +156,19 @@ contains
         middle = 0.5_wp*(slave%x(:, 1, s) + slave%x(:, 2, s))
         within = reach + slave%chord_length(s)
         near = master%in_box(middle - within, middle + within)
-        allocate (cut(2*size(near) + 2))
-        cut(:2) = [1.0_wp, 0.0_wp]
-        n = 2
+        cut = [0.0_wp, 1.0_wp]
         do i = 1, size(near)
           do k = 1, 2
             if (k == 2 .and. i < size(near)) then
               if (near(i + 1) == master%neighbour(2, near(i))) cycle   ! the start of the next
             end if
             place = slave%face(s, master%x(:, k, near(i)))
-            if (place%found .and. place%s >= 0.0_wp .and. place%s <= 1.0_wp .and. &
-                abs(place%gap) <= reach*(1.0_wp + beyond)) call insert(place%s, n, cut)
+            if (.not. place%found .or. abs(place%gap) > reach*(1.0_wp + beyond)) cycle
+            if (place%s >= 0.0_wp .and. place%s <= 1.0_wp) &
+              cut = [pack(cut, cut < place%s), place%s, pack(cut, cut >= place%s)]
           end do
         end do
       end associate
-      cut = cut(n:1:-1)
     end function cuts_of
 
     !> Do the points of a side face the same face of the other line as its nodes, without a step or a corner?
@@ -243,22 +241,6 @@ contains
       end do
     end associate
   end subroutine set_integrals
-
-  !> Insert a number from 0 to 1 into some in falling order, the last of them 0: lines that face each other
-  !! are walked in opposite directions, so that most come to stand near the end.
-  pure subroutine insert(s, n, falling)
-    real(wp), intent(in) :: s
-    integer, intent(inout) :: n
-    real(wp), intent(inout) :: falling(:)
-    integer :: i
-
-    do i = n, 1, -1
-      if (falling(i) >= s) exit
-      falling(i + 1) = falling(i)
-    end do
-    falling(i + 1) = s
-    n = n + 1
-  end subroutine insert
 
   !> The value at s of the parabola through three points.
   pure real(wp) function continued(at, value, s)

@@ -7,9 +7,9 @@ module epcont_contact_geometry_nearness
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_gap
   use epcont_contact_geometry_faces, only: faces_type
-  use epcont_contact_geometry_line_pairs, only: add_pairs, forget_pairs
-  use epcont_geometry_boundary_line, only: boundary_line
-  use epcont_geometry_facing, only: facing_type, find_facing, looking_point, node_of
+  use epcont_contact_geometry_line_pairs, only: add_pairs
+  use epcont_geometry_boundary_line, only: boundary_line, facing_type
+  use epcont_geometry_facing, only: find_facing, looking_point, node_of
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: line_contact, model_type
   implicit none
@@ -58,7 +58,7 @@ contains
     end do
     if (.not. entered) return
     before = model%pairs
-    call forget_pairs(model)
+    model%pairs = model%single_pairs()
     do c = 1, size(model%line_contact)
       contact = model%line_contact(c)
       call add_pairs(model, contact, faces)

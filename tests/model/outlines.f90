@@ -1,9 +1,9 @@
 !> Boundaries drawn from points, without elements behind them.
 module outlines
   use epcont_base_kinds, only: wp
-  use epcont_geometry_boundary_line, only: boundary_line
+  use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_corners, only: find_normals
-  use epcont_geometry_facing, only: facing_type, find_facing, looking_point
+  use epcont_geometry_facing, only: find_facing, looking_point
   implicit none
   private
   public :: drawn, chain, degree, find_nearest
