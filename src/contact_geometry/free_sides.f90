@@ -20,9 +20,15 @@ contains
   function find_outline(model) result(outline)
     type(model_type), intent(in) :: model   !! the scene
     type(outline_type) :: outline
-    type(side_type), dimension(size(model%around%group)) :: free, former   ! as they are found; those before them
+    !> Free sides as they are found, and those before them
+    type(side_type), dimension(size(model%around%group)) :: free, former
+    !> Of the elements around a node: sides to the next and from the former corner, and these corners
+    type(side_type), dimension(maxval(model%around%start(2:) - model%around%start(:model%nodes))) :: to_next, &
+      from_former
+    integer, dimension(size(to_next)) :: next, last
+    !> Of the sides of each element; 0: not free
+    integer :: number(maxval(model%kinds%corners), model%elements)
     integer, allocatable :: after(:), before(:), chain(:), order(:), place(:)
-    integer :: number(maxval(model%kinds%corners), model%elements)   ! of the sides of each element; 0: not free
     type(incidence) :: by_part
     integer :: k, node, sides
 
@@ -61,9 +67,6 @@ contains
     !! compared: a side is shared where it is met both ways.
     subroutine look_around(node)
       integer, intent(in) :: node
-      !> Of the elements around it: sides to the next and from the former corner, and these corners
-      type(side_type), dimension(model%around%start(node + 1) - model%around%start(node)) :: to_next, from_former
-      integer, dimension(size(to_next)) :: next, last
       integer :: corners, i, n, own
 
       n = 0

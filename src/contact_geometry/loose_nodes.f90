@@ -43,15 +43,16 @@ contains
     !> Middles of sides that an element with another middle, or none, has too. A middle of two elements hangs
     !! nowhere.
     subroutine find_middles()
-      integer :: e, s, side(3)
+      integer :: i, s, side(3)
 
-      do e = 1, model%elements
-        do s = 1, model%corners(e)
-          side = model%edge(e, s)
-          if (side(3) == 0) exit
-          if (model%around%start(side(3) + 1) - model%around%start(side(3)) > 1) cycle
-          if (.not. model%is_tied(side(3:))) edge(:, side(3)) = [side(:2), other_of(e, side)]
-        end do
+      do i = 1, model%nodes
+        if (model%around%start(i + 1) - model%around%start(i) /= 1 .or. model%is_tied([i])) cycle
+        associate (e => model%around%group(model%around%start(i)))
+          do s = 1, model%corners(e)
+            side = model%edge(e, s)
+            if (side(3) == i) edge(:, i) = [side(:2), other_of(e, side)]
+          end do
+        end associate
       end do
     end subroutine find_middles
 

@@ -53,7 +53,7 @@ contains
 
   !> Rows of master nodes and weights, one for each slave node that has a pair. Rows of no side count at their
   !! own places.
-  pure subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
+  subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
     type(line_contact), intent(in) :: contact      !! the contact of lines
     type(boundary_line), intent(in) :: obstacles   !! the outlines of all bodies
     type(faces_type), intent(in) :: faces          !! what the slave's nodes face
@@ -63,17 +63,16 @@ contains
     type(side_points) :: points(size(covered))
     real(wp) :: area(size(faces%row))
     logical :: alone(size(faces%row))
-    integer :: k, p, row, s
+    integer :: row, s
 
     area = 0.0_wp
     do s = 1, size(points)
       points(s) = cut_side(s)
       if (points(s)%covered) points(s)%covered = is_even(s, points(s))
       call set_integrals(points(s), contact%slave%segment(3, s) > 0)
-      do k = 1, 3
-        row = faces%row_of(k, s)
-        if (row > 0) area(row) = area(row) + points(s)%integral(k)
-      end do
+      associate (own => pack(faces%row_of(:, s), faces%row_of(:, s) > 0))
+        area(own) = area(own) + pack(points(s)%integral, faces%row_of(:, s) > 0)
+      end associate
     end do
     covered = points%covered
     alone = .not. area > 0.0_wp
@@ -83,20 +82,10 @@ contains
       allocate (rows(row)%node(0), rows(row)%weight(0))
     end do
     do s = 1, size(points)
-      do k = 1, 3
-        row = faces%row_of(k, s)
-        if (row == 0) cycle
-        if (covered(s)) then
-          do p = 1, size(points(s)%weight)
-            call add(rows(row), points(s)%facing(p), points(s)%dual(k, p), area(row))
-          end do
-        else
-          call add(rows(row), faces%row(row)%facing_type, points(s)%integral(k), area(row))
-        end if
-      end do
+      call add_side(faces%row_of(:, s), points(s))
     end do
     do row = 1, size(rows)
-      if (alone(row)) call add(rows(row), faces%row(row)%facing_type, 1.0_wp, area(row))
+      if (alone(row)) call add(row, faces%row(row)%facing_type, 1.0_wp)
       associate (counts => abs(rows(row)%weight) > rounded_off)
         rows(row) = mortar_row(pack(rows(row)%node, counts), pack(rows(row)%weight, counts))
       end associate
@@ -199,23 +188,41 @@ contains
       end associate
     end function is_even
 
-    !> Add what a point of a side makes of a row: the weight is shared by the nodes of the side that it faces.
-    pure subroutine add(row, facing, weight, area)
-      type(mortar_row), intent(inout) :: row
+    !> Add what a side makes of the rows of its nodes: one that is covered by its points, others at the nodes.
+    subroutine add_side(own, points)
+      integer, intent(in) :: own(3)
+      type(side_points), intent(in) :: points
+      integer :: k, p
+
+      do k = 1, 3
+        if (own(k) == 0) cycle
+        if (points%covered) then
+          do p = 1, size(points%weight)
+            call add(own(k), points%facing(p), points%dual(k, p))
+          end do
+        else
+          call add(own(k), faces%row(own(k))%facing_type, points%integral(k))
+        end if
+      end do
+    end subroutine add_side
+
+    !> Add a weight to a row: it is shared by the nodes of the side that is faced.
+    subroutine add(row, facing, weight)
+      integer, intent(in) :: row
       type(facing_type), intent(in) :: facing
-      real(wp), intent(in) :: weight, area
+      real(wp), intent(in) :: weight
       integer :: i, k
 
-      associate (node => contact%master%segment(:, facing%segment), part => weight*facing%share)
+      associate (node => contact%master%segment(:, facing%segment), part => weight*facing%share, own => rows(row))
         do k = 1, 3
           if (node(k) == 0 .or. part(k) == 0.0_wp) cycle
-          i = findloc(row%node, node(k), dim=1)
+          i = findloc(own%node, node(k), dim=1)
           if (i == 0) then
-            row%node = [row%node, node(k)]
-            row%weight = [row%weight, 0.0_wp]
-            i = size(row%node)
+            own%node = [own%node, node(k)]
+            own%weight = [own%weight, 0.0_wp]
+            i = size(own%node)
           end if
-          row%weight(i) = row%weight(i) + part(k)/area
+          own%weight(i) = own%weight(i) + part(k)/area(row)
         end do
       end associate
     end subroutine add
