@@ -9,7 +9,8 @@ module epcont_build_build
   use epcont_build_mesh, only: build_elements, build_nodes, build_sections, element_cards
   use epcont_build_reference, only: card_index, check_unique, index_of
   use epcont_build_supports, only: build_references, build_supports, build_ties
-  use epcont_contact_geometry_complete, only: check_controls, find_contacts, finish_model
+  use epcont_contact_geometry_complete, only: check_controls, finish_model
+  use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_grid, card_param, card_rbe2, &
                                     card_spc, card_spc1
   use epcont_deck_deck, only: deck_type

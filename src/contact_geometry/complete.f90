@@ -8,8 +8,7 @@
 !> Pressures come last (add_pressure).
 module epcont_contact_geometry_complete
   use epcont_base_error, only: error_type, raise, status_deck
-  use epcont_contact_geometry_free_sides, only: find_outline
-  use epcont_contact_geometry_line_contacts, only: find_line_contacts
+  use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
   use epcont_contact_geometry_pair_checks, only: check_pairs
   use epcont_element_kinematics, only: plane_strain
@@ -20,11 +19,11 @@ module epcont_contact_geometry_complete
   use epcont_model_given, only: check_given
   use epcont_model_model, only: model_type
   use epcont_model_single_pairs, only: complete_pairs
-  use epcont_model_ties, only: find_bodies, follow_to_the_end, set_reference, tie
+  use epcont_model_ties, only: follow_to_the_end, set_reference, tie
   use epcont_model_travel, only: find_travels
   implicit none
   private
-  public :: complete_model, raise_first, check_controls, find_contacts, finish_model
+  public :: complete_model, raise_first, check_controls, finish_model
 
 contains
 
@@ -88,19 +87,6 @@ contains
       end associate
     end do
   end subroutine raise_first
-
-  !> Bodies, their outlines, and the contacts of lines: after elements, supports, ties and single pairs.
-  subroutine find_contacts(model, found)
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-
-    ! Lines are sides of the outlines, and only sound elements have outlines.
-    if (found%errors == 0) then
-      call find_bodies(model)
-      model%body_outline = find_outline(model)
-    end if
-    call find_line_contacts(model, found)
-  end subroutine find_contacts
 
   !> What a scene without errors must still be refused or warned of, and its travels.
   subroutine finish_model(model, found)

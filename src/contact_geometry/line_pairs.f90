@@ -70,8 +70,8 @@ contains
             do i = 1, 2
               if (.not. on(i)%found) cycle
               if (covered(on(i)%segment) .and. .not. near) cycle
-              if (stands_at_node(on(i)) .or. has_face(tips, node, on(i)%normal, same_face)) cycle
-              tips = [tips, node_face(facing_type=on(i), node=node)]
+              if (.not. (stands_at_node(on(i)) .or. has_face(tips, node, on(i)%normal, same_face))) &
+                tips = [tips, node_face(facing_type=on(i), node=node)]
             end do
           end associate
         end do
@@ -82,12 +82,10 @@ contains
     !! rounding tells which of them is faced.)
     pure logical function stands_at_node(on)
       type(facing_type), intent(in) :: on
-      integer :: i
 
-      i = maxloc(on%share, dim=1)
-      stands_at_node = on%share(i) >= 1.0_wp - beyond
-      if (stands_at_node) stands_at_node = has_face(faces%row, contact%slave%segment(i, on%segment), &
-                                                    -on%normal, opposite)
+      associate (node => contact%slave%segment(maxloc(on%share, dim=1), on%segment))
+        stands_at_node = maxval(on%share) >= 1.0_wp - beyond .and. has_face(faces%row, node, -on%normal, opposite)
+      end associate
     end function stands_at_node
 
     !> Shared by the nodes of the slave's side as its shape functions say.

@@ -54,7 +54,9 @@ contains
       holds(pack(model%pair_node(2, :), touching)) = .true.
     end if
     do c = 1, size(model%line_contact)
-      call look_at_contact(model%line_contact(c))
+      contact = model%line_contact(c)
+      call look_at_contact()
+      model%line_contact(c) = contact
     end do
     if (.not. entered) return
     before = model%pairs
@@ -70,14 +72,13 @@ contains
 
     !> What a contact's nodes want: a wider search for those of the slave, or to be entered, as nodes of the
     !! master.
-    subroutine look_at_contact(contact)
-      type(line_contact), intent(inout) :: contact
+    subroutine look_at_contact()
       real(wp) :: search
       integer :: i, which
 
       search = contact%search
       if (allocated(displacement)) then
-        search = wanted_search(contact)
+        search = wanted_search()
       else if (size(contact%left_out) > 0) then
         search = max(search, extent)
       end if
@@ -88,7 +89,7 @@ contains
       else if (allocated(displacement)) then   ! what the slave's nodes will hold off is not the master's
         do i = 1, size(contact%master%element)
           do which = 1, 3
-            call look_from_master(contact, i, which)
+            call look_from_master(i, which)
           end do
         end do
       end if
@@ -96,8 +97,7 @@ contains
 
     !> How far to search where nodes of the slave, left out so far, pass through the master, or stand beside
     !! one that touches: what the nodes of a side share is known only where all of them have pairs [length].
-    pure real(wp) function wanted_search(contact) result(search)
-      type(line_contact), intent(in) :: contact
+    pure real(wp) function wanted_search() result(search)
       type(facing_type) :: face(2)
       integer :: i
 
@@ -114,8 +114,7 @@ contains
 
     !> Enter a node of the master that passes through a side of the slave by more than is left open between
     !! the slave's nodes.
-    subroutine look_from_master(contact, side, which)
-      type(line_contact), intent(inout) :: contact
+    subroutine look_from_master(side, which)
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
       type(looking_point) :: from
@@ -127,7 +126,7 @@ contains
         face = find_facing(contact%slave, model%boundary, from, extent)
         do k = 1, 2
           if (.not. face(k)%found .or. from%at_tip .and. abs(face(k)%gap) <= contact%search) cycle
-          if (gap_at(node, contact%slave, face(k)) >= -left_open(contact, side, which, face(k))) cycle
+          if (gap_at(node, contact%slave, face(k)) >= -left_open(side, which, face(k))) cycle
           contact%came_near = [contact%came_near, node]
           contact%search = max(contact%search, further*abs(face(k)%gap))
           entered = .true.
@@ -137,8 +136,7 @@ contains
     end subroutine look_from_master
 
     !> How far a node of the master may pass through a side of the slave [length].
-    pure real(wp) function left_open(contact, side, which, face)
-      type(line_contact), intent(in) :: contact
+    pure real(wp) function left_open(side, which, face)
       integer, intent(in) :: side, which       !! the node of the master
       type(facing_type), intent(in) :: face    !! and what it faces
       logical :: smooth
