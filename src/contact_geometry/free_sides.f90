@@ -23,8 +23,8 @@ contains
     !> Free sides as they are found, and those before them
     type(side_type), dimension(size(model%around%group)) :: free, former
     !> Of the elements around a node: sides to the next and from the former corner, and these corners
-    type(side_type), dimension(maxval(model%around%start(2:) - model%around%start(:model%nodes))) :: to_next, &
-      from_former
+    type(side_type), dimension(maxval(model%around%start(2:) - model%around%start(:model%nodes))) :: &
+      to_next, from_former
     integer, dimension(size(to_next)) :: next, last
     !> Of the sides of each element; 0: not free
     integer :: number(maxval(model%kinds%corners), model%elements)

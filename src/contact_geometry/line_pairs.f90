@@ -43,9 +43,9 @@ contains
     contact%last = model%pairs
     contact%left_out = faces%left_out
     without = .false.
-    do k = 1, size(faces%left_out, 2)
-      without(contact%slave%segment(faces%left_out(2, k), faces%left_out(1, k))) = .true.
-    end do
+    associate (side => faces%left_out(1, :), which => faces%left_out(2, :))
+      without([(contact%slave%segment(which(k), side(k)), k=1, size(side))]) = .true.
+    end associate
     without(faces%row%node) = .false.
     contact%nodes_left_out = count(without)
 
@@ -84,7 +84,8 @@ contains
       type(facing_type), intent(in) :: on
 
       associate (node => contact%slave%segment(maxloc(on%share, dim=1), on%segment))
-        stands_at_node = maxval(on%share) >= 1.0_wp - beyond .and. has_face(faces%row, node, -on%normal, opposite)
+        stands_at_node = maxval(on%share) >= 1.0_wp - beyond .and. &
+                         has_face(faces%row, node, -on%normal, opposite)
       end associate
     end function stands_at_node
 

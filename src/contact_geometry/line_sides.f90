@@ -1,5 +1,5 @@
-!> Boundary lines: from the nodes that are given to sides of the bodies' outlines, end to end; and the boundary
-!> of all bodies as contact takes it, those sides with normals and corners.
+!> Boundary lines: from the nodes that are given to sides of the bodies' outlines, end to end; and the
+!> boundary of all bodies as contact takes it, those sides with normals and corners.
 module epcont_contact_geometry_line_sides
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -44,7 +44,8 @@ contains
         passed = first_passed_twice(line%node, model%nodes)
         if (passed > 0) then
           call found%add_error(of_line, i, -passed, ': '//model%name_of(of_node, line%node(passed))// &
-                               ' stands in it before', 'each node once; a closed line ends with its first node')
+                               ' stands in it before', &
+                               'each node once; a closed line ends with its first node')
         else
           call walk(line%node)
         end if
@@ -53,8 +54,8 @@ contains
 
   contains
 
-    !> The sides between consecutive nodes, none where one is missing; a middle node between two corners may be
-    !! listed or left out.
+    !> The sides between consecutive nodes, none where one is missing; a middle node between two corners may
+    !! be listed or left out.
     subroutine walk(node)
       integer, intent(in) :: node(:)
       type(between_type) :: next, over
@@ -72,7 +73,7 @@ contains
           end if
         end if
         if (next%elements /= 1) then
-          call add_no_side(next, k, model%name_of(of_node, node(k))//' and '//text_of(model%node_id(node(k + 1))))
+          call add_no_side(next, k, node(k:k + 1))
           return
         end if
         sides = sides + 1
@@ -102,18 +103,20 @@ contains
     end function between
 
     !> No side, or no free one, between the k-th and the next node of a line.
-    subroutine add_no_side(there, k, ends)
+    subroutine add_no_side(there, k, node)
       type(between_type), intent(in) :: there
-      integer, intent(in) :: k
-      character(len=*), intent(in) :: ends   !! the two nodes
+      integer, intent(in) :: k, node(2)
+      character(len=:), allocatable :: ends
 
+      ends = model%name_of(of_node, node(1))//' and '//text_of(model%node_id(node(2)))
       if (there%elements == 0) then
         call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
                              'nodes in the order of the boundary')
       else
         call found%add_error(of_line, i, -k - 1, ': the side between '//ends// &
                              ' lies inside a body, between '//model%name_of(of_element, there%element(1))// &
-                             ' and '//model%name_of(of_element, there%element(2)), 'sides that one element has')
+                             ' and '//model%name_of(of_element, there%element(2)), &
+                             'sides that one element has')
       end if
     end subroutine add_no_side
 
@@ -122,9 +125,11 @@ contains
       type(between_type), intent(in) :: own
 
       k = starting(own%node(1))
-      do while (model%boundary%element(k) /= own%element(1) .or. any(model%boundary%segment(:, k) /= own%node))
-        k = k - 1   ! the only one, but where boundaries meet in a node
-      end do
+      associate (line => model%boundary)
+        do while (line%element(k) /= own%element(1) .or. any(line%segment(:, k) /= own%node))
+          k = k - 1   ! the only one, but where boundaries meet in a node
+        end do
+      end associate
     end function side_of_outline
   end subroutine find_line_sides
 
@@ -145,7 +150,7 @@ contains
   !> All sides of the bodies, numbered as those of the outlines.
   type(boundary_line) function find_boundary(model) result(line)
     type(model_type), intent(in) :: model
-    integer :: i, k
+    integer :: held(2, model%body_outline%sides), i, k
 
     associate (outline => model%body_outline, sides => model%body_outline%sides)
       line%segment = outline%node
@@ -157,9 +162,9 @@ contains
           line%x(:, :merge(3, 2, node(3) > 0), i) = model%edge_coordinates(node)
         end associate
       end do
-      call find_normals(line, reshape([((held_direction(outline%node(k, i)), k=1, 2), i=1, sides)], [2, sides]), &
-                        model%controls%corner)
+      held = reshape([((held_direction(outline%node(k, i)), k=1, 2), i=1, sides)], [2, sides])
     end associate
+    call find_normals(line, held, model%controls%corner)
 
   contains
 

@@ -1,7 +1,7 @@
-!> Nodes that lie where something else of the scene does, as drawn, and are not joined with it: on a side of an
-!> element of their own body, whose ends elements share (meshes of unlike fineness, or six-node elements beside
-!> others, put together), or at a node of another body, with neither a pair nor RBE2 (a contact, or a common
-!> node, that was forgotten).
+!> Nodes that lie where something else of the scene does, as drawn, and are not joined with it: on a side of
+!> an element of their own body, whose ends elements share (meshes of unlike fineness, or six-node elements
+!> beside others, put together), or at a node of another body, with neither a pair nor RBE2 (a contact, or a
+!> common node, that was forgotten).
 module epcont_contact_geometry_loose_nodes
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -190,7 +190,8 @@ contains
                      dot_product(drawn%tangent(place%side, place%s), drawn%tangent(side, 0.5_wp)) < 0.0_wp
     end function lies_against
 
-    !> The node of a part at the place of one at the end of a side, if nothing joins the two; 0: there is none.
+    !> The node of a part at the place of one at the end of a side, if nothing joins the two; 0: there is
+    !! none.
     pure integer function loose_twin(node, side, part) result(twin)
       integer, intent(in) :: node, side, part
       type(near_place) :: place
@@ -198,7 +199,8 @@ contains
 
       twin = 0
       place = drawn%nearest_place(part, model%x(:, node))
-      associate (within => coincident*norm2(drawn%chord(side)), ends => model%body_outline%node(:2, place%side))
+      associate (within => coincident*norm2(drawn%chord(side)), &
+                 ends => model%body_outline%node(:2, place%side))
         if (place%distance > within) return
         twin = merge(ends(1), ends(2), place%s < 0.5_wp)
         joined = any(model%leader(:, twin) == model%leader(:, node)) .or. is_mate(mate, [node], part) .or. &

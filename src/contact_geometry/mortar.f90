@@ -107,24 +107,20 @@ contains
       width = cut(2:) - cut(:size(cut) - 1)
       cut = pack(cut(:size(width)), width > beyond)   ! what lies beyond an end by so little is not beyond it
       width = pack(width, width > beyond)
-      p = gauss_points*size(cut)
-      allocate (points%along(p), points%share(3, p), points%weight(p), points%facing(p))
+      points%along = [((cut(i) + width(i)*gauss_place(k), k=1, gauss_points), i=1, size(cut))]
+      points%weight = [((gauss_weight(k)*width(i), k=1, gauss_points), i=1, size(cut))]
+      allocate (points%share(3, size(points%along)), points%facing(size(points%along)))
       from%rise = rise_of(contact%slave, s)
-      do i = 1, size(cut)
-        do k = 1, gauss_points
-          p = gauss_points*(i - 1) + k
-          points%along(p) = cut(i) + width(i)*gauss_place(k)
-          call contact%slave%at(s, points%along(p), points%share(:, p), from%x, tangent)
-          points%weight(p) = gauss_weight(k)*width(i)*norm2(tangent)
-          if (ring) points%weight(p) = points%weight(p)* &
-                                       dot_product(points%share(:, p), contact%slave%x(1, :, s))
-          from%outward = [tangent(2), -tangent(1)]/norm2(tangent)
-          from%along = 0.5_wp*tangent
-          face = find_facing(contact%master, obstacles, from, contact%search)
-          points%facing(p) = face(1)
-          points%covered = points%covered .and. face(1)%found .and. &
-                           dot_product(face(1)%normal, from%outward) < -parallel
-        end do
+      do p = 1, size(points%along)
+        call contact%slave%at(s, points%along(p), points%share(:, p), from%x, tangent)
+        points%weight(p) = points%weight(p)*norm2(tangent)
+        if (ring) points%weight(p) = points%weight(p)*dot_product(points%share(:, p), contact%slave%x(1, :, s))
+        from%outward = [tangent(2), -tangent(1)]/norm2(tangent)
+        from%along = 0.5_wp*tangent
+        face = find_facing(contact%master, obstacles, from, contact%search)
+        points%facing(p) = face(1)
+        points%covered = points%covered .and. face(1)%found .and. &
+                         dot_product(face(1)%normal, from%outward) < -parallel
       end do
     end function cut_side
 
@@ -213,7 +209,8 @@ contains
       real(wp), intent(in) :: weight
       integer :: i, k
 
-      associate (node => contact%master%segment(:, facing%segment), part => weight*facing%share, own => rows(row))
+      associate (node => contact%master%segment(:, facing%segment), part => weight*facing%share, &
+                 own => rows(row))
         do k = 1, 3
           if (node(k) == 0 .or. part(k) == 0.0_wp) cycle
           i = findloc(own%node, node(k), dim=1)

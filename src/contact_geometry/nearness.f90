@@ -99,6 +99,7 @@ contains
     !! one that touches: what the nodes of a side share is known only where all of them have pairs [length].
     pure real(wp) function wanted_search() result(search)
       type(facing_type) :: face(2)
+      real(wp) :: moved(2)
       integer :: i
 
       search = contact%search
@@ -106,8 +107,9 @@ contains
         associate (side => contact%left_out(1, i), which => contact%left_out(2, i), slave => contact%slave)
           face = find_facing(contact%master, model%boundary, node_of(slave, side, which), extent)
           if (.not. face(1)%found) cycle
-          if (gap_at(slave%segment(which, side), contact%master, face(1)) < -no_gap*extent .or. &
-              any(holds(slave%segment(:, side)))) search = max(search, further*abs(face(1)%gap))
+          moved = gap_and_slip(slave%segment(which, side), contact%master, face(1))
+          if (moved(1) < -no_gap*extent .or. any(holds(slave%segment(:, side)))) &
+            search = max(search, further*abs(face(1)%gap))
         end associate
       end do
     end function wanted_search
@@ -118,6 +120,7 @@ contains
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
       type(looking_point) :: from
+      real(wp) :: moved(2)
       integer :: k
 
       associate (node => contact%master%segment(which, side))
@@ -126,7 +129,8 @@ contains
         face = find_facing(contact%slave, model%boundary, from, extent)
         do k = 1, 2
           if (.not. face(k)%found .or. from%at_tip .and. abs(face(k)%gap) <= contact%search) cycle
-          if (gap_at(node, contact%slave, face(k)) >= -left_open(side, which, face(k))) cycle
+          moved = gap_and_slip(node, contact%slave, face(k))
+          if (moved(1) >= -left_open(side, which, face(k), moved(2))) cycle
           contact%came_near = [contact%came_near, node]
           contact%search = max(contact%search, further*abs(face(k)%gap))
           entered = .true.
@@ -136,11 +140,12 @@ contains
     end subroutine look_from_master
 
     !> How far a node of the master may pass through a side of the slave [length].
-    pure real(wp) function left_open(side, which, face)
+    pure real(wp) function left_open(side, which, face, slip)
       integer, intent(in) :: side, which       !! the node of the master
       type(facing_type), intent(in) :: face    !! and what it faces
+      real(wp), intent(in) :: slip             !! how far it has slid there [length]
       logical :: smooth
-      real(wp) :: angle, slip
+      real(wp) :: angle
 
       left_open = no_gap*extent
       associate (slave => contact%slave, master => contact%master, s => face%segment)
@@ -157,7 +162,6 @@ contains
         end if
         if (smooth) then
           angle = norm2(face%normal + master%outward(side, which))
-          slip = abs(cross_product(face%normal, apart(master%segment(which, side), slave, face)))
           left_open = left_open + askew*angle*(slip + 0.5_wp*angle*abs(face%gap))
         end if
       end associate
@@ -175,12 +179,13 @@ contains
       end associate
     end function is_held_off
 
-    !> How displacements have moved a node from what it faces of a line [length].
-    pure function apart(node, line, face)
+    !> The gap that displacements have made of that between a node and what it faces of a line, and how far
+    !! the node has slid along the line [length].
+    pure function gap_and_slip(node, line, face)
       integer, intent(in) :: node
       type(boundary_line), intent(in) :: line
       type(facing_type), intent(in) :: face
-      real(wp) :: apart(2)
+      real(wp) :: apart(2), gap_and_slip(2)
       integer :: k
 
       apart = displacement(:, node)
@@ -188,16 +193,8 @@ contains
         if (face%share(k) /= 0.0_wp) &
           apart = apart - face%share(k)*displacement(:, line%segment(k, face%segment))
       end do
-    end function apart
-
-    !> The gap that they have made of it [length].
-    pure real(wp) function gap_at(node, line, face)
-      integer, intent(in) :: node
-      type(boundary_line), intent(in) :: line
-      type(facing_type), intent(in) :: face
-
-      gap_at = face%gap + dot_product(face%normal, apart(node, line, face))
-    end function gap_at
+      gap_and_slip = [face%gap + dot_product(face%normal, apart), abs(cross_product(face%normal, apart))]
+    end function gap_and_slip
 
     !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and
     !! as it bends [length].

@@ -2,7 +2,7 @@
 module epcont_contact_geometry_pair_checks
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: short_real, text_of
+  use epcont_base_text, only: plural, short_real, text_of
   use epcont_base_tolerances, only: least_difference, no_effect, rounded_off
   use epcont_geometry_plane, only: cross_product
   use epcont_model_finding, only: and_more, findings, of_couple, of_element, of_node, of_pair
@@ -52,8 +52,8 @@ contains
 
   contains
 
-    !> Of two pairs at one place each would bear a part of the force, and the pressure would be that of a part:
-    !! CGAPs at the place of another, and at the place of a pair of lines.
+    !> Of two pairs at one place each would bear a part of the force, and the pressure would be that of a
+    !! part: CGAPs at the place of another, and at the place of a pair of lines.
     subroutine refuse_pairs_twice()
       type(incidence) :: lines              ! pairs of lines in which a node stands on sides
       integer, dimension(cgaps) :: cgap, line   ! like each pair; 0: none
@@ -64,8 +64,9 @@ contains
       cgap = [(cgap_like(k), k=1, cgaps)]
       line = [(line_pair_like(k, lines), k=1, cgaps)]
       k = findloc(cgap > 0, .true., dim=1)
-      if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '//model%name_of(of_pair, cgap(k))// &
-                                      ' along the same normal, with the same gap'//shared//like_this(cgap), &
+      if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
+                                      model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
+                                      'same gap'//shared//like_this(cgap), &
                                       'one CGAP for two nodes and a normal')
       k = findloc(line > 0, .true., dim=1)
       if (k == 0) return
@@ -198,8 +199,8 @@ contains
       which = and_more(size(held), ', and ', ' more')
       if (couple > 0) which = ': GRID '//text_of(model%pair_id(held(1)))//which
       call found%add_warning(merge(of_couple, of_pair, couple > 0), merge(couple, held(1), couple > 0), 1, &
-                             which//': can neither open nor close: the nodes on both sides are held along '// &
-                             'the normal', 'a free node on one side, or no pair')
+                             which//': can neither open nor close: the nodes on both sides are held '// &
+                             'along the normal', 'a free node on one side, or no pair')
     end subroutine warn_of_held
 
     !> Are all nodes of a pair held along its normal, and do they not overlap?
@@ -243,7 +244,9 @@ contains
         half = half + 1
         first = s
       end do
-      if (half > 0) call add_half_side(model%body_outline%node(:, first), model%body_outline%element(first), half)
+      associate (outline => model%body_outline)
+        if (half > 0) call add_half_side(outline%node(:, first), outline%element(first), half)
+      end associate
     end subroutine warn_of_half_sides
 
     !> Has a six-node side pairs at its ends alone, or, beside another such side, at its middle alone?
@@ -253,7 +256,8 @@ contains
 
       associate (outline => model%body_outline)
         at = has_pair(outline%node(:, side))
-        beside = has_pair(outline%node(:, outline%before(side))) .or. has_pair(outline%node(:, outline%after(side)))
+        beside = has_pair(outline%node(:, outline%before(side))) .or. &
+                 has_pair(outline%node(:, outline%after(side)))
       end associate
       is_half = merge(beside(3) .and. .not. any(at(:2)), all(at(:2)), at(3))
     end function is_half
@@ -289,7 +293,7 @@ contains
       across = [along(2), -along(1)]/norm2(along)
       do k = 1, 3
         associate (pairs => around%group(around%start(node(k)):around%start(node(k) + 1) - 1))
-          has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))) >= same_way, i=1, size(pairs))])
+          has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))), i=1, size(pairs))] >= same_way)
         end associate
       end do
     end function has_pair
@@ -300,8 +304,7 @@ contains
     integer, intent(in) :: pair(:)   !! 0: there is none
     character(len=:), allocatable :: text
 
-    associate (n => count(pair > 0))
-      text = and_more(n, '; so it is with ', trim(merge(' more CGAPs', ' more CGAP ', n > 2)))
-    end associate
+    text = ''
+    if (count(pair > 0) > 1) text = '; so it is with '//plural(count(pair > 0) - 1, 'more CGAP')
   end function like_this
 end module epcont_contact_geometry_pair_checks

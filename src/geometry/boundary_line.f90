@@ -76,7 +76,8 @@ module epcont_geometry_boundary_line
 
 contains
 
-  !> Put boxes round the sides, each beyond its side by half of the side's length, as the curve over it may be.
+  !> Put boxes round the sides, each beyond its side by half of the side's length, as the curve over it may
+  !! be.
   pure subroutine set_boxes(self)
     class(boundary_line), intent(inout) :: self
     real(wp), dimension(2, size(self%element)) :: middle, reach
@@ -255,7 +256,8 @@ contains
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: normal(2)
 
-    normal = (1.0_wp - s)*self%tangent_length(1)*self%normal(:, 1) + s*self%tangent_length(2)*self%normal(:, 2)
+    normal = (1.0_wp - s)*self%tangent_length(1)*self%normal(:, 1) + &
+             s*self%tangent_length(2)*self%normal(:, 2)
   end function scaled_normal
 
   !> How far along its normal the smooth curve rises above a chord: exactly where the normals at the ends are

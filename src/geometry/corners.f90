@@ -126,7 +126,8 @@ contains
       do i = 1, n
         do end = 1, 2
           next = merge(0, line%neighbour(end, i), line%mirrored(end, i))
-          on(end, i) = inner(end, i) .or. any([inner(3 - end, i), inner(end, next)] .and. alike_beside(:, end, i))
+          on(end, i) = inner(end, i) .or. &
+                       any([inner(3 - end, i), inner(end, next)] .and. alike_beside(:, end, i))
         end do
       end do
       on = on .and. abs(turn) < always_corner
@@ -141,7 +142,8 @@ contains
       do i = 1, n
         if (line%corner(2, i) .or. line%mirrored(2, i)) cycle
         associate (next => line%neighbour(2, i))
-          line%normal(:, 2, i) = unit(line%chord_length(next)*own(:, 2, i) + line%chord_length(i)*own(:, 1, next))
+          line%normal(:, 2, i) = unit(line%chord_length(next)*own(:, 2, i) + &
+                                      line%chord_length(i)*own(:, 1, next))
           line%normal(:, 1, next) = line%normal(:, 2, i)
         end associate
       end do

@@ -59,8 +59,8 @@ contains
     if (which < 3) from%at_tip = line%tip(which, side)
   end function node_of
 
-  !> What a point faces of a line, not farther than `search`: first the side nearest by, then a second face, if
-  !! that is farther by less than the point's own side is long.
+  !> What a point faces of a line, not farther than `search`: first the side nearest by, then a second face,
+  !! if that is farther by less than the point's own side is long.
   pure function find_facing(line, obstacles, from, search) result(face)
     type(boundary_line), intent(in) :: line        !! that is looked at
     type(boundary_line), intent(in) :: obstacles   !! the outlines of all bodies
