@@ -8,11 +8,6 @@ module epcont_contact_geometry_free_sides
   private
   public :: find_outline
 
-  !> A side of an element.
-  type :: side_type
-    integer :: side = 0, element = 0
-  end type side_type
-
 contains
 
   !> The outlines of a scene: all sides that one element alone has, part by part, and in each the one behind
@@ -20,12 +15,11 @@ contains
   function find_outline(model) result(outline)
     type(model_type), intent(in) :: model   !! the scene
     type(outline_type) :: outline
-    !> Free sides as they are found, and those before them
-    type(side_type), dimension(size(model%around%group)) :: free, former
-    !> Of the elements around a node: sides to the next and from the former corner, and these corners
-    type(side_type), dimension(maxval(model%around%start(2:) - model%around%start(:model%nodes))) :: &
-      to_next, from_former
-    integer, dimension(size(to_next)) :: next, last
+    !> Free sides as they are found, and those before them: which one of which element
+    integer, dimension(2, size(model%around%group)) :: free, former
+    !> The elements around a node; which of their corners it is, the next and the former one
+    integer, dimension(maxval(model%around%start(2:) - model%around%start(:model%nodes))) :: &
+      element, own, next, last
     !> Of the sides of each element; 0: not free
     integer :: number(maxval(model%kinds%corners), model%elements)
     integer, allocatable :: after(:), before(:), chain(:), order(:), place(:)
@@ -37,7 +31,7 @@ contains
     do node = 1, model%nodes
       call look_around(node)
     end do
-    before = [(number(former(k)%side, former(k)%element), k=1, sides)]
+    before = [(number(former(1, k), former(2, k)), k=1, sides)]
     ! Only where elements lie on each other, and share a side the same way round, is there none: it begins
     ! anew.
     after = [(k, k=1, sides)]
@@ -48,14 +42,14 @@ contains
     chain = chained(after)
     call find_parts(model, outline)
     outline%sides = sides
-    outline%node = reshape([(model%edge(free(k)%element, free(k)%side), k=1, sides)], [3, sides])
+    outline%node = reshape([(model%edge(free(2, k), free(1, k)), k=1, sides)], [3, sides])
     outline%part = outline%part_of(outline%node(1, :))
     by_part = new_incidence(reshape(outline%part(chain), [1, sides]), outline%parts)
     order = chain(by_part%group)
     outline%first = by_part%start
     outline%node = outline%node(:, order)
     outline%part = outline%part(order)
-    outline%element = free(order)%element
+    outline%element = free(2, order)
     allocate (place(sides))
     place(order) = [(k, k=1, sides)]
     outline%before = place(before(order))
@@ -67,27 +61,29 @@ contains
     !! compared: a side is shared where it is met both ways.
     subroutine look_around(node)
       integer, intent(in) :: node
-      integer :: corners, i, n, own
+      integer :: corners, i, k, n
 
       n = 0
       do i = model%around%start(node), model%around%start(node + 1) - 1
         associate (e => model%around%group(i))
           corners = model%corners(e)
-          own = place_of(node, model%connectivity(:corners, e))
-          if (own == 0) cycle   ! the middle of a side
+          k = place_of(node, model%connectivity(:corners, e))
+          if (k == 0) cycle   ! the middle of a side
           n = n + 1
-          to_next(n) = side_type(own, e)
-          from_former(n) = side_type(mod(own + corners - 2, corners) + 1, e)
-          next(n) = model%connectivity(mod(own, corners) + 1, e)
-          last(n) = model%connectivity(from_former(n)%side, e)
+          element(n) = e
+          own(n) = k
+          next(n) = model%connectivity(mod(k, corners) + 1, e)
+          last(n) = model%connectivity(mod(k + corners - 2, corners) + 1, e)
         end associate
       end do
       do i = 1, n
         if (place_of(next(i), last(:n)) > 0) cycle
+        k = fan_end(last(:n), next(:n), i)
+        corners = model%corners(element(k))
         sides = sides + 1
-        free(sides) = to_next(i)
-        former(sides) = from_former(fan_end(last(:n), next(:n), i))
-        number(to_next(i)%side, to_next(i)%element) = sides
+        free(:, sides) = [own(i), element(i)]
+        former(:, sides) = [mod(own(k) + corners - 2, corners) + 1, element(k)]
+        number(own(i), element(i)) = sides
       end do
     end subroutine look_around
   end function find_outline

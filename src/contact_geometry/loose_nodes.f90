@@ -7,6 +7,7 @@ module epcont_contact_geometry_loose_nodes
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_base_tolerances, only: coincident
+  use epcont_contact_geometry_line_sides, only: find_between
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
   use epcont_model_finding, only: and_more, findings, of_element, of_node
@@ -43,30 +44,23 @@ contains
     !> Middles of sides that an element with another middle, or none, has too. A middle of two elements hangs
     !! nowhere.
     subroutine find_middles()
-      integer :: i, s, side(3)
+      integer, allocatable :: near(:)
+      integer :: i, s, own(3), side(3)
 
       do i = 1, model%nodes
         if (model%around%start(i + 1) - model%around%start(i) /= 1 .or. model%is_tied([i])) cycle
         associate (e => model%around%group(model%around%start(i)))
           do s = 1, model%corners(e)
             side = model%edge(e, s)
-            if (side(3) == i) edge(:, i) = [side(:2), other_of(e, side)]
+            if (side(3) /= i) cycle
+            call find_between(model, side(1), side(2), near, own)
+            associate (other => [pack(near, near /= e), 0])
+              edge(:, i) = [side(:2), other(1)]
+            end associate
           end do
         end associate
       end do
     end subroutine find_middles
-
-    !> Another element that has a side with these ends; 0: there is none.
-    pure integer function other_of(element, side) result(other)
-      integer, intent(in) :: element, side(3)
-      integer :: k
-
-      do k = model%around%start(side(1)), model%around%start(side(1) + 1) - 1
-        other = model%around%group(k)
-        if (other /= element .and. model%side_between(other, side(1), side(2)) > 0) return
-      end do
-      other = 0
-    end function other_of
 
     !> Sides of the outline that go back along a longer one, from its end to its start.
     subroutine find_chains()

@@ -146,6 +146,7 @@ contains
       real(wp), intent(in) :: slip             !! how far it has slid there [length]
       logical :: smooth
       real(wp) :: angle
+      integer :: beside
 
       left_open = no_gap*extent
       associate (slave => contact%slave, master => contact%master, s => face%segment)
@@ -155,8 +156,10 @@ contains
           left_open = most*travel
         else if (is_held_off(slave, s)) then
           ! Over a side of the slave gaps are closed in the mean, however short the master's are.
-          left_open = left_open + allowance*(openness(slave, s, 0.0_wp) + &
-                                             openness_at(master, side, which, slave%chord_length(s)))
+          beside = 0
+          if (which < 3) beside = master%neighbour(which, side)
+          left_open = left_open + allowance*(openness(slave, [s], 0.0_wp) + &
+                                             openness(master, [side, beside], slave%chord_length(s)))
         else
           left_open = left_open + bend(slave, s, 0.0_wp)
         end if
@@ -196,31 +199,25 @@ contains
       gap_and_slip = [face%gap + dot_product(face%normal, apart), abs(cross_product(face%normal, apart))]
     end function gap_and_slip
 
-    !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and
-    !! as it bends [length].
-    pure real(wp) function openness(line, side, over)
+    !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises above
+    !! them, and as it bends [length].
+    pure real(wp) function openness(line, sides, over)
       type(boundary_line), intent(in) :: line
-      integer, intent(in) :: side
+      integer, intent(in) :: sides(:)   !! 0: none
       real(wp), intent(in) :: over
-      integer :: end
+      real(wp) :: rise
+      integer :: end, k
 
-      openness = line%chord_length(side)/4.0_wp* &
-                 maxval([(norm2(line%normal(:, end, side) - line%own_normal(side, real(end - 1, wp))), &
-                          end=1, 2)]) + bend(line, side, over)
+      openness = 0.0_wp
+      do k = 1, size(sides)
+        if (sides(k) == 0) cycle
+        associate (normal => line%normal(:, :, sides(k)))
+          rise = line%chord_length(sides(k))/4.0_wp* &
+                 maxval([(norm2(normal(:, end) - line%own_normal(sides(k), real(end - 1, wp))), end=1, 2)])
+        end associate
+        openness = max(openness, rise + bend(line, sides(k), over))
+      end do
     end function openness
-
-    !> The larger one of the sides that meet in a node.
-    pure real(wp) function openness_at(line, side, which, over)
-      type(boundary_line), intent(in) :: line
-      integer, intent(in) :: side, which
-      real(wp), intent(in) :: over
-
-      openness_at = openness(line, side, over)
-      if (which == 3) return
-      associate (beside => line%neighbour(which, side))
-        if (beside > 0) openness_at = max(openness_at, openness(line, beside, over))
-      end associate
-    end function openness_at
 
     !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which
     !! the boundary bends from that side on [length].
