@@ -8,7 +8,8 @@ module epcont_build_build
   use epcont_build_contacts, only: build_contacts
   use epcont_build_mesh, only: build_mesh, element_cards
   use epcont_build_reference, only: card_index, check_unique, chosen_set, index_of
-  use epcont_contact_geometry_complete, only: check_controls, find_contacts, finish_model
+  use epcont_contact_geometry_complete, only: check_controls, finish_model
+  use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_grid, card_mat1, &
                                     card_mats1, card_param, card_pgap, card_pshell, card_psolid, card_rbe2, &
                                     card_spc, card_spc1, card_tables1

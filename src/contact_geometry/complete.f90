@@ -8,25 +8,23 @@
 !> Pressures come last (add_pressure).
 module epcont_contact_geometry_complete
   use epcont_base_error, only: error_type, raise, status_deck
-  use epcont_contact_geometry_free_sides, only: find_outline
-  use epcont_contact_geometry_hanging_nodes, only: warn_of_hanging_nodes
-  use epcont_contact_geometry_line_contacts, only: find_line_contacts
-  use epcont_contact_geometry_lying_together, only: warn_of_lying_together
+  use epcont_contact_geometry_line_contacts, only: find_contacts
+  use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
   use epcont_contact_geometry_pair_checks, only: check_pairs
-  use epcont_contact_geometry_pairs_twice, only: refuse_pairs_twice
   use epcont_deck_diagnostic, only: severity_error
   use epcont_element_kinematics, only: plane_strain
+  use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
   use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
   use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_section
   use epcont_model_given, only: check_given
   use epcont_model_model, only: model_type
   use epcont_model_single_pairs, only: complete_pairs
-  use epcont_model_ties, only: find_bodies, follow_to_the_end, set_reference, tie
+  use epcont_model_ties, only: follow_to_the_end, set_reference, tie
   use epcont_model_travel, only: find_travels
   implicit none
   private
-  public :: complete_model, raise_first, check_controls, find_contacts, finish_model
+  public :: complete_model, raise_first, check_controls, finish_model
 
 contains
 
@@ -40,7 +38,7 @@ contains
     call check_given(model, found)
     if (found%errors == 0) then
       call complete_elements(model, found)
-      call complete_freedoms(model, found)
+      call complete_freedoms()
       call check_axis(model, found)
       call complete_pairs(model, .false., found)
       call find_contacts(model, found)
@@ -48,31 +46,30 @@ contains
     end if
     if (found%errors == 0) call finish_model(model, found)
     call raise_first(model, found, error)
+
+  contains
+
+    !> Ties and reference freedoms, one by one: each is checked against those before it.
+    subroutine complete_freedoms()
+      integer :: c, i, leader(2, model%nodes)
+      logical :: reference(2, model%nodes)
+
+      leader = model%leader
+      reference = model%reference
+      model%leader = spread([(i, i=1, model%nodes)], 1, 2)
+      do i = 1, model%nodes
+        do c = 1, 2
+          if (leader(c, i) /= i) call tie(model, c, i, leader(c, i), [of_node, i, 0], found)
+        end do
+      end do
+      call follow_to_the_end(model%leader)
+      do i = 1, model%nodes
+        do c = 1, 2
+          if (reference(c, i)) call set_reference(model, c, i, [of_node, i, 0], found)
+        end do
+      end do
+    end subroutine complete_freedoms
   end subroutine complete_model
-
-  !> Ties and reference freedoms, one by one: each is checked against those before it.
-  pure subroutine complete_freedoms(model, found)
-    type(model_type), intent(inout) :: model
-    type(findings), intent(inout) :: found
-    integer, allocatable :: leader(:, :)
-    logical, allocatable :: reference(:, :)
-    integer :: c, i
-
-    leader = model%leader
-    reference = model%reference
-    model%leader = spread([(i, i=1, model%nodes)], 1, 2)
-    do i = 1, model%nodes
-      do c = 1, 2
-        if (leader(c, i) /= i) call tie(model, c, i, leader(c, i), [of_node, i, 0], found)
-      end do
-    end do
-    call follow_to_the_end(model%leader)
-    do i = 1, model%nodes
-      do c = 1, 2
-        if (reference(c, i)) call set_reference(model, c, i, [of_node, i, 0], found)
-      end do
-    end do
-  end subroutine complete_freedoms
 
   !> The first error of what was found, as a sentence: `CTRIA3 5: its corners 1, 2 and 3 lie on one line
   !! (wanted: corners that span an area)`.
@@ -92,30 +89,18 @@ contains
     end do
   end subroutine raise_first
 
-  !> Bodies, their outlines, and the contacts of lines: after elements, supports, ties and single pairs.
-  subroutine find_contacts(model, found)
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-
-    ! Lines are sides of the outlines, and only sound elements have outlines.
-    if (found%errors == 0) then
-      call find_bodies(model)
-      model%body_outline = find_outline(model)
-    end if
-    call find_line_contacts(model, found)
-  end subroutine find_contacts
-
   !> What a scene without errors must still be refused or warned of, and its travels.
   subroutine finish_model(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(outline_shape) :: drawn
 
-    call refuse_pairs_twice(model, found)
-    call warn_of_elements_twice(model, found)
     call check_pairs(model, found)
+    call warn_of_elements_twice(model, found)
     call find_travels(model)
-    call warn_of_hanging_nodes(model, found)
-    call warn_of_lying_together(model, found)
+    drawn = new_outline_shape(model%body_outline, model%x)
+    call warn_of_hanging_nodes(model, drawn, found)
+    call warn_of_lying_together(model, drawn, found)
   end subroutine finish_model
 
   !> MUP PAPER is of the secant stiffness, and of plane strain.

@@ -2,8 +2,8 @@
 !> master, and in concave corners a second face of it.
 module epcont_contact_geometry_faces
   use epcont_base_kinds, only: wp
-  use epcont_geometry_boundary_line, only: boundary_line
-  use epcont_geometry_facing, only: facing_type, find_facing, node_of, same_face
+  use epcont_geometry_boundary_line, only: boundary_line, facing_type
+  use epcont_geometry_facing, only: find_facing, node_of, same_face
   use epcont_model_model, only: line_contact
   implicit none
   private

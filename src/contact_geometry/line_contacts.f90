@@ -1,18 +1,21 @@
-!> Contacts of lines: which couples go together, and what there is to say of the pairs that come of them.
+!> Contacts: bodies and their outlines, which couples of lines go together, and what there is to say of the
+!> pairs that come of them.
 module epcont_contact_geometry_line_contacts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_text, only: text_of
   use epcont_contact_geometry_faces, only: faces_type
+  use epcont_contact_geometry_free_sides, only: find_outline
   use epcont_contact_geometry_line_pairs, only: add_pairs
   use epcont_contact_geometry_line_sides, only: find_line_sides
   use epcont_contact_geometry_line_warnings, only: warn_of_both_ways, warn_of_contact
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_finding, only: findings, of_couple, of_line
   use epcont_model_model, only: line_contact, model_type
+  use epcont_model_ties, only: find_bodies
   implicit none
   private
-  public :: find_line_contacts
+  public :: find_contacts
 
   !> Where nothing is said of it, a side is looked for within this many times the longest side of the two
   !! lines.
@@ -23,16 +26,22 @@ module epcont_contact_geometry_line_contacts
 
 contains
 
-  !> Add the pairs of all contacts of lines behind those that are given one by one. Lines and couples are
-  !! known by their nodes and lines; where there were errors before, there is no boundary to look at, and
-  !! these alone are checked.
-  subroutine find_line_contacts(model, found)
+  !> Bodies, their outlines, and the pairs of all contacts of lines behind those that are given one by one:
+  !! after elements, supports, ties and single pairs. Lines and couples are known by their nodes and lines;
+  !! where there were errors before, there is no boundary to look at, and these alone are checked.
+  subroutine find_contacts(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: number(:)   ! of the contact that each couple is of
     logical :: used(0:size(model%line))
+    type(line_contact) :: contact
+    type(faces_type) :: faces
     integer :: c, contacts, i
 
+    if (found%errors == 0) then   ! only sound elements have outlines
+      call find_bodies(model)
+      model%body_outline = find_outline(model)
+    end if
     call find_line_sides(model, found)
     used = .false.
     do i = 1, size(model%couple)
@@ -47,8 +56,9 @@ contains
     if (found%errors == 0) call join_couples()
     allocate (model%line_contact(contacts))
     do c = 1, contacts
-      model%line_contact(c) = new_contact(pack([(i, i=1, size(number))], number == c))
+      contact = new_contact(pack([(i, i=1, size(number))], number == c))
       call find_pairs()
+      model%line_contact(c) = contact
     end do
     if (found%errors == 0) call warn_of_both_ways(model, found)
 
@@ -124,6 +134,7 @@ contains
     pure type(line_contact) function new_contact(couples) result(contact)
       integer, intent(in) :: couples(:)
       integer, allocatable :: master(:), slave(:)
+      integer :: k
 
       contact%couple = couples
       contact%bconp = model%couple(couples)%id
@@ -134,8 +145,9 @@ contains
       contact%slave = sides_of(slave)
       contact%master = sides_of(master)
       contact%search = model%controls%search
-      if (contact%search == 0.0_wp) &
-        contact%search = default_search*max(longest(contact%slave), longest(contact%master))
+      if (contact%search == 0.0_wp) contact%search = default_search* &
+        maxval([(contact%slave%chord_length(k), k=1, size(contact%slave%element)), &
+                (contact%master%chord_length(k), k=1, size(contact%master%element))])
       allocate (contact%came_near(0))
     end function new_contact
 
@@ -149,40 +161,34 @@ contains
 
     !> The pairs of a contact, looked for ever farther until there is one; and the warnings.
     subroutine find_pairs()
-      type(line_contact) :: contact
-      type(faces_type) :: faces
       real(wp) :: most
 
       most = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
-      contact = model%line_contact(c)
       do
         call add_pairs(model, contact, faces)
         if (contact%last >= contact%first) exit
         if (contact%search > most) then
-          call add_nothing_faced(contact, faces%same_way)
+          call add_nothing_faced()
           return
         end if
         contact%search = widening*contact%search
       end do
-      model%line_contact(c) = contact
       call warn_of_contact(model, contact, faces, found)
     end subroutine find_pairs
 
-    subroutine add_nothing_faced(contact, same_way)
-      type(line_contact), intent(in) :: contact
-      integer, intent(in) :: same_way      !! nodes of the slave that are near sides which look the same way
+    subroutine add_nothing_faced()
       character(len=:), allocatable :: remedy, what
 
       what = ': no node of BLSEG '//text_of(contact%slave_id(1))//' faces a side of BLSEG '// &
              text_of(contact%master_id(1))
       remedy = 'lines that face each other'
-      if (same_way > 0) then
-        what = what//'; '//text_of(same_way)//' of them near sides that look the same way'
+      if (faces%same_way > 0) then
+        what = what//'; '//text_of(faces%same_way)//' of them near sides that look the same way'
         remedy = 'boundaries of two bodies that face each other'
       end if
       call found%add_error(of_couple, contact%couple(1), 1, what, remedy)
     end subroutine add_nothing_faced
-  end subroutine find_line_contacts
+  end subroutine find_contacts
 
   !> Is a number, from 1 on, in both lists?
   pure logical function have_common(a, b)
@@ -208,12 +214,4 @@ contains
     end do
     once = pack(numbers, first)
   end function once
-
-  !> Length of the longest side [length].
-  pure real(wp) function longest(line)
-    type(boundary_line), intent(in) :: line
-    integer :: k
-
-    longest = maxval([(line%chord_length(k), k=1, size(line%element))])
-  end function longest
 end module epcont_contact_geometry_line_contacts

@@ -6,34 +6,18 @@ module epcont_contact_geometry_line_pairs
   use epcont_base_kinds, only: wp
   use epcont_contact_geometry_faces, only: faces_type, find_faces, has_face, node_face
   use epcont_contact_geometry_mortar, only: find_mortar_rows, mortar_row
-  use epcont_geometry_boundary_line, only: beyond
-  use epcont_geometry_facing, only: facing_type, find_facing, looking_point, node_of, same_face
+  use epcont_geometry_boundary_line, only: beyond, facing_type
+  use epcont_geometry_facing, only: find_facing, looking_point, node_of, same_face
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
-  public :: forget_pairs, add_pairs
+  public :: add_pairs
 
   !> A node's normals on the two lines differ by less (cosine) where it has a pair there: 35 degrees, of
   !! coarse curves.
   real(wp), parameter :: opposite = 0.816_wp
 
 contains
-
-  !> Forget the pairs of all contacts of lines.
-  pure subroutine forget_pairs(model)
-    type(model_type), intent(inout) :: model   !! the scene
-    integer :: n
-
-    n = model%single_pairs()
-    model%pairs = n
-    model%row_start = model%row_start(:n + 1)
-    model%pair_node = model%pair_node(:, :n)
-    model%pair_id = model%pair_id(:n)
-    model%normal = model%normal(:, :n)
-    model%initial_gap = model%initial_gap(:n)
-    model%row_node = model%row_node(:model%row_start(n + 1) - 1)
-    model%row_weight = model%row_weight(:model%row_start(n + 1) - 1)
-  end subroutine forget_pairs
 
   !> Append the pairs of a contact, with their rows of N. The node that stands on a side is B, the nodes of
   !! that side are A.
@@ -59,9 +43,9 @@ contains
     contact%last = model%pairs
     contact%left_out = faces%left_out
     without = .false.
-    do k = 1, size(faces%left_out, 2)
-      without(contact%slave%segment(faces%left_out(2, k), faces%left_out(1, k))) = .true.
-    end do
+    associate (side => faces%left_out(1, :), which => faces%left_out(2, :))
+      without([(contact%slave%segment(which(k), side(k)), k=1, size(side))]) = .true.
+    end associate
     without(faces%row%node) = .false.
     contact%nodes_left_out = count(without)
 
@@ -86,8 +70,8 @@ contains
             do i = 1, 2
               if (.not. on(i)%found) cycle
               if (covered(on(i)%segment) .and. .not. near) cycle
-              if (stands_at_node(on(i)) .or. has_face(tips, node, on(i)%normal, same_face)) cycle
-              tips = [tips, node_face(facing_type=on(i), node=node)]
+              if (.not. (stands_at_node(on(i)) .or. has_face(tips, node, on(i)%normal, same_face))) &
+                tips = [tips, node_face(facing_type=on(i), node=node)]
             end do
           end associate
         end do
@@ -98,12 +82,11 @@ contains
     !! rounding tells which of them is faced.)
     pure logical function stands_at_node(on)
       type(facing_type), intent(in) :: on
-      integer :: i
 
-      i = maxloc(on%share, dim=1)
-      stands_at_node = on%share(i) >= 1.0_wp - beyond
-      if (stands_at_node) stands_at_node = has_face(faces%row, contact%slave%segment(i, on%segment), &
-                                                    -on%normal, opposite)
+      associate (node => contact%slave%segment(maxloc(on%share, dim=1), on%segment))
+        stands_at_node = maxval(on%share) >= 1.0_wp - beyond .and. &
+                         has_face(faces%row, node, -on%normal, opposite)
+      end associate
     end function stands_at_node
 
     !> Shared by the nodes of the slave's side as its shape functions say.
@@ -120,27 +103,29 @@ contains
     end function rows_of_tips
   end subroutine add_pairs
 
-  !> Pairs behind those that there are. In their rows of N node B has weight 1, the others have theirs, less
-  !! than zero; of these the largest is A.
+  !> Pairs behind those that count so far. In their rows of N node B has weight 1, the others have theirs,
+  !! less than zero; of these the largest is A.
   pure subroutine append_pairs(b, row, model)
     type(node_face), intent(in) :: b(:)      !! and what it faces [rows]
     type(mortar_row), intent(in) :: row(:)
     type(model_type), intent(inout) :: model
     integer :: a(size(b)), start(size(b) + 1), i, n
 
-    n = size(b)
-    start(1) = size(model%row_node) + 1
-    do i = 1, n
+    start(1) = model%row_start(model%pairs + 1)
+    do i = 1, size(b)
       a(i) = row(i)%node(maxloc(row(i)%weight, dim=1))
       start(i + 1) = start(i) + size(row(i)%node) + 1
     end do
-    model%pairs = model%pairs + n
-    model%row_start = [model%row_start, start(2:)]
-    model%row_node = [model%row_node, (b(i)%node, row(i)%node, i=1, n)]
-    model%row_weight = [model%row_weight, (1.0_wp, -row(i)%weight, i=1, n)]
-    model%pair_id = [model%pair_id, model%node_id(b%node)]
-    model%pair_node = reshape([model%pair_node, (a(i), b(i)%node, i=1, n)], [2, model%pairs])
-    model%normal = reshape([model%normal, (b(i)%normal, i=1, n)], [2, model%pairs])
-    model%initial_gap = [model%initial_gap, b%gap]
+    associate (before => model%pairs, entries => start(1) - 1)
+      n = before + size(b)
+      model%row_start = [model%row_start(:before), start]
+      model%row_node = [model%row_node(:entries), (b(i)%node, row(i)%node, i=1, size(b))]
+      model%row_weight = [model%row_weight(:entries), (1.0_wp, -row(i)%weight, i=1, size(b))]
+      model%pair_id = [model%pair_id(:before), model%node_id(b%node)]
+      model%pair_node = reshape([model%pair_node(:, :before), (a(i), b(i)%node, i=1, size(b))], [2, n])
+      model%normal = reshape([model%normal(:, :before), (b(i)%normal, i=1, size(b))], [2, n])
+      model%initial_gap = [model%initial_gap(:before), b%gap]
+    end associate
+    model%pairs = n
   end subroutine append_pairs
 end module epcont_contact_geometry_line_pairs

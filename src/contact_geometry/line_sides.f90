@@ -1,5 +1,5 @@
-!> Boundary lines: from the nodes that are given to sides of the bodies' outlines, end to end; and the boundary
-!> of all bodies as contact takes it, those sides with normals and corners.
+!> Boundary lines: from the nodes that are given to sides of the bodies' outlines, end to end; and the
+!> boundary of all bodies as contact takes it, those sides with normals and corners.
 module epcont_contact_geometry_line_sides
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -9,14 +9,7 @@ module epcont_contact_geometry_line_sides
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: find_line_sides
-
-  !> What elements have between two nodes.
-  type :: between_type
-    integer :: elements = 0       !! that have a side there
-    integer :: element(2) = 0     !! the first and the last of them
-    integer :: node(3) = 0        !! of the first one's side, as the element turns
-  end type between_type
+  public :: find_between, find_line_sides
 
 contains
 
@@ -44,7 +37,8 @@ contains
         passed = first_passed_twice(line%node, model%nodes)
         if (passed > 0) then
           call found%add_error(of_line, i, -passed, ': '//model%name_of(of_node, line%node(passed))// &
-                               ' stands in it before', 'each node once; a closed line ends with its first node')
+                               ' stands in it before', &
+                               'each node once; a closed line ends with its first node')
         else
           call walk(line%node)
         end if
@@ -53,30 +47,30 @@ contains
 
   contains
 
-    !> The sides between consecutive nodes, none where one is missing; a middle node between two corners may be
-    !! listed or left out.
+    !> The sides between consecutive nodes, none where one is missing; a middle node between two corners may
+    !! be listed or left out.
     subroutine walk(node)
       integer, intent(in) :: node(:)
-      type(between_type) :: next, over
-      integer :: k, side(size(node)), sides
+      integer, allocatable :: element(:), over(:)
+      integer :: edge(3), k, side(size(node)), sides
 
       sides = 0
       k = 1
       do while (k < size(node))
-        next = between(node(k), node(k + 1))
-        if (next%elements == 0 .and. k + 2 <= size(node)) then
-          over = between(node(k), node(k + 2))
-          if (over%elements > 0 .and. over%node(3) == node(k + 1)) then
+        call find_between(model, node(k), node(k + 1), element, edge)
+        if (size(element) == 0 .and. k + 2 <= size(node)) then
+          call find_between(model, node(k), node(k + 2), over, edge)
+          if (edge(3) == node(k + 1)) then
             k = k + 1
-            next = over
+            element = over
           end if
         end if
-        if (next%elements /= 1) then
-          call add_no_side(next, k, model%name_of(of_node, node(k))//' and '//text_of(model%node_id(node(k + 1))))
+        if (size(element) /= 1) then
+          call add_no_side(element, k, node(k:k + 1))
           return
         end if
         sides = sides + 1
-        if (sound) side(sides) = side_of_outline(next)
+        if (sound) side(sides) = side_of_outline(element(1), edge)
         k = k + 1
       end do
       if (.not. sound .or. sides == 0) return
@@ -85,48 +79,51 @@ contains
       model%line(i)%box = reshape([minval(model%x(:, node), dim=2), maxval(model%x(:, node), dim=2)], [2, 2])
     end subroutine walk
 
-    !> The side that ends at two corners, and how many elements have it.
-    pure type(between_type) function between(a, b)
-      integer, intent(in) :: a, b
-      integer :: k, side
-
-      do k = model%around%start(a), model%around%start(a + 1) - 1
-        associate (element => model%around%group(k))
-          side = model%side_between(element, a, b)
-          if (side == 0) cycle
-          between%elements = between%elements + 1
-          between%element(min(between%elements, 2)) = element
-          if (between%elements == 1) between%node = model%edge(element, side)
-        end associate
-      end do
-    end function between
-
     !> No side, or no free one, between the k-th and the next node of a line.
-    subroutine add_no_side(there, k, ends)
-      type(between_type), intent(in) :: there
-      integer, intent(in) :: k
-      character(len=*), intent(in) :: ends   !! the two nodes
+    subroutine add_no_side(element, k, node)
+      integer, intent(in) :: element(:)    !! that have a side there
+      integer, intent(in) :: k, node(2)
+      character(len=:), allocatable :: ends
 
-      if (there%elements == 0) then
+      ends = model%name_of(of_node, node(1))//' and '//text_of(model%node_id(node(2)))
+      if (size(element) == 0) then
         call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
                              'nodes in the order of the boundary')
       else
         call found%add_error(of_line, i, -k - 1, ': the side between '//ends// &
-                             ' lies inside a body, between '//model%name_of(of_element, there%element(1))// &
-                             ' and '//model%name_of(of_element, there%element(2)), 'sides that one element has')
+                             ' lies inside a body, between '//model%name_of(of_element, element(1))// &
+                             ' and '//model%name_of(of_element, element(size(element))), &
+                             'sides that one element has')
       end if
     end subroutine add_no_side
 
     !> The side of the outline that an element has, walked with the body to the left.
-    pure integer function side_of_outline(own) result(k)
-      type(between_type), intent(in) :: own
+    pure integer function side_of_outline(element, edge) result(k)
+      integer, intent(in) :: element, edge(3)
 
-      k = starting(own%node(1))
-      do while (model%boundary%element(k) /= own%element(1) .or. any(model%boundary%segment(:, k) /= own%node))
-        k = k - 1   ! the only one, but where boundaries meet in a node
-      end do
+      k = starting(edge(1))
+      associate (line => model%boundary)
+        do while (line%element(k) /= element .or. any(line%segment(:, k) /= edge))
+          k = k - 1   ! the only one, but where boundaries meet in a node
+        end do
+      end associate
     end function side_of_outline
   end subroutine find_line_sides
+
+  !> Elements that have a side between two corners, and the nodes of that side as the first of them turns.
+  pure subroutine find_between(model, a, b, element, edge)
+    type(model_type), intent(in) :: model              !! the scene
+    integer, intent(in) :: a, b                        !! the corners
+    integer, allocatable, intent(out) :: element(:)    !! [any]
+    integer, intent(out) :: edge(3)                    !! see model%edge; 0: there is none
+    integer :: k
+
+    associate (near => model%around%group(model%around%start(a):model%around%start(a + 1) - 1))
+      element = pack(near, [(model%side_between(near(k), a, b) > 0, k=1, size(near))])
+    end associate
+    edge = 0
+    if (size(element) > 0) edge = model%edge(element(1), model%side_between(element(1), a, b))
+  end subroutine find_between
 
   !> Where a line comes to a node that it has passed; 0: nowhere. But a closed line ends with its first node.
   pure integer function first_passed_twice(node, nodes) result(k)
@@ -143,9 +140,9 @@ contains
   end function first_passed_twice
 
   !> All sides of the bodies, numbered as those of the outlines.
-  pure type(boundary_line) function find_boundary(model) result(line)
+  type(boundary_line) function find_boundary(model) result(line)
     type(model_type), intent(in) :: model
-    integer :: i, k
+    integer :: held(2, model%body_outline%sides), i, k
 
     associate (outline => model%body_outline, sides => model%body_outline%sides)
       line%segment = outline%node
@@ -157,9 +154,9 @@ contains
           line%x(:, :merge(3, 2, node(3) > 0), i) = model%edge_coordinates(node)
         end associate
       end do
-      call find_normals(line, reshape([((held_direction(outline%node(k, i)), k=1, 2), i=1, sides)], [2, sides]), &
-                        model%controls%corner)
+      held = reshape([((held_direction(outline%node(k, i)), k=1, 2), i=1, sides)], [2, sides])
     end associate
+    call find_normals(line, held, model%controls%corner)
 
   contains
 

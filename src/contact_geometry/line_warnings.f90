@@ -55,8 +55,9 @@ contains
       others = ''
       if (overlaps > 1) others = '; '//text_of(overlaps)//' nodes overlap'
       call found%add_warning(of_couple, contact%couple(1), 1, ': the initial gap at GRID '// &
-                             text_of(model%pair_id(deepest))//' is '//short_real(model%initial_gap(deepest))// &
-                             others, 'gaps of 0.0 or more, unless a fit is meant')
+                             text_of(model%pair_id(deepest))//' is '// &
+                             short_real(model%initial_gap(deepest))//others, &
+                             'gaps of 0.0 or more, unless a fit is meant')
     end subroutine warn_of_overlap
 
     !> Pressures are carried by the slave's nodes. Where these are closer than the nodes of the master, whose
@@ -109,10 +110,10 @@ contains
       thickness = [maxval(model%thickness(model%section(contact%slave%element))), &
                    minval(model%thickness(model%section(contact%master%element)))]
       if (thickness(1)*(1.0_wp - digits) > thickness(2)) &
-        call found%add_warning(of_couple, contact%couple(1), 2, ': the slave is '//short_real(thickness(1))// &
-                               ' thick, the master '//short_real(thickness(2))//': pressures are forces by '// &
-                               'the slave''s area, of which the master covers a part', &
-                               'SLAVE and MASTER exchanged')
+        call found%add_warning(of_couple, contact%couple(1), 2, ': the slave is '// &
+                               short_real(thickness(1))//' thick, the master '//short_real(thickness(2))// &
+                               ': pressures are forces by the slave''s area, of which the master covers '// &
+                               'a part', 'SLAVE and MASTER exchanged')
     end subroutine warn_of_thicker_slave
   end subroutine warn_of_contact
 
@@ -175,8 +176,8 @@ contains
       call found%add_warning(of_couple, couple, 3, ': '//model%name_of(of_node, node)// &
                              ' is of its MASTER, and of the SLAVE of '//model%name_of(of_couple, other)// &
                              ': pressures beside it are off, by a quarter where both touch', &
-                             'SLAVE and MASTER of one of the two exchanged: lines that go on in each other '// &
-                             'are one contact')
+                             'SLAVE and MASTER of one of the two exchanged: lines that go on in each '// &
+                             'other are one contact')
     end subroutine add_both_ways
   end subroutine warn_of_both_ways
 end module epcont_contact_geometry_line_warnings

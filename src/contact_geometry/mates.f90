@@ -33,11 +33,9 @@ contains
   !> Is one of these nodes joined with a part?
   pure logical function is_mate(mate, node, part)
     integer, intent(in) :: mate(:), node(:), part   !! mates of all nodes; these nodes, 0 is none; the part
-    integer :: k
 
-    is_mate = .false.
-    do k = 1, size(node)
-      if (node(k) > 0) is_mate = is_mate .or. mate(node(k)) == part .or. mate(node(k)) == several
-    end do
+    associate (own => mate(pack(node, node > 0)))
+      is_mate = any(own == part .or. own == several)
+    end associate
   end function is_mate
 end module epcont_contact_geometry_mates

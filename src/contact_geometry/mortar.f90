@@ -11,8 +11,8 @@ module epcont_contact_geometry_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_area, rounded_off
   use epcont_contact_geometry_faces, only: faces_type
-  use epcont_geometry_boundary_line, only: beyond, boundary_line, facing_place
-  use epcont_geometry_facing, only: facing_type, find_facing, looking_point, rise_of
+  use epcont_geometry_boundary_line, only: beyond, boundary_line, facing_type
+  use epcont_geometry_facing, only: find_facing, looking_point, rise_of
   use epcont_model_model, only: line_contact
   implicit none
   private
@@ -53,7 +53,7 @@ contains
 
   !> Rows of master nodes and weights, one for each slave node that has a pair. Rows of no side count at their
   !! own places.
-  pure subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
+  subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
     type(line_contact), intent(in) :: contact      !! the contact of lines
     type(boundary_line), intent(in) :: obstacles   !! the outlines of all bodies
     type(faces_type), intent(in) :: faces          !! what the slave's nodes face
@@ -63,17 +63,16 @@ contains
     type(side_points) :: points(size(covered))
     real(wp) :: area(size(faces%row))
     logical :: alone(size(faces%row))
-    integer :: k, p, row, s
+    integer :: row, s
 
     area = 0.0_wp
     do s = 1, size(points)
       points(s) = cut_side(s)
       if (points(s)%covered) points(s)%covered = is_even(s, points(s))
       call set_integrals(points(s), contact%slave%segment(3, s) > 0)
-      do k = 1, 3
-        row = faces%row_of(k, s)
-        if (row > 0) area(row) = area(row) + points(s)%integral(k)
-      end do
+      associate (own => pack(faces%row_of(:, s), faces%row_of(:, s) > 0))
+        area(own) = area(own) + pack(points(s)%integral, faces%row_of(:, s) > 0)
+      end associate
     end do
     covered = points%covered
     alone = .not. area > 0.0_wp
@@ -83,20 +82,10 @@ contains
       allocate (rows(row)%node(0), rows(row)%weight(0))
     end do
     do s = 1, size(points)
-      do k = 1, 3
-        row = faces%row_of(k, s)
-        if (row == 0) cycle
-        if (covered(s)) then
-          do p = 1, size(points(s)%weight)
-            call add(rows(row), points(s)%facing(p), points(s)%dual(k, p), area(row))
-          end do
-        else
-          call add(rows(row), faces%row(row)%facing_type, points(s)%integral(k), area(row))
-        end if
-      end do
+      call add_side(faces%row_of(:, s), points(s))
     end do
     do row = 1, size(rows)
-      if (alone(row)) call add(rows(row), faces%row(row)%facing_type, 1.0_wp, area(row))
+      if (alone(row)) call add(row, faces%row(row)%facing_type, 1.0_wp)
       associate (counts => abs(rows(row)%weight) > rounded_off)
         rows(row) = mortar_row(pack(rows(row)%node, counts), pack(rows(row)%weight, counts))
       end associate
@@ -118,24 +107,20 @@ contains
       width = cut(2:) - cut(:size(cut) - 1)
       cut = pack(cut(:size(width)), width > beyond)   ! what lies beyond an end by so little is not beyond it
       width = pack(width, width > beyond)
-      p = gauss_points*size(cut)
-      allocate (points%along(p), points%share(3, p), points%weight(p), points%facing(p))
+      points%along = [((cut(i) + width(i)*gauss_place(k), k=1, gauss_points), i=1, size(cut))]
+      points%weight = [((gauss_weight(k)*width(i), k=1, gauss_points), i=1, size(cut))]
+      allocate (points%share(3, size(points%along)), points%facing(size(points%along)))
       from%rise = rise_of(contact%slave, s)
-      do i = 1, size(cut)
-        do k = 1, gauss_points
-          p = gauss_points*(i - 1) + k
-          points%along(p) = cut(i) + width(i)*gauss_place(k)
-          call contact%slave%at(s, points%along(p), points%share(:, p), from%x, tangent)
-          points%weight(p) = gauss_weight(k)*width(i)*norm2(tangent)
-          if (ring) points%weight(p) = points%weight(p)* &
-                                       dot_product(points%share(:, p), contact%slave%x(1, :, s))
-          from%outward = [tangent(2), -tangent(1)]/norm2(tangent)
-          from%along = 0.5_wp*tangent
-          face = find_facing(contact%master, obstacles, from, contact%search)
-          points%facing(p) = face(1)
-          points%covered = points%covered .and. face(1)%found .and. &
-                           dot_product(face(1)%normal, from%outward) < -parallel
-        end do
+      do p = 1, size(points%along)
+        call contact%slave%at(s, points%along(p), points%share(:, p), from%x, tangent)
+        points%weight(p) = points%weight(p)*norm2(tangent)
+        if (ring) points%weight(p) = points%weight(p)*dot_product(points%share(:, p), contact%slave%x(1, :, s))
+        from%outward = [tangent(2), -tangent(1)]/norm2(tangent)
+        from%along = 0.5_wp*tangent
+        face = find_facing(contact%master, obstacles, from, contact%search)
+        points%facing(p) = face(1)
+        points%covered = points%covered .and. face(1)%found .and. &
+                         dot_product(face(1)%normal, from%outward) < -parallel
       end do
     end function cut_side
 
@@ -144,10 +129,10 @@ contains
     pure function cuts_of(s) result(cut)
       integer, intent(in) :: s
       real(wp), allocatable :: cut(:)
-      type(facing_place) :: place
+      type(facing_type) :: place
       real(wp) :: middle(2), reach, within
       integer, allocatable :: near(:)
-      integer :: i, k, n
+      integer :: i, k
 
       reach = contact%search
       associate (row => faces%row_of(:, s), slave => contact%slave, master => contact%master)
@@ -156,21 +141,19 @@ contains
         middle = 0.5_wp*(slave%x(:, 1, s) + slave%x(:, 2, s))
         within = reach + slave%chord_length(s)
         near = master%in_box(middle - within, middle + within)
-        allocate (cut(2*size(near) + 2))
-        cut(:2) = [1.0_wp, 0.0_wp]
-        n = 2
+        cut = [0.0_wp, 1.0_wp]
         do i = 1, size(near)
           do k = 1, 2
             if (k == 2 .and. i < size(near)) then
               if (near(i + 1) == master%neighbour(2, near(i))) cycle   ! the start of the next
             end if
             place = slave%face(s, master%x(:, k, near(i)))
-            if (place%found .and. place%s >= 0.0_wp .and. place%s <= 1.0_wp .and. &
-                abs(place%gap) <= reach*(1.0_wp + beyond)) call insert(place%s, n, cut)
+            if (.not. place%found .or. abs(place%gap) > reach*(1.0_wp + beyond)) cycle
+            if (place%s >= 0.0_wp .and. place%s <= 1.0_wp) &
+              cut = [pack(cut, cut < place%s), place%s, pack(cut, cut >= place%s)]
           end do
         end do
       end associate
-      cut = cut(n:1:-1)
     end function cuts_of
 
     !> Do the points of a side face the same face of the other line as its nodes, without a step or a corner?
@@ -201,23 +184,42 @@ contains
       end associate
     end function is_even
 
-    !> Add what a point of a side makes of a row: the weight is shared by the nodes of the side that it faces.
-    pure subroutine add(row, facing, weight, area)
-      type(mortar_row), intent(inout) :: row
+    !> Add what a side makes of the rows of its nodes: one that is covered by its points, others at the nodes.
+    subroutine add_side(own, points)
+      integer, intent(in) :: own(3)
+      type(side_points), intent(in) :: points
+      integer :: k, p
+
+      do k = 1, 3
+        if (own(k) == 0) cycle
+        if (points%covered) then
+          do p = 1, size(points%weight)
+            call add(own(k), points%facing(p), points%dual(k, p))
+          end do
+        else
+          call add(own(k), faces%row(own(k))%facing_type, points%integral(k))
+        end if
+      end do
+    end subroutine add_side
+
+    !> Add a weight to a row: it is shared by the nodes of the side that is faced.
+    subroutine add(row, facing, weight)
+      integer, intent(in) :: row
       type(facing_type), intent(in) :: facing
-      real(wp), intent(in) :: weight, area
+      real(wp), intent(in) :: weight
       integer :: i, k
 
-      associate (node => contact%master%segment(:, facing%segment), part => weight*facing%share)
+      associate (node => contact%master%segment(:, facing%segment), part => weight*facing%share, &
+                 own => rows(row))
         do k = 1, 3
           if (node(k) == 0 .or. part(k) == 0.0_wp) cycle
-          i = findloc(row%node, node(k), dim=1)
+          i = findloc(own%node, node(k), dim=1)
           if (i == 0) then
-            row%node = [row%node, node(k)]
-            row%weight = [row%weight, 0.0_wp]
-            i = size(row%node)
+            own%node = [own%node, node(k)]
+            own%weight = [own%weight, 0.0_wp]
+            i = size(own%node)
           end if
-          row%weight(i) = row%weight(i) + part(k)/area
+          own%weight(i) = own%weight(i) + part(k)/area(row)
         end do
       end associate
     end subroutine add
@@ -243,22 +245,6 @@ contains
       end do
     end associate
   end subroutine set_integrals
-
-  !> Insert a number from 0 to 1 into some in falling order, the last of them 0: lines that face each other
-  !! are walked in opposite directions, so that most come to stand near the end.
-  pure subroutine insert(s, n, falling)
-    real(wp), intent(in) :: s
-    integer, intent(inout) :: n
-    real(wp), intent(inout) :: falling(:)
-    integer :: i
-
-    do i = n, 1, -1
-      if (falling(i) >= s) exit
-      falling(i + 1) = falling(i)
-    end do
-    falling(i + 1) = s
-    n = n + 1
-  end subroutine insert
 
   !> The value at s of the parabola through three points.
   pure real(wp) function continued(at, value, s)

@@ -7,9 +7,9 @@ module epcont_contact_geometry_nearness
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_gap
   use epcont_contact_geometry_faces, only: faces_type
-  use epcont_contact_geometry_line_pairs, only: add_pairs, forget_pairs
-  use epcont_geometry_boundary_line, only: boundary_line
-  use epcont_geometry_facing, only: facing_type, find_facing, looking_point, node_of
+  use epcont_contact_geometry_line_pairs, only: add_pairs
+  use epcont_geometry_boundary_line, only: boundary_line, facing_type
+  use epcont_geometry_facing, only: find_facing, looking_point, node_of
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: line_contact, model_type
   implicit none
@@ -54,11 +54,13 @@ contains
       holds(pack(model%pair_node(2, :), touching)) = .true.
     end if
     do c = 1, size(model%line_contact)
-      call look_at_contact(model%line_contact(c))
+      contact = model%line_contact(c)
+      call look_at_contact()
+      model%line_contact(c) = contact
     end do
     if (.not. entered) return
     before = model%pairs
-    call forget_pairs(model)
+    model%pairs = model%single_pairs()
     do c = 1, size(model%line_contact)
       contact = model%line_contact(c)
       call add_pairs(model, contact, faces)
@@ -70,14 +72,13 @@ contains
 
     !> What a contact's nodes want: a wider search for those of the slave, or to be entered, as nodes of the
     !! master.
-    subroutine look_at_contact(contact)
-      type(line_contact), intent(inout) :: contact
+    subroutine look_at_contact()
       real(wp) :: search
       integer :: i, which
 
       search = contact%search
       if (allocated(displacement)) then
-        search = wanted_search(contact)
+        search = wanted_search()
       else if (size(contact%left_out) > 0) then
         search = max(search, extent)
       end if
@@ -88,7 +89,7 @@ contains
       else if (allocated(displacement)) then   ! what the slave's nodes will hold off is not the master's
         do i = 1, size(contact%master%element)
           do which = 1, 3
-            call look_from_master(contact, i, which)
+            call look_from_master(i, which)
           end do
         end do
       end if
@@ -96,9 +97,9 @@ contains
 
     !> How far to search where nodes of the slave, left out so far, pass through the master, or stand beside
     !! one that touches: what the nodes of a side share is known only where all of them have pairs [length].
-    pure real(wp) function wanted_search(contact) result(search)
-      type(line_contact), intent(in) :: contact
+    pure real(wp) function wanted_search() result(search)
       type(facing_type) :: face(2)
+      real(wp) :: moved(2)
       integer :: i
 
       search = contact%search
@@ -106,19 +107,20 @@ contains
         associate (side => contact%left_out(1, i), which => contact%left_out(2, i), slave => contact%slave)
           face = find_facing(contact%master, model%boundary, node_of(slave, side, which), extent)
           if (.not. face(1)%found) cycle
-          if (gap_at(slave%segment(which, side), contact%master, face(1)) < -no_gap*extent .or. &
-              any(holds(slave%segment(:, side)))) search = max(search, further*abs(face(1)%gap))
+          moved = gap_and_slip(slave%segment(which, side), contact%master, face(1))
+          if (moved(1) < -no_gap*extent .or. any(holds(slave%segment(:, side)))) &
+            search = max(search, further*abs(face(1)%gap))
         end associate
       end do
     end function wanted_search
 
     !> Enter a node of the master that passes through a side of the slave by more than is left open between
     !! the slave's nodes.
-    subroutine look_from_master(contact, side, which)
-      type(line_contact), intent(inout) :: contact
+    subroutine look_from_master(side, which)
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
       type(looking_point) :: from
+      real(wp) :: moved(2)
       integer :: k
 
       associate (node => contact%master%segment(which, side))
@@ -127,7 +129,8 @@ contains
         face = find_facing(contact%slave, model%boundary, from, extent)
         do k = 1, 2
           if (.not. face(k)%found .or. from%at_tip .and. abs(face(k)%gap) <= contact%search) cycle
-          if (gap_at(node, contact%slave, face(k)) >= -left_open(contact, side, which, face(k))) cycle
+          moved = gap_and_slip(node, contact%slave, face(k))
+          if (moved(1) >= -left_open(side, which, face(k), moved(2))) cycle
           contact%came_near = [contact%came_near, node]
           contact%search = max(contact%search, further*abs(face(k)%gap))
           entered = .true.
@@ -137,12 +140,13 @@ contains
     end subroutine look_from_master
 
     !> How far a node of the master may pass through a side of the slave [length].
-    pure real(wp) function left_open(contact, side, which, face)
-      type(line_contact), intent(in) :: contact
+    pure real(wp) function left_open(side, which, face, slip)
       integer, intent(in) :: side, which       !! the node of the master
       type(facing_type), intent(in) :: face    !! and what it faces
+      real(wp), intent(in) :: slip             !! how far it has slid there [length]
       logical :: smooth
-      real(wp) :: angle, slip
+      real(wp) :: angle
+      integer :: beside
 
       left_open = no_gap*extent
       associate (slave => contact%slave, master => contact%master, s => face%segment)
@@ -152,14 +156,15 @@ contains
           left_open = most*travel
         else if (is_held_off(slave, s)) then
           ! Over a side of the slave gaps are closed in the mean, however short the master's are.
-          left_open = left_open + allowance*(openness(slave, s, 0.0_wp) + &
-                                             openness_at(master, side, which, slave%chord_length(s)))
+          beside = 0
+          if (which < 3) beside = master%neighbour(which, side)
+          left_open = left_open + allowance*(openness(slave, [s], 0.0_wp) + &
+                                             openness(master, [side, beside], slave%chord_length(s)))
         else
           left_open = left_open + bend(slave, s, 0.0_wp)
         end if
         if (smooth) then
           angle = norm2(face%normal + master%outward(side, which))
-          slip = abs(cross_product(face%normal, apart(master%segment(which, side), slave, face)))
           left_open = left_open + askew*angle*(slip + 0.5_wp*angle*abs(face%gap))
         end if
       end associate
@@ -177,12 +182,13 @@ contains
       end associate
     end function is_held_off
 
-    !> How displacements have moved a node from what it faces of a line [length].
-    pure function apart(node, line, face)
+    !> The gap that displacements have made of that between a node and what it faces of a line, and how far
+    !! the node has slid along the line [length].
+    pure function gap_and_slip(node, line, face)
       integer, intent(in) :: node
       type(boundary_line), intent(in) :: line
       type(facing_type), intent(in) :: face
-      real(wp) :: apart(2)
+      real(wp) :: apart(2), gap_and_slip(2)
       integer :: k
 
       apart = displacement(:, node)
@@ -190,42 +196,28 @@ contains
         if (face%share(k) /= 0.0_wp) &
           apart = apart - face%share(k)*displacement(:, line%segment(k, face%segment))
       end do
-    end function apart
+      gap_and_slip = [face%gap + dot_product(face%normal, apart), abs(cross_product(face%normal, apart))]
+    end function gap_and_slip
 
-    !> The gap that they have made of it [length].
-    pure real(wp) function gap_at(node, line, face)
-      integer, intent(in) :: node
+    !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises above
+    !! them, and as it bends [length].
+    pure real(wp) function openness(line, sides, over)
       type(boundary_line), intent(in) :: line
-      type(facing_type), intent(in) :: face
-
-      gap_at = face%gap + dot_product(face%normal, apart(node, line, face))
-    end function gap_at
-
-    !> How far a side is from the curve that its boundary means: as the undeformed curve rises above it, and
-    !! as it bends [length].
-    pure real(wp) function openness(line, side, over)
-      type(boundary_line), intent(in) :: line
-      integer, intent(in) :: side
+      integer, intent(in) :: sides(:)   !! 0: none
       real(wp), intent(in) :: over
-      integer :: end
+      real(wp) :: rise
+      integer :: end, k
 
-      openness = line%chord_length(side)/4.0_wp* &
-                 maxval([(norm2(line%normal(:, end, side) - line%own_normal(side, real(end - 1, wp))), &
-                          end=1, 2)]) + bend(line, side, over)
+      openness = 0.0_wp
+      do k = 1, size(sides)
+        if (sides(k) == 0) cycle
+        associate (normal => line%normal(:, :, sides(k)))
+          rise = line%chord_length(sides(k))/4.0_wp* &
+                 maxval([(norm2(normal(:, end) - line%own_normal(sides(k), real(end - 1, wp))), end=1, 2)])
+        end associate
+        openness = max(openness, rise + bend(line, sides(k), over))
+      end do
     end function openness
-
-    !> The larger one of the sides that meet in a node.
-    pure real(wp) function openness_at(line, side, which, over)
-      type(boundary_line), intent(in) :: line
-      integer, intent(in) :: side, which
-      real(wp), intent(in) :: over
-
-      openness_at = openness(line, side, over)
-      if (which == 3) return
-      associate (beside => line%neighbour(which, side))
-        if (beside > 0) openness_at = max(openness_at, openness(line, beside, over))
-      end associate
-    end function openness_at
 
     !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which
     !! the boundary bends from that side on [length].

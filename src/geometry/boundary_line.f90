@@ -13,7 +13,7 @@ module epcont_geometry_boundary_line
   use epcont_geometry_plane, only: cross_product
   implicit none
   private
-  public :: boundary_line, facing_place, unit
+  public :: boundary_line, facing_type, unit
 
   !> Part of a side by which a point may stand beyond its end, more than the rounding of coordinates in eight
   !! columns.
@@ -47,8 +47,10 @@ module epcont_geometry_boundary_line
   end type boundary_line
 
   !> Where a point faces a line.
-  type :: facing_place
+  type :: facing_type
     logical :: found = .false.
+    logical :: same_way = .false.    !! it does not, but a side near by looks the same way
+    integer :: segment = 0           !! the side
     real(wp) :: s = 0.0_wp           !! from 0 at the start of the side to 1 at its end; or just beyond
     real(wp) :: share(3) = 0.0_wp    !! of start, end and middle of the side in the place [-]
     real(wp) :: normal(2) = 0.0_wp   !! outward
@@ -56,7 +58,7 @@ module epcont_geometry_boundary_line
     logical :: at_corner = .false.   !! the place is a corner of the boundary
   contains
     procedure :: cosine
-  end type facing_place
+  end type facing_type
 
   !> One side, seen from its start: far from the origin its coordinates are exact differences.
   type :: side_type
@@ -74,7 +76,8 @@ module epcont_geometry_boundary_line
 
 contains
 
-  !> Put boxes round the sides, each beyond its side by half of the side's length, as the curve over it may be.
+  !> Put boxes round the sides, each beyond its side by half of the side's length, as the curve over it may
+  !! be.
   pure subroutine set_boxes(self)
     class(boundary_line), intent(inout) :: self
     real(wp), dimension(2, size(self%element)) :: middle, reach
@@ -132,7 +135,7 @@ contains
     real(wp) :: normal(2), tangent(2)
     type(side_type) :: side
 
-    call set_nodes(side, self%x(:, :, segment), self%segment(3, segment))
+    side = side_of(self, segment)
     tangent = side%tangent(s)
     normal = unit([tangent(2), -tangent(1)])
   end function own_normal
@@ -155,11 +158,12 @@ contains
     class(boundary_line), intent(in) :: self
     integer, intent(in) :: segment   !! which side
     real(wp), intent(in) :: point(2)    !! [length]
-    type(facing_place) :: place
+    type(facing_type) :: place
     type(side_type) :: side
     real(wp) :: from(2)
     integer :: end
 
+    place%segment = segment
     side = side_of(self, segment)
     from = point - self%x(:, 1, segment)
     call side%find_foot(from, place%s, place%found)
@@ -184,8 +188,8 @@ contains
 
   !> Cosine of the angle between the normals of two places.
   elemental real(wp) function cosine(self, other)
-    class(facing_place), intent(in) :: self
-    class(facing_place), intent(in) :: other   !! of whatever line
+    class(facing_type), intent(in) :: self
+    class(facing_type), intent(in) :: other   !! of whatever line
 
     cosine = dot_product(self%normal, other%normal)
   end function cosine
@@ -209,20 +213,12 @@ contains
     integer, intent(in) :: segment
     integer :: k
 
-    call set_nodes(side, line%x(:, :, segment), line%segment(3, segment))
+    side%curved = line%segment(3, segment) > 0
+    side%x = line%x(:, :, segment) - spread(line%x(:, 1, segment), 2, 3)
+    if (.not. side%curved) side%x(:, 3) = 0.0_wp
     side%normal = line%normal(:, :, segment)
     side%tangent_length = [(norm2(side%tangent(real(k, wp))), k=0, 1)]
   end function side_of
-
-  pure subroutine set_nodes(side, x, middle)
-    type(side_type), intent(inout) :: side
-    real(wp), intent(in) :: x(2, 3)
-    integer, intent(in) :: middle     !! the node there; 0: none
-
-    side%curved = middle > 0
-    side%x = x - spread(x(:, 1), 2, 3)
-    if (.not. side%curved) side%x(:, 3) = 0.0_wp
-  end subroutine set_nodes
 
   !> The place whose normal leads to a point, which is given from the side's start as well.
   pure subroutine find_foot(self, point, s, found)
@@ -260,7 +256,8 @@ contains
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: normal(2)
 
-    normal = (1.0_wp - s)*self%tangent_length(1)*self%normal(:, 1) + s*self%tangent_length(2)*self%normal(:, 2)
+    normal = (1.0_wp - s)*self%tangent_length(1)*self%normal(:, 1) + &
+             s*self%tangent_length(2)*self%normal(:, 2)
   end function scaled_normal
 
   !> How far along its normal the smooth curve rises above a chord: exactly where the normals at the ends are

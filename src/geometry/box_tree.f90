@@ -29,21 +29,17 @@ contains
     real(wp), intent(in) :: low(:, :), high(:, :)   !! [length] [2, boxes]
     type(box_tree) :: tree
     integer, allocatable :: first(:), last(:), order(:)
-    integer :: axis, i, leaves, middle, n
+    integer :: axis, i, middle, nodes
 
-    n = size(low, 2)
-    leaves = 1
-    do while (leaves < n)
-      leaves = 2*leaves
-    end do
-    order = [(i, i=1, n)]
-    allocate (tree%item(2*leaves - 1), first(2*leaves - 1), last(2*leaves - 1), source=0)
-    allocate (tree%low(2, 2*leaves - 1), source=huge(1.0_wp))
-    allocate (tree%high(2, 2*leaves - 1), source=-huge(1.0_wp))
-    if (n == 0) return   ! a root that nothing meets
+    nodes = 2**(bit_size(1) - leadz(max(size(low, 2) - 1, 0)) + 1) - 1
+    allocate (tree%item(nodes), first(nodes), last(nodes), source=0)
+    allocate (tree%low(2, nodes), source=huge(1.0_wp))
+    allocate (tree%high(2, nodes), source=-huge(1.0_wp))
+    order = [(i, i=1, size(low, 2))]
+    if (size(order) == 0) return   ! a root that nothing meets
     first(1) = 1
-    last(1) = n
-    do i = 1, 2*leaves - 1
+    last(1) = size(order)
+    do i = 1, nodes
       if (first(i) == 0) cycle
       associate (own => order(first(i):last(i)))
         tree%low(:, i) = minval(low(:, own), dim=2)

@@ -29,7 +29,7 @@ contains
 
   !> Normals at the ends of the sides, corners and lines of symmetry, and boxes round the sides. A side's
   !! neighbours are known.
-  pure subroutine find_normals(line, held, angle)
+  subroutine find_normals(line, held, angle)
     type(boundary_line), intent(inout) :: line   !! its sides, whose normals are set
     !> The direction in which its start, its end is held: 0 none, 3 both [2, sides]
     integer, intent(in) :: held(:, :)
@@ -41,6 +41,7 @@ contains
     integer :: end, i, n
 
     n = size(line%element)
+    allocate (line%normal(2, 2, n), line%end_normal(2, 2, n), source=0.0_wp)
     own = reshape([((line%own_normal(i, real(end - 1, wp)), end=1, 2), i=1, n)], [2, 2, n])
     turn = 0.0_wp
     do i = 1, n
@@ -51,11 +52,9 @@ contains
       end associate
     end do
     line%mirrored = reshape([((is_mirrored(end, i), end=1, 2), i=1, n)], [2, n])
-    allocate (line%end_normal(2, 2, n), source=0.0_wp)
     do i = 1, n
       do end = 1, 2
-        if (line%mirrored(end, i)) &
-          call reflect(end, held(end, i), own(:, end, i), line%end_normal(:, end, i), turn(end, i))
+        if (line%mirrored(end, i)) call reflect(end, i)
       end do
     end do
     ends_there = line%neighbour == 0 .and. .not. line%mirrored
@@ -65,7 +64,7 @@ contains
       line%corner = ends_there .or. .not. (abs(turn) < always_smooth .or. is_on_curve())
     end if
     line%tip = line%corner .and. (turn > 0.0_wp .or. ends_there) .and. .not. line%mirrored
-    call set_normals(line)
+    call set_normals()
     call line%set_boxes()
 
   contains
@@ -84,6 +83,20 @@ contains
                       looks_along(own(:, 3 - end, next), d)
       end associate
     end function is_mirrored
+
+    !> The normal within a line of symmetry where a side meets it, and the turn there, as the side goes on
+    !! beyond it.
+    subroutine reflect(end, side)
+      integer, intent(in) :: end, side
+      real(wp) :: beyond(2)
+
+      associate (across => held(end, side), normal => own(:, end, side))
+        line%end_normal(3 - across, end, side) = sign(1.0_wp, normal(3 - across))
+        beyond = normal
+        beyond(across) = -normal(across)
+        turn(end, side) = merge(-1.0_wp, 1.0_wp, end == 1)*angle_between(normal, beyond)
+      end associate
+    end subroutine reflect
 
     !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the
     !! first or the last node of one (beside a node within it, and they turn like that)?
@@ -113,27 +126,41 @@ contains
       do i = 1, n
         do end = 1, 2
           next = merge(0, line%neighbour(end, i), line%mirrored(end, i))
-          on(end, i) = inner(end, i) .or. any([inner(3 - end, i), inner(end, next)] .and. alike_beside(:, end, i))
+          on(end, i) = inner(end, i) .or. &
+                       any([inner(3 - end, i), inner(end, next)] .and. alike_beside(:, end, i))
         end do
       end do
       on = on .and. abs(turn) < always_corner
     end function is_on_curve
+
+    !> Normals from the sides that meet, or from the other end of the side.
+    subroutine set_normals()
+      real(wp) :: chord(2)
+      integer :: end, i
+
+      line%normal = line%end_normal
+      do i = 1, n
+        if (line%corner(2, i) .or. line%mirrored(2, i)) cycle
+        associate (next => line%neighbour(2, i))
+          line%normal(:, 2, i) = unit(line%chord_length(next)*own(:, 2, i) + &
+                                      line%chord_length(i)*own(:, 1, next))
+          line%normal(:, 1, next) = line%normal(:, 2, i)
+        end associate
+      end do
+      do i = 1, n
+        chord = line%own_normal(i, 0.5_wp)
+        do end = 1, 2
+          if (.not. line%corner(end, i)) cycle
+          line%normal(:, end, i) = own(:, end, i)
+          if (line%segment(3, i) > 0 .or. line%corner(3 - end, i)) cycle
+          ! Of a circle through both ends the one normal mirrors the other.
+          associate (other => line%normal(:, 3 - end, i))
+            line%normal(:, end, i) = 2.0_wp*dot_product(other, chord)*chord - other
+          end associate
+        end do
+      end do
+    end subroutine set_normals
   end subroutine find_normals
-
-  !> The normal within a line of symmetry where a side meets it, and the turn there, as the side goes on
-  !! beyond it.
-  pure subroutine reflect(end, across, own, normal, turn)
-    integer, intent(in) :: end           !! of the side: 1 its start, 2 its end
-    integer, intent(in) :: across        !! the direction across the line
-    real(wp), intent(in) :: own(2)       !! normal of the side itself
-    real(wp), intent(inout) :: normal(2), turn
-    real(wp) :: beyond(2)
-
-    normal(3 - across) = sign(1.0_wp, own(3 - across))
-    beyond = own
-    beyond(across) = -own(across)
-    turn = merge(-1.0_wp, 1.0_wp, end == 1)*angle_between(own, beyond)
-  end subroutine reflect
 
   !> Counter-clockwise from one vector to another.
   pure real(wp) function angle_between(a, b)
@@ -149,33 +176,4 @@ contains
 
     looks_along = abs(vector(3 - axis)) < abs(vector(axis))
   end function looks_along
-
-  !> Normals from the sides that meet, or from the other end of the side.
-  pure subroutine set_normals(line)
-    type(boundary_line), intent(inout) :: line
-    real(wp) :: chord(2)
-    integer :: end, i
-
-    line%normal = line%end_normal
-    do i = 1, size(line%element)
-      if (line%corner(2, i) .or. line%mirrored(2, i)) cycle
-      associate (next => line%neighbour(2, i))
-        line%normal(:, 2, i) = unit(line%chord_length(next)*line%own_normal(i, 1.0_wp) + &
-                                    line%chord_length(i)*line%own_normal(next, 0.0_wp))
-        line%normal(:, 1, next) = line%normal(:, 2, i)
-      end associate
-    end do
-    do i = 1, size(line%element)
-      chord = line%own_normal(i, 0.5_wp)
-      do end = 1, 2
-        if (.not. line%corner(end, i)) cycle
-        line%normal(:, end, i) = line%own_normal(i, real(end - 1, wp))
-        if (line%segment(3, i) > 0 .or. line%corner(3 - end, i)) cycle
-        ! Of a circle through both ends the one normal mirrors the other.
-        associate (other => line%normal(:, 3 - end, i))
-          line%normal(:, end, i) = 2.0_wp*dot_product(other, chord)*chord - other
-        end associate
-      end do
-    end do
-  end subroutine set_normals
 end module epcont_geometry_corners

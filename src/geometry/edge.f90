@@ -3,7 +3,7 @@ module epcont_geometry_edge
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: edge_point, edge_points, edge_tangent
+  public :: edge_point, edge_points
 
   !> Gauss points along an edge: exact for a linear pressure on a straight one, and for a uniform one on any,
   !! rings too.
@@ -44,16 +44,4 @@ contains
       point(p)%along = 0.5_wp*(1.0_wp + s)
     end do
   end function edge_points
-
-  !> Along an edge at a part of it from 0 to 1, as long as it would be if it were straight on from there
-  !! [length].
-  pure function edge_tangent(x, s) result(along)
-    !> Its beginning and end, and its middle node where it has one [length] [2, 2 or 3]
-    real(wp), intent(in) :: x(:, :)
-    real(wp), intent(in) :: s   !! from 0 to 1
-    real(wp) :: along(2)
-
-    along = x(:, 2) - x(:, 1)
-    if (size(x, 2) == 3) along = along + 4.0_wp*(1.0_wp - 2.0_wp*s)*(x(:, 3) - 0.5_wp*(x(:, 1) + x(:, 2)))
-  end function edge_tangent
 end module epcont_geometry_edge

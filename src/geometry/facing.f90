@@ -6,11 +6,11 @@
 module epcont_geometry_facing
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: coordinate_rounding, least_difference
-  use epcont_geometry_boundary_line, only: boundary_line, facing_place
+  use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_plane, only: cross_product
   implicit none
   private
-  public :: facing_type, find_facing, looking_point, node_of, rise_of
+  public :: find_facing, looking_point, node_of, rise_of
 
   !> Boundaries face each other whose normals' cosine is below this: a wall at a right angle to a floor does
   !! not face it,
@@ -42,12 +42,6 @@ module epcont_geometry_facing
     logical :: at_tip = .false.       !! a convex corner of its own boundary
   end type looking_point
 
-  !> Where a point faces which side.
-  type, extends(facing_place) :: facing_type
-    integer :: segment = 0        !! the side
-    logical :: same_way = .false. !! there is none, but one near by that looks the same way
-  end type facing_type
-
 contains
 
   !> A node of a side: 1 its start, 2 its end, 3 its middle.
@@ -65,8 +59,8 @@ contains
     if (which < 3) from%at_tip = line%tip(which, side)
   end function node_of
 
-  !> What a point faces of a line, not farther than `search`: first the side nearest by, then a second face, if
-  !! that is farther by less than the point's own side is long.
+  !> What a point faces of a line, not farther than `search`: first the side nearest by, then a second face,
+  !! if that is farther by less than the point's own side is long.
   pure function find_facing(line, obstacles, from, search) result(face)
     type(boundary_line), intent(in) :: line        !! that is looked at
     type(boundary_line), intent(in) :: obstacles   !! the outlines of all bodies
@@ -100,8 +94,7 @@ contains
       real(wp) :: away(2), cosine
 
       if (from%node > 0 .and. any(line%segment(:, side) == from%node)) return
-      face%segment = side
-      face%facing_place = line%face(side, from%x)
+      face = line%face(side, from%x)
       face%found = face%found .and. abs(face%gap) <= search*(1.0_wp + least_difference)
       if (.not. face%found) return
       cosine = dot_product(face%normal, from%outward)
@@ -121,7 +114,7 @@ contains
     !! overlap with the other's flank, however far it lies behind that.)
     pure logical function goes_on(side)
       integer, intent(in) :: side
-      type(facing_place) :: place
+      type(facing_type) :: place
       integer :: end
 
       place = line%face(side, from%x + aside*from%along)
@@ -159,40 +152,41 @@ contains
       type(facing_type), intent(in) :: met(:)
       type(facing_type) :: best(2)
       logical :: taken(size(met))   ! in the best one
+      real(wp) :: by
       integer :: i
 
       if (size(met) == 0) return
       best(1) = met(1)
       taken = [(i == 1, i=1, size(met))]
       do i = 2, size(met)
-        if (is_better(met(i), best(1))) then
+        by = advantage(met(i), best(1))
+        ! Of equal ones that which lies more before the middle of the point's own side.
+        if (by == 0.0_wp .and. aside_of(met(i)) < aside_of(best(1))*(1.0_wp - least_difference)) by = 1.0_wp
+        if (by > 0.0_wp) then
           best(1) = met(i)
           taken = .false.
-          taken(i) = .true.
-        else if (from%at_tip .and. are_equal(met(i), best(1))) then
+        else if (by == 0.0_wp .and. from%at_tip) then
           call take_mean(met(i), best(1))
-          taken(i) = .true.
+        else
+          cycle
         end if
+        taken(i) = .true.
       end do
       taken = taken .or. met%cosine(best(1)) > same_face
       i = minloc(abs(met%gap), mask=.not. taken, dim=1)
       if (i > 0) best(2) = met(i)
     end function best_two
 
-    !> Is a face better than another? It is nearer; or as near, and looks more against the point's own boundary;
-    !! or lies more before the middle of the point's own side.
-    pure logical function is_better(one, other)
+    !> By how much a face is better than another: it is nearer, or as near and looks more against the point's
+    !! own boundary. 0: it is as good.
+    pure real(wp) function advantage(one, other) result(by)
       type(facing_type), intent(in) :: one, other
-      real(wp) :: by
 
       by = abs(other%gap) - abs(one%gap)
-      is_better = by > 0.0_wp
       if (abs(by) > least_difference*search) return
       by = dot_product(other%normal, from%outward) - dot_product(one%normal, from%outward)
-      is_better = by > 0.0_wp
-      if (abs(by) > least_difference) return
-      is_better = aside_of(one) < aside_of(other)*(1.0_wp - least_difference)
-    end function is_better
+      if (abs(by) <= least_difference) by = 0.0_wp
+    end function advantage
 
     !> How far what is faced lies from the middle of the point's own side [length].
     pure real(wp) function aside_of(face)
@@ -200,14 +194,6 @@ contains
 
       aside_of = norm2(matmul(line%x(:, :, face%segment), face%share) - from%x - from%along)
     end function aside_of
-
-    !> Are two faces as near, and look as much against the point's own boundary?
-    pure logical function are_equal(one, other)
-      type(facing_type), intent(in) :: one, other
-
-      are_equal = abs(abs(one%gap) - abs(other%gap)) <= least_difference*search .and. &
-                  abs(dot_product(one%normal - other%normal, from%outward)) <= least_difference
-    end function are_equal
   end function find_facing
 
   !> Of two sides that a corner faces equally well at their corner none is the better one: between their

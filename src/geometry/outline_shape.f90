@@ -4,7 +4,6 @@ module epcont_geometry_outline_shape
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
   use epcont_geometry_box_tree, only: box_tree, most_waiting, new_box_tree
-  use epcont_geometry_edge, only: edge_tangent
   use epcont_geometry_outline, only: outline_type
   implicit none
   private
@@ -27,6 +26,7 @@ module epcont_geometry_outline_shape
     procedure :: at
     procedure :: tangent
     procedure :: chord
+    procedure, private :: arch
     procedure :: near_side
     procedure :: nearest_place
     procedure :: is_inside
@@ -48,7 +48,6 @@ contains
     type(outline_type), intent(in) :: outline   !! of all bodies
     real(wp), intent(in) :: x(:, :)   !! [length] [2, nodes]
     type(outline_shape) :: shape
-    real(wp) :: control(2)
     integer :: p, s
 
     shape%outline = outline
@@ -58,9 +57,10 @@ contains
         own(:, :2) = x(:, node(:2))
         own(:, 3) = 0.5_wp*(own(:, 1) + own(:, 2))
         if (node(3) > 0) own(:, 3) = x(:, node(3))
-        control = own(:, 3) + (own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
-        shape%low(:, s) = min(own(:, 1), own(:, 2), control)
-        shape%high(:, s) = max(own(:, 1), own(:, 2), control)
+        associate (control => own(:, 3) + shape%arch(s))
+          shape%low(:, s) = min(own(:, 1), own(:, 2), control)
+          shape%high(:, s) = max(own(:, 1), own(:, 2), control)
+        end associate
       end associate
     end do
     allocate (shape%side_tree(outline%parts))
@@ -82,11 +82,7 @@ contains
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: x(2)
 
-    associate (own => self%x(:, :, side))
-      x = own(:, 1) + s*(own(:, 2) - own(:, 1))
-      if (self%outline%node(3, side) > 0) &
-        x = x + 4.0_wp*s*(1.0_wp - s)*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
-    end associate
+    x = self%x(:, 1, side) + s*self%chord(side) + 4.0_wp*s*(1.0_wp - s)*self%arch(side)
   end function at
 
   !> Along a side, as long as it would be if it were straight on from there [length].
@@ -96,7 +92,7 @@ contains
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: along(2)
 
-    along = edge_tangent(self%x(:, :merge(3, 2, self%outline%node(3, side) > 0), side), s)
+    along = self%chord(side) + 4.0_wp*(1.0_wp - 2.0_wp*s)*self%arch(side)
   end function tangent
 
   !> From where a side begins to where it ends [length].
@@ -107,6 +103,17 @@ contains
 
     chord = self%x(:, 2, side) - self%x(:, 1, side)
   end function chord
+
+  !> From the middle of that to the middle of the side; zero where it is straight [length].
+  pure function arch(self, side)
+    class(outline_shape), intent(in) :: self
+    integer, intent(in) :: side   !! which side
+    real(wp) :: arch(2)
+
+    arch = 0.0_wp
+    if (self%outline%node(3, side) > 0) &
+      arch = self%x(:, 3, side) - 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side))
+  end function arch
 
   !> The place of a part that is nearest to a point: branch and bound in its tree. `guess` is a side that may
   !! be near.
@@ -185,9 +192,7 @@ contains
 
       k = minloc([(norm2(point - self%at(side, real(k, wp)/tried)), k=0, tried)], dim=1) - 1
       s = real(k, wp)/tried
-      associate (own => self%x(:, :, side))
-        bend = -8.0_wp*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
-      end associate
+      bend = -8.0_wp*self%arch(side)
       do k = 1, most_steps
         away = self%at(side, s) - point
         along = self%tangent(side, s)

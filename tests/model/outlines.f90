@@ -1,11 +1,12 @@
 !> Boundaries drawn from points, without elements behind them.
 module outlines
   use epcont_base_kinds, only: wp
-  use epcont_geometry_boundary_line, only: boundary_line
+  use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_corners, only: find_normals
+  use epcont_geometry_facing, only: find_facing, looking_point
   implicit none
   private
-  public :: drawn, chain, degree
+  public :: drawn, chain, degree, find_nearest
 
   real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
 
@@ -64,4 +65,15 @@ contains
       if (i <= size(turn)) along = along + turn(i)*degree
     end do
   end function chain
+
+  !> The side of a line that a point faces nearest by.
+  pure type(facing_type) function find_nearest(line, obstacles, from, search) result(nearest)
+    type(boundary_line), intent(in) :: line, obstacles
+    type(looking_point), intent(in) :: from
+    real(wp), intent(in) :: search   !! [length]
+    type(facing_type) :: face(2)
+
+    face = find_facing(line, obstacles, from, search)
+    nearest = face(1)
+  end function find_nearest
 end module outlines

@@ -1,0 +1,206 @@
+!> Nodes that lie where something else of the scene does, as drawn, and are not joined with it: on a side of
+!> an element of their own body, whose ends elements share (meshes of unlike fineness, or six-node elements
+!> beside others, put together), or at a node of another body, with neither a pair nor RBE2 (a contact, or a
+!> common node, that was forgotten).
+module epcont_contact_geometry_loose_nodes
+  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
+  use epcont_base_tolerances, only: coincident
+  use epcont_contact_geometry_line_sides, only: find_between
+  use epcont_contact_geometry_mates, only: find_mates, is_mate
+  use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
+  use epcont_model_finding, only: and_more, findings, of_element, of_node
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: warn_of_hanging_nodes, warn_of_lying_together
+
+contains
+
+  !> One warning, at the first of the nodes that hang on a side.
+  subroutine warn_of_hanging_nodes(model, drawn, found)
+    type(model_type), intent(in) :: model       !! the scene
+    type(outline_shape), intent(in) :: drawn    !! its outlines
+    type(findings), intent(inout) :: found      !! what is wrong with it is added
+    ! Where each node hangs: the ends of the side and its element; 0: nowhere
+    integer :: edge(3, model%nodes)
+    integer :: first
+
+    edge = 0
+    call find_middles()
+    call find_chains()
+    first = findloc(edge(3, :) > 0, .true., dim=1)
+    if (first == 0) return
+    call found%add_warning(of_node, first, 1, ': lies on side '//model%name_of(of_node, edge(1, first))// &
+                           ' to '//text_of(model%node_id(edge(2, first)))//' of '// &
+                           model%name_of(of_element, edge(3, first))// &
+                           ' and is no node of it: the body may open there'// &
+                           and_more(count(edge(3, :) > 0), '; so do ', ' more nodes'), &
+                           'elements that share all nodes of their common sides')
+
+  contains
+
+    !> Middles of sides that an element with another middle, or none, has too. A middle of two elements hangs
+    !! nowhere.
+    subroutine find_middles()
+      integer, allocatable :: near(:)
+      integer :: i, s, own(3), side(3)
+
+      do i = 1, model%nodes
+        if (model%around%start(i + 1) - model%around%start(i) /= 1 .or. model%is_tied([i])) cycle
+        associate (e => model%around%group(model%around%start(i)))
+          do s = 1, model%corners(e)
+            side = model%edge(e, s)
+            if (side(3) /= i) cycle
+            call find_between(model, side(1), side(2), near, own)
+            associate (other => [pack(near, near /= e), 0])
+              edge(:, i) = [side(:2), other(1)]
+            end associate
+          end do
+        end associate
+      end do
+    end subroutine find_middles
+
+    !> Sides of the outline that go back along a longer one, from its end to its start.
+    subroutine find_chains()
+      type(incidence) :: beginning   ! the sides that begin at each node
+      integer :: k, s
+
+      associate (node => model%body_outline%node)
+        beginning = new_incidence(node(:1, :), model%nodes)
+        do s = 1, model%body_outline%sides
+          do k = beginning%start(node(2, s)), beginning%start(node(2, s) + 1) - 1
+            if (goes_back(s, beginning%group(k))) call follow(s, beginning%group(k))
+          end do
+        end do
+      end associate
+    end subroutine find_chains
+
+    !> Is a side shorter than the one at whose end it begins, of another element, and leads back along it?
+    pure logical function goes_back(side, beside)
+      integer, intent(in) :: side, beside
+
+      goes_back = model%body_outline%element(side) /= model%body_outline%element(beside)
+      if (.not. goes_back) return   ! a sliver
+      associate (a => drawn%chord(side), b => drawn%chord(beside))
+        goes_back = dot_product(a, b) < -0.5_wp*norm2(a)*norm2(b) .and. norm2(b) < norm2(a)
+      end associate
+    end function goes_back
+
+    !> From the end of a side back to its start: what lies on it between, and is no node of it, hangs.
+    subroutine follow(side, from)
+      integer, intent(in) :: side, from
+      type(near_place) :: place
+      integer :: last, t
+
+      associate (outline => model%body_outline)
+        last = from
+        do while (outline%node(2, last) /= outline%node(1, side))
+          place = drawn%near_side(side, model%x(:, outline%node(2, last)))
+          if (place%distance > coincident*norm2(drawn%chord(side)) .or. place%s <= 0.0_wp .or. &
+              place%s >= 1.0_wp) return
+          last = outline%after(last)
+          if (last == from) return
+        end do
+        t = from
+        do while (t /= last)
+          associate (node => outline%node(2, t))
+            if (node /= outline%node(3, side) .and. .not. model%is_tied([node])) &
+              edge(:, node) = [outline%node(:2, side), outline%element(side)]
+          end associate
+          t = outline%after(t)
+        end do
+      end associate
+    end subroutine follow
+  end subroutine warn_of_hanging_nodes
+
+  !> One warning for each two bodies with nodes at one place: those of sides that lie against each other from
+  !! end to end, and single ones that are in no pair at all. Of two the one of the earlier body is named.
+  subroutine warn_of_lying_together(model, drawn, found)
+    type(model_type), intent(in) :: model       !! the scene
+    type(outline_shape), intent(in) :: drawn    !! its outlines
+    type(findings), intent(inout) :: found      !! what is wrong with it is added
+    !> Of one body with each later one: the first two nodes, and how many more of it there are
+    integer, dimension(model%body_outline%parts) :: node, other, twins
+    integer, allocatable :: mate(:), met(:), near(:)
+    integer :: i, part, side, twin
+
+    if (model%body_outline%parts < 2) return
+    mate = find_mates(model)
+    twins = 0
+    do part = 1, model%body_outline%parts
+      met = [integer ::]
+      do side = model%body_outline%first(part), model%body_outline%first(part + 1) - 1
+        associate (within => coincident*norm2(drawn%chord(side)))
+          near = drawn%part_tree%meeting(drawn%low(:, side) - within, drawn%high(:, side) + within)
+        end associate
+        do i = 1, size(near)
+          if (near(i) <= part) cycle
+          twin = twin_that_counts(side, near(i))
+          if (twin == 0) cycle
+          if (twins(near(i)) == 0) then
+            met = [met, near(i)]
+            node(near(i)) = model%body_outline%node(1, side)
+            other(near(i)) = twin
+          end if
+          twins(near(i)) = twins(near(i)) + 1
+        end do
+      end do
+      do i = 1, size(met)
+        call found%add_warning(of_node, node(met(i)), 1, ': lies where '// &
+                               model%name_of(of_node, other(met(i)))// &
+                               ' of another body does, and no pair joins the two'// &
+                               and_more(twins(met(i)), '; so do ', ' more of these two bodies'), &
+                               'a CGAP, lines with a BCONP between them, or one GRID for both')
+      end do
+      twins(met) = 0
+    end do
+
+  contains
+
+    !> The twin, in another part, of the node where a side begins: neither is in a pair, or the side that
+    !! begins or the one that ends there lies against that part, its other end a twin too. 0: none.
+    pure integer function twin_that_counts(side, part) result(twin)
+      integer, intent(in) :: side, part
+
+      associate (node => model%body_outline%node, before => model%body_outline%before(side))
+        twin = loose_twin(node(1, side), side, part)
+        if (twin == 0) return
+        if (mate(node(1, side)) == 0 .and. mate(twin) == 0) return
+        if (loose_twin(node(2, side), side, part) > 0 .and. lies_against(side, part)) return
+        if (loose_twin(node(1, before), before, part) > 0 .and. lies_against(before, part)) return
+      end associate
+      twin = 0
+    end function twin_that_counts
+
+    !> Goes the outline of a part the other way along a side?
+    pure logical function lies_against(side, part)
+      integer, intent(in) :: side, part
+      type(near_place) :: place
+
+      place = drawn%nearest_place(part, drawn%at(side, 0.5_wp))
+      lies_against = place%distance <= coincident*norm2(drawn%chord(side)) .and. &
+                     dot_product(drawn%tangent(place%side, place%s), drawn%tangent(side, 0.5_wp)) < 0.0_wp
+    end function lies_against
+
+    !> The node of a part at the place of one at the end of a side, if nothing joins the two; 0: there is
+    !! none.
+    pure integer function loose_twin(node, side, part) result(twin)
+      integer, intent(in) :: node, side, part
+      type(near_place) :: place
+      logical :: joined
+
+      twin = 0
+      place = drawn%nearest_place(part, model%x(:, node))
+      associate (within => coincident*norm2(drawn%chord(side)), &
+                 ends => model%body_outline%node(:2, place%side))
+        if (place%distance > within) return
+        twin = merge(ends(1), ends(2), place%s < 0.5_wp)
+        joined = any(model%leader(:, twin) == model%leader(:, node)) .or. is_mate(mate, [node], part) .or. &
+                 is_mate(mate, [twin], model%body_outline%part_of(node)) .or. all(model%held(:, [node, twin]))
+        if (joined .or. norm2(model%x(:, twin) - model%x(:, node)) > within) twin = 0
+      end associate
+    end function loose_twin
+  end subroutine warn_of_lying_together
+end module epcont_contact_geometry_loose_nodes
