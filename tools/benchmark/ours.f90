@@ -16,8 +16,7 @@ program bench_ours
   use epcont_contact_solver, only: solve_contact
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, motion_columns, &
-                                            motion_resultants, pair_forces
+  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, pair_forces, see_motions
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_build_build, only: build_model
@@ -95,8 +94,7 @@ contains
     call find_materials(model, materials)
     law = elastic_law(materials)
     problem%initial_gap = model%initial_gap
-    problem%motion = motion_columns(model, motions)
-    problem%resultant = motion_resultants(model, motions)
+    call see_motions(model, motions, problem%motion, problem%resultant)
   end subroutine read_scene
 
   !> Everything once, then seven times more with the same numbers.
