@@ -63,9 +63,11 @@ contains
 
     !> Take an option, and the word behind it where that is its value.
     subroutine take_option()
+      integer, parameter :: longest = 20
       type(option_type) :: option
       character(len=:), allocatable :: right   ! value, where this is not
       character(len=:), allocatable :: value
+      integer :: status
 
       option = find_option(words(i)%text)
       value = ''
@@ -74,7 +76,7 @@ contains
       else if (option%value /= '' .and. i < size(words)) then
         i = i + 1
         value = words(i)%text
-      else if (option%needs_value()) then
+      else if (option%value /= '' .and. option%value(1:1) /= '[') then
         call refuse(words(i)%text//' needs a value')
       end if
       if (allocated(error)) return
@@ -86,23 +88,25 @@ contains
       case ('--tables')
         if (value /= 'all') right = '--tables all'
       case ('--memory')
-        arguments%memory = positive(value)
-        if (.not. arguments%memory > 0.0_wp) right = 'a positive number of GB'
+        ! No exponent, and no length that overflows. READ alone takes `2 x`, `,` and `nan`.
+        read (value, *, iostat=status) arguments%memory
+        if (status /= 0 .or. verify(value, '0123456789.') > 0 .or. len(value) > longest .or. &
+            .not. arguments%memory > 0.0_wp) right = 'a positive number of GB'
       case ('--cards')
         arguments%card = value
       end select
       if (len(right) > 0) call refuse(trim(option%name)//' '//value//': '//right//' would be right')
     end subroutine take_option
 
-    !> There are decks, and no two of one stem: their results would have one name.
+    !> There are decks; over none of them its own results might be written, and no two are of one stem: their
+    !! results would have one name.
     subroutine check_decks()
       integer :: j
 
       associate (deck => arguments%deck)
-        if (size(deck) == 0) &
-          call refuse('no deck given: epcont [options] DECK...; epcont --help says more')
+        if (size(deck) == 0) call refuse('no deck given: epcont [options] DECK...; epcont --help says more')
         do i = 1, size(deck)
-          if (is_result(deck(i)%text)) &
+          if (any(deck(i)%text(max(1, len(deck(i)%text) - 3):) == ['.lst', '.csv', '.vtu'])) &
             call refuse(deck(i)%text//': results are written under such names: a deck is named DECK.dat')
         end do
         do i = 2, size(deck)
@@ -130,27 +134,6 @@ contains
 
     asks = any(self%asked .and. options%name == name)
   end function asks
-
-  !> A positive number without exponent, which no length makes overflow; 0: it is none. READ alone takes
-  !! `2 x`, `,` and `nan`.
-  pure real(wp) function positive(text)
-    character(len=*), intent(in) :: text
-    integer, parameter :: longest = 20
-    integer :: status
-
-    positive = 0.0_wp
-    if (verify(text, '0123456789.') > 0 .or. len(text) > longest) return
-    read (text, *, iostat=status) positive
-    if (status /= 0) positive = 0.0_wp
-  end function positive
-
-  !> Might the results of a deck of this name be written over it?
-  pure logical function is_result(path)
-    character(len=*), intent(in) :: path
-
-    is_result = .false.
-    if (len(path) >= 4) is_result = any(path(len(path) - 3:) == ['.lst', '.csv', '.vtu'])
-  end function is_result
 
   !> Name of a file without folder and without what follows its last point.
   pure function stem_of(path) result(stem)

@@ -1,24 +1,21 @@
 !> One deck from file to results.
 module epcont_app_driver
   use epcont_app_arguments, only: arguments_type, stem_of
-  use epcont_app_console, only: newline, print_error, print_text
-  use epcont_app_progress_display, only: progress_type
+  use epcont_app_process, only: print_error, print_text
+  use epcont_app_progress_display, only: progress_type, timing_text
   use epcont_base_error, only: error_type, status_deck, status_valid
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: shown
+  use epcont_base_text, only: newline, shown
   use epcont_build_build, only: build_model, tell
   use epcont_deck_deck, only: read_deck
-  use epcont_deck_render, only: render
+  use epcont_deck_render, only: render, render_notes
+  use epcont_report_columns, only: known, listed_number, number, right
   use epcont_report_file, only: file_lock, lock_files, unlock_files
-  use epcont_report_layout, only: right
-  use epcont_report_limit, only: limit_of_largest, reason_of
-  use epcont_report_number, only: known, listed_number, number
-  use epcont_report_outcome, only: judge
+  use epcont_report_outcome, only: judge, limit_of_pressure, reason_of, remark_answer, &
+                                   remarks_type
   use epcont_report_plan_text, only: plan_text
-  use epcont_report_remarks, only: remark_answer, remarks_of_deck
   use epcont_report_results, only: remove_results, write_results
   use epcont_report_run, only: run_results
-  use epcont_report_timing, only: timing_text
   use epcont_system_memory, only: peak_memory
   use epcont_system_stopwatch, only: stage_model, stage_plan, stage_reading, stage_writing, stopwatch
   implicit none
@@ -80,14 +77,15 @@ contains
       end if
       call print_error(render(run%faults, run%deck%source))
       if (arguments%asks('--check') .or. arguments%asks('--plan')) return
-      run%remarks = remarks_of_deck(run%faults, run%deck%source)
+      run%remarks = remarks_type(run%faults%warnings, run%faults%notes, &
+                                 render_notes(run%faults, run%deck%source), '', '')
       call run%deck%forget_text()
       call run%solve(arguments%memory, watch, error)
       if (allocated(error)) error%message = path//': '//error%message
     end if
     if (.not. allocated(error)) then
       run%outcome = judge(run)
-      if (run%outcome%has_answer) call remark_answer(run)
+      if (run%outcome%has_answer) call remark_answer(run%solution_type, run%remarks)
       status = run%outcome%status
       call write_results(run, output_stem(path, arguments), arguments%asks('--tables'), &
                          arguments%asks('--vtk'), error)
@@ -165,7 +163,7 @@ contains
     if (.not. run%outcome%has_answer) return
     if (run%model%pairs > 0) then
       text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)
-      limit = limit_of_largest(run)
+      limit = limit_of_pressure(run)
       if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
     end if
     if (run%motions%count > 0) &

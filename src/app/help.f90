@@ -1,31 +1,19 @@
 !> What --help and --man print: the latter is the manual page epcont(1) as roff. Both come from the tables of
 !> options, of exit statuses and of files.
 module epcont_app_help
-  use epcont_app_console, only: newline
   use epcont_app_options, only: option_type, options
   use epcont_base_error, only: status_meaning
-  use epcont_base_text, only: text_of, upper
+  use epcont_base_text, only: newline, text_of, upper
   use epcont_base_version, only: program_date, program_name, program_version
+  use epcont_report_names, only: when
   use epcont_report_results, only: result_files
   use epcont_report_tables, only: columns_in
   implicit none
   private
   public :: help_text, man_page
 
-  type :: example_type
-    character(len=60) :: command
-    character(len=76) :: text
-  end type example_type
-
-  !> With the deck that is installed beside the page (a test runs them).
-  type(example_type), parameter :: examples(*) = [ &
-    example_type('epcont hertz44.dat', &
-                 'Solve the deck; the answer is in hertz44.lst and tables beside it.'), &
-    example_type('epcont -o out --tables all hertz44.dat', &
-                 'The same to the folder out, with displacements and stresses.'), &
-    example_type('epcont --check *.dat', 'Name every fault of many decks, and solve none.'), &
-    example_type('epcont --plan hertz44.dat', 'How many unknowns, which method and why, how much memory.'), &
-    example_type('epcont --cards PARAM', 'The fields of a card, and what may stand in them.')]
+  !> The macros of an entry, whose name follows.
+  character(len=*), parameter :: entry = '.TP'//newline//'.B '
 
   !> The page: what begins with a point is roff; `@options` and the like are lists; all else is a paragraph.
   character(len=*), parameter :: page(*) = [character(len=280) :: &
@@ -46,7 +34,13 @@ module epcont_app_help
     '.SH OPTIONS', '@options', &
     '.SH EXIT STATUS', 'Of several decks the largest counts.', '@statuses', &
     '.SH FILES', 'In the current directory, or in DIR.', '@files', &
-    '.SH EXAMPLES', '@examples', &
+    '.SH EXAMPLES', &   ! with the deck that is installed beside the page (a test runs them)
+    entry//'epcont hertz44.dat', 'Solve the deck; the answer is in hertz44.lst and tables beside it.', &
+    entry//'epcont \-o out \-\-tables all hertz44.dat', &
+    'The same to the folder out, with displacements and stresses.', &
+    entry//'epcont \-\-check *.dat', 'Name every fault of many decks, and solve none.', &
+    entry//'epcont \-\-plan hertz44.dat', 'How many unknowns, which method and why, how much memory.', &
+    entry//'epcont \-\-cards PARAM', 'The fields of a card, and what may stand in them.', &
     '.SH ENVIRONMENT', &
     'OMP_NUM_THREADS: threads that may work on bodies side by side, where a scene has several large ones'// &
     '; one if it is not set. Results are the same bytes on any number.', &
@@ -73,7 +67,7 @@ contains
       text = text//'  '//name//trim(option%text)//newline
     end do
     text = text//newline//'exit status, of several decks the largest:'//newline
-    do k = lbound(status_meaning, dim=1), ubound(status_meaning, dim=1)
+    do k = 0, size(status_meaning) - 1
       text = text//'  '//text_of(k)//'  '//trim(status_meaning(k))//newline
     end do
   end function help_text
@@ -81,33 +75,17 @@ contains
   !> The text of --man.
   function man_page() result(text)
     character(len=:), allocatable :: text
-    integer :: k
+    integer :: i, k
 
     text = ''
     do k = 1, size(page)
-      if (page(k)(1:1) == '@') then
-        call add_list(page(k))
-      else if (page(k)(1:1) == '.') then
-        text = text//trim(page(k))//newline
-      else
-        text = text//paragraph(page(k))
-      end if
-    end do
-
-  contains
-
-    !> An entry for each row of a table.
-    subroutine add_list(name)
-      character(len=*), intent(in) :: name
-      integer :: i
-
-      select case (name)
+      select case (page(k))
       case ('@options')
         do i = 1, size(options)
           call add_entry(heading(options(i)), options(i)%text, options(i)%more)
         end do
       case ('@statuses')
-        do i = lbound(status_meaning, dim=1), ubound(status_meaning, dim=1)
+        do i = 0, size(status_meaning) - 1
           call add_entry('.B '//text_of(i), status_meaning(i), '')
         end do
       case ('@files')
@@ -116,11 +94,11 @@ contains
                          columns_in(result_files(i)%suffix))
         end do
       case default
-        do i = 1, size(examples)
-          call add_entry('.B '//roff(trim(examples(i)%command)), examples(i)%text, '')
-        end do
+        text = text//when(page(k)(1:1) == '.', trim(page(k))//newline, paragraph(page(k)))
       end select
-    end subroutine add_list
+    end do
+
+  contains
 
     !> What is explained, in its own line, and the explanation.
     subroutine add_entry(name, explanation, more)

@@ -1,13 +1,12 @@
 !> epcont: contact of plane bodies and rings, from card decks. The only place that sets the exit status.
 program epcont_main
-  use, intrinsic :: iso_c_binding, only: c_bool
+  use, intrinsic :: iso_c_binding, only: c_bool, c_int
   use epcont_app_arguments, only: arguments_type, command_line, read_arguments
-  use epcont_app_console, only: newline, print_error, print_text
   use epcont_app_driver, only: run_deck
-  use epcont_app_ending, only: stop_with, watch_exit
   use epcont_app_help, only: help_text, man_page
+  use epcont_app_process, only: c_exit, print_error, print_text, watch_exit
   use epcont_base_error, only: error_type, raise, status_usage, status_valid
-  use epcont_base_text, only: shown
+  use epcont_base_text, only: newline, shown
   use epcont_base_version, only: program_name, program_version
   use epcont_deck_manual, only: manual
   use epcont_report_file, only: make_directory
@@ -23,15 +22,17 @@ program epcont_main
   call use_one_thread()
   call run(status)
   ended = .true.
-  call stop_with(status)
+  call c_exit(int(status, c_int))
 
 contains
 
-  !> All decks; the largest status counts.
+  !> What the command line asks for; of several decks the largest status counts.
   subroutine run(worst)
     integer, intent(out) :: worst
     type(arguments_type) :: arguments
     type(error_type), allocatable :: error
+    character(len=:), allocatable :: cards
+    logical :: found
     integer :: i, one
 
     worst = status_valid
@@ -39,7 +40,7 @@ contains
     if (.not. allocated(error) .and. .not. has_memory(memory_of_libraries)) &
       call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs')
     if (allocated(error)) then
-      call refuse(error, worst)
+      call refuse(error%message, worst)
     else if (arguments%asks('--help')) then
       call print_text(help_text(), worst)
     else if (arguments%asks('--man')) then
@@ -47,7 +48,9 @@ contains
     else if (arguments%asks('--version')) then
       call print_text(program_name//' '//program_version, worst)
     else if (arguments%asks('--cards')) then
-      call print_manual(arguments%card, worst)
+      cards = manual(arguments%card, found)
+      if (found) call print_text(cards, worst)
+      if (.not. found) call refuse(arguments%card//': no such card; epcont --cards lists them', worst)
     else
       if (len(arguments%directory) > 0) call make_directory(arguments%directory)
       do i = 1, size(arguments%deck)
@@ -57,28 +60,12 @@ contains
     end if
   end subroutine run
 
-  !> The manual of the cards, or of the card `name`.
-  subroutine print_manual(name, status)
-    character(len=*), intent(in) :: name
-    integer, intent(inout) :: status
-    type(error_type), allocatable :: error
-    character(len=:), allocatable :: text
-    logical :: found
-
-    text = manual(name, found)
-    if (found) then
-      call print_text(text, status)
-    else
-      call raise(error, status_usage, name//': no such card; epcont --cards lists them')
-      call refuse(error, status)
-    end if
-  end subroutine print_manual
-
-  subroutine refuse(error, status)
-    type(error_type), intent(in) :: error
+  !> Say what is wrong with the command line.
+  subroutine refuse(message, status)
+    character(len=*), intent(in) :: message
     integer, intent(out) :: status
 
-    call print_error(program_name//': '//shown(error%message)//newline)
-    status = error%status
+    call print_error(program_name//': '//shown(message)//newline)
+    status = status_usage
   end subroutine refuse
 end program epcont_main

@@ -7,39 +7,37 @@ module epcont_app_options
 
   type :: option_type
     character(len=10) :: name = ''    !! as it is given; blank: no option
-    character(len=2) :: short = ''    !! another name of it
+    character(len=76) :: text = ''    !! what it does
     !> what follows it: capital letters stand for something, others for themselves; in brackets where it may
     !! be left out
     character(len=6) :: value = ''
-    character(len=76) :: text = ''    !! what it does
+    character(len=2) :: short = ''    !! another name of it
     character(len=320) :: more = ''   !! for the manual page alone
   contains
-    procedure :: needs_value
     procedure :: usage
   end type option_type
 
   type(option_type), parameter, public :: options(*) = [ &
-    option_type('-o', '', 'DIR', 'write results to DIR (default: the current directory)', &
-                'DIR is made where there is none; what it lies in must be there.'), &
-    option_type('--check', '', '', 'read and check the decks, then stop', ''), &
-    option_type('--plan', '', '', 'print what would be solved and what it takes, then stop', ''), &
-    option_type('--tables', '', 'all', 'write node and element tables, whatever the deck asks for', &
-                'Without it they are written where the deck has DISPLACEMENT, SPCFORCES or STRESS.'), &
-    option_type('--vtk', '', '', 'write DECK.vtu and DECK.contact.vtu, for ParaView', ''), &
-    option_type('--memory', '', 'GB', 'refuse decks that need more memory (default 16)', ''), &
-    option_type('--progress', '', '', 'tell of every solve on standard error, terminal or not', &
-                'Without it, one line on a terminal tells of runs of more than a second, and goes when'// &
-                ' they end: seconds gone and expected, iteration, load factor, change of the'// &
-                ' displacements, yielded elements, touching pairs.'), &
-    option_type('--timing', '', '', 'print on standard error where the time of each run went', &
-                'Seconds of wall clock and of processor by stage, and the largest memory of the process'// &
-                ' so far.'), &
-    option_type('--quiet', '', '', &
-                'print nothing on standard output, and no progress unless --progress asks', ''), &
-    option_type('--cards', '', '[NAME]', 'print the manual of the cards, or of one', ''), &
-    option_type('--man', '', '', 'print the manual page: epcont --man | man -l -', ''), &
-    option_type('--version', '', '', 'print the version', ''), &
-    option_type('--help', '-h', '', 'print this', '')]
+    option_type('-o', 'write results to DIR (default: the current directory)', 'DIR', &
+                more='DIR is made where there is none; what it lies in must be there.'), &
+    option_type('--check', 'read and check the decks, then stop'), &
+    option_type('--plan', 'print what would be solved and what it takes, then stop'), &
+    option_type('--tables', 'write node and element tables, whatever the deck asks for', 'all', &
+                more='Without it they are written where the deck has DISPLACEMENT, SPCFORCES or STRESS.'), &
+    option_type('--vtk', 'write DECK.vtu and DECK.contact.vtu, for ParaView'), &
+    option_type('--memory', 'refuse decks that need more memory (default 16)', 'GB'), &
+    option_type('--progress', 'tell of every solve on standard error, terminal or not', &
+                more='Without it, one line on a terminal tells of runs of more than a second, and goes '// &
+                     'when they end: seconds gone and expected, iteration, load factor, change of the '// &
+                     'displacements, yielded elements, touching pairs.'), &
+    option_type('--timing', 'print on standard error where the time of each run went', &
+                more='Seconds of wall clock and of processor by stage, and the largest memory of the '// &
+                     'process so far.'), &
+    option_type('--quiet', 'print nothing on standard output, and no progress unless --progress asks'), &
+    option_type('--cards', 'print the manual of the cards, or of one', '[NAME]'), &
+    option_type('--man', 'print the manual page: epcont --man | man -l -'), &
+    option_type('--version', 'print the version'), &
+    option_type('--help', 'print this', short='-h')]
 
 contains
 
@@ -53,13 +51,6 @@ contains
       if (word == options(k)%name .or. word == options(k)%short) option = options(k)
     end do
   end function find_option
-
-  !> Must something follow it?
-  pure logical function needs_value(self)
-    class(option_type), intent(in) :: self
-
-    needs_value = self%value /= '' .and. self%value(1:1) /= '['
-  end function needs_value
 
   !> Names and value: `-h, --help`, `--memory GB`.
   pure function usage(self) result(text)

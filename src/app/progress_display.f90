@@ -1,24 +1,25 @@
 !> How far a run is, on standard error: on a terminal one line, drawn anew after each solve and erased at the
-!> end; else, where it is asked for, a line a solve.
+!> end; else, where it is asked for, a line a solve. And what --timing prints: where its time went.
 module epcont_app_progress_display
-  use epcont_app_console, only: is_terminal, newline, print_error, terminal_columns
-  use epcont_base_kinds, only: wp
+  use epcont_app_process, only: print_error, terminal_columns
+  use epcont_base_kinds, only: i8, wp
+  use epcont_base_text, only: newline, short_real, text_of
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plasticity_expectation, only: expectation_type, new_expectation
   use epcont_plasticity_onlooker, only: iteration_record, onlooker
-  use epcont_report_progress_line, only: progress_line
+  use epcont_report_columns, only: rounding_number
+  use epcont_system_stopwatch, only: stage_name, stages, stopwatch
   implicit none
   private
-  public :: progress_type
+  public :: progress_type, progress_line, duration, timing_text
 
   !> Nobody waits for runs that are shorter [s].
   real(wp), parameter :: short_run = 1.0_wp
 
   type, extends(onlooker) :: progress_type
     character(len=:), allocatable, private :: stem   !! of the deck
-    logical, private :: shown = .false.
     logical, private :: on_terminal = .false.
-    real(wp), private :: silent_to = short_run       !! nothing is shown of runs that are shorter [s]
+    real(wp), private :: silent_to = 0.0_wp          !! nothing is shown of runs that are shorter [s]
     integer, private :: drawn = 0                    !! characters that stand on the terminal
     type(expectation_type), private :: expected
   contains
@@ -39,9 +40,8 @@ contains
     logical, intent(in) :: quiet   !! nothing but what is asked for
 
     self%stem = stem
-    self%on_terminal = is_terminal()
-    self%shown = asked .or. (self%on_terminal .and. .not. quiet)
-    if (asked) self%silent_to = 0.0_wp
+    self%on_terminal = terminal_columns() > 0
+    if (.not. asked) self%silent_to = merge(short_run, huge(short_run), self%on_terminal .and. .not. quiet)
     call self%start()
   end subroutine begin
 
@@ -52,7 +52,6 @@ contains
     integer, intent(in) :: most_iterations   !! at a load
     real(wp), intent(in) :: operations       !! of a solve
 
-    if (.not. self%shown) return
     self%expected = new_expectation(plan, most_iterations, operations, self%elapsed())
     call self%show(iteration_record())
   end subroutine expect
@@ -63,7 +62,6 @@ contains
     type(iteration_record), intent(in) :: now   !! what it is like
     logical, intent(in) :: over   !! it was the last at its load
 
-    if (.not. self%shown) return
     call self%expected%learn(now, over, self%elapsed())
     call self%show(now)
   end subroutine solved
@@ -91,4 +89,81 @@ contains
     if (self%drawn > 0) call print_error(achar(13)//repeat(' ', self%drawn)//achar(13))
     self%drawn = 0
   end subroutine erase
+
+  !> Time gone and expected, then what the last solve has found, in the words of the listing. Of a line that
+  !! would be longer than `width` the last parts are left out, whole.
+  pure function progress_line(stem, elapsed, expected, now, width) result(text)
+    character(len=*), intent(in) :: stem             !! name of the deck
+    real(wp), intent(in) :: elapsed                  !! [s]
+    type(expectation_type), intent(in) :: expected   !! how long it will take
+    type(iteration_record), intent(in) :: now        !! iteration 0: before the first solve
+    integer, intent(in) :: width                     !! of the terminal, in columns
+    character(len=:), allocatable :: text, more
+    integer :: room
+
+    text = stem//': '//duration(elapsed)
+    if (expected%seconds >= 0.0_wp) text = text//' of about '//duration(expected%seconds)
+    more = ''
+    if (now%iteration > 0) then
+      more = ', iteration '//text_of(now%iteration)//', load factor '//short_real(now%load_factor)// &
+             ', change '//rounding_number(now%change)//', yielded '//text_of(now%yielded)//', touching '// &
+             text_of(now%touching)
+    else if (expected%seconds < 0.0_wp) then
+      more = ', first solve after about '//duration(expected%first_solve)
+    end if
+    room = max(0, width - len(text))
+    if (len(text) > width) text = text(:width)
+    ! A comma just behind the last column ends a part that has room.
+    if (len(more) > room) more = more(:index(more(:room + 1), ',', back=.true.) - 1)
+    text = text//more
+  end function progress_line
+
+  !> Seconds, minutes or hours in two or three digits.
+  pure function duration(seconds) result(text)
+    real(wp), intent(in) :: seconds   !! a time [s]
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+
+    if (seconds < 9.95_wp) then
+      write (buffer, '(f4.1, a)') seconds, ' s'
+    else if (seconds < 119.5_wp) then
+      write (buffer, '(i0, a)') nint(seconds), ' s'
+    else if (seconds < 119.5_wp*60) then
+      write (buffer, '(i0, a)') nint(seconds/60), ' min'
+    else
+      write (buffer, '(f12.1, a)') seconds/3600, ' h'
+    end if
+    text = trim(adjustl(buffer))
+  end function duration
+
+  !> A row a stage; each begins with the name of the deck, so that those of many decks in one file can be told
+  !! apart.
+  pure function timing_text(stem, watch, peak) result(text)
+    character(len=*), intent(in) :: stem    !! name of the deck
+    class(stopwatch), intent(in) :: watch   !! times of the stages
+    integer(i8), intent(in) :: peak         !! memory [bytes]
+    character(len=:), allocatable :: text
+    character(len=13) :: buffer
+    integer :: k
+
+    text = stem//': stage               wall s  processor s'//newline
+    do k = 1, stages
+      text = text//row(stage_name(k), watch%wall(k), watch%processor(k))
+    end do
+    text = text//row('all          ', sum(watch%wall), sum(watch%processor))
+    write (buffer, '(f13.1)') real(peak, wp)/1.0e6_wp
+    text = text//stem//': peak memory  '//buffer//' MB'//newline
+
+  contains
+
+    pure function row(name, wall, processor)
+      character(len=13), intent(in) :: name
+      real(wp), intent(in) :: wall, processor
+      character(len=:), allocatable :: row
+      character(len=39) :: line
+
+      write (line, '(a13, f13.4, f13.4)') name, wall, processor
+      row = stem//': '//line//newline
+    end function row
+  end function timing_text
 end module epcont_app_progress_display

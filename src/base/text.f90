@@ -5,6 +5,8 @@ module epcont_base_text
   private
   public :: upper, text_of, short_real, plural, shown
 
+  character(len=1), parameter, public :: newline = new_line('a')
+
   !> The shortest decimal text of an integer.
   interface text_of
     module procedure :: text_of_integer, text_of_long

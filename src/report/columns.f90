@@ -2,22 +2,39 @@
 !> of comma separated values and the manual page all come from that. Rows are values of mixed kind.
 module epcont_report_columns
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: short_real, text_of
+  use epcont_base_tolerances, only: least_difference, rounded_off
   use epcont_report_file, only: text_file
-  use epcont_report_layout, only: heading, right
-  use epcont_report_number, only: full_numbers, listed_number
   implicit none
   private
   public :: column, table_type, columns_text
+  public :: right, listed_number, full_numbers, estimate_number, rounding_number, percent
 
-  !> What the values of a column are, where they are no numbers (`epcont_report_number` has these).
-  integer, parameter, public :: whole = 0     !! an id, or a count
-  integer, parameter, public :: word = -1     !! at the right of its column
-  integer, parameter, public :: state = -2    !! a word at the left of its column, behind two blanks
+  !> What the values of a column are. Of a number it says how that is written: in a file in full, in the
+  !! listing in the digits that tell.
+  integer, parameter, public :: &
+    state = -2, &      !! a word at the left of its column, behind two blanks
+    word = -1, &       !! at the right of its column
+    whole = 0, &       !! an id, or a count
+    number = 1, &      !! six digits
+    known = 2, &       !! the same; not known where it is negative
+    estimate = 3, &    !! two digits; not known where it is negative
+    size_of = 4, &     !! four digits
+    rounding = 5, &    !! the power of ten that it is below, where it is rounding
+    off_curve = 6, &   !! the same: a stress's distance from its curve over the latter
+    factor = 7, &      !! of errors: two digits; not known where it is negative
+    part = 8, &        !! per cent
+    no_number = 9      !! there is none in this scene
+
+  !> Units.
+  character(len=*), parameter, public :: length = 'length', force = 'force', stress = 'force/length2'
+
+  !> Beyond these rounding has a say in the number itself.
+  real(wp), parameter :: largest_off_curve = 10.0_wp, largest_factor = 1.0e6_wp
 
   !> One column.
   type :: column
-    integer :: kind = whole            !! one of those above, or of number
+    integer :: kind = whole            !! one of those above
     character(len=21) :: name = ''     !! in the file; empty: the listing alone has this column
     character(len=14) :: unit = ''     !! empty: none
     character(len=64) :: meaning = ''  !! for the manual page; empty: that of the column before, and its unit
@@ -32,12 +49,9 @@ module epcont_report_columns
     integer, allocatable, private :: nth(:)          !! which value of its sort each of them has in a row
     real(wp), allocatable, private :: scale(:)       !! of each number in a row
   contains
-    procedure :: describe
     procedure :: begin
     procedure :: row
-    procedure :: head_text
-    procedure :: row_text
-    procedure, private :: line_text
+    procedure, private :: write_cells
   end type table_type
 
 contains
@@ -63,9 +77,10 @@ contains
     text = text(3:)//meaning
   end function columns_text
 
-  !> Say what the columns are.
-  pure subroutine describe(self, columns, scale)
+  !> Write the heading, and the heads of the columns.
+  subroutine begin(self, title, columns, scale)
     class(table_type), intent(inout) :: self
+    character(len=*), intent(in) :: title        !! of the section of the listing; empty: none
     type(column), intent(in) :: columns(:)       !! in their order
     real(wp), intent(in), optional :: scale(:)   !! of each number: the largest of its column; not given: 0
     integer :: i, sort(size(columns))
@@ -75,47 +90,16 @@ contains
     self%nth = [(count(sort(:i) == sort(i)), i=1, size(sort))]
     self%scale = spread(0.0_wp, 1, size(columns))
     if (present(scale)) self%scale = scale
-  end subroutine describe
-
-  !> Write the heading, and the heads of the columns.
-  subroutine begin(self, title, columns, scale)
-    class(table_type), intent(inout) :: self
-    character(len=*), intent(in) :: title        !! of the section of the listing; empty: none
-    type(column), intent(in) :: columns(:)       !! as `describe` has them
-    real(wp), intent(in), optional :: scale(:)   !! as `describe` has it
-
-    call self%describe(columns, scale)
-    if (self%listed .and. len(title) > 0) call heading(self, title)
-    call self%line(self%head_text())
+    if (self%listed .and. title /= '') call self%heading(title)
+    call self%write_cells(merge(columns%head, columns%name, self%listed .and. columns%head /= ''))
   end subroutine begin
 
   !> Write a row.
   subroutine row(self, wholes, numbers, words)
-    class(table_type), intent(in) :: self
-    integer, intent(in) :: wholes(:)           !! as `row_text` has them
-    real(wp), intent(in) :: numbers(:)         !! as `row_text` has them
-    character(len=*), intent(in) :: words(:)   !! as `row_text` has them
-
-    call self%line(self%row_text(wholes, numbers, words))
-  end subroutine row
-
-  !> The heads of the columns.
-  pure function head_text(self) result(text)
-    class(table_type), intent(in) :: self
-    character(len=:), allocatable :: text
-
-    associate (one => self%column)
-      text = self%line_text(merge(one%head, one%name, self%listed .and. one%head /= ''))
-    end associate
-  end function head_text
-
-  !> A row, as `row` writes it.
-  pure function row_text(self, wholes, numbers, words) result(text)
-    class(table_type), intent(in) :: self
+    class(table_type), intent(inout) :: self
     integer, intent(in) :: wholes(:)           !! ids and counts, in the order of the columns
     real(wp), intent(in) :: numbers(:)         !! in that order
     character(len=*), intent(in) :: words(:)   !! in that order
-    character(len=:), allocatable :: text
     character(len=25) :: cell(size(self%column)), full(size(numbers))
     integer :: i
 
@@ -134,12 +118,12 @@ contains
         end if
       end associate
     end do
-    text = self%line_text(cell)
-  end function row_text
+    call self%write_cells(cell)
+  end subroutine row
 
-  !> What stands in each column, of those that the listing or the file has.
-  pure function line_text(self, cell) result(text)
-    class(table_type), intent(in) :: self
+  !> Write what stands in each column, of those that the listing or the file has.
+  subroutine write_cells(self, cell)
+    class(table_type), intent(inout) :: self
     character(len=*), intent(in) :: cell(:)
     character(len=:), allocatable :: text
     integer :: i
@@ -156,7 +140,121 @@ contains
         end if
       end associate
     end do
-    text = trim(text)
-    if (.not. self%listed) text = text(2:)
-  end function line_text
+    call self%line(text(merge(1, 2, self%listed):))
+  end subroutine write_cells
+
+  !> Text at the right of `width` columns; wider text is kept whole.
+  pure function right(text, width) result(field)
+    character(len=*), intent(in) :: text   !! any text
+    integer, intent(in) :: width           !! number of columns
+    character(len=:), allocatable :: field
+
+    field = repeat(' ', max(0, width - len(text)))//text
+  end function right
+
+  !> A number of one of the kinds above in the listing.
+  pure function listed_number(kind, value, scale) result(text)
+    integer, intent(in) :: kind   !! one of the kinds above
+    real(wp), intent(in) :: value   !! the number
+    real(wp), intent(in) :: scale   !! largest magnitude of its column; of an estimate: what it is an error of
+    character(len=:), allocatable :: text
+
+    text = '-'
+    select case (kind)
+    case (number, known)
+      if (kind == number .or. value >= 0.0_wp) text = column_number(value, scale)
+    case (estimate)
+      if (value >= 0.0_wp) text = '0.0'
+      if (value > least_difference*scale) text = estimate_number(value)
+    case (size_of)
+      text = short_real(value)
+    case (rounding)
+      text = 'unknown'
+      if (value >= 0.0_wp) text = rounding_number(value)
+    case (off_curve)
+      text = '> '//text_of(nint(largest_off_curve))
+      if (value <= largest_off_curve) text = rounding_number(value)
+    case (factor)
+      text = estimate_number(value)
+      if (value > largest_factor) text = '> '//estimate_number(largest_factor)
+    case (part)
+      text = right(percent(value, 1.0_wp), 15)   ! the sign stands behind the column
+    end select
+  end function listed_number
+
+  !> Numbers in a file: 17 digits, and blanks behind them; of errors, pressures and the like that are negative
+  !! nothing is known. They are written at once, since a format takes longer than a number.
+  pure function full_numbers(kinds, values) result(text)
+    integer, intent(in) :: kinds(:)     !! of each, one of those above
+    real(wp), intent(in) :: values(:)   !! at least one
+    character(len=25) :: text(size(values))
+    integer :: k
+
+    write (text, '(es25.16e3)') merge(0.0_wp, values, values == 0.0_wp)   ! no negative zero
+    text = adjustl(text)
+    do k = 1, size(values)
+      if (any(kinds(k) == [known, estimate, factor, part]) .and. .not. values(k) >= 0.0_wp .or. &
+          kinds(k) == no_number) text(k) = ''
+    end do
+  end function full_numbers
+
+  !> A number of a listing's column, six digits in 13 characters.
+  pure function column_number(value, scale) result(text)
+    real(wp), intent(in) :: value
+    real(wp), intent(in) :: scale  !! of the column: its largest magnitude
+    character(len=13) :: text
+
+    if (abs(value) <= rounded_off*scale .or. value == 0.0_wp) then
+      text = '          0.0'
+    else if (abs(value) >= 0.999999e100_wp .or. abs(value) < 1.0e-99_wp) then
+      write (text, '(es13.5e3)') value
+    else
+      write (text, '(es13.5e2)') value
+    end if
+  end function column_number
+
+  !> A figure that is rounding in a valid answer, as the power of ten it is below, since rounding differs
+  !! between builds: `< 1E-12` at the least. What is no rounding has two digits.
+  pure function rounding_number(value) result(text)
+    real(wp), intent(in) :: value   !! the number
+    character(len=:), allocatable :: text
+    character(len=12) :: buffer
+
+    if (value < least_difference) then
+      write (buffer, '(a, i0)') '< 1E', ceiling(log10(max(value, 0.999_wp*rounded_off)))
+    else
+      write (buffer, '(es9.1e3)') value
+    end if
+    text = trim(adjustl(buffer))
+  end function rounding_number
+
+  !> An estimate: two digits.
+  pure function estimate_number(value) result(text)
+    real(wp), intent(in) :: value   !! the number
+    character(len=:), allocatable :: text
+    character(len=12) :: buffer
+
+    write (buffer, '(es9.1e2)') value
+    if (value >= 0.94e100_wp .or. value < 1.0e-99_wp) write (buffer, '(es9.1e3)') value
+    text = trim(adjustl(buffer))
+  end function estimate_number
+
+  !> A part in per cent, two digits of it; empty where it is a hundred times the whole.
+  pure function percent(value, of) result(text)
+    real(wp), intent(in) :: value   !! the number
+    real(wp), intent(in) :: of      !! the whole
+    character(len=:), allocatable :: text
+    character(len=12) :: buffer
+    real(wp) :: hundredths
+
+    text = ''
+    if (of <= 0.0_wp .or. value >= 100.0_wp*of) return
+    hundredths = 100.0_wp*value/of
+    buffer = '< 0.001'
+    if (hundredths >= 0.00095_wp) &
+      write (buffer, '(f12.'//text_of(max(0, 1 - floor(log10(1.05_wp*hundredths))))//')') hundredths
+    text = trim(adjustl(buffer))
+    if (text(len(text):) == '.') text = text(:len(text) - 1)
+    text = text//' %'
+  end function percent
 end module epcont_report_columns

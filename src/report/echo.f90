@@ -5,8 +5,8 @@ module epcont_report_echo
   use epcont_deck_card, only: continues
   use epcont_deck_deck, only: deck_type
   use epcont_deck_render, only: included_file, printable
+  use epcont_report_columns, only: right
   use epcont_report_file, only: text_file
-  use epcont_report_layout, only: heading, right
   implicit none
   private
   public :: list_cards
@@ -18,40 +18,20 @@ contains
 
   !> The lines of the deck that say something, as they are read and by the names of their cards.
   subroutine list_cards(file, deck)
-    class(text_file), intent(in) :: file   !! the listing
-    type(deck_type), intent(in) :: deck   !! with its text
-    integer :: line
+    class(text_file), intent(inout) :: file   !! the listing
+    type(deck_type), intent(in) :: deck       !! with its text
+    integer :: k, line
 
     if (deck%echo == 'UNSORT' .or. deck%echo == 'BOTH') then
-      call heading(file, 'LINES OF THE DECK')
+      call file%heading('LINES OF THE DECK')
       do line = 1, deck%source%count
-        call list_line(file, deck, line)
+        call list_line(line)
       end do
     end if
-    if (deck%echo == 'SORT' .or. deck%echo == 'BOTH') call list_sorted(file, deck)
-  end subroutine list_cards
-
-  !> The cards by name and number, with the lines that continue them.
-  subroutine list_sorted(file, deck)
-    class(text_file), intent(in) :: file
-    type(deck_type), intent(in) :: deck
-    integer, allocatable :: order(:)
-    integer :: i, k, line
-
-    call heading(file, 'CARDS OF THE DECK, SORTED')
+    if (deck%echo /= 'SORT' .and. deck%echo /= 'BOTH') return
+    call file%heading('CARDS OF THE DECK, SORTED')
     do k = 1, size(deck%card)
-      associate (cards => deck%card(by_name(k)))
-        order = sorted_order(nint(cards%value(1, :cards%count)))
-        do i = 1, cards%count
-          line = cards%line(order(i))
-          call list_line(file, deck, line)
-          do line = line + 1, deck%source%count
-            if (deck%source%blank(line)) cycle
-            if (.not. continues(deck%source%text_of_line(line))) exit
-            call list_line(file, deck, line)
-          end do
-        end do
-      end associate
+      call list_kind(by_name(k))
     end do
 
   contains
@@ -66,22 +46,40 @@ contains
                     one=1, size(deck%card))]) == k) return
       end do
     end function by_name
-  end subroutine list_sorted
 
-  !> A line with its number in its file, unless it is blank.
-  subroutine list_line(file, deck, line)
-    class(text_file), intent(in) :: file
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: line
-    character(len=:), allocatable :: place, text
-    integer :: from
+    !> Cards of one kind by their numbers, with the lines that continue them.
+    subroutine list_kind(kind)
+      integer, intent(in) :: kind
+      integer, allocatable :: order(:)
+      integer :: i
 
-    if (deck%source%blank(line)) return
-    place = included_file(deck%source, line)//text_of(deck%source%line(line)%number)
-    text = printable(deck%source%text_of_line(line))
-    call file%line(right(place, 9)//'  '//text(:min(width, len(text))))
-    do from = width + 1, len(text), width
-      call file%line(repeat(' ', 11)//text(from:min(from + width - 1, len(text))))
-    end do
-  end subroutine list_line
+      associate (cards => deck%card(kind))
+        order = sorted_order(nint(cards%value(1, :cards%count)))
+        do i = 1, cards%count
+          line = cards%line(order(i))
+          call list_line(line)
+          do line = line + 1, deck%source%count
+            if (deck%source%blank(line)) cycle
+            if (.not. continues(deck%source%text_of_line(line))) exit
+            call list_line(line)
+          end do
+        end do
+      end associate
+    end subroutine list_kind
+
+    !> A line with its number in its file, unless it is blank.
+    subroutine list_line(line)
+      integer, intent(in) :: line
+      character(len=:), allocatable :: place, text
+      integer :: from
+
+      if (deck%source%blank(line)) return
+      place = included_file(deck%source, line)//text_of(deck%source%line(line)%number)
+      text = printable(deck%source%text_of_line(line))
+      call file%line(right(place, 9)//'  '//text(:min(width, len(text))))
+      do from = width + 1, len(text), width
+        call file%line(repeat(' ', 11)//text(from:min(from + width - 1, len(text))))
+      end do
+    end subroutine list_line
+  end subroutine list_cards
 end module epcont_report_echo

@@ -1,4 +1,5 @@
-!> Files that appear whole or not at all: written beside their place, then renamed.
+!> Texts by lines: in memory, or as files that appear whole or not at all: written beside their place, then
+!> renamed. And the right to write the files of one name.
 !>
 !> They are written by the streams of C, which say whether all has reached the disk; Fortran's `close` does
 !> not.
@@ -6,17 +7,22 @@ module epcont_report_file
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_null_char, c_null_ptr, &
                                          c_ptr, c_size_t
   use epcont_base_error, only: error_type, raise, status_usage
+  use epcont_base_text, only: newline
   implicit none
   private
   public :: text_file, new_text_file, make_directory, remove_file, file_lock, lock_files, unlock_files
 
   !> Between `new_text_file` and `finish` the program is not to be stopped, lest half a file stay behind.
   type :: text_file
-    character(len=:), allocatable :: mark   !! stands behind each heading; empty where the answer is valid
+    character(len=:), allocatable :: text   !! of one in memory
+    character(len=40) :: mark = ''          !! stands behind each heading; empty where the answer is valid
     type(c_ptr), private :: stream = c_null_ptr
     character(len=:), allocatable, private :: path
   contains
     procedure :: line
+    procedure :: heading
+    procedure :: figure
+    procedure :: wrap
     procedure :: finish
   end type text_file
 
@@ -176,24 +182,66 @@ contains
     type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
 
     file%path = path
-    file%mark = ''
-    call hold_signals()
+    call hold_signals(.true.)
     file%stream = c_fopen(path//'.part'//c_null_char, 'w'//c_null_char)
     if (c_associated(file%stream)) return
-    call release_signals()
+    call hold_signals(.false.)
     call raise(error, status_usage, path// &
                ': cannot be written: a directory that is there, writable, would be right')
   end subroutine new_text_file
 
   !> Add a line, without blanks at its end. What goes wrong shows in `finish`.
   subroutine line(self, text)
-    class(text_file), intent(in) :: self
+    class(text_file), intent(inout) :: self
     character(len=*), intent(in) :: text   !! of the line
     integer(c_size_t) :: ignored
 
-    ignored = c_fwrite(text, 1_c_size_t, len_trim(text, kind=c_size_t), self%stream)
-    ignored = c_fwrite(new_line('a'), 1_c_size_t, 1_c_size_t, self%stream)
+    if (allocated(self%text)) then
+      self%text = self%text//trim(text)//newline
+    else
+      ignored = c_fwrite(text, 1_c_size_t, len_trim(text, kind=c_size_t), self%stream)
+      ignored = c_fwrite(newline, 1_c_size_t, 1_c_size_t, self%stream)
+    end if
   end subroutine line
+
+  !> Add a blank line and a heading, marked where the answer is not valid.
+  subroutine heading(self, text)
+    class(text_file), intent(inout) :: self
+    character(len=*), intent(in) :: text   !! of the heading
+
+    call self%line('')
+    call self%line(text//self%mark)
+  end subroutine heading
+
+  !> Add a named figure: its value at the right of 13 columns, and what is to be said of it.
+  subroutine figure(self, name, value, note)
+    class(text_file), intent(inout) :: self
+    character(len=*), intent(in) :: name, value   !! in at most 44 characters; any text
+    character(len=*), intent(in) :: note          !! behind the value
+    character(len=44) :: label
+    character(len=max(13, len(value))) :: field
+
+    label = name
+    field = repeat(' ', len(field) - len(value))//value
+    call self%line('  '//label//field//note)
+  end subroutine figure
+
+  !> Add text, on lines of at most 132 columns.
+  subroutine wrap(self, text)
+    class(text_file), intent(inout) :: self
+    character(len=*), intent(in) :: text   !! what would be a long line
+    integer, parameter :: columns = 132
+    integer :: from, to
+
+    from = 1
+    do while (len(text) - from >= columns - 4)
+      to = from + index(text(from:from + columns - 4), ' ', back=.true.) - 1
+      if (to <= from) to = from + columns - 4
+      call self%line(repeat(' ', merge(4, 0, from > 1))//text(from:to))
+      from = to + 1
+    end do
+    call self%line(repeat(' ', merge(4, 0, from > 1))//text(from:))
+  end subroutine wrap
 
   !> Close the file and give it its name.
   subroutine finish(self, error)
@@ -209,26 +257,18 @@ contains
       call raise(error, status_usage, self%path//': cannot be written: is there a directory of that name?')
     end if
     if (allocated(error)) call remove_file(self%path//'.part')
-    call release_signals()
+    call hold_signals(.false.)
   end subroutine finish
 
-  !> Signals to stop wait.
-  subroutine hold_signals()
+  !> Signals to stop wait, or no longer: what has come meanwhile then stops the program.
+  subroutine hold_signals(hold)
+    logical, intent(in) :: hold
     integer(c_int) :: ignored
     integer :: i
 
     do i = 1, size(stop_signals)
-      ignored = c_sighold(stop_signals(i))
+      if (hold) ignored = c_sighold(stop_signals(i))
+      if (.not. hold) ignored = c_sigrelse(stop_signals(i))
     end do
   end subroutine hold_signals
-
-  !> What has come meanwhile stops the program.
-  subroutine release_signals()
-    integer(c_int) :: ignored
-    integer :: i
-
-    do i = 1, size(stop_signals)
-      ignored = c_sigrelse(stop_signals(i))
-    end do
-  end subroutine release_signals
 end module epcont_report_file

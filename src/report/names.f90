@@ -26,9 +26,8 @@ contains
     integer, intent(in) :: k                    !! which of them
     character(len=:), allocatable :: name
 
-    associate (motions => scene%motions)
-      name = scene%model%name_of(of_node, motions%node(k))//' direction '//text_of(motions%component(k))
-    end associate
+    name = scene%model%name_of(of_node, scene%motions%node(k))//' direction '// &
+           text_of(scene%motions%component(k))
   end function motion_name
 
   !> `1.000 2.500`.

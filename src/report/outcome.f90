@@ -1,19 +1,28 @@
-!> What came of a run, in a word and a sentence.
+!> What came of a run, in a word and a sentence; what the largest pressures are beside their figures: bounded,
+!> unbounded, or not resolved by the mesh. And warnings and notes: what the deck has that is not as it seems,
+!> and what of the answer is not as it should be. They stand in the listing, are counted in the summary, and
+!> warnings go to standard error too.
 module epcont_report_outcome
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: plural, short_real
-  use epcont_base_tolerances, only: lost_digits
+  use epcont_base_text, only: newline, plural, short_real, text_of
+  use epcont_base_tolerances, only: alike, lost_digits
   use epcont_certificate_certificate, only: figure_name
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_controls, only: precision_name
   use epcont_model_finding, only: of_node
-  use epcont_report_names, only: first_grid, joined, when
-  use epcont_report_scene_text, only: scene_sentence, unsound
+  use epcont_report_names, only: centre_name, first_grid, joined, motion_name, when
+  use epcont_report_scene_text, only: scene_sentence, scene_warnings, side_changed, unsound
+  use epcont_result_answer, only: answer_type
+  use epcont_result_locking, only: high_poisson
   use epcont_solution, only: solution_type
   implicit none
   private
-  public :: judge, outcome_type
+  public :: outcome_type, judge, limit_of_pressure, reason_of
+  public :: remarks_type, remark_answer, poisson_text
+
+  character(len=*), parameter, public :: unbounded = 'unbounded'
+  character(len=*), parameter :: not_resolved = 'not resolved'
 
   !> What came of a run.
   type :: outcome_type
@@ -22,6 +31,14 @@ module epcont_report_outcome
     character(len=:), allocatable :: sentence   !! empty where the answer is valid
     logical :: has_answer = .false.             !! displacements and forces were found
   end type outcome_type
+
+  !> Warnings and notes.
+  type :: remarks_type
+    integer :: warnings = 0, notes = 0
+    character(len=:), allocatable :: of_deck     !! in lines; of warnings the place is followed by `warning: `
+    character(len=:), allocatable :: of_answer   !! in lines, each a warning
+    character(len=:), allocatable :: noted       !! notes of the answer, in lines
+  end type remarks_type
 
   !> Pairs that are named.
   integer, parameter, public :: most_pairs = 8
@@ -37,31 +54,29 @@ contains
     type(outcome_type) :: outcome
     character(len=*), parameter :: memory = 'out of memory'
 
-    associate (answer => run%answer)
-      if (allocated(answer%against_double)) then
-        call conclude(status_usage, memory, 'factors in single precision ('// &
-                      trim(precision_name(answer%asked_precision))// &
-                      ') give no answer to be trusted, and in double '//answer%against_double)
-      else if (answer%lacks_memory) then
-        call conclude(status_usage, memory, &
-                      'there is not enough memory to factor '//body_name(answer%singular))
-      else if (answer%singular > 0) then
-        call conclude(status_numerical, 'singular stiffness', 'the stiffness of '// &
-                      body_name(answer%singular)//' cannot be factored: '//reason// &
-                      when(run%model%has_flat_curve(), '; or a flat curve carries no more (limit load)'))
-      else if (answer%contact%state == contact_no_equilibrium) then
-        call conclude(status_no_answer, 'no equilibrium', escaping())
-      else if (answer%contact%state == contact_overlap) then
-        call conclude(status_no_answer, 'overlap', 'pairs overlap and nothing can give way: CGAP '// &
-                      joined(pack(run%model%pair_id, answer%contact%overlapping), ' ', most_pairs))
-      else if (answer%contact%state /= contact_solved) then
-        call conclude(status_numerical, 'contact not found', 'no set of touching pairs passed the test: '// &
-                      'rounding has won (condition of the stiffness)')
-      else
-        call judge_answer()
-        outcome%has_answer = .true.
-      end if
-    end associate
+    if (allocated(run%answer%against_double)) then
+      call conclude(status_usage, memory, 'factors in single precision ('// &
+                    trim(precision_name(run%answer%asked_precision))// &
+                    ') give no answer to be trusted, and in double '//run%answer%against_double)
+    else if (run%answer%lacks_memory) then
+      call conclude(status_usage, memory, &
+                    'there is not enough memory to factor '//body_name(run%answer%singular))
+    else if (run%answer%singular > 0) then
+      call conclude(status_numerical, 'singular stiffness', 'the stiffness of '// &
+                    body_name(run%answer%singular)//' cannot be factored: '//reason// &
+                    when(run%model%has_flat_curve(), '; or a flat curve carries no more (limit load)'))
+    else if (run%answer%contact%state == contact_no_equilibrium) then
+      call conclude(status_no_answer, 'no equilibrium', escaping())
+    else if (run%answer%contact%state == contact_overlap) then
+      call conclude(status_no_answer, 'overlap', 'pairs overlap and nothing can give way: CGAP '// &
+                    joined(pack(run%model%pair_id, run%answer%contact%overlapping), ' ', most_pairs))
+    else if (run%answer%contact%state /= contact_solved) then
+      call conclude(status_numerical, 'contact not found', 'no set of touching pairs passed the test: '// &
+                    'rounding has won (condition of the stiffness)')
+    else
+      call judge_answer()
+      outcome%has_answer = .true.
+    end if
 
   contains
 
@@ -78,22 +93,19 @@ contains
       character(len=*), parameter :: doubtful = 'not certified'
       logical :: is_exact
 
-      associate (answer => run%answer, certificate => run%certificate)
-        is_exact = answer%lost() <= lost_digits
-        if (answer%converged .and. certificate%valid .and. is_exact) then
-          call conclude(status_valid, 'valid', '')
-          if (.not. certificate%scene%sound()) call conclude( &
-            status_numerical, doubtful, scene_sentence(run%model, certificate%scene, unsound))
-        else if (.not. answer%converged .and. &
-                 (certificate%balanced .and. is_exact .or. answer%runs_away)) then
-          call conclude(status_no_answer, 'not converged', unconverged())
-        else
-          call conclude(status_numerical, &
-                        when(certificate%valid .or. certificate%balanced .and. .not. is_exact, &
-                             'ill-conditioned', doubtful), &
-                        'the figures are not to be trusted: '//doubts())
-        end if
-      end associate
+      is_exact = run%answer%lost() <= lost_digits
+      if (run%answer%converged .and. run%certificate%valid .and. is_exact) then
+        call conclude(status_valid, 'valid', '')
+        if (.not. run%certificate%scene%sound()) call conclude( &
+          status_numerical, doubtful, scene_sentence(run%model, run%certificate%scene, unsound))
+      else if (.not. run%answer%converged .and. &
+               (run%certificate%balanced .and. is_exact .or. run%answer%runs_away)) then
+        call conclude(status_no_answer, 'not converged', unconverged())
+      else
+        call conclude(status_numerical, &
+                      when(run%certificate%valid .or. run%certificate%balanced .and. .not. is_exact, &
+                           'ill-conditioned', doubtful), 'the figures are not to be trusted: '//doubts())
+      end if
     end subroutine judge_answer
 
     !> Which body moves off, and how.
@@ -101,12 +113,10 @@ contains
       character(len=:), allocatable :: text
       integer :: k
 
-      associate (motions => run%motions, escape => run%answer%contact%escape)
-        k = maxloc(abs(escape), dim=1)
-        text = body_name(motions%body(k))//' moves off and no contact holds it: '// &
-               run%model%name_of(of_node, motions%node(k))//' moves along '// &
-               merge('-', '+', escape(k) < 0)//merge('x', 'y', motions%component(k) == 1)
-      end associate
+      k = maxloc(abs(run%answer%contact%escape), dim=1)
+      text = body_name(run%motions%body(k))//' moves off and no contact holds it: '// &
+             run%model%name_of(of_node, run%motions%node(k))//' moves along '// &
+             merge('-', '+', run%answer%contact%escape(k) < 0)//merge('x', 'y', run%motions%component(k) == 1)
     end function escaping
 
     !> What speaks against an answer: the figure of the certificate that is farthest beyond its tolerance, and
@@ -123,38 +133,36 @@ contains
       if (figure(worst) > largest(worst)) text = trim(figure_name(worst))//' '//short_real(figure(worst))// &
                                                  ' (at most '//short_real(largest(worst))//')'
       much = 0.1_wp*run%certificate%tolerance
-      associate (answer => run%answer, lost => run%certificate%lost_stress)
-        taken = epsilon(1.0_wp)/answer%weakest%ratio   ! of a pivot: the cause, even if mended
-        if (.not. all(figure <= huge(figure))) then
-          text = 'the work of the loads is too far from 1.0 for a number: other units'
-        else if (taken > much) then
-          if (len(text) > 0) text = text//'; '
-          text = text//'rounding takes '//short_real(taken)//' of a pivot in the stiffness of '// &
-                 body_name(answer%weakest%body)//': '//reason
-        else if (lost > much) then
-          text = text//'; the rounding of displacements is '//short_real(lost)// &
-                 ' of the largest stress: elements too small or too stiff for how far they travel, '// &
-                 'or a Poisson''s ratio is too near 0.5'
-        else if (answer%condition*epsilon(1.0_wp) > much) then
-          text = text//'; the condition of the stiffness is '//short_real(answer%condition)// &
-                 ': slender bodies or elements, or SUPORT nodes that are near each other'
-        end if
-      end associate
+      taken = epsilon(1.0_wp)/run%answer%weakest%ratio   ! of a pivot: the cause, even if mended
+      if (.not. all(figure <= huge(figure))) then
+        text = 'the work of the loads is too far from 1.0 for a number: other units'
+      else if (taken > much) then
+        if (len(text) > 0) text = text//'; '
+        text = text//'rounding takes '//short_real(taken)//' of a pivot in the stiffness of '// &
+               body_name(run%answer%weakest%body)//': '//reason
+      else if (run%certificate%lost_stress > much) then
+        text = text//'; the rounding of displacements is '//short_real(run%certificate%lost_stress)// &
+               ' of the largest stress: elements too small or too stiff for how far they travel, '// &
+               'or a Poisson''s ratio is too near 0.5'
+      else if (run%answer%condition*epsilon(1.0_wp) > much) then
+        text = text//'; the condition of the stiffness is '//short_real(run%answer%condition)// &
+               ': slender bodies or elements, or SUPORT nodes that are near each other'
+      end if
     end function doubts
 
     !> An iteration that was given up, in words.
     pure function unconverged() result(text)
       character(len=:), allocatable :: text
 
-      associate (answer => run%answer, last => run%answer%history(size(run%answer%history)))
+      associate (last => run%answer%history(size(run%answer%history)))
         text = 'at load factor '//short_real(last%load_factor)//' '// &
-               when(answer%runs_away, 'the displacements grow without end: '// &
+               when(run%answer%runs_away, 'the displacements grow without end: '// &
                     'it is more than a material with a flat curve can carry (limit load)', &
                     'after '//plural(last%iteration, 'iteration')//' displacements still change by '// &
                     short_real(last%change)// &
                     ' of the largest (PARAM MAXIT: more of them; METHOD: another way)')// &
-               when(answer%load_factor < last%load_factor, '; what follows is for load factor '// &
-                    short_real(answer%load_factor)//', the largest that converged')
+               when(run%answer%load_factor < last%load_factor, '; what follows is for load factor '// &
+                    short_real(run%answer%load_factor)//', the largest that converged')
       end associate
     end function unconverged
 
@@ -166,4 +174,113 @@ contains
       name = 'the body of '//first_grid(run%model, run%model%body == body)
     end function body_name
   end function judge
+
+  !> What the largest pressure of a zone is, or of all zones; empty where that is not known, or nothing
+  !! presses.
+  pure function limit_of_pressure(run, zone) result(word)
+    class(solution_type), intent(in) :: run   !! a scene with its answer
+    integer, intent(in), optional :: zone     !! not given: the one with the largest pressure
+    character(len=:), allocatable :: word
+    integer :: z
+
+    z = maxloc(run%answer%zones%max_pressure, dim=1)
+    if (present(zone)) z = zone
+    word = ''
+    if (z == 0 .or. z > size(run%accuracy%zone)) return
+    if (run%answer%zones(z)%max_pressure < 0.0_wp) return
+    word = when(run%accuracy%zone(z)%resolved, 'bounded', not_resolved)
+    if (run%accuracy%zone(z)%unbounded) word = unbounded
+  end function limit_of_pressure
+
+  !> What a limit means, for the end of a line of the listing; empty where there is nothing to say.
+  pure function reason_of(word) result(text)
+    character(len=*), intent(in) :: word   !! as `limit_of_pressure` has it
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (word == unbounded) text = '   unbounded: it grows with every finer mesh'
+    if (word == not_resolved) text = '   not resolved: too few pairs where it is largest'
+  end function reason_of
+
+  !> Add warnings and notes of an answer: where its equations, solved as they are, are not those of the scene.
+  subroutine remark_answer(run, remarks)
+    class(solution_type), intent(in) :: run         !! a scene with its answer
+    type(remarks_type), intent(inout) :: remarks    !! are added to
+    integer :: k
+
+    call warn_of_contact()
+    do k = 1, scene_warnings
+      if (k == side_changed .and. run%answer%gradient%part > 0.0_wp) then
+        call warn_of_displacements()
+      else
+        call warn(scene_sentence(run%model, run%certificate%scene, k))
+      end if
+    end do
+    call warn_of_material()
+    associate (vague => count(run%answer%contact%indeterminate))
+      if (vague > 0) call warn('the forces of '//plural(vague, 'pair')//' are one choice of many, and so '// &
+        'are their pressures: pairs at one place, or parts that cannot bend (`force not unique` in CONTACT)')
+    end associate
+    do k = 1, run%motions%count
+      if (.not. run%answer%contact%motion_free(k)) cycle
+      remarks%notes = remarks%notes + 1
+      remarks%noted = remarks%noted//'approach of '//motion_name(run, k)// &
+                          ': nothing resists or drives this motion: its value is a choice'//newline
+    end do
+
+  contains
+
+    !> Add a warning; an empty text is none.
+    subroutine warn(text)
+      character(len=*), intent(in) :: text
+
+      if (len(text) == 0) return
+      remarks%warnings = remarks%warnings + 1
+      remarks%of_answer = remarks%of_answer//'warning: '//text//newline
+    end subroutine warn
+
+    !> No pair closes.
+    subroutine warn_of_contact()
+      integer :: nearest
+
+      if (run%model%pairs == 0 .or. any(run%answer%contact%touching)) return
+      ! Of gaps that are as good as equal the first: rounding chooses no pair.
+      nearest = findloc(run%answer%contact%gap <= (1.0_wp + alike)*minval(run%answer%contact%gap), .true., &
+                        dim=1)
+      call warn('nothing touches: no pair carries a force; nearest is '// &
+                run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
+                short_real(run%answer%contact%gap(nearest))//' away')
+    end subroutine warn_of_contact
+
+    !> They are not small.
+    subroutine warn_of_displacements()
+      call warn('displacements are not small: '//text_of(nint(100.0_wp*run%answer%gradient%part))// &
+                ' % of the volume turned or stretched by over 0.1, most at '// &
+                centre_name(run%model, run%answer%gradient%worst)// &
+                '; equilibrium and contact are those of the undeformed shape')
+    end subroutine warn_of_displacements
+
+    !> Elements that are too stiff, strained too far, or unloaded.
+    subroutine warn_of_material()
+      if (run%answer%locking%elements > 0) &
+        call warn(plural(run%answer%locking%elements, 'three-node element')// &
+                  ' of nearly constant volume ('//poisson_text(run%answer)// &
+                '): too stiff; six-node elements or CQUAD4 would be right')
+      if (any(run%answer%beyond)) &
+        call warn(plural(count(run%answer%beyond), 'element')// &
+                  ' strained beyond the last point of the table, whose last slope goes on')
+      if (run%answer%unloaded > 0) &
+        call warn(plural(run%answer%unloaded, 'element')//' unloaded after yielding: '// &
+                  'the theory takes them back along the curve, not along the elastic line')
+    end subroutine warn_of_material
+  end subroutine remark_answer
+
+  !> From which Poisson's ratio on three-node elements lock, and why they have it.
+  pure function poisson_text(answer) result(text)
+    type(answer_type), intent(in) :: answer   !! the answer
+    character(len=:), allocatable :: text
+
+    text = 'Poisson''s ratio '//short_real(high_poisson)//' or more'// &
+           when(any(answer%plastic), ', as yielding has made it')
+  end function poisson_text
 end module epcont_report_outcome

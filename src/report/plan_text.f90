@@ -11,7 +11,6 @@ module epcont_report_plan_text
   use epcont_plan_numbering, only: many_operations
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_report_columns, only: column, state, table_type, whole, word
-  use epcont_report_layout, only: newline
   use epcont_report_names, only: joined, motion_name, when
   implicit none
   private
@@ -40,43 +39,42 @@ contains
     type(planned_scene), intent(in) :: scene   !! what is to be solved, and how
     character(len=:), allocatable :: text
     logical :: in_double
+    type(table_type) :: plan
     integer :: k
 
     in_double = scene%iteration%precision == precision_double
-    text = newline
-    associate (model => scene%model, motions => scene%motions%count)
-      call say('PLAN')
-      call say('  '//plural(model%nodes, 'node')//', '//plural(model%elements, 'element')//', '// &
-               plural(model%pairs, 'pair')//'; bodies: '//text_of(model%bodies))
-      if (model%controls%original) call say('  ORIGINAL: as the program of about 1980, each contact from its first'// &
-                                            ' pivot on')
-      call say_iteration()
-      call say_rule()
-      do k = 1, min(most, size(model%line_contact))
-        call say_contact(model%line_contact(k))
-      end do
-      call say_further(size(model%line_contact), 'further contact', ' of lines')
-      do k = 1, min(most, motions)
-        call say('  free motion: '//motion_name(scene, k))
-      end do
-      call say_further(motions, 'further free motion', '')
-      call say_factors()
-      if (model%controls%accuracy > 0.0_wp) call say_choices()
-      call say_bodies()
-    end associate
-    associate (expected => scene%expected)
-      call say(newline//'  memory '//megabytes(expected%bytes)// &
-               when(.not. in_double, ' (in double '//megabytes(expected%double_bytes)//')')// &
-               ', operations '//short_real(expected%operations)//when(scene%iteration%yields, ' a solve'))
-    end associate
+    plan%text = ''
+    call plan%heading('PLAN')
+    call say(plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
+             plural(scene%model%pairs, 'pair')//'; bodies: '//text_of(scene%model%bodies))
+    if (scene%model%controls%original) &
+      call say('ORIGINAL: as the program of about 1980, each contact from its first pivot on')
+    call say_iteration()
+    call say_rule()
+    do k = 1, min(most, size(scene%model%line_contact))
+      call say_contact(scene%model%line_contact(k))
+    end do
+    call say_further(size(scene%model%line_contact), 'further contact', ' of lines')
+    do k = 1, min(most, scene%motions%count)
+      call say('free motion: '//motion_name(scene, k))
+    end do
+    call say_further(scene%motions%count, 'further free motion', '')
+    call say_factors()
+    if (scene%model%controls%accuracy > 0.0_wp) call say_choices()
+    call say_bodies()
+    call plan%line('')
+    call say('memory '//megabytes(scene%expected%bytes)// &
+             when(.not. in_double, ' (in double '//megabytes(scene%expected%double_bytes)//')')// &
+             ', operations '//short_real(scene%expected%operations)//when(scene%iteration%yields, ' a solve'))
+    text = plan%text
 
   contains
 
-    !> Add a line.
-    subroutine say(line)
-      character(len=*), intent(in) :: line
+    !> Add a line, two blanks from the margin.
+    subroutine say(text)
+      character(len=*), intent(in) :: text
 
-      text = text//line//newline
+      call plan%line('  '//text)
     end subroutine say
 
     !> How many are not told of one by one.
@@ -84,42 +82,41 @@ contains
       integer, intent(in) :: count
       character(len=*), intent(in) :: noun, behind
 
-      if (count > most) call say('  and '//plural(count - most, noun)//behind)
+      if (count > most) call say('and '//plural(count - most, noun)//behind)
     end subroutine say_further
 
     !> Whether the scene can yield, and how that is iterated.
     subroutine say_iteration()
-      associate (plan => scene%iteration)
-        if (.not. plan%yields) then
-          call say('  elastic material only: one solve, no iteration')
-          return
-        end if
-        call say('  total theory of plasticity; bodies that can yield: '//text_of(count(plan%body)))
-        call say('  iteration '//trim(method_name(plan%method))//': '//trim(method_text(plan%method)))
-        if (plan%chosen_here) call say('    chosen here (AUTO): '// &
-          when(plan%method == method_newton, 'it needs the fewest factorizations', &
-               'the method of the paper, as MUP PAPER has no tangent for NEWTON'))
-        call say('    until no displacement changes, or is estimated to be off, by more than '// &
-                 short_real(plan%tolerance)//' of the largest,')
-        call say('    and no stress is off its curve by more than '//short_real(plan%off_curve)// &
-                 ' of the stress there; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
-        if (plan%load_steps > 1) &
-          call say('  '//plural(plan%load_steps, 'load step')//'; elastic unloading is not modelled')
-        if (scene%model%controls%paper_ratio) &
-          call say('  MUP PAPER: Poisson''s ratio in the equivalent strain by formula (2-4)')
-      end associate
+      if (.not. scene%iteration%yields) then
+        call say('elastic material only: one solve, no iteration')
+        return
+      end if
+      call say('total theory of plasticity; bodies that can yield: '//text_of(count(scene%iteration%body)))
+      call say('iteration '//trim(method_name(scene%iteration%method))//': '// &
+               method_text(scene%iteration%method))
+      if (scene%iteration%chosen_here) call say('  chosen here (AUTO): '// &
+        when(scene%iteration%method == method_newton, 'it needs the fewest factorizations', &
+             'the method of the paper, as MUP PAPER has no tangent for NEWTON'))
+      call say('  until no displacement changes, or is estimated to be off, by more than '// &
+               short_real(scene%iteration%tolerance)//' of the largest,')
+      call say('  and no stress is off its curve by more than '//short_real(scene%iteration%off_curve)// &
+               ' of the stress there; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
+      if (scene%iteration%load_steps > 1) &
+        call say(plural(scene%iteration%load_steps, 'load step')//'; elastic unloading is not modelled')
+      if (scene%model%controls%paper_ratio) &
+        call say('MUP PAPER: Poisson''s ratio in the equivalent strain by formula (2-4)')
     end subroutine say_iteration
 
     !> How the pairs in contact are found.
     subroutine say_rule()
       if (scene%model%pairs == 0) then
-        call say('  no pairs: no flexibility, no simplex')
+        call say('no pairs: no flexibility, no simplex')
       else if (.not. scene%iteration%contact%by_blocks) then
-        call say('  contact by the simplex with contact entry rule (CONRY)')
+        call say('contact by the simplex with contact entry rule (CONRY)')
       else
-        call say('  contact by block pivoting of the contacts (BLOCK)')
+        call say('contact by block pivoting of the contacts (BLOCK)')
         if (scene%iteration%contact%chosen_here) &
-          call say('    chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on')
+          call say('  chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on')
       end if
     end subroutine say_rule
 
@@ -130,7 +127,7 @@ contains
 
       master = joined(contact%master_id, ', ')
       associate (gap => scene%model%initial_gap(contact%first:contact%last))
-        call say('  BCONP '//joined(contact%bconp, ', ')//': nodes of BLSEG '// &
+        call say('BCONP '//joined(contact%bconp, ', ')//': nodes of BLSEG '// &
                  joined(contact%slave_id, ', ')//' against sides of BLSEG '//master//': '// &
                  plural(size(gap), 'pair')//', initial gaps '//short_real(minval(gap))//' to '// &
                  short_real(maxval(gap))// &
@@ -138,10 +135,10 @@ contains
                       short_real(contact%search)//': '//plural(contact%nodes_left_out, 'node')))
       end associate
       if (contact%last >= contact%first_of_master) &
-        call say('    of these nodes of BLSEG '//master//' that stand on sides of the former: '// &
+        call say('  of these nodes of BLSEG '//master//' that stand on sides of the former: '// &
                  text_of(contact%last - contact%first_of_master + 1))
       if (contact%is_wider .or. size(contact%came_near) > 0) &
-        call say('    solved anew, with nodes that came near')
+        call say('  solved anew, with nodes that came near')
       call say_corners(contact%slave, contact%slave_id)
       call say_corners(contact%master, contact%master_id)
     end subroutine say_contact
@@ -156,7 +153,7 @@ contains
       ends = line%corner .and. .not. line%mirrored
       node = [pack(line%segment(1, :), ends(1, :)), &
               pack(line%segment(2, :), ends(2, :) .and. line%neighbour(2, :) == 0)]
-      if (size(node) > 0) call say('    corners of BLSEG '//joined(id, ', ')//': GRID '// &
+      if (size(node) > 0) call say('  corners of BLSEG '//joined(id, ', ')//': GRID '// &
                                    joined(scene%model%node_id(node), ', ', most_corners))
     end subroutine say_corners
 
@@ -166,12 +163,12 @@ contains
 
       fronts = count(scene%numbering%body%solver == solver_frontal)
       if (fronts > 0) then
-        call say('  bodies factored in nested fronts (FRONTAL): '//text_of(fronts))
+        call say('bodies factored in nested fronts (FRONTAL): '//text_of(fronts))
         if (scene%model%controls%solver == solver_auto) &
-          call say('    chosen here (AUTO): faster where a band (BAND) takes more than '// &
+          call say('  chosen here (AUTO): faster where a band (BAND) takes more than '// &
                    short_real(many_operations)//' operations')
       end if
-      if (.not. in_double) call say('  factors in single precision, '// &
+      if (.not. in_double) call say('factors in single precision, '// &
         when(scene%iteration%precision == precision_single, 'not refined', 'refined to double')// &
         ' ('//trim(precision_name(scene%iteration%precision))// &
         '); where that fails, all is solved anew in double')
@@ -181,27 +178,24 @@ contains
     subroutine say_choices()
       character(len=:), allocatable :: chosen
 
-      associate (controls => scene%model%controls)
-        chosen = when(scene%iteration%yields .and. controls%tolerance == 0.0_wp, &
-                      ', TOL '//short_real(scene%iteration%tolerance))// &
-                 when(scene%iteration%yields .and. scene%iteration%chosen_here, &
-                      ', METHOD '//trim(method_name(scene%iteration%method)))// &
-                 when(controls%precision == precision_open, &
-                      ', PRECIS '//trim(precision_name(scene%iteration%precision)))
-        if (len(chosen) == 0) chosen = ', nothing: the deck sets all itself'
-        call say('  ACCURACY '//short_real(controls%accuracy)//' chooses '//chosen(3:))
-      end associate
+      chosen = when(scene%iteration%yields .and. scene%model%controls%tolerance == 0.0_wp, &
+                    ', TOL '//short_real(scene%iteration%tolerance))// &
+               when(scene%iteration%yields .and. scene%iteration%chosen_here, &
+                    ', METHOD '//trim(method_name(scene%iteration%method)))// &
+               when(scene%model%controls%precision == precision_open, &
+                    ', PRECIS '//trim(precision_name(scene%iteration%precision)))
+      if (len(chosen) == 0) chosen = ', nothing: the deck sets all itself'
+      call say('ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
     end subroutine say_choices
 
     !> A row a body: what its matrix is like, how often that is factored, and how its flexibility follows from
     !! the factor: by inverting the trailing block, or by forward substitution of the pairs.
     subroutine say_bodies()
-      type(table_type) :: table
       character(len=14) :: width, times, way
       integer :: b
 
-      call table%describe(body_columns)
-      call say(newline//table%head_text())
+      call plan%line('')
+      call plan%begin('', body_columns)
       do b = 1, min(most, size(scene%numbering%body))
         associate (body => scene%numbering%body(b))
           width = text_of(body%half_bandwidth)
@@ -211,8 +205,8 @@ contains
           if (body%equations == 0) times = '0'
           way = '-'
           if (body%contact_equations > 0) way = merge('inversion   ', 'substitution', body%contact_last)
-          call say(table%row_text([b, size(body%node), body%equations, body%contact_equations, &
-                                   body%border], [real(wp) ::], [width, times, way]))
+          call plan%row([b, size(body%node), body%equations, body%contact_equations, body%border], &
+                        [real(wp) ::], [width, times, way])
         end associate
       end do
       call say_further(size(scene%numbering%body), 'further one', '')

@@ -13,15 +13,16 @@ module epcont_report_scene_text
   public :: scene_sentence
 
   !> What a sentence is about: why a scene is not sound; or what is warned of, in the order of the warnings.
-  integer, parameter, public :: unsound = 0
-  integer, parameter, public :: body_in_itself = 1   !! a body passes through itself
-  integer, parameter, public :: beyond_mirror = 2    !! a body passes a line at which it ends and is held
-  integer, parameter, public :: overlap_drawn = 3    !! bodies overlap as drawn, with no pair to close that
-  integer, parameter, public :: much_overlap = 4     !! bodies lie in each other by much, but allowed
-  integer, parameter, public :: much_gap = 5         !! a pair presses across as wide a gap
-  integer, parameter, public :: side_changed = 6     !! a side turns or stretches too far
-  integer, parameter, public :: sides_slid = 7       !! sides slide too far along each other where they press
-  integer, parameter, public :: scene_warnings = 7
+  integer, parameter, public :: &
+    unsound = 0, &
+    body_in_itself = 1, &   !! a body passes through itself
+    beyond_mirror = 2, &    !! a body passes a line at which it ends and is held
+    overlap_drawn = 3, &    !! bodies overlap as drawn, with no pair to close that
+    much_overlap = 4, &     !! bodies lie in each other by much, but allowed
+    much_gap = 5, &         !! a pair presses across as wide a gap
+    side_changed = 6, &     !! a side turns or stretches too far
+    sides_slid = 7, &       !! sides slide too far along each other where they press
+    scene_warnings = 7
 
   !> Depths that differ by less than this part are not told apart.
   real(wp), parameter, public :: deeper = 1.1_wp
@@ -37,7 +38,7 @@ module epcont_report_scene_text
   character(len=*), parameter :: warning(scene_warnings) = [character(len=300) :: &
     'a body passes through itself: it lies {depth} deep, at {point} on {side}, behind {other side}; '// &
     '{allowed} is allowed', &
-    'a body passes through its mirror image: {beyond mirror}, to which its body is held; '// &
+    'a body passes through its mirror image: {beyond}, to which its body is held; '// &
     'no harm where that is no line of symmetry', &
     'bodies overlap as drawn, with no pair between them there: '//lies_in, &
     'bodies lie in each other by '//by_much//lies_in//'{finer}', &
@@ -57,7 +58,7 @@ module epcont_report_scene_text
     'bodies pass through each other on their way: {passing} of the body of {body} goes through that of '// &
     '{other body}, {depth} deep at {point}, behind {other side}'//mending// &
     '{remedy}, or loads and supports that move it another way', &
-    'a ring is pressed to a radius below 0: {beyond axis}; where displacements are small radii stay above 0']
+    'a ring is pressed to a radius below 0: {beyond}; where displacements are small radii stay above 0']
 
 contains
 
@@ -68,6 +69,7 @@ contains
     integer, intent(in) :: about            !! one of the subjects above
     character(len=:), allocatable :: text
     type(overlap_place) :: place, faulty(4), warned(scene_warnings)
+    type(beyond_place) :: farthest
     logical :: speaks(scene_warnings)
     integer :: worst
 
@@ -75,6 +77,7 @@ contains
       faulty = [scene%inside, scene%apart, scene%beside, scene%passed]
       worst = maxloc(faulty%ratio, dim=1)
       place = faulty(worst)
+      farthest = scene%axis
       text = told(fault(merge(5, worst, scene%axis%node > 0)))
       return
     end if
@@ -84,6 +87,7 @@ contains
     speaks(beyond_mirror) = scene%mirror%node > 0
     speaks(side_changed) = scene%change > largest_change
     place = warned(about)
+    farthest = scene%mirror
     text = ''
     if (speaks(about)) text = told(warning(about))
 
@@ -148,10 +152,9 @@ contains
                  point_name(scene%deepest%x)//', where '//short_real(scene%deepest%allowed)//' is allowed)'
       case ('remedy')
         text = remedy([place%side, place%other])
-      case ('beyond mirror')
-        text = beyond(scene%mirror)
-      case ('beyond axis')
-        text = beyond(scene%axis)
+      case ('beyond')
+        text = model%name_of(of_node, farthest%node)//' comes '//short_real(farthest%depth)//' beyond '// &
+               merge('x', 'y', farthest%component == 1)//' = '//short_real(farthest%line)
       case ('changed side')
         text = side_name(scene%changed_side)
       case ('change')
@@ -159,25 +162,14 @@ contains
       end select
     end function word_for
 
-    !> Where a node is that is beyond a line.
-    pure function beyond(farthest) result(text)
-      type(beyond_place), intent(in) :: farthest
-      character(len=:), allocatable :: text
-
-      text = model%name_of(of_node, farthest%node)//' comes '//short_real(farthest%depth)//' beyond '// &
-             merge('x', 'y', farthest%component == 1)//' = '//short_real(farthest%line)
-    end function beyond
-
     !> A side of the outlines by its ends.
     pure function side_name(side) result(name)
       integer, intent(in) :: side
       character(len=:), allocatable :: name
 
-      associate (outline => model%body_outline)
-        name = 'side '//model%name_of(of_node, outline%node(1, side))//' to '// &
-               text_of(model%node_id(outline%node(2, side)))// &
-               ' of '//model%name_of(of_element, outline%element(side))
-      end associate
+      name = 'side '//model%name_of(of_node, model%body_outline%node(1, side))//' to '// &
+             text_of(model%node_id(model%body_outline%node(2, side)))// &
+             ' of '//model%name_of(of_element, model%body_outline%element(side))
     end function side_name
 
     !> The body that a side belongs to, by its first node.
@@ -237,10 +229,8 @@ contains
       logical :: are_of(2)
       integer :: k
 
-      associate (outline => model%body_outline)
-        are_of = [(any(line%segment(1, :) == outline%node(1, side(k)) .and. &
-                       line%element == outline%element(side(k))), k=1, 2)]
-      end associate
+      are_of = [(any(line%segment(1, :) == model%body_outline%node(1, side(k)) .and. &
+                     line%element == model%body_outline%element(side(k))), k=1, 2)]
     end function are_of
   end function scene_sentence
 end module epcont_report_scene_text

@@ -2,23 +2,20 @@
 !> in the listing. The file has all of them in this order, the listing those that have a name, each in its
 !> section.
 module epcont_report_summary
-  use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: newline, text_of
   use epcont_certificate_scene, only: little, overlap_place
-  use epcont_report_file, only: new_text_file, text_file
-  use epcont_report_layout, only: figure, newline
-  use epcont_report_limit, only: limit_of_largest, limit_of_zone, reason_of, unbounded
+  use epcont_report_columns, only: estimate, factor, force, full_numbers, known, length, listed_number, &
+                                   number, part, percent, rounding, size_of, stress
   use epcont_report_names, only: motion_name, point_name, when
-  use epcont_report_number, only: estimate, factor, full_numbers, known, listed_number, number, part, &
-                                  percent, rounding, size_of
+  use epcont_report_outcome, only: limit_of_pressure, reason_of, unbounded
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none
   private
-  public :: summary_type, summarise
+  public :: figure_type, summarise
 
-  character(len=*), parameter :: none = '', force = 'force', stress = 'force/length2', length = 'length'
+  character(len=*), parameter :: none = ''
 
   type :: figure_type
     character(len=40) :: key = ''      !! in the file
@@ -29,25 +26,18 @@ module epcont_report_summary
     character(len=80) :: note = ''     !! what follows that
   end type figure_type
 
-  type :: summary_type
-    type(figure_type), allocatable, private :: figure(:)
-  contains
-    procedure :: list
-    procedure :: write_file
-  end type summary_type
-
 contains
 
   !> All that is known of a run.
-  function summarise(run) result(all)
+  function summarise(run) result(figures)
     type(run_results), intent(in) :: run   !! what is known of the run
-    type(summary_type) :: all
+    type(figure_type), allocatable :: figures(:)
     integer :: k
 
-    allocate (all%figure(0))
+    allocate (figures(0))
     call put_word('status', run%outcome%word, 'status')
-    call put_word('warnings', text_of(run%remarks%warnings))
-    call put_word('notes', text_of(run%remarks%notes))
+    call put_word('warnings', text_of(run%remarks%warnings), '')
+    call put_word('notes', text_of(run%remarks%notes), '')
     if (.not. run%outcome%has_answer) return
     call put_answer()
     call put_certificate()
@@ -59,26 +49,27 @@ contains
 
     !> Contact, yielding and stresses.
     subroutine put_answer()
-      associate (answer => run%answer, contact => run%answer%contact)
-        if (run%model%pairs > 0) call put('max_pressure', stress, known, answer%largest_pressure(), &
-                                          'largest pressure', reason_of(limit_of_largest(run)))
-        do k = 1, run%motions%count
-          call put('approach_'//motion_key(), length, number, contact%approach(k))
-          call show('approach: '//motion_name(run, k), &
-                    listed_number(number, contact%approach(k), maxval(abs(answer%displacement))), &
-                    when(contact%motion_free(k), newline// &
-                         '    nothing resists or drives this motion: its value is a choice'))
-        end do
-        call put('total_contact_force', force, number, sum(contact%force), 'total contact force')
-        call put_word('pairs_in_contact', text_of(count(contact%touching)), 'pairs in contact')
-        call put_word('plastic_elements', text_of(count(answer%plastic)), 'elements beyond the yield point')
-        call put_word('iterations', text_of(size(answer%history)))
-        call put_word('factorizations', text_of(answer%factorizations))
-        call put_word('pivots', text_of(sum(answer%history%pivots)))
-        call put_largest_stress(first_largest(answer%largest_stress))
-        call put('max_displacement', length, number, maxval(norm2(answer%displacement, dim=1)), &
-                 'largest displacement')
-      end associate
+      if (run%model%pairs > 0) call put('max_pressure', stress, known, run%answer%largest_pressure(), &
+                                        'largest pressure', reason_of(limit_of_pressure(run)))
+      do k = 1, run%motions%count
+        call put('approach_'//motion_key(), length, number, run%answer%contact%approach(k), &
+                 'approach: '//motion_name(run, k), &
+                 when(run%answer%contact%motion_free(k), newline// &
+                      '    nothing resists or drives this motion: its value is a choice'), &
+                 listed_number(number, run%answer%contact%approach(k), maxval(abs(run%answer%displacement))))
+      end do
+      call put('total_contact_force', force, number, sum(run%answer%contact%force), &
+               when(run%model%pairs > 0, 'total contact force'))
+      call put_word('pairs_in_contact', text_of(count(run%answer%contact%touching)), &
+                    when(run%model%pairs > 0, 'pairs in contact'))
+      call put_word('plastic_elements', text_of(count(run%answer%plastic)), &
+                    when(any(run%answer%plastic), 'elements beyond the yield point'))
+      call put_word('iterations', text_of(size(run%answer%history)), '')
+      call put_word('factorizations', text_of(run%answer%factorizations), '')
+      call put_word('pivots', text_of(sum(run%answer%history%pivots)), '')
+      call put_largest_stress(first_largest(run%answer%largest_stress))
+      call put('max_displacement', length, number, maxval(norm2(run%answer%displacement, dim=1)), &
+               'largest displacement')
     end subroutine put_answer
 
     !> Of the element that has it.
@@ -91,7 +82,7 @@ contains
       place = place_of_point(run%model, run%answer%largest_at(element))
       call put('max_equivalent_stress', stress, number, run%answer%largest_stress(element), &
                'largest equivalent stress', '   in element '//id//' at '//point_name(place))
-      call put_word('max_equivalent_stress_element', id)
+      call put_word('max_equivalent_stress_element', id, '')
       call put('max_equivalent_stress_x', length, number, place(1))
       call put('max_equivalent_stress_y', length, number, place(2))
     end subroutine put_largest_stress
@@ -100,12 +91,13 @@ contains
     subroutine put_certificate()
       associate (c => run%certificate)
         call put('equilibrium_residual', none, rounding, c%equilibrium, 'equilibrium residual')
-        call put('smallest_force', force, number, c%smallest_force)
-        call show_part('most negative force, of the largest', max(0.0_wp, -c%smallest_force)/c%force_scale)
-        call put('smallest_gap', length, number, c%smallest_gap)
-        call show_part('most negative gap, of the largest length', c%overlap/c%length_scale)
-        call put('largest_force_gap_product', 'force*length', number, c%force_gap)
-        call show_part('largest force times gap', c%force_gap/c%force_scale/c%length_scale)
+        call put('smallest_force', force, number, c%smallest_force, 'most negative force, of the largest', &
+                 listed=listed_number(rounding, max(0.0_wp, -c%smallest_force)/c%force_scale, 0.0_wp))
+        call put('smallest_gap', length, number, c%smallest_gap, 'most negative gap, of the largest length', &
+                 listed=listed_number(rounding, c%overlap/c%length_scale, 0.0_wp))
+        call put('largest_force_gap_product', 'force*length', number, c%force_gap, &
+                 'largest force times gap', &
+                 listed=listed_number(rounding, c%force_gap/c%force_scale/c%length_scale, 0.0_wp))
         call put('stress_off_curve', none, rounding, c%off_curve, 'stress off the curve')
         call put('curve_tolerance', none, size_of, c%curve_tolerance, &
                  when(c%curve_tolerance > c%tolerance, 'of which the iteration may leave'))
@@ -134,52 +126,50 @@ contains
     subroutine put_iteration()
       integer :: last   ! solve for the loads that the answer is for
 
-      associate (answer => run%answer)
-        last = findloc(answer%history%load_factor, answer%load_factor, dim=1, back=.true.)
-        call put('condition', none, size_of, answer%condition, 'condition of the stiffness (1-norm)')
-        call put('load_factor', none, number, answer%load_factor)
-        call put('iteration_error_displacement', none, rounding, answer%history(last)%error, &
-                 'iteration error, of the largest displacement')
-        call put('iteration_error_force', none, rounding, answer%history(last)%force_error, &
-                 'iteration error, of the largest force')
-      end associate
+      last = findloc(run%answer%history%load_factor, run%answer%load_factor, dim=1, back=.true.)
+      call put('condition', none, size_of, run%answer%condition, 'condition of the stiffness (1-norm)')
+      call put('load_factor', none, number, run%answer%load_factor)
+      call put('iteration_error_displacement', none, rounding, run%answer%history(last)%error, &
+               when(size(run%answer%history) > 1, 'iteration error, of the largest displacement'))
+      call put('iteration_error_force', none, rounding, run%answer%history(last)%force_error, &
+               when(size(run%answer%history) > 1 .and. run%model%pairs > 0, &
+                    'iteration error, of the largest force'))
     end subroutine put_iteration
 
     !> What the mesh makes of the figures; `max_pressure_is` unbounded, or not resolved.
     subroutine put_mesh_errors()
-      associate (answer => run%answer, accuracy => run%accuracy)
-        call put('mesh_error_energy_norm', none, part, accuracy%energy_norm, 'mesh: error in the energy norm')
-        if (run%model%pairs > 0) then
-          call put_word('max_pressure_is', limit_of_largest(run))
-          call put('mesh_error_max_pressure', stress, known, accuracy%max_pressure)
-        end if
-        do k = 1, size(accuracy%zone)
-          call put_error('pressure_zone_'//text_of(k), stress, 'largest pressure of zone '//text_of(k), &
-                         accuracy%zone(k)%pressure, answer%zones(k)%max_pressure, limit_of_zone(run, k))
-          call put_error('half_width_zone_'//text_of(k), length, 'half-width of zone '//text_of(k), &
-                         accuracy%zone(k)%half_width, answer%zones(k)%half_width, '')
-        end do
-        do k = 1, run%motions%count
-          associate (endless => accuracy%approach_unbounded(k))
-            call put_error('approach_'//motion_key(), length, 'approach of '//motion_name(run, k), &
-                           merge(-1.0_wp, accuracy%approach(k), endless), &
-                           abs(answer%contact%approach(k)), when(endless, unbounded))
-          end associate
-        end do
-        if (run%model%pairs > 0) call put_error('total_contact_force', force, 'total contact force', &
-                                                accuracy%total_force, sum(answer%contact%force), '')
-      end associate
+      call put('mesh_error_energy_norm', none, part, run%accuracy%energy_norm, &
+               'mesh: error in the energy norm')
+      if (run%model%pairs > 0) then
+        call put_word('max_pressure_is', limit_of_pressure(run), '')
+        call put('mesh_error_max_pressure', stress, known, run%accuracy%max_pressure)
+      end if
+      do k = 1, size(run%accuracy%zone)
+        call put_error('pressure_zone_'//text_of(k), stress, 'largest pressure of zone '//text_of(k), &
+                       run%accuracy%zone(k)%pressure, run%answer%zones(k)%max_pressure, &
+                       limit_of_pressure(run, k))
+        call put_error('half_width_zone_'//text_of(k), length, 'half-width of zone '//text_of(k), &
+                       run%accuracy%zone(k)%half_width, run%answer%zones(k)%half_width, '')
+      end do
+      do k = 1, run%motions%count
+        associate (endless => run%accuracy%approach_unbounded(k))
+          call put_error('approach_'//motion_key(), length, 'approach of '//motion_name(run, k), &
+                         merge(-1.0_wp, run%accuracy%approach(k), endless), &
+                         abs(run%answer%contact%approach(k)), when(endless, unbounded))
+        end associate
+      end do
+      if (run%model%pairs > 0) call put_error('total_contact_force', force, 'total contact force', &
+                                              run%accuracy%total_force, sum(run%answer%contact%force), '')
     end subroutine put_mesh_errors
 
     !> What rounding and errors of the stiffness make of the contact forces.
     subroutine put_sensitivity()
-      associate (sensitivity => run%accuracy%sensitivity)
-        if (.not. sensitivity%known) return
-        call put('contact_amplification', none, factor, sensitivity%amplification, &
-                 'they magnify errors of the stiffness', '   times at most')
-        call put('rounding_error_force', none, known, max(sensitivity%rounding, run%answer%rounding_error))
-        call put_word('weak_pairs', text_of(count(run%accuracy%weak)))
-      end associate
+      if (.not. run%accuracy%sensitivity%known) return
+      call put('contact_amplification', none, factor, run%accuracy%sensitivity%amplification, &
+               'they magnify errors of the stiffness', '   times at most')
+      call put('rounding_error_force', none, known, &
+               max(run%accuracy%sensitivity%rounding, run%answer%rounding_error))
+      call put_word('weak_pairs', text_of(count(run%accuracy%weak)), '')
     end subroutine put_sensitivity
 
     !> Of free motion k in the keys of figures: `12_2`.
@@ -189,26 +179,30 @@ contains
       key = text_of(run%model%node_id(run%motions%node(k)))//'_'//text_of(run%motions%component(k))
     end function motion_key
 
-    !> Add a number; it has that many digits in the listing.
-    subroutine put(key, unit, kind, value, name, note)
+    !> Add a number; it has that many digits in the listing, or stands there as `listed`.
+    subroutine put(key, unit, kind, value, name, note, listed)
       character(len=*), intent(in) :: key, unit
       integer, intent(in) :: kind
       real(wp), intent(in) :: value
-      character(len=*), intent(in), optional :: name, note   !! in the listing
+      character(len=*), intent(in), optional :: name, note, listed   !! in the listing
+      type(figure_type) :: figure
       character(len=25) :: full(1)
 
       full = full_numbers([kind], [value])
-      all%figure = [all%figure, figure_type(key, full(1), unit)]
-      if (present(name)) call show(name, listed_number(kind, value, 0.0_wp), note)
+      figure = figure_type(key, full(1), unit)
+      if (present(name)) figure%name = name
+      figure%listed = listed_number(kind, value, 0.0_wp)
+      if (present(listed)) figure%listed = listed
+      if (present(note)) figure%note = note
+      figures = [figures, figure]
     end subroutine put
 
     !> Add a word.
     subroutine put_word(key, word, name)
       character(len=*), intent(in) :: key, word
-      character(len=*), intent(in), optional :: name
+      character(len=*), intent(in) :: name   !! in the listing; empty: it is not there
 
-      all%figure = [all%figure, figure_type(key, word)]
-      if (present(name)) call show(name, word)
+      figures = [figures, figure_type(key, word, '', name, word)]
     end subroutine put_word
 
     !> Add an error of the mesh; the listing has it where it is known, or why it is not.
@@ -216,70 +210,15 @@ contains
       character(len=*), intent(in) :: key, unit, name   !! key and name are those of the figure
       real(wp), intent(in) :: error, value
       character(len=*), intent(in) :: limit             !! of the figure: `bounded`, `unbounded` ...
+      character(len=:), allocatable :: reason
 
-      call put('mesh_error_'//key, unit, known, error)
-      if (len(reason_of(limit)) > 0) then
-        call show('mesh: '//name, reason_of(limit))
-      else if (error >= 0.0_wp) then
-        call show('mesh: '//name, listed_number(estimate, error, value), '   '//percent(error, value))
+      reason = reason_of(limit)
+      if (len(reason) > 0) then
+        call put('mesh_error_'//key, unit, known, error, 'mesh: '//name, listed=reason)
+      else
+        call put('mesh_error_'//key, unit, known, error, when(error >= 0.0_wp, 'mesh: '//name), &
+                 '   '//percent(error, value), listed_number(estimate, error, value))
       end if
     end subroutine put_error
-
-    !> Show the last figure in the listing as a part.
-    subroutine show_part(name, value)
-      character(len=*), intent(in) :: name
-      real(wp), intent(in) :: value
-
-      call show(name, listed_number(rounding, value, 0.0_wp))
-    end subroutine show_part
-
-    !> Show the last figure in the listing.
-    subroutine show(name, listed, note)
-      character(len=*), intent(in) :: name, listed
-      character(len=*), intent(in), optional :: note
-
-      associate (last => all%figure(size(all%figure)))
-        last%name = name
-        last%listed = listed
-        if (present(note)) last%note = note
-      end associate
-    end subroutine show
   end function summarise
-
-  !> Lines of the listing.
-  subroutine list(self, file, keys)
-    class(summary_type), intent(in) :: self
-    class(text_file), intent(in) :: file  !! the listing
-    character(len=*), intent(in) :: keys(:)   !! of the figures; one that ends in `_`: all that begin so
-    integer :: i, k, n
-
-    do k = 1, size(keys)
-      n = len_trim(keys(k))
-      do i = 1, size(self%figure)
-        associate (one => self%figure(i))
-          if (one%key /= keys(k) .and. .not. (keys(k)(n:) == '_' .and. one%key(:n) == keys(k))) cycle
-          if (one%name /= '') call figure(file, one%name, trim(one%listed), trim(one%note))
-        end associate
-      end do
-    end do
-  end subroutine list
-
-  !> The file of the summary.
-  subroutine write_file(self, path, error)
-    class(summary_type), intent(in) :: self
-    character(len=*), intent(in) :: path                  !! of the file
-    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
-    type(text_file) :: file
-    integer :: i
-
-    call new_text_file(path, file, error)
-    if (allocated(error)) return
-    call file%line('key,value,unit')
-    do i = 1, size(self%figure)
-      associate (one => self%figure(i))
-        call file%line(trim(one%key)//','//trim(one%value)//','//one%unit)
-      end associate
-    end do
-    call file%finish(error)
-  end subroutine write_file
 end module epcont_report_summary

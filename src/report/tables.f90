@@ -4,18 +4,14 @@ module epcont_report_tables
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_contact_problem, only: pivot_record
-  use epcont_model_model, only: model_type
-  use epcont_report_columns, only: column, columns_text, state, table_type, whole, word
-  use epcont_report_limit, only: limit_of_zone
-  use epcont_report_number, only: estimate, known, no_number, number, off_curve, rounding
+  use epcont_report_columns, only: column, columns_text, estimate, force, known, length, no_number, number, &
+                                   off_curve, rounding, state, stress, table_type, whole, word
+  use epcont_report_outcome, only: limit_of_pressure
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: place_of_point
   implicit none
   private
-  public :: columns_in
-  public :: put_contact, put_zones, put_lines, put_bodies, put_nodes, put_elements, put_history, put_pivots
-
-  character(len=*), parameter :: length = 'length', force = 'force', stress = 'force/length2'
+  public :: columns_in, put_table
 
   type(column), parameter :: contact_columns(*) = [ &
     column(whole, 'pair', '', 'id of the CGAP, or its own where lines are in contact', width=10), &
@@ -122,62 +118,190 @@ contains
     if (len(text) > 0) text = 'Columns: '//text//'.'
   end function columns_in
 
-  !> Forces, pressures and gaps: a row a pair.
-  subroutine put_contact(run, table)
+  !> Write a table.
+  subroutine put_table(run, name, table)
     type(run_results), intent(in) :: run       !! what is known of the run
+    character(len=*), intent(in) :: name       !! of the table: that of its file, or lines or pivots
     type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: k
 
-    associate (model => run%model, contact => run%answer%contact, pressure => run%answer%pressure)
-      call table%begin('CONTACT', contact_columns, &
-                       [spread(0.0_wp, 1, 5), maxval(abs(contact%force)), maxval(pressure), &
-                        max(maxval(abs(contact%gap)), maxval(abs(run%answer%displacement)))])
-      do k = 1, model%pairs
-        call table%row([model%pair_id(k), model%node_id(model%pair_node(:, k))], &
-                       [model%x(:, model%pair_node(2, k)), model%normal(:, k), model%initial_gap(k), &
-                        contact%force(k), pressure(k), contact%gap(k)], &
-                       [merge('touching          ', 'open              ', contact%touching(k)), &
-                        merge(', force not unique', '                  ', contact%indeterminate(k))])
+    select case (name)
+    case ('contact')
+      call put_contact()
+    case ('zones')
+      call put_zones()
+    case ('lines')
+      call put_lines()
+    case ('bodies')
+      call put_bodies()
+    case ('nodes')
+      call put_nodes()
+    case ('elements')
+      call put_elements()
+    case ('history')
+      call put_history()
+    case ('pivots')
+      call put_pivots()
+    end select
+
+  contains
+
+    !> Forces, pressures and gaps: a row a pair.
+    subroutine put_contact()
+      associate (model => run%model, contact => run%answer%contact, pressure => run%answer%pressure)
+        call table%begin('CONTACT', contact_columns, &
+                         [spread(0.0_wp, 1, 5), maxval(abs(contact%force)), maxval(pressure), &
+                          max(maxval(abs(contact%gap)), maxval(abs(run%answer%displacement)))])
+        do k = 1, model%pairs
+          call table%row([model%pair_id(k), model%node_id(model%pair_node(:, k))], &
+                         [model%x(:, model%pair_node(2, k)), model%normal(:, k), model%initial_gap(k), &
+                          contact%force(k), pressure(k), contact%gap(k)], &
+                         [merge('touching          ', 'open              ', contact%touching(k)), &
+                          merge(', force not unique', '                  ', contact%indeterminate(k))])
+        end do
+      end associate
+    end subroutine put_contact
+
+    !> Runs of touching pairs: a row a zone.
+    subroutine put_zones()
+      character(len=12) :: limit
+
+      call table%begin('ZONES  (half-widths of whole zones, mirrored at lines of symmetry; '// &
+                       'forces of the pairs listed alone)', zone_columns)
+      do k = 1, size(run%answer%zones)
+        limit = limit_of_pressure(run, k)
+        associate (zone => run%answer%zones(k))
+          call table%row([k, run%model%pair_id([zone%first, zone%last])], &
+                         [zone%force, zone%max_pressure, zone%half_width_pairs, zone%half_width], [limit])
+        end associate
       end do
-    end associate
-  end subroutine put_contact
+    end subroutine put_zones
 
-  !> Runs of touching pairs: a row a zone.
-  subroutine put_zones(run, table)
-    type(run_results), intent(in) :: run       !! what is known of the run
-    type(table_type), intent(inout) :: table   !! the listing, or a file
-    character(len=12) :: limit
-    integer :: z
+    !> Contact of lines, seen from both sides: a row a contact.
+    subroutine put_lines()
+      call table%begin('LINES IN CONTACT  (pressures on the slave line are those above; '// &
+                       'on the master line by its nodes'' forces)', line_columns, &
+                       [0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
+      do k = 1, size(run%answer%lines)
+        associate (contact => run%model%line_contact(k), line => run%answer%lines(k))
+          call table%row([contact%last - contact%first + 1, contact%nodes_left_out, line%touching], &
+                         [line%force, line%on_slave, line%on_master, line%difference], &
+                         [first_of(contact%bconp), first_of(contact%slave_id), first_of(contact%master_id)])
+        end associate
+      end do
+    end subroutine put_lines
 
-    call table%begin('ZONES  (half-widths of whole zones, mirrored at lines of symmetry; '// &
-                     'forces of the pairs listed alone)', zone_columns)
-    do z = 1, size(run%answer%zones)
-      limit = limit_of_zone(run, z)
-      associate (zone => run%answer%zones(z))
-        call table%row([z, run%model%pair_id([zone%first, zone%last])], &
-                       [zone%force, zone%max_pressure, zone%half_width_pairs, zone%half_width], &
-                       [limit])
+    !> What contact exerts: a row a body that has elements. Rings have no x.
+    subroutine put_bodies()
+      type(column) :: columns(size(body_columns))
+
+      columns = body_columns
+      if (run%model%has_rings()) columns([3, 4, 6])%kind = no_number
+      associate (bodies => run%answer%bodies)
+        call table%begin('BODIES  (force of contact on each that has elements; error: of the mesh, '// &
+                         'estimated of up to '//text_of(most_bodies)//' bodies)', &
+                         columns, spread(maxval([(abs(bodies(k)%resultant), k=1, size(bodies))]), 1, 5))
+        do k = 1, size(bodies)
+          associate (force => bodies(k)%resultant, error => run%accuracy%body_force(:, k))
+            call table%row([bodies(k)%body, run%model%node_id(bodies(k)%node)], &
+                           [force(1), error(1), force(2), error], [character ::])
+          end associate
+        end do
       end associate
-    end do
-  end subroutine put_zones
+    end subroutine put_bodies
 
-  !> Contact of lines, seen from both sides: a row a contact.
-  subroutine put_lines(run, table)
-    type(run_results), intent(in) :: run       !! what is known of the run
-    type(table_type), intent(inout) :: table   !! the listing, or a file
-    integer :: c
+    !> Displacements and reactions: a row a node.
+    subroutine put_nodes()
+      call table%begin('DISPLACEMENTS AND REACTIONS', node_columns, &
+                       [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%displacement)), 1, 2), &
+                        spread(maxval(abs(run%answer%reaction)), 1, 2)])
+      do k = 1, run%model%nodes
+        call table%row([run%model%node_id(k)], &
+                       [run%model%x(:, k), run%answer%displacement(:, k), run%answer%reaction(:, k)], &
+                       [character ::])
+      end do
+    end subroutine put_nodes
 
-    call table%begin('LINES IN CONTACT  (pressures on the slave line are those above; '// &
-                     'on the master line by its nodes'' forces)', line_columns, &
-                     [0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
-    do c = 1, size(run%answer%lines)
-      associate (contact => run%model%line_contact(c), line => run%answer%lines(c))
-        call table%row([contact%last - contact%first + 1, contact%nodes_left_out, line%touching], &
-                       [line%force, line%on_slave, line%on_master, line%difference], &
-                       [first_of(contact%bconp), first_of(contact%slave_id), first_of(contact%master_id)])
+    !> Stresses and strains: a row an element.
+    subroutine put_elements()
+      call table%begin('STRESSES  (means over the element; largest: von Mises at the integration point '// &
+                       'nearest to that GRID of it)', element_columns, &
+                       [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%stress)), 1, 6), 0.0_wp, 0.0_wp, &
+                        maxval(run%answer%equivalent_strain), 0.0_wp])
+      do k = 1, run%model%elements
+        associate (model => run%model, answer => run%answer)
+          call table%row([model%element_id(k)], &
+                         [sum(model%coordinates(k), dim=2)/model%order(k), answer%stress(:, k), &
+                          answer%equivalent_stress(k), &
+                          answer%largest_stress(k), place_of_point(model, answer%largest_at(k)), &
+                          answer%equivalent_strain(k), answer%secant_modulus(k)], &
+                         [nearest_grid(answer%largest_at(k)), &
+                          merge('plastic ', 'elastic ', answer%plastic(k))])
+        end associate
+      end do
+    end subroutine put_elements
+
+    !> The plastic iteration: a row a solve.
+    subroutine put_history()
+      call table%begin('ITERATIONS', history_columns, [1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
+      do k = 1, size(run%answer%history)
+        associate (now => run%answer%history(k))
+          call table%row([k, now%iteration, now%touching, now%yielded, now%pivots], &
+                         [now%load_factor, now%change, now%residual, now%load_factor], [character ::])
+        end associate
+      end do
+    end subroutine put_history
+
+    !> The first pivots of the simplex: those of the last solve, below the pairs of the listing; in a file, of
+    !! all.
+    subroutine put_pivots()
+      call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
+      if (table%listed) call put_pivots_of(0, run%answer%contact%history)
+      if (table%listed) return
+      do k = 1, size(run%answer%history)
+        call put_pivots_of(k, run%answer%history(k)%pivot)
+      end do
+    end subroutine put_pivots
+
+    !> Those of one iteration.
+    subroutine put_pivots_of(iteration, pivot)
+      integer, intent(in) :: iteration
+      type(pivot_record), intent(in) :: pivot(:)
+      integer :: i
+
+      do i = 1, size(pivot)
+        call table%row([iteration, i], [pivot(i)%load_factor, pivot(i)%ratio], &
+                       [variable(pivot(i)%entered), variable(pivot(i)%left)])
+      end do
+    end subroutine put_pivots_of
+
+    !> Id of the corner of an element that an integration point is nearest to; of one in the middle: none.
+    pure function nearest_grid(point) result(id)
+      integer, intent(in) :: point
+      character(len=8) :: id
+      real(wp) :: x(2)
+
+      associate (model => run%model, e => run%model%point_element(point))
+        id = '-'
+        if (model%first_point(e + 1) - model%first_point(e) == 1) return
+        x = place_of_point(model, point)
+        associate (corner => model%connectivity(:model%corners(e), e))
+          id = text_of(model%node_id(corner(minloc((model%x(1, corner) - x(1))**2 + &
+                                                   (model%x(2, corner) - x(2))**2, dim=1))))
+        end associate
       end associate
-    end do
-  end subroutine put_lines
+    end function nearest_grid
+
+    !> A variable of the simplex by the id of its pair.
+    pure function variable(code) result(text)
+      integer, intent(in) :: code
+      character(len=14) :: text
+
+      text = 'load'
+      if (code > 0) text = 'force '//text_of(run%model%pair_id(code))
+      if (code < 0) text = 'gap '//text_of(run%model%pair_id(-code))
+    end function variable
+  end subroutine put_table
 
   !> The first of some ids, and a mark where there are more: the plan has them all.
   pure function first_of(id) result(text)
@@ -186,143 +310,4 @@ contains
 
     text = text_of(id(1))//merge('+', ' ', size(id) > 1)
   end function first_of
-
-  !> What contact exerts: a row a body that has elements. Rings have no x.
-  subroutine put_bodies(run, table)
-    type(run_results), intent(in) :: run       !! what is known of the run
-    type(table_type), intent(inout) :: table   !! the listing, or a file
-    type(column) :: columns(size(body_columns))
-    real(wp) :: scale
-    integer :: i
-
-    columns = body_columns
-    if (run%model%has_rings()) columns([3, 4, 6])%kind = no_number
-    associate (bodies => run%answer%bodies)
-      scale = maxval([(abs(bodies(i)%resultant), i=1, size(bodies))])
-      call table%begin('BODIES  (force of contact on each that has elements; error: of the mesh, '// &
-                       'estimated of up to '//text_of(most_bodies)//' bodies)', &
-                       columns, spread(scale, 1, 5))
-      do i = 1, size(bodies)
-        associate (force => bodies(i)%resultant, error => run%accuracy%body_force(:, i))
-          call table%row([bodies(i)%body, run%model%node_id(bodies(i)%node)], &
-                         [force(1), error(1), force(2), error], [character ::])
-        end associate
-      end do
-    end associate
-  end subroutine put_bodies
-
-  !> Displacements and reactions: a row a node.
-  subroutine put_nodes(run, table)
-    type(run_results), intent(in) :: run       !! what is known of the run
-    type(table_type), intent(inout) :: table   !! the listing, or a file
-    integer :: i
-
-    associate (model => run%model, u => run%answer%displacement, reaction => run%answer%reaction)
-      call table%begin('DISPLACEMENTS AND REACTIONS', node_columns, &
-                       [0.0_wp, 0.0_wp, spread(maxval(abs(u)), 1, 2), spread(maxval(abs(reaction)), 1, 2)])
-      do i = 1, model%nodes
-        call table%row([model%node_id(i)], [model%x(:, i), u(:, i), reaction(:, i)], [character ::])
-      end do
-    end associate
-  end subroutine put_nodes
-
-  !> Stresses and strains: a row an element.
-  subroutine put_elements(run, table)
-    type(run_results), intent(in) :: run       !! what is known of the run
-    type(table_type), intent(inout) :: table   !! the listing, or a file
-    integer :: e
-
-    associate (model => run%model, answer => run%answer)
-      call table%begin('STRESSES  (means over the element; largest: von Mises at the integration point '// &
-                       'nearest to that GRID of it)', element_columns, &
-                       [0.0_wp, 0.0_wp, spread(maxval(abs(answer%stress)), 1, 6), 0.0_wp, 0.0_wp, &
-                        maxval(answer%equivalent_strain), 0.0_wp])
-      do e = 1, model%elements
-        call table%row([model%element_id(e)], &
-                       [sum(model%coordinates(e), dim=2)/model%order(e), answer%stress(:, e), &
-                        answer%equivalent_stress(e), &
-                        answer%largest_stress(e), place_of_point(model, answer%largest_at(e)), &
-                        answer%equivalent_strain(e), answer%secant_modulus(e)], &
-                       [nearest_grid(model, answer%largest_at(e)), &
-                        merge('plastic ', 'elastic ', answer%plastic(e))])
-      end do
-    end associate
-  end subroutine put_elements
-
-  !> Id of the corner of an element that an integration point is nearest to; of one in the middle: none.
-  pure function nearest_grid(model, point) result(id)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: point
-    character(len=8) :: id
-    real(wp) :: x(2)
-
-    associate (e => model%point_element(point))
-      id = '-'
-      if (model%first_point(e + 1) - model%first_point(e) == 1) return
-      x = place_of_point(model, point)
-      associate (corner => model%connectivity(:model%corners(e), e))
-        id = text_of(model%node_id(corner(minloc((model%x(1, corner) - x(1))**2 + &
-                                                 (model%x(2, corner) - x(2))**2, dim=1))))
-      end associate
-    end associate
-  end function nearest_grid
-
-  !> The plastic iteration: a row a solve.
-  subroutine put_history(run, table)
-    type(run_results), intent(in) :: run       !! what is known of the run
-    type(table_type), intent(inout) :: table   !! the listing, or a file
-    integer :: k
-
-    call table%begin('ITERATIONS', history_columns, [1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
-    do k = 1, size(run%answer%history)
-      associate (now => run%answer%history(k))
-        call table%row([k, now%iteration, now%touching, now%yielded, now%pivots], &
-                       [now%load_factor, now%change, now%residual, now%load_factor], [character ::])
-      end associate
-    end do
-  end subroutine put_history
-
-  !> The first pivots of the simplex: those of the last solve, below the pairs of the listing; in a file, of all.
-  subroutine put_pivots(run, table)
-    type(run_results), intent(in) :: run       !! what is known of the run
-    type(table_type), intent(inout) :: table   !! the listing, or a file
-    integer :: k
-
-    call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
-    if (table%listed) then
-      call put(0, run%answer%contact%history)
-    else
-      do k = 1, size(run%answer%history)
-        call put(k, run%answer%history(k)%pivot)
-      end do
-    end if
-
-  contains
-
-    subroutine put(iteration, pivots)
-      integer, intent(in) :: iteration
-      type(pivot_record), intent(in) :: pivots(:)
-      integer :: i
-
-      do i = 1, size(pivots)
-        call table%row([iteration, i], [pivots(i)%load_factor, pivots(i)%ratio], &
-                       [variable(run%model, pivots(i)%entered), variable(run%model, pivots(i)%left)])
-      end do
-    end subroutine put
-  end subroutine put_pivots
-
-  !> A variable of the simplex by the id of its pair.
-  pure function variable(model, code) result(text)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: code
-    character(len=14) :: text
-
-    if (code == 0) then
-      text = 'load'
-    else if (code > 0) then
-      text = 'force '//text_of(model%pair_id(code))
-    else
-      text = 'gap '//text_of(model%pair_id(-code))
-    end if
-  end function variable
 end module epcont_report_tables

@@ -8,16 +8,15 @@ module epcont_report_vtk
   use epcont_base_base64, only: base64
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: newline, text_of
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_report_file, only: new_text_file, text_file
-  use epcont_report_layout, only: newline
   use epcont_report_names, only: when
   use epcont_report_run, only: run_results
   use epcont_result_contact_line, only: contact_line, find_contact_line
   implicit none
   private
-  public :: write_vtk_bodies, write_vtk_contact
+  public :: write_vtk
 
   !> Kinds of cells (vtkCellType.h).
   integer, parameter :: vtk_vertex = 1, vtk_line = 3
@@ -29,106 +28,181 @@ module epcont_report_vtk
     integer, allocatable :: point(:)    !! of one cell after the other, counted from 1
   end type vtk_cells
 
-  !> A grid that is being written: arrays of the points, then those of the cells.
-  type, extends(text_file) :: vtk_grid
-  contains
-    procedure :: begin
-    procedure :: end_grid
-    generic :: put => put_integers, put_reals, put_fields
-    procedure, private :: put_integers, put_reals, put_fields, put_bytes
-  end type vtk_grid
-
 contains
 
-  !> DECK.vtu: nodes that belong to elements are the points, in the order of the deck; elements are the cells.
-  subroutine write_vtk_bodies(run, path, error)
+  !> DECK.vtu, and DECK.contact.vtu where there are pairs.
+  subroutine write_vtk(run, stem, error)
     type(run_results), intent(in) :: run                  !! what is known of the run
-    character(len=*), intent(in) :: path                  !! of the file
-    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
-    type(vtk_grid) :: grid
-    real(wp), allocatable :: force(:, :)
-    integer, allocatable :: last(:), node(:), point(:)
-    integer :: i
+    character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
+    type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
+    type(text_file) :: file
+    interface put
+      procedure :: put_integers, put_reals, put_fields
+    end interface put
 
-    associate (model => run%model, answer => run%answer, start => run%model%around%start)
-      node = pack([(i, i=1, model%nodes)], start(2:) > start(:model%nodes))
-      allocate (point(model%nodes))
-      point(node) = [(i, i=1, size(node))]
-      last = model%order
-      do i = 2, size(last)
-        last(i) = last(i - 1) + last(i)
-      end do
-      call grid%begin(path, run%outcome%status, model%x(:, node), &
-                      vtk_cells(model%kinds(model%kind)%vtk, last, &
-                                point(pack(model%connectivity, model%connectivity > 0))), error)
+    call write_bodies()
+    if (run%model%pairs > 0 .and. .not. allocated(error)) call write_contact()
+
+  contains
+
+    !> Bodies: nodes that belong to elements are the points, in the order of the deck; elements are the cells.
+    subroutine write_bodies()
+      real(wp), allocatable :: force(:, :)
+      integer, allocatable :: last(:), node(:), point(:)
+      integer :: i
+
+      associate (model => run%model, answer => run%answer, start => run%model%around%start)
+        node = pack([(i, i=1, model%nodes)], start(2:) > start(:model%nodes))
+        allocate (point(model%nodes))
+        point(node) = [(i, i=1, size(node))]
+        last = model%order
+        do i = 2, size(last)
+          last(i) = last(i - 1) + last(i)
+        end do
+        call begin('.vtu', model%x(:, node), &
+                   vtk_cells(model%kinds(model%kind)%vtk, last, &
+                             point(pack(model%connectivity, model%connectivity > 0))))
+        if (allocated(error)) return
+        call file%line('<PointData Vectors="displacement">')
+        call put('node_id', model%node_id(node))
+        call put('displacement', answer%displacement(:, node))
+        force = pair_forces(model, answer%contact%force)
+        call put('contact_force', force(:, node))
+        call put('reaction', answer%reaction(:, node))
+        call file%line('</PointData>'//newline//'<CellData Scalars="equivalent_stress">')
+        call put('element_id', model%element_id)
+        call put('body', model%body(model%connectivity(1, :)))
+        call put('property_id', model%property_id(model%section))
+        call put('material_id', model%material_id(model%section))
+        call put('stress', answer%stress)
+        call put('equivalent_stress', answer%equivalent_stress)
+        call put('max_equivalent_stress', answer%largest_stress)
+        call put('equivalent_strain', answer%equivalent_strain)
+        call put('secant_modulus', answer%secant_modulus)
+        call put('yielded', merge(1, 0, answer%plastic))
+      end associate
+      call end_grid()
+    end subroutine write_bodies
+
+    !> Contact: pairs are the points, each at its node of the boundary, in the order of the deck; cells are
+    !! the lines between neighbours, and the points of pairs that have none.
+    subroutine write_contact()
+      type(contact_line) :: line
+      type(vtk_cells) :: cells
+      integer, dimension(run%model%pairs) :: bconp, zone   ! 0: of a CGAP; none
+      real(wp) :: force(2, run%model%pairs)
+      integer :: k
+
+      associate (model => run%model, answer => run%answer, contact => run%answer%contact)
+        line = find_contact_line(model)
+        cells = cells_along(line)
+        call begin('.contact.vtu', model%x(:, line%node), cells)
+        if (allocated(error)) return
+        do k = 1, model%pairs
+          force(:, k) = contact%force(k)*model%normal(:, k)
+          if (line%node(k) /= model%pair_node(2, k)) force(:, k) = -force(:, k)
+        end do
+        zone = 0
+        do k = 1, size(answer%zones)
+          zone(answer%zones(k)%pairs) = k
+        end do
+        bconp = 0
+        do k = 1, size(model%line_contact)
+          bconp(model%line_contact(k)%first:model%line_contact(k)%last) = model%line_contact(k)%bconp(1)
+        end do
+        call file%line('<PointData Scalars="pressure" Vectors="displacement">')
+        call put('pair_id', model%pair_id)
+        call put('node_a', model%node_id(model%pair_node(1, :)))
+        call put('node_b', model%node_id(model%pair_node(2, :)))
+        call put('displacement', answer%displacement(:, line%node))
+        call put('contact_force', force)
+        call put('pressure', max(0.0_wp, answer%pressure))
+        call put('has_pressure', merge(1, 0, answer%pressure >= 0.0_wp))
+        call put('gap', contact%gap)
+        call put('touching', merge(1, 0, contact%touching))
+        call put('zone', zone)
+        call file%line('</PointData>'//newline//'<CellData Scalars="bconp">')
+        call put('bconp', bconp(cells%point(cells%last)))
+      end associate
+      call end_grid()
+    end subroutine write_contact
+
+    !> Begin a file with the points and the cells; arrays of the points come next.
+    subroutine begin(suffix, x, cells)
+      character(len=*), intent(in) :: suffix   !! of the file
+      real(wp), intent(in) :: x(:, :)         !! of the points [length] [2, points]
+      type(vtk_cells), intent(in) :: cells    !! how the points are joined
+
+      call new_text_file(stem//suffix, file, error)
       if (allocated(error)) return
-      call grid%line('<PointData Vectors="displacement">')
-      call grid%put('node_id', model%node_id(node))
-      call grid%put('displacement', answer%displacement(:, node))
-      force = pair_forces(model, answer%contact%force)
-      call grid%put('contact_force', force(:, node))
-      call grid%put('reaction', answer%reaction(:, node))
-      call grid%line('</PointData>'//newline//'<CellData Scalars="equivalent_stress">')
-      call grid%put('element_id', model%element_id)
-      call grid%put('body', model%body(model%connectivity(1, :)))
-      call grid%put('property_id', model%property_id(model%section))
-      call grid%put('material_id', model%material_id(model%section))
-      call grid%put('stress', answer%stress)
-      call grid%put('equivalent_stress', answer%equivalent_stress)
-      call grid%put('max_equivalent_stress', answer%largest_stress)
-      call grid%put('equivalent_strain', answer%equivalent_strain)
-      call grid%put('secant_modulus', answer%secant_modulus)
-      call grid%put('yielded', merge(1, 0, answer%plastic))
-    end associate
-    call grid%end_grid(error)
-  end subroutine write_vtk_bodies
+      call file%line('<?xml version="1.0"?>')
+      call file%line('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
+                     when(transfer(1, 0_int8) == 1_int8, 'LittleEndian', 'BigEndian')// &
+                     '" header_type="UInt64">')
+      call file%line('<UnstructuredGrid>'//newline//'<FieldData>')
+      call put_bytes('Int32', 'exit_status', ' NumberOfTuples="1"', transfer([run%outcome%status], [0_int8]))
+      call file%line('</FieldData>')
+      call file%line('<Piece NumberOfPoints="'//text_of(size(x, 2))//'" NumberOfCells="'// &
+                     text_of(size(cells%kind))//'">')
+      call file%line('<Points>')
+      call put('Points', x)
+      call file%line('</Points>'//newline//'<Cells>')
+      call put('connectivity', cells%point - 1)
+      call put('offsets', cells%last)
+      call put_bytes('UInt8', 'types', '', int(cells%kind, int8))
+      call file%line('</Cells>')
+    end subroutine begin
 
-  !> DECK.contact.vtu: pairs are the points, each at its node of the boundary, in the order of the deck; cells
-  !! are the lines between neighbours, and the points of pairs that have none.
-  subroutine write_vtk_contact(run, path, error)
-    type(run_results), intent(in) :: run                  !! what is known of the run
-    character(len=*), intent(in) :: path                  !! of the file
-    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
-    type(contact_line) :: line
-    type(vtk_cells) :: cells
-    type(vtk_grid) :: grid
-    integer, dimension(run%model%pairs) :: bconp, zone   ! 0: of a CGAP; none
-    real(wp) :: force(2, run%model%pairs)
-    integer :: k
+    !> Close the file and give it its name.
+    subroutine end_grid()
 
-    associate (model => run%model, answer => run%answer, contact => run%answer%contact)
-      line = find_contact_line(model)
-      cells = cells_along(line)
-      call grid%begin(path, run%outcome%status, model%x(:, line%node), cells, error)
-      if (allocated(error)) return
-      do k = 1, model%pairs
-        force(:, k) = contact%force(k)*model%normal(:, k)
-        if (line%node(k) /= model%pair_node(2, k)) force(:, k) = -force(:, k)
-      end do
-      zone = 0
-      do k = 1, size(answer%zones)
-        zone(answer%zones(k)%pairs) = k
-      end do
-      bconp = 0
-      do k = 1, size(model%line_contact)
-        bconp(model%line_contact(k)%first:model%line_contact(k)%last) = model%line_contact(k)%bconp(1)
-      end do
-      call grid%line('<PointData Scalars="pressure" Vectors="displacement">')
-      call grid%put('pair_id', model%pair_id)
-      call grid%put('node_a', model%node_id(model%pair_node(1, :)))
-      call grid%put('node_b', model%node_id(model%pair_node(2, :)))
-      call grid%put('displacement', answer%displacement(:, line%node))
-      call grid%put('contact_force', force)
-      call grid%put('pressure', max(0.0_wp, answer%pressure))
-      call grid%put('has_pressure', merge(1, 0, answer%pressure >= 0.0_wp))
-      call grid%put('gap', contact%gap)
-      call grid%put('touching', merge(1, 0, contact%touching))
-      call grid%put('zone', zone)
-      call grid%line('</PointData>'//newline//'<CellData Scalars="bconp">')
-      call grid%put('bconp', bconp(cells%point(cells%last)))
-    end associate
-    call grid%end_grid(error)
-  end subroutine write_vtk_contact
+      call file%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>')
+      call file%line('</VTKFile>')
+      call file%finish(error)
+    end subroutine end_grid
+
+    !> One integer a point or cell.
+    subroutine put_integers(name, values)
+      character(len=*), intent(in) :: name   !! of the array
+      integer, intent(in) :: values(:)       !! [points] or [cells]
+
+      call put_bytes('Int32', name, '', transfer(values, [0_int8]))
+    end subroutine put_integers
+
+    !> One real a point or cell.
+    subroutine put_reals(name, values)
+      character(len=*), intent(in) :: name   !! of the array
+      real(wp), intent(in) :: values(:)      !! [points] or [cells]
+
+      call put_bytes('Float64', name, '', transfer(values, [0_int8]))
+    end subroutine put_reals
+
+    !> One vector of the plane a point or cell, or one symmetric tensor, in VTK's order of components.
+    subroutine put_fields(name, values)
+      character(len=*), intent(in) :: name   !! of the array
+      real(wp), intent(in) :: values(:, :)   !! vectors [2, any], or tensors: xx, yy, zz, xy [4, any]
+      character(len=*), parameter :: tensor = ' NumberOfComponents="6" ComponentName0="XX" '// &
+        'ComponentName1="YY" ComponentName2="ZZ" ComponentName3="XY" ComponentName4="YZ" ComponentName5="XZ"'
+      real(wp), allocatable :: space(:, :)
+      logical :: is_vector
+
+      is_vector = size(values, 1) == 2
+      allocate (space(merge(3, 6, is_vector), size(values, 2)), source=0.0_wp)
+      space(:size(values, 1), :) = values
+      call put_bytes('Float64', name, when(is_vector, ' NumberOfComponents="3"', tensor), &
+                          transfer(space, [0_int8]))
+    end subroutine put_fields
+
+    !> One array, with further attributes, each behind a blank.
+    subroutine put_bytes(type, name, shape, bytes)
+      character(len=*), intent(in) :: type, name, shape
+      integer(int8), intent(in) :: bytes(:)
+
+      call file%line('<DataArray type="'//type//'" Name="'//name//'"'//shape//' format="binary">')
+      call file%line(base64([transfer(int(size(bytes), i8), bytes), bytes]))
+      call file%line('</DataArray>')
+    end subroutine put_bytes
+  end subroutine write_vtk
 
   !> Lines between neighbouring pairs, then pairs that have no neighbour.
   pure function cells_along(line) result(cells)
@@ -159,88 +233,4 @@ contains
     cells%last = [(2*k, k=1, segments), (2*segments + k, k=1, size(alone))]
     cells%point = [segment(:, :segments), alone]
   end function cells_along
-
-  !> Begin a file with the points and the cells; arrays of the points come next.
-  subroutine begin(self, path, status, x, cells, error)
-    class(vtk_grid), intent(out) :: self
-    character(len=*), intent(in) :: path    !! of the file
-    integer, intent(in) :: status           !! exit status of the run: 0 where the answer is valid
-    real(wp), intent(in) :: x(:, :)         !! of the points [length] [2, points]
-    type(vtk_cells), intent(in) :: cells    !! how the points are joined
-    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
-
-    call new_text_file(path, self, error)
-    if (allocated(error)) return
-    call self%line('<?xml version="1.0"?>')
-    call self%line('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
-                   when(transfer(1, 0_int8) == 1_int8, 'LittleEndian', 'BigEndian')// &
-                   '" header_type="UInt64">')
-    call self%line('<UnstructuredGrid>'//newline//'<FieldData>')
-    call self%put_bytes('Int32', 'exit_status', ' NumberOfTuples="1"', transfer([status], [0_int8]))
-    call self%line('</FieldData>')
-    call self%line('<Piece NumberOfPoints="'//text_of(size(x, 2))//'" NumberOfCells="'// &
-                   text_of(size(cells%kind))//'">')
-    call self%line('<Points>')
-    call self%put('Points', x)
-    call self%line('</Points>'//newline//'<Cells>')
-    call self%put('connectivity', cells%point - 1)
-    call self%put('offsets', cells%last)
-    call self%put_bytes('UInt8', 'types', '', int(cells%kind, int8))
-    call self%line('</Cells>')
-  end subroutine begin
-
-  !> Close the file and give it its name.
-  subroutine end_grid(self, error)
-    class(vtk_grid), intent(inout) :: self
-    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
-
-    call self%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>'//newline//'</VTKFile>')
-    call self%finish(error)
-  end subroutine end_grid
-
-  !> One integer a point or cell.
-  subroutine put_integers(self, name, values)
-    class(vtk_grid), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the array
-    integer, intent(in) :: values(:)       !! [points] or [cells]
-
-    call self%put_bytes('Int32', name, '', transfer(values, [0_int8]))
-  end subroutine put_integers
-
-  !> One real a point or cell.
-  subroutine put_reals(self, name, values)
-    class(vtk_grid), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the array
-    real(wp), intent(in) :: values(:)      !! [points] or [cells]
-
-    call self%put_bytes('Float64', name, '', transfer(values, [0_int8]))
-  end subroutine put_reals
-
-  !> One vector of the plane a point or cell, or one symmetric tensor, in VTK's order of components.
-  subroutine put_fields(self, name, values)
-    class(vtk_grid), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the array
-    real(wp), intent(in) :: values(:, :)   !! vectors [2, any], or tensors: xx, yy, zz, xy [4, any]
-    character(len=*), parameter :: tensor = ' NumberOfComponents="6" ComponentName0="XX" '// &
-      'ComponentName1="YY" ComponentName2="ZZ" ComponentName3="XY" ComponentName4="YZ" ComponentName5="XZ"'
-    real(wp), allocatable :: space(:, :)
-    logical :: is_vector
-
-    is_vector = size(values, 1) == 2
-    allocate (space(merge(3, 6, is_vector), size(values, 2)), source=0.0_wp)
-    space(:size(values, 1), :) = values
-    call self%put_bytes('Float64', name, when(is_vector, ' NumberOfComponents="3"', tensor), &
-                        transfer(space, [0_int8]))
-  end subroutine put_fields
-
-  !> One array, with further attributes, each behind a blank.
-  subroutine put_bytes(self, type, name, shape, bytes)
-    class(vtk_grid), intent(in) :: self
-    character(len=*), intent(in) :: type, name, shape
-    integer(int8), intent(in) :: bytes(:)
-
-    call self%line('<DataArray type="'//type//'" Name="'//name//'"'//shape//' format="binary">')
-    call self%line(base64([transfer(int(size(bytes), i8), bytes), bytes]))
-    call self%line('</DataArray>')
-  end subroutine put_bytes
 end module epcont_report_vtk

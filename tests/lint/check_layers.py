@@ -15,7 +15,7 @@ LAYERS = ["base", "system", "deck", "element", "geometry", "model", "contact_geo
 # A certificate computed by the code it certifies is worth nothing.
 SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "linear", "plasticity"}}
 VERSION = "src/base/version.f90"
-PAGE = [VERSION, "src/app/man_page.f90", "src/app/options.f90"]   # what the manual page is made of
+PAGE = [VERSION, "src/app/help.f90", "src/app/options.f90"]   # what the manual page is made of
 FILE_LINES, PROCEDURE_LINES, COLUMNS = 400, 80, 132
 
 USE = re.compile(r"\s*use\s+epcont_(\w+)\b(\s*,\s*only\s*:)?", re.IGNORECASE)

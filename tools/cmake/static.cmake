@@ -36,7 +36,7 @@ if(NOT EPCONT_STATIC STREQUAL "OFF" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU"
     set(is_static TRUE)
     add_library(linked_statically INTERFACE)
     target_link_libraries(linked_statically INTERFACE ${archives})
-    # src/app/start.f90 goes before OpenBLAS, which begins before the main program does.
+    # prepare_start of src/app/process.f90 goes before OpenBLAS, which begins before the main program does.
     target_link_options(linked_statically INTERFACE ${options} -Wl,--undefined=epcont_prepare_start,-init=epcont_prepare_start)
     set(linear_algebra $<IF:$<BOOL:$<TARGET_PROPERTY:LINKED_SHARED>>,LAPACK::LAPACK,linked_statically>)
     message(STATUS "Linked statically: ${folder}/libopenblas.a, libgfortran, libgcc")
