@@ -66,6 +66,7 @@ contains
     call self%show(now)
   end subroutine solved
 
+  !> Show how far it is, where that is wanted.
   subroutine show(self, now)
     class(progress_type), intent(inout) :: self
     type(iteration_record), intent(in) :: now

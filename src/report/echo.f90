@@ -20,6 +20,7 @@ contains
   subroutine list_cards(file, deck)
     class(text_file), intent(inout) :: file   !! the listing
     type(deck_type), intent(in) :: deck       !! with its text
+    integer, allocatable :: place(:)   ! of each kind of cards, by name
     integer :: k, line
 
     if (deck%echo == 'UNSORT' .or. deck%echo == 'BOTH') then
@@ -30,22 +31,12 @@ contains
     end if
     if (deck%echo /= 'SORT' .and. deck%echo /= 'BOTH') return
     call file%heading('CARDS OF THE DECK, SORTED')
+    place = [(count(lle(deck%card%entry%name, deck%card(k)%entry%name)), k=1, size(deck%card))]
     do k = 1, size(deck%card)
-      call list_kind(by_name(k))
+      call list_kind(findloc(place, k, dim=1))
     end do
 
   contains
-
-    !> The kind of cards whose name is the k-th.
-    pure integer function by_name(k)
-      integer, intent(in) :: k
-      integer :: one
-
-      do by_name = 1, size(deck%card)
-        if (count([(lle(deck%card(one)%entry%name, deck%card(by_name)%entry%name), &
-                    one=1, size(deck%card))]) == k) return
-      end do
-    end function by_name
 
     !> Cards of one kind by their numbers, with the lines that continue them.
     subroutine list_kind(kind)
@@ -70,13 +61,13 @@ contains
     !> A line with its number in its file, unless it is blank.
     subroutine list_line(line)
       integer, intent(in) :: line
-      character(len=:), allocatable :: place, text
+      character(len=:), allocatable :: number, text
       integer :: from
 
       if (deck%source%blank(line)) return
-      place = included_file(deck%source, line)//text_of(deck%source%line(line)%number)
+      number = included_file(deck%source, line)//text_of(deck%source%line(line)%number)
       text = printable(deck%source%text_of_line(line))
-      call file%line(right(place, 9)//'  '//text(:min(width, len(text))))
+      call file%line(right(number, 9)//'  '//text(:min(width, len(text))))
       do from = width + 1, len(text), width
         call file%line(repeat(' ', 11)//text(from:min(from + width - 1, len(text))))
       end do

@@ -21,8 +21,6 @@ module epcont_report_file
   contains
     procedure :: line
     procedure :: heading
-    procedure :: figure
-    procedure :: wrap
     procedure :: finish
   end type text_file
 
@@ -212,36 +210,6 @@ contains
     call self%line('')
     call self%line(text//self%mark)
   end subroutine heading
-
-  !> Add a named figure: its value at the right of 13 columns, and what is to be said of it.
-  subroutine figure(self, name, value, note)
-    class(text_file), intent(inout) :: self
-    character(len=*), intent(in) :: name, value   !! in at most 44 characters; any text
-    character(len=*), intent(in) :: note          !! behind the value
-    character(len=44) :: label
-    character(len=max(13, len(value))) :: field
-
-    label = name
-    field = repeat(' ', len(field) - len(value))//value
-    call self%line('  '//label//field//note)
-  end subroutine figure
-
-  !> Add text, on lines of at most 132 columns.
-  subroutine wrap(self, text)
-    class(text_file), intent(inout) :: self
-    character(len=*), intent(in) :: text   !! what would be a long line
-    integer, parameter :: columns = 132
-    integer :: from, to
-
-    from = 1
-    do while (len(text) - from >= columns - 4)
-      to = from + index(text(from:from + columns - 4), ' ', back=.true.) - 1
-      if (to <= from) to = from + columns - 4
-      call self%line(repeat(' ', merge(4, 0, from > 1))//text(from:to))
-      from = to + 1
-    end do
-    call self%line(repeat(' ', merge(4, 0, from > 1))//text(from:))
-  end subroutine wrap
 
   !> Close the file and give it its name.
   subroutine finish(self, error)

@@ -110,7 +110,7 @@ contains
       if (len(run%outcome%sentence) > 0) then   ! not valid: the headings that follow say so too
         listing%mark = '  *NOT VALID: '//run%outcome%word//'*'
         call listing%line('')
-        call listing%wrap('  *NOT VALID*  '//run%outcome%word//': '//run%outcome%sentence)
+        call wrap('  *NOT VALID*  '//run%outcome%word//': '//run%outcome%sentence)
       end if
       if (run%outcome%has_answer) then
         if (any([(run%model%can_yield(k), k=1, run%model%elements)])) call list_iterations()
@@ -135,6 +135,31 @@ contains
       call listing%line('  '//text)
     end subroutine say
 
+    !> Add a named figure: its value at the right of 13 columns, and what is to be said of it.
+    subroutine list_figure(name, value, note)
+      character(len=*), intent(in) :: name, value, note   ! the name in at most 44 characters
+      character(len=44) :: label
+
+      label = name
+      call say(label//right(value, 13)//note)
+    end subroutine list_figure
+
+    !> Add text, on lines of at most 132 columns.
+    subroutine wrap(text)
+      character(len=*), intent(in) :: text
+      integer, parameter :: columns = 132
+      integer :: from, to
+
+      from = 1
+      do while (len(text) - from >= columns - 4)
+        to = from + index(text(from:from + columns - 4), ' ', back=.true.) - 1
+        if (to <= from) to = from + columns - 4
+        call listing%line(repeat(' ', merge(4, 0, from > 1))//text(from:to))
+        from = to + 1
+      end do
+      call listing%line(repeat(' ', merge(4, 0, from > 1))//text(from:))
+    end subroutine wrap
+
     !> Figures of the summary that have a name; of a key that ends in `_` all that begin so.
     subroutine list_figures(keys)
       character(len=*), intent(in) :: keys(:)
@@ -146,7 +171,7 @@ contains
           if (figures(i)%key /= keys(k) .and. &
               .not. (keys(k)(n:) == '_' .and. figures(i)%key(:n) == keys(k))) cycle
           if (figures(i)%name /= '') &
-            call listing%figure(figures(i)%name, trim(figures(i)%listed), trim(figures(i)%note))
+            call list_figure(figures(i)%name, trim(figures(i)%listed), trim(figures(i)%note))
         end do
       end do
     end subroutine list_figures
@@ -178,12 +203,12 @@ contains
 
       if (run%remarks%warnings + run%remarks%notes == 0) return
       call listing%heading('WARNINGS AND NOTES  ('//plural(run%remarks%warnings, 'warning')//', '// &
-                   plural(run%remarks%notes, 'note')//')')
+                           plural(run%remarks%notes, 'note')//')')
       text = run%remarks%of_deck//run%remarks%of_answer//run%remarks%noted
       from = 1
       do while (from <= len(text))
         to = from + index(text(from:), newline) - 1
-        call listing%wrap('  '//text(from:to - 1))
+        call wrap('  '//text(from:to - 1))
         from = to + 1
       end do
     end subroutine list_remarks
@@ -243,7 +268,7 @@ contains
         'pairs_in_contact', 'approach_', 'plastic_elements', 'max_equivalent_stress', 'max_displacement', &
         'status'])
       call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
-                   short_real(run%certificate%tolerance)//')')
+                           short_real(run%certificate%tolerance)//')')
       call list_figures([character(len=25) :: 'equilibrium_residual', 'smallest_', &
         'largest_force_gap_product', 'stress_off_curve', 'curve_tolerance', 'stress_off_curve_limit', &
         'energy_balance'])
@@ -270,10 +295,10 @@ contains
       type(overlap_place), intent(in) :: place
 
       if (place%ratio < little) then
-        call listing%figure(name, '< '//short_real(little), '')
+        call list_figure(name, '< '//short_real(little), '')
       else
-        call listing%figure(name, estimate_number(place%ratio), &
-                            '   '//short_real(place%depth)//' at '//point_name(place%x))
+        call list_figure(name, estimate_number(place%ratio), &
+                         '   '//short_real(place%depth)//' at '//point_name(place%x))
       end if
     end subroutine list_place
 
@@ -283,19 +308,19 @@ contains
 
       in_single = run%answer%precision == precision_single
       call list_figures(['iteration_error_', 'condition       '])
-      if (in_single) call listing%figure('error that single precision leaves', &
-                                         short_real(run%answer%rounding_error), '')
+      if (in_single) call list_figure('error that single precision leaves', &
+                                      short_real(run%answer%rounding_error), '')
       if (run%answer%precision /= run%answer%asked_precision) call say( &
         '  (factors in double: in single precision '// &
         when(run%answer%asked_precision == precision_single, 'they left an error of more than '// &
              short_real(run%answer%largest_rounding_error)//', or no answer)', &
              'there was no answer that refinement could reach)'))
-      if (.not. in_single) call listing%figure('digits that rounding leaves, at least', &
-                                               text_of(max(0, floor(-log10(run%answer%rounding())))), '')
-      call listing%figure('linear residual', rounding_number(run%certificate%equilibrium), '')
+      if (.not. in_single) call list_figure('digits that rounding leaves, at least', &
+                                            text_of(max(0, floor(-log10(run%answer%rounding())))), '')
+      call list_figure('linear residual', rounding_number(run%certificate%equilibrium), '')
       if (run%accuracy%sensitivity%known .and. .not. in_single) &
-        call listing%figure('rounding in the contact forces, at most', &
-                            rounding_number(run%accuracy%sensitivity%rounding), '   of the largest')
+        call list_figure('rounding in the contact forces, at most', &
+                         rounding_number(run%accuracy%sensitivity%rounding), '   of the largest')
     end subroutine list_rounding
 
     !> What the mesh leaves, and the pairs that may as well be open, or touch.
@@ -325,16 +350,15 @@ contains
     !> Elements that are too stiff for what their material does, and displacements that are not small.
     subroutine list_doubtful_elements()
       if (run%answer%locking%elements > 0) then
-        call listing%figure('three-node elements of constant volume', &
-                            text_of(run%answer%locking%elements), '')
-        call listing%figure('scatter of their mean stress / equivalent', &
-                            listed_number(number, run%answer%locking%scatter, 1.0_wp), '')
+        call list_figure('three-node elements of constant volume', text_of(run%answer%locking%elements), '')
+        call list_figure('scatter of their mean stress / equivalent', &
+                         listed_number(number, run%answer%locking%scatter, 1.0_wp), '')
         call say('  ('//poisson_text(run%answer)// &
                  ': they are too stiff there; six-node elements and CQUAD4 are not)')
       end if
       if (run%answer%gradient%part > 0.0_wp) then
-        call listing%figure('not small: turned, stretched by over 0.1', &
-                            listed_number(part, run%answer%gradient%part, 0.0_wp), '   of the volume')
+        call list_figure('not small: turned, stretched by over 0.1', &
+                         listed_number(part, run%answer%gradient%part, 0.0_wp), '   of the volume')
         call say('  (most at '//centre_name(run%model, run%answer%gradient%worst)//', '// &
                  estimate_number(run%answer%gradient%largest)//'; equilibrium and contact are those of '// &
                  'the undeformed shape: loads, moduli, units?)')
@@ -345,7 +369,7 @@ contains
     subroutine list_wanted()
       real(wp) :: left
 
-      call listing%figure('wanted error of contact pressures', short_real(run%model%controls%accuracy), '')
+      call list_figure('wanted error of contact pressures', short_real(run%model%controls%accuracy), '')
       if (run%accuracy%pressure_unbounded) then
         call say('  not to be had: the largest pressure is unbounded: it grows with every finer mesh')
       else if (run%accuracy%max_pressure < 0.0_wp .or. .not. any(run%answer%contact%force > 0.0_wp)) then
