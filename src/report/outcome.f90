@@ -211,7 +211,10 @@ contains
     call warn_of_contact()
     do k = 1, scene_warnings
       if (k == side_changed .and. run%answer%gradient%part > 0.0_wp) then
-        call warn_of_displacements()
+        call warn('displacements are not small: '//text_of(nint(100.0_wp*run%answer%gradient%part))// &
+                  ' % of the volume turned or stretched by over 0.1, most at '// &
+                  centre_name(run%model, run%answer%gradient%worst)// &
+                  '; equilibrium and contact are those of the undeformed shape')
       else
         call warn(scene_sentence(run%model, run%certificate%scene, k))
       end if
@@ -251,14 +254,6 @@ contains
                 run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
                 short_real(run%answer%contact%gap(nearest))//' away')
     end subroutine warn_of_contact
-
-    !> They are not small.
-    subroutine warn_of_displacements()
-      call warn('displacements are not small: '//text_of(nint(100.0_wp*run%answer%gradient%part))// &
-                ' % of the volume turned or stretched by over 0.1, most at '// &
-                centre_name(run%model, run%answer%gradient%worst)// &
-                '; equilibrium and contact are those of the undeformed shape')
-    end subroutine warn_of_displacements
 
     !> Elements that are too stiff, strained too far, or unloaded.
     subroutine warn_of_material()
