@@ -114,7 +114,8 @@ contains
       do p = 1, size(points%along)
         call contact%slave%at(s, points%along(p), points%share(:, p), from%x, tangent)
         points%weight(p) = points%weight(p)*norm2(tangent)
-        if (ring) points%weight(p) = points%weight(p)*dot_product(points%share(:, p), contact%slave%x(1, :, s))
+        if (ring) &
+          points%weight(p) = points%weight(p)*dot_product(points%share(:, p), contact%slave%x(1, :, s))
         from%outward = [tangent(2), -tangent(1)]/norm2(tangent)
         from%along = 0.5_wp*tangent
         face = find_facing(contact%master, obstacles, from, contact%search)

@@ -199,8 +199,8 @@ contains
       gap_and_slip = [face%gap + dot_product(face%normal, apart), abs(cross_product(face%normal, apart))]
     end function gap_and_slip
 
-    !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises above
-    !! them, and as it bends [length].
+    !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises
+    !! above them, and as it bends [length].
     pure real(wp) function openness(line, sides, over)
       type(boundary_line), intent(in) :: line
       integer, intent(in) :: sides(:)   !! 0: none

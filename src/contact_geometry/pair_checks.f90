@@ -4,6 +4,7 @@ module epcont_contact_geometry_pair_checks
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_base_tolerances, only: least_difference, no_effect, rounded_off
+  use epcont_geometry_boundary_line, only: unit
   use epcont_geometry_plane, only: cross_product
   use epcont_model_finding, only: and_more, findings, of_couple, of_element, of_node, of_pair
   use epcont_model_model, only: model_type
@@ -28,9 +29,8 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     type(incidence) :: around          ! CGAPs at each node
-    !> Of the sides around each node: the longest, and their sum [length]; their chords, turned outward
-    real(wp), dimension(model%nodes) :: longest, length
-    real(wp) :: outward(2, model%nodes)
+    !> Of each node: the longest side there [length]; outward normal of the boundary, zero where there is none
+    real(wp) :: longest(model%nodes), outward(2, model%nodes)
     integer :: c, cgaps
 
     if (model%pairs == 0) return
@@ -119,7 +119,7 @@ contains
     end function line_pair_like
 
     subroutine look_around_nodes()
-      real(wp) :: chord(2)
+      real(wp) :: chord(2), length(model%nodes)   ! of all sides around each node
       integer :: k, s
 
       longest = 0.0_wp
@@ -135,6 +135,10 @@ contains
           end do
         end associate
       end do
+      do k = 1, model%nodes   ! sides all round a node cancel
+        if (norm2(outward(:, k)) <= no_effect*length(k)) outward(:, k) = 0.0_wp
+        outward(:, k) = unit(outward(:, k))
+      end do
     end subroutine look_around_nodes
 
     !> Normals that go into the body of node A, or out of that of node B; but not where the other node says
@@ -144,7 +148,7 @@ contains
       integer :: i, k
 
       do k = 1, cgaps
-        along = [(along_boundary(model%pair_node(i, k), model%normal(:, k)), i=1, 2)]
+        along = [(dot_product(outward(:, model%pair_node(i, k)), model%normal(:, k)), i=1, 2)]
         if (along(1) >= same_way .or. along(2) <= -same_way) cycle
         if (along(1) <= -same_way .or. along(2) >= same_way) &
           call found%add_warning(of_pair, k, 1, ': its normal points the wrong way: into the body of GA, '// &
@@ -152,17 +156,6 @@ contains
                                  'GA and GB exchanged, or the x-axis of CID turned round')
       end do
     end subroutine warn_of_wrong_ways
-
-    !> A normal along the outward one of the boundary at a node; zero inside bodies, and where there is none.
-    pure real(wp) function along_boundary(node, normal)
-      integer, intent(in) :: node
-      real(wp), intent(in) :: normal(2)
-
-      along_boundary = 0.0_wp
-      associate (own => outward(:, node))   ! those of sides all round the node cancel
-        if (norm2(own) > no_effect*length(node)) along_boundary = dot_product(own/norm2(own), normal)
-      end associate
-    end function along_boundary
 
     !> One warning for all CGAPs whose two nodes, both of bodies, lie farther apart across the normal than a
     !! side there is long.
@@ -293,7 +286,8 @@ contains
       across = [along(2), -along(1)]/norm2(along)
       do k = 1, 3
         associate (pairs => around%group(around%start(node(k)):around%start(node(k) + 1) - 1))
-          has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))), i=1, size(pairs))] >= same_way)
+          has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))) >= same_way, &
+                              i=1, size(pairs))])
         end associate
       end do
     end function has_pair
