@@ -41,9 +41,8 @@ contains
     call append_pairs(faces%row, rows, model)
     call append_pairs(tips, rows_of_tips(), model)
     contact%last = model%pairs
-    contact%left_out = faces%left_out
     without = .false.
-    associate (side => faces%left_out(1, :), which => faces%left_out(2, :))
+    associate (side => contact%left_out(1, :), which => contact%left_out(2, :))
       without([(contact%slave%segment(which(k), side(k)), k=1, size(side))]) = .true.
     end associate
     without(faces%row%node) = .false.

@@ -77,13 +77,10 @@ contains
       integer :: i, which
 
       search = contact%search
-      if (allocated(displacement)) then
-        search = wanted_search()
-      else if (size(contact%left_out) > 0) then
-        search = max(search, extent)
-      end if
-      if (search > contact%search) then
-        contact%search = search
+      do i = 1, size(contact%left_out, 2)
+        call look_from_slave(contact%left_out(1, i), contact%left_out(2, i))
+      end do
+      if (contact%search > search) then
         contact%is_wider = .true.
         entered = .true.
       else if (allocated(displacement)) then   ! what the slave's nodes will hold off is not the master's
@@ -95,24 +92,25 @@ contains
       end if
     end subroutine look_at_contact
 
-    !> How far to search where nodes of the slave, left out so far, pass through the master, or stand beside
-    !! one that touches: what the nodes of a side share is known only where all of them have pairs [length].
-    pure real(wp) function wanted_search() result(search)
+    !> Search farther where a node of the slave, left out so far, passes through the master, or stands beside
+    !! one that touches: what the nodes of a side share is known only where all of them have pairs.
+    subroutine look_from_slave(side, which)
+      integer, intent(in) :: side, which
       type(facing_type) :: face(2)
       real(wp) :: moved(2)
-      integer :: i
 
-      search = contact%search
-      do i = 1, size(contact%left_out, 2)
-        associate (side => contact%left_out(1, i), which => contact%left_out(2, i), slave => contact%slave)
-          face = find_facing(contact%master, model%boundary, node_of(slave, side, which), extent)
-          if (.not. face(1)%found) cycle
-          moved = gap_and_slip(slave%segment(which, side), contact%master, face(1))
-          if (moved(1) < -no_gap*extent .or. any(holds(slave%segment(:, side)))) &
-            search = max(search, further*abs(face(1)%gap))
-        end associate
-      end do
-    end function wanted_search
+      if (.not. allocated(displacement)) then
+        contact%search = max(contact%search, extent)
+        return
+      end if
+      associate (node => contact%slave%segment(:, side))
+        face = find_facing(contact%master, model%boundary, node_of(contact%slave, side, which), extent)
+        if (.not. face(1)%found) return
+        moved = gap_and_slip(node(which), contact%master, face(1))
+        if (moved(1) < -no_gap*extent .or. any(holds(node))) &
+          contact%search = max(contact%search, further*abs(face(1)%gap))
+      end associate
+    end subroutine look_from_slave
 
     !> Enter a node of the master that passes through a side of the slave by more than is left open between
     !! the slave's nodes.

@@ -28,7 +28,8 @@ contains
   subroutine check_pairs(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    type(incidence) :: around          ! CGAPs at each node
+    type(incidence) :: around, lines   ! CGAPs at each node; pairs of lines in which it stands on sides
+    logical :: on_line(0:model%nodes)  ! nodes of lines in contact
     !> Of each node: the longest side there [length]; outward normal of the boundary, zero where there is none
     real(wp) :: longest(model%nodes), outward(2, model%nodes)
     integer :: c, cgaps
@@ -43,8 +44,10 @@ contains
       call warn_of_sideways()
       call warn_of_held(1, cgaps, 0)
     end if
+    on_line = .false.
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
+        on_line([contact%slave%segment, contact%master%segment]) = .true.
         call warn_of_held(contact%first, contact%last, contact%couple(1))
       end associate
     end do
@@ -55,14 +58,13 @@ contains
     !> Of two pairs at one place each would bear a part of the force, and the pressure would be that of a
     !! part: CGAPs at the place of another, and at the place of a pair of lines.
     subroutine refuse_pairs_twice()
-      type(incidence) :: lines              ! pairs of lines in which a node stands on sides
       integer, dimension(cgaps) :: cgap, line   ! like each pair; 0: none
       integer :: k
 
       lines = new_incidence(reshape(model%row_node(model%row_start(cgaps + 1:model%pairs)), &
                                     [1, model%pairs - cgaps]), model%nodes)
       cgap = [(cgap_like(k), k=1, cgaps)]
-      line = [(line_pair_like(k, lines), k=1, cgaps)]
+      line = [(line_pair_like(k), k=1, cgaps)]
       k = findloc(cgap > 0, .true., dim=1)
       if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
                                       model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
@@ -100,9 +102,8 @@ contains
     end function cgap_like
 
     !> The first pair of lines that joins the nodes of CGAP k along its normal; 0: none.
-    pure integer function line_pair_like(k, lines) result(pair)
+    pure integer function line_pair_like(k) result(pair)
       integer, intent(in) :: k
-      type(incidence), intent(in) :: lines
       integer :: i, which
 
       do which = 1, 2
@@ -220,58 +221,41 @@ contains
     !! have no pair, the side passes through what the others touch. A middle alone may be a point of support;
     !! two beside each other are none.
     subroutine warn_of_half_sides()
-      logical :: on_line(0:model%nodes)
-      integer :: half, first, s
+      integer, allocatable :: half(:)
+      character(len=:), allocatable :: what
+      logical :: at(3)
+      integer :: s
 
-      on_line = .false.
-      do c = 1, size(model%line_contact)
-        on_line([model%line_contact(c)%slave%segment, model%line_contact(c)%master%segment]) = .true.
-      end do
-      half = 0
-      do s = model%body_outline%sides, 1, -1
-        associate (node => model%body_outline%node(:, s))
-          if (node(3) == 0) cycle
-          if (on_line(node(3)) .or. model%is_rigid(node)) cycle
-        end associate
-        if (.not. is_half(s)) cycle
-        half = half + 1
-        first = s
-      end do
-      associate (outline => model%body_outline)
-        if (half > 0) call add_half_side(outline%node(:, first), outline%element(first), half)
+      half = pack([(s, s=1, model%body_outline%sides)], [(is_half(s), s=1, model%body_outline%sides)])
+      if (size(half) == 0) return
+      associate (node => model%body_outline%node(:, half(1)), element => model%body_outline%element(half(1)))
+        at = has_pair(node)
+        what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
+        if (at(3)) what = ' at its middle, '//model%name_of(of_node, node(3))//', and none at its ends'
+        call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, &
+                               ': a side of '//model%name_of(of_element, element)//' has CGAPs'//what// &
+                               ': it will pass through what it touches, and the pressures are wrong'// &
+                               and_more(size(half), '; so it is with ', ' more'), &
+                               'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
       end associate
     end subroutine warn_of_half_sides
 
-    !> Has a six-node side pairs at its ends alone, or, beside another such side, at its middle alone?
+    !> Has a six-node side that can bend, of no line, pairs at its ends alone, or, beside another such side, at
+    !! its middle alone?
     pure logical function is_half(side)
       integer, intent(in) :: side
       logical :: at(3), beside(3)
 
-      associate (outline => model%body_outline)
-        at = has_pair(outline%node(:, side))
+      associate (outline => model%body_outline, node => model%body_outline%node(:, side))
+        is_half = node(3) > 0 .and. .not. on_line(node(3))
+        if (is_half) is_half = .not. model%is_rigid(node)
+        if (.not. is_half) return
+        at = has_pair(node)
         beside = has_pair(outline%node(:, outline%before(side))) .or. &
                  has_pair(outline%node(:, outline%after(side)))
       end associate
       is_half = merge(beside(3) .and. .not. any(at(:2)), all(at(:2)), at(3))
     end function is_half
-
-    subroutine add_half_side(node, element, half)
-      integer, intent(in) :: node(3), element, half   !! of the first of them; how many there are
-      character(len=:), allocatable :: what
-      logical :: at(3)
-
-      at = has_pair(node)
-      if (at(3)) then
-        what = ' at its middle, '//model%name_of(of_node, node(3))//', and none at its ends'
-      else
-        what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
-      end if
-      call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, &
-                             ': a side of '//model%name_of(of_element, element)//' has CGAPs'//what// &
-                             ': it will pass through what it touches, and the pressures are wrong'// &
-                             and_more(half, '; so it is with ', ' more'), &
-                             'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
-    end subroutine add_half_side
 
     !> Have the nodes of a six-node side a CGAP that presses on it?
     pure function has_pair(node)
