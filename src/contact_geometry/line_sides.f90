@@ -47,7 +47,8 @@ contains
 
   contains
 
-    !> Where a line comes to a node that it has passed; 0: nowhere. But a closed line ends with its first node.
+    !> Where a line comes to a node that it has passed; 0: nowhere. But a closed line ends with its first
+    !! node.
     pure integer function first_passed_twice(node) result(k)
       integer, intent(in) :: node(:)
       logical :: met(model%nodes)

@@ -45,7 +45,6 @@ contains
     integer :: before, c, k
 
     entered = .false.
-    if (.not. allocated(model%line_contact)) return
     if (size(model%line_contact) == 0) return
     extent = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
     if (allocated(displacement)) then

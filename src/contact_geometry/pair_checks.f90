@@ -240,8 +240,8 @@ contains
       end associate
     end subroutine warn_of_half_sides
 
-    !> Has a six-node side that can bend, of no line, pairs at its ends alone, or, beside another such side, at
-    !! its middle alone?
+    !> Has a six-node side that can bend, of no line, pairs at its ends alone, or, beside another such side,
+    !! at its middle alone?
     pure logical function is_half(side)
       integer, intent(in) :: side
       logical :: at(3), beside(3)
