@@ -52,7 +52,7 @@ contains
     left = 0
     do s = 1, size(contact%slave%element)
       do k = 1, 3
-        if (contact%slave%segment(in_turn(k), s) > 0) call look_from_node(contact%slave, s, in_turn(k))
+        if (contact%slave%segment(in_turn(k), s) > 0) call look_from_node(s, in_turn(k))
       end do
     end do
     faces%row = first(:rows)
@@ -65,13 +65,13 @@ contains
   contains
 
     !> What a node of a side faces, if that is not known from the side beside it.
-    subroutine look_from_node(slave, side, which)
-      type(boundary_line), intent(in) :: slave
+    subroutine look_from_node(side, which)
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
       integer :: neighbour
 
-      associate (node => slave%segment(which, side), row => faces%row_of(which, side))
+      associate (slave => contact%slave, node => contact%slave%segment(which, side), &
+                 row => faces%row_of(which, side))
         neighbour = 0
         if (which < 3) neighbour = slave%neighbour(which, side)
         if (neighbour > 0) row = faces%row_of(3 - which, neighbour)

@@ -120,20 +120,18 @@ contains
       real(wp) :: moved(2)
       integer :: k
 
-      associate (node => contact%master%segment(which, side))
-        if (node == 0 .or. any(contact%came_near == node)) return
-        from = node_of(contact%master, side, which)
-        face = find_facing(contact%slave, model%boundary, from, extent)
-        do k = 1, 2
-          if (.not. face(k)%found .or. from%at_tip .and. abs(face(k)%gap) <= contact%search) cycle
-          moved = gap_and_slip(node, contact%slave, face(k))
-          if (moved(1) >= -left_open(side, which, face(k), moved(2))) cycle
-          contact%came_near = [contact%came_near, node]
-          contact%search = max(contact%search, further*abs(face(k)%gap))
-          entered = .true.
-          return
-        end do
-      end associate
+      from = node_of(contact%master, side, which)
+      if (from%node == 0 .or. any(contact%came_near == from%node)) return
+      face = find_facing(contact%slave, model%boundary, from, extent)
+      do k = 1, 2
+        if (.not. face(k)%found .or. from%at_tip .and. abs(face(k)%gap) <= contact%search) cycle
+        moved = gap_and_slip(from%node, contact%slave, face(k))
+        if (moved(1) >= -left_open(side, which, face(k), moved(2))) cycle
+        contact%came_near = [contact%came_near, from%node]
+        contact%search = max(contact%search, further*abs(face(k)%gap))
+        entered = .true.
+        return
+      end do
     end subroutine look_from_master
 
     !> How far a node of the master may pass through a side of the slave [length].

@@ -77,11 +77,11 @@ contains
 
       associate (d => held(end, side), next => line%neighbour(end, side))
         is_mirrored = d /= 0 .and. d /= both .and. held(3 - end, side) /= d
-        if (is_mirrored) is_mirrored = .not. looks_along(own(:, end, side), d)
+        if (is_mirrored) is_mirrored = abs(own(3 - d, end, side)) >= abs(own(d, end, side))
         if (.not. is_mirrored .or. next == 0) return   ! nothing is known of what lies beyond
         ! A cut meets the side at a corner; on a curve the next side may look like one from 45 degrees on.
         is_mirrored = abs(turn(end, side)) >= always_corner .and. any(held(end, next) == [d, both]) .and. &
-                      looks_along(own(:, 3 - end, next), d)
+                      abs(own(3 - d, 3 - end, next)) < abs(own(d, 3 - end, next))
       end associate
     end function is_mirrored
 
@@ -169,12 +169,4 @@ contains
 
     angle_between = atan2(cross_product(a, b), dot_product(a, b))
   end function angle_between
-
-  !> Does a vector lean more along an axis than across it?
-  pure logical function looks_along(vector, axis)
-    real(wp), intent(in) :: vector(2)
-    integer, intent(in) :: axis
-
-    looks_along = abs(vector(3 - axis)) < abs(vector(axis))
-  end function looks_along
 end module epcont_geometry_corners
