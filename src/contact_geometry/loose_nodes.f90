@@ -9,7 +9,7 @@ module epcont_contact_geometry_loose_nodes
   use epcont_base_tolerances, only: coincident
   use epcont_contact_geometry_line_sides, only: find_between
   use epcont_contact_geometry_mates, only: find_mates, is_mate
-  use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
+  use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_model_finding, only: and_more, findings, of_element, of_node
   use epcont_model_model, only: model_type
   implicit none

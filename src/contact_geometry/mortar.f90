@@ -68,7 +68,7 @@ contains
     area = 0.0_wp
     do s = 1, size(points)
       points(s) = cut_side(s)
-      if (points(s)%covered) points(s)%covered = is_even(s, points(s))
+      points(s)%covered = points(s)%covered .and. is_even(s, points(s))
       call set_integrals(points(s), contact%slave%segment(3, s) > 0)
       associate (own => pack(faces%row_of(:, s), faces%row_of(:, s) > 0))
         area(own) = area(own) + pack(points(s)%integral, faces%row_of(:, s) > 0)

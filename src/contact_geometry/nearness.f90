@@ -42,7 +42,7 @@ contains
     logical :: holds(0:model%nodes)        ! nodes that stand on the other line; 0 is none
     type(line_contact) :: contact
     type(faces_type) :: faces
-    integer :: before, c, k
+    integer :: before, c
 
     entered = .false.
     if (size(model%line_contact) == 0) return

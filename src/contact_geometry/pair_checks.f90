@@ -19,7 +19,6 @@ module epcont_contact_geometry_pair_checks
   real(wp), parameter :: parallel = 0.999_wp
   !> The normal of a CGAP is that of a line, which bends from node to node, within 45 degrees.
   real(wp), parameter :: one_face = sqrt(0.5_wp)
-  character(len=*), parameter :: shared = ': forces would be shared between the two'
 
 contains
 
@@ -68,14 +67,14 @@ contains
       k = findloc(cgap > 0, .true., dim=1)
       if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
                                       model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
-                                      'same gap'//shared//like_this(cgap), &
+                                      'same gap'//like_this(cgap), &
                                       'one CGAP for two nodes and a normal')
       k = findloc(line > 0, .true., dim=1)
       if (k == 0) return
       c = findloc(model%line_contact%last >= line(k), .true., dim=1)
       call found%add_error(of_pair, k, 1, ': joins nodes that '// &
                            model%name_of(of_couple, model%line_contact(c)%couple(1))// &
-                           ' joins along the same normal'//shared//like_this(line), 'either CGAPs or a BCONP')
+                           ' joins along the same normal'//like_this(line), 'either CGAPs or a BCONP')
     end subroutine refuse_pairs_twice
 
     !> The first CGAP before pair k that is between its nodes, along its normal, with its gap; 0: none.
@@ -277,12 +276,12 @@ contains
     end function has_pair
   end subroutine check_pairs
 
-  !> How many more CGAPs there are with such a pair than the one that is named.
+  !> Why a pair is refused, and how many more CGAPs there are with such a pair than the one that is named.
   pure function like_this(pair) result(text)
     integer, intent(in) :: pair(:)   !! 0: there is none
     character(len=:), allocatable :: text
 
-    text = ''
-    if (count(pair > 0) > 1) text = '; so it is with '//plural(count(pair > 0) - 1, 'more CGAP')
+    text = ': forces would be shared between the two'
+    if (count(pair > 0) > 1) text = text//'; so it is with '//plural(count(pair > 0) - 1, 'more CGAP')
   end function like_this
 end module epcont_contact_geometry_pair_checks
