@@ -20,7 +20,6 @@ module epcont_contact_geometry_faces
     !> Of the nodes of each side; 0: they face nothing [3, sides]
     integer, allocatable :: row_of(:, :)
     integer :: same_way = 0                  !! nodes near sides that look the same way only
-    integer, allocatable :: left_out(:, :)   !! what faces nothing: which side, which node of it [2, any]
   end type faces_type
 
 contains
@@ -39,7 +38,7 @@ contains
   !> What the nodes of the slave face of the master, in their order along its sides; then second faces, but
   !! where the node has one like them: its other side faces the same.
   subroutine find_faces(contact, obstacles, faces)
-    type(line_contact), intent(in) :: contact       !! the contact of lines
+    type(line_contact), intent(inout) :: contact    !! the contact of lines: nodes are left out of it
     type(boundary_line), intent(in) :: obstacles    !! the outlines of all bodies
     type(faces_type), intent(out) :: faces          !! what they face
     integer, parameter :: in_turn(3) = [1, 3, 2]    ! start, middle, end
@@ -53,7 +52,7 @@ contains
     left = 0
     do s = 1, size(contact%slave%element)
       do k = 1, 3
-        if (contact%slave%segment(in_turn(k), s) > 0) call look_from_node(contact%slave, s, in_turn(k))
+        if (contact%slave%segment(in_turn(k), s) > 0) call look_from_node(s, in_turn(k))
       end do
     end do
     faces%row = first(:rows)
@@ -61,18 +60,18 @@ contains
       if (.not. has_face(faces%row, second(k)%node, second(k)%normal, same_face)) &
         faces%row = [faces%row, second(k)]
     end do
-    faces%left_out = left_out(:, :left)
+    contact%left_out = left_out(:, :left)
 
   contains
 
     !> What a node of a side faces, if that is not known from the side beside it.
-    subroutine look_from_node(slave, side, which)
-      type(boundary_line), intent(in) :: slave
+    subroutine look_from_node(side, which)
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
       integer :: neighbour
 
-      associate (node => slave%segment(which, side), row => faces%row_of(which, side))
+      associate (slave => contact%slave, node => contact%slave%segment(which, side), &
+                 row => faces%row_of(which, side))
         neighbour = 0
         if (which < 3) neighbour = slave%neighbour(which, side)
         if (neighbour > 0) row = faces%row_of(3 - which, neighbour)

@@ -40,7 +40,7 @@ contains
       if (before(k) /= k) after(before(k)) = k
     end do
     chain = chained(after)
-    call find_parts(model, outline)
+    call find_parts()
     outline%sides = sides
     outline%node = reshape([(model%edge(free(2, k), free(1, k)), k=1, sides)], [3, sides])
     outline%part = outline%part_of(outline%node(1, :))
@@ -86,6 +86,28 @@ contains
         number(own(i), element(i)) = sides
       end do
     end subroutine look_around
+
+    !> Parts: the bodies, but for RBE2, numbered as their first nodes come.
+    subroutine find_parts()
+      integer, allocatable :: part(:), set(:)
+      integer :: i, sets
+
+      if (model%is_tied([(i, i=1, model%nodes)])) then
+        call join_nodes(model, .false., set, sets)
+      else
+        set = model%body
+        sets = model%bodies
+      end if
+      allocate (part(sets), outline%part_of(model%nodes), source=0)
+      do i = 1, model%nodes
+        if (model%around%start(i) == model%around%start(i + 1)) cycle
+        if (part(set(i)) == 0) then
+          outline%parts = outline%parts + 1
+          part(set(i)) = outline%parts
+        end if
+        outline%part_of(i) = part(set(i))
+      end do
+    end subroutine find_parts
   end function find_outline
 
   !> Where in a list a node stands; 0: nowhere.
@@ -131,28 +153,4 @@ contains
       end do
     end do
   end function chained
-
-  !> Parts: the bodies, but for RBE2, numbered as their first nodes come.
-  pure subroutine find_parts(model, outline)
-    type(model_type), intent(in) :: model
-    type(outline_type), intent(inout) :: outline
-    integer, allocatable :: number(:), set(:)
-    integer :: i, sets
-
-    if (model%is_tied([(i, i=1, model%nodes)])) then
-      call join_nodes(model, .false., set, sets)
-    else
-      set = model%body
-      sets = model%bodies
-    end if
-    allocate (number(sets), outline%part_of(model%nodes), source=0)
-    do i = 1, model%nodes
-      if (model%around%start(i) == model%around%start(i + 1)) cycle
-      if (number(set(i)) == 0) then
-        outline%parts = outline%parts + 1
-        number(set(i)) = outline%parts
-      end if
-      outline%part_of(i) = number(set(i))
-    end do
-  end subroutine find_parts
 end module epcont_contact_geometry_free_sides

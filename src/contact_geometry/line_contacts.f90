@@ -133,17 +133,16 @@ contains
     !> The contact of some couples, without its pairs.
     pure type(line_contact) function new_contact(couples) result(contact)
       integer, intent(in) :: couples(:)
-      integer, allocatable :: master(:), slave(:)
       integer :: k
 
       contact%couple = couples
-      contact%bconp = model%couple(couples)%id
-      slave = once(model%couple(couples)%line(1))
-      master = once(model%couple(couples)%line(2))
-      contact%slave_id = model%line(slave)%id
-      contact%master_id = model%line(master)%id
-      contact%slave = sides_of(slave)
-      contact%master = sides_of(master)
+      associate (couple => model%couple(couples))
+        contact%bconp = couple%id
+        contact%slave_id = model%line(once(couple%line(1)))%id
+        contact%master_id = model%line(once(couple%line(2)))%id
+        contact%slave = sides_of(couple%line(1))
+        contact%master = sides_of(couple%line(2))
+      end associate
       contact%search = model%controls%search
       if (contact%search == 0.0_wp) contact%search = default_search* &
         maxval([(contact%slave%chord_length(k), k=1, size(contact%slave%element)), &

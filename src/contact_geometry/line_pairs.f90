@@ -41,9 +41,8 @@ contains
     call append_pairs(faces%row, rows, model)
     call append_pairs(tips, rows_of_tips(), model)
     contact%last = model%pairs
-    contact%left_out = faces%left_out
     without = .false.
-    associate (side => faces%left_out(1, :), which => faces%left_out(2, :))
+    associate (side => contact%left_out(1, :), which => contact%left_out(2, :))
       without([(contact%slave%segment(which(k), side(k)), k=1, size(side))]) = .true.
     end associate
     without(faces%row%node) = .false.
@@ -62,18 +61,16 @@ contains
       allocate (tips(0))
       do side = 1, size(contact%master%element)
         do which = 1, 3
-          associate (node => contact%master%segment(which, side))
-            near = any(contact%came_near == node)
-            from = node_of(contact%master, side, which)
-            if (.not. (near .or. from%at_tip)) cycle
-            on = find_facing(contact%slave, model%boundary, from, contact%search)
-            do i = 1, 2
-              if (.not. on(i)%found) cycle
-              if (covered(on(i)%segment) .and. .not. near) cycle
-              if (.not. (stands_at_node(on(i)) .or. has_face(tips, node, on(i)%normal, same_face))) &
-                tips = [tips, node_face(facing_type=on(i), node=node)]
-            end do
-          end associate
+          from = node_of(contact%master, side, which)
+          near = any(contact%came_near == from%node)
+          if (.not. (near .or. from%at_tip)) cycle
+          on = find_facing(contact%slave, model%boundary, from, contact%search)
+          do i = 1, 2
+            if (.not. on(i)%found) cycle
+            if (covered(on(i)%segment) .and. .not. near) cycle
+            if (.not. (stands_at_node(on(i)) .or. has_face(tips, from%node, on(i)%normal, same_face))) &
+              tips = [tips, node_face(facing_type=on(i), node=from%node)]
+          end do
         end do
       end do
     end subroutine find_tips

@@ -34,7 +34,7 @@ contains
         allocate (line%side(0))
         if (size(line%node) == 1) &
           call found%add_error(of_line, i, 0, ': one node is no line', 'two nodes or more')
-        passed = first_passed_twice(line%node, model%nodes)
+        passed = first_passed_twice(line%node)
         if (passed > 0) then
           call found%add_error(of_line, i, -passed, ': '//model%name_of(of_node, line%node(passed))// &
                                ' stands in it before', &
@@ -46,6 +46,20 @@ contains
     end do
 
   contains
+
+    !> Where a line comes to a node that it has passed; 0: nowhere. But a closed line ends with its first
+    !! node.
+    pure integer function first_passed_twice(node) result(k)
+      integer, intent(in) :: node(:)
+      logical :: met(model%nodes)
+
+      met = .false.
+      do k = 1, size(node)
+        if (met(node(k)) .and. .not. (k == size(node) .and. node(k) == node(1) .and. k > 3)) return
+        met(node(k)) = .true.
+      end do
+      k = 0
+    end function first_passed_twice
 
     !> The sides between consecutive nodes, none where one is missing; a middle node between two corners may
     !! be listed or left out.
@@ -124,20 +138,6 @@ contains
     edge = 0
     if (size(element) > 0) edge = model%edge(element(1), model%side_between(element(1), a, b))
   end subroutine find_between
-
-  !> Where a line comes to a node that it has passed; 0: nowhere. But a closed line ends with its first node.
-  pure integer function first_passed_twice(node, nodes) result(k)
-    integer, intent(in) :: node(:)
-    integer, intent(in) :: nodes      !! how many there are in all
-    logical :: met(nodes)
-
-    met = .false.
-    do k = 1, size(node)
-      if (met(node(k)) .and. .not. (k == size(node) .and. node(k) == node(1) .and. k > 3)) return
-      met(node(k)) = .true.
-    end do
-    k = 0
-  end function first_passed_twice
 
   !> All sides of the bodies, numbered as those of the outlines.
   type(boundary_line) function find_boundary(model) result(line)

@@ -142,42 +142,48 @@ contains
     !> Of each pair, 0: given alone; the pair of each node as slave, 0: none
     integer :: contact(model%pairs), slave(model%nodes)
     logical :: told(size(model%line_contact))
-    integer :: c, i, pair
+    integer :: c, i, other, pair
 
-    if (size(model%line_contact) < 2) return
+    if (size(told) < 2) return
     contact = 0
     slave = 0
-    do c = 1, size(model%line_contact)
+    do c = 1, size(told)
       associate (first => model%line_contact(c)%first, last => model%line_contact(c)%first_of_master - 1)
         contact(first:last) = c
         slave(model%row_node(model%row_start(first:last))) = [(pair, pair=first, last)]
       end associate
     end do
     told = .false.
-    do pair = 1, model%pairs
-      if (contact(pair) == 0) cycle
-      do i = model%row_start(pair) + 1, model%row_start(pair + 1) - 1
-        associate (other => slave(model%row_node(i)))
-          if (other == 0 .or. abs(model%row_weight(i)) < least_weight) cycle
-          if (contact(other) == contact(pair) .or. told(contact(pair))) cycle
-          if (dot_product(model%normal(:, pair), model%normal(:, other)) > -one_face) cycle
-          told([contact(pair), contact(other)]) = .true.
-          call add_both_ways(model%line_contact(contact(pair))%couple(1), model%row_node(i), &
-                             model%line_contact(contact(other))%couple(1))
-        end associate
-      end do
+    do c = 1, size(told)
+      if (.not. told(c)) i = first_both_ways()
+      if (told(c) .or. i == 0) cycle
+      other = contact(slave(model%row_node(i)))
+      told(other) = .true.
+      call found%add_warning(of_couple, model%line_contact(c)%couple(1), 3, ': '// &
+                             model%name_of(of_node, model%row_node(i))// &
+                             ' is of its MASTER, and of the SLAVE of '// &
+                             model%name_of(of_couple, model%line_contact(other)%couple(1))// &
+                             ': pressures beside it are off, by a quarter where both touch', &
+                             'SLAVE and MASTER of one of the two exchanged: lines that go on in each '// &
+                             'other are one contact')
     end do
 
   contains
 
-    subroutine add_both_ways(couple, node, other)
-      integer, intent(in) :: couple, node, other   !! that node is of the master of the first couple
+    !> Where the rows of N have the first such node of the master of contact c; 0: nowhere.
+    pure integer function first_both_ways() result(i)
+      integer :: k
 
-      call found%add_warning(of_couple, couple, 3, ': '//model%name_of(of_node, node)// &
-                             ' is of its MASTER, and of the SLAVE of '//model%name_of(of_couple, other)// &
-                             ': pressures beside it are off, by a quarter where both touch', &
-                             'SLAVE and MASTER of one of the two exchanged: lines that go on in each '// &
-                             'other are one contact')
-    end subroutine add_both_ways
+      do k = model%line_contact(c)%first, model%line_contact(c)%first_of_master - 1
+        do i = model%row_start(k) + 1, model%row_start(k + 1) - 1
+          associate (other => slave(model%row_node(i)))
+            if (other == 0 .or. abs(model%row_weight(i)) < least_weight) cycle
+            if (contact(other) /= c .and. &
+                dot_product(model%normal(:, k), model%normal(:, other)) <= -one_face) return
+          end associate
+        end do
+      end do
+      i = 0
+    end function first_both_ways
   end subroutine warn_of_both_ways
 end module epcont_contact_geometry_line_warnings

@@ -9,7 +9,7 @@ module epcont_contact_geometry_loose_nodes
   use epcont_base_tolerances, only: coincident
   use epcont_contact_geometry_line_sides, only: find_between
   use epcont_contact_geometry_mates, only: find_mates, is_mate
-  use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
+  use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_model_finding, only: and_more, findings, of_element, of_node
   use epcont_model_model, only: model_type
   implicit none
@@ -121,8 +121,8 @@ contains
     type(model_type), intent(in) :: model       !! the scene
     type(outline_shape), intent(in) :: drawn    !! its outlines
     type(findings), intent(inout) :: found      !! what is wrong with it is added
-    !> Of one body with each later one: the first two nodes, and how many more of it there are
-    integer, dimension(model%body_outline%parts) :: node, other, twins
+    !> Of one body with each later one: how many nodes lie together, and the first of them
+    integer :: twins(model%body_outline%parts), first(2, model%body_outline%parts)
     integer, allocatable :: mate(:), met(:), near(:)
     integer :: i, part, side, twin
 
@@ -141,15 +141,14 @@ contains
           if (twin == 0) cycle
           if (twins(near(i)) == 0) then
             met = [met, near(i)]
-            node(near(i)) = model%body_outline%node(1, side)
-            other(near(i)) = twin
+            first(:, near(i)) = [model%body_outline%node(1, side), twin]
           end if
           twins(near(i)) = twins(near(i)) + 1
         end do
       end do
       do i = 1, size(met)
-        call found%add_warning(of_node, node(met(i)), 1, ': lies where '// &
-                               model%name_of(of_node, other(met(i)))// &
+        call found%add_warning(of_node, first(1, met(i)), 1, ': lies where '// &
+                               model%name_of(of_node, first(2, met(i)))// &
                                ' of another body does, and no pair joins the two'// &
                                and_more(twins(met(i)), '; so do ', ' more of these two bodies'), &
                                'a CGAP, lines with a BCONP between them, or one GRID for both')

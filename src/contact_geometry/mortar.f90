@@ -68,7 +68,7 @@ contains
     area = 0.0_wp
     do s = 1, size(points)
       points(s) = cut_side(s)
-      if (points(s)%covered) points(s)%covered = is_even(s, points(s))
+      points(s)%covered = points(s)%covered .and. is_even(s, points(s))
       call set_integrals(points(s), contact%slave%segment(3, s) > 0)
       associate (own => pack(faces%row_of(:, s), faces%row_of(:, s) > 0))
         area(own) = area(own) + pack(points(s)%integral, faces%row_of(:, s) > 0)
@@ -114,7 +114,8 @@ contains
       do p = 1, size(points%along)
         call contact%slave%at(s, points%along(p), points%share(:, p), from%x, tangent)
         points%weight(p) = points%weight(p)*norm2(tangent)
-        if (ring) points%weight(p) = points%weight(p)*dot_product(points%share(:, p), contact%slave%x(1, :, s))
+        if (ring) &
+          points%weight(p) = points%weight(p)*dot_product(points%share(:, p), contact%slave%x(1, :, s))
         from%outward = [tangent(2), -tangent(1)]/norm2(tangent)
         from%along = 0.5_wp*tangent
         face = find_facing(contact%master, obstacles, from, contact%search)

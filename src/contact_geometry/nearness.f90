@@ -42,10 +42,9 @@ contains
     logical :: holds(0:model%nodes)        ! nodes that stand on the other line; 0 is none
     type(line_contact) :: contact
     type(faces_type) :: faces
-    integer :: before, c, k
+    integer :: before, c
 
     entered = .false.
-    if (.not. allocated(model%line_contact)) return
     if (size(model%line_contact) == 0) return
     extent = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
     if (allocated(displacement)) then
@@ -77,13 +76,10 @@ contains
       integer :: i, which
 
       search = contact%search
-      if (allocated(displacement)) then
-        search = wanted_search()
-      else if (size(contact%left_out) > 0) then
-        search = max(search, extent)
-      end if
-      if (search > contact%search) then
-        contact%search = search
+      do i = 1, size(contact%left_out, 2)
+        call look_from_slave(contact%left_out(1, i), contact%left_out(2, i))
+      end do
+      if (contact%search > search) then
         contact%is_wider = .true.
         entered = .true.
       else if (allocated(displacement)) then   ! what the slave's nodes will hold off is not the master's
@@ -95,24 +91,25 @@ contains
       end if
     end subroutine look_at_contact
 
-    !> How far to search where nodes of the slave, left out so far, pass through the master, or stand beside
-    !! one that touches: what the nodes of a side share is known only where all of them have pairs [length].
-    pure real(wp) function wanted_search() result(search)
+    !> Search farther where a node of the slave, left out so far, passes through the master, or stands beside
+    !! one that touches: what the nodes of a side share is known only where all of them have pairs.
+    subroutine look_from_slave(side, which)
+      integer, intent(in) :: side, which
       type(facing_type) :: face(2)
       real(wp) :: moved(2)
-      integer :: i
 
-      search = contact%search
-      do i = 1, size(contact%left_out, 2)
-        associate (side => contact%left_out(1, i), which => contact%left_out(2, i), slave => contact%slave)
-          face = find_facing(contact%master, model%boundary, node_of(slave, side, which), extent)
-          if (.not. face(1)%found) cycle
-          moved = gap_and_slip(slave%segment(which, side), contact%master, face(1))
-          if (moved(1) < -no_gap*extent .or. any(holds(slave%segment(:, side)))) &
-            search = max(search, further*abs(face(1)%gap))
-        end associate
-      end do
-    end function wanted_search
+      if (.not. allocated(displacement)) then
+        contact%search = max(contact%search, extent)
+        return
+      end if
+      associate (node => contact%slave%segment(:, side))
+        face = find_facing(contact%master, model%boundary, node_of(contact%slave, side, which), extent)
+        if (.not. face(1)%found) return
+        moved = gap_and_slip(node(which), contact%master, face(1))
+        if (moved(1) < -no_gap*extent .or. any(holds(node))) &
+          contact%search = max(contact%search, further*abs(face(1)%gap))
+      end associate
+    end subroutine look_from_slave
 
     !> Enter a node of the master that passes through a side of the slave by more than is left open between
     !! the slave's nodes.
@@ -123,20 +120,18 @@ contains
       real(wp) :: moved(2)
       integer :: k
 
-      associate (node => contact%master%segment(which, side))
-        if (node == 0 .or. any(contact%came_near == node)) return
-        from = node_of(contact%master, side, which)
-        face = find_facing(contact%slave, model%boundary, from, extent)
-        do k = 1, 2
-          if (.not. face(k)%found .or. from%at_tip .and. abs(face(k)%gap) <= contact%search) cycle
-          moved = gap_and_slip(node, contact%slave, face(k))
-          if (moved(1) >= -left_open(side, which, face(k), moved(2))) cycle
-          contact%came_near = [contact%came_near, node]
-          contact%search = max(contact%search, further*abs(face(k)%gap))
-          entered = .true.
-          return
-        end do
-      end associate
+      from = node_of(contact%master, side, which)
+      if (from%node == 0 .or. any(contact%came_near == from%node)) return
+      face = find_facing(contact%slave, model%boundary, from, extent)
+      do k = 1, 2
+        if (.not. face(k)%found .or. from%at_tip .and. abs(face(k)%gap) <= contact%search) cycle
+        moved = gap_and_slip(from%node, contact%slave, face(k))
+        if (moved(1) >= -left_open(side, which, face(k), moved(2))) cycle
+        contact%came_near = [contact%came_near, from%node]
+        contact%search = max(contact%search, further*abs(face(k)%gap))
+        entered = .true.
+        return
+      end do
     end subroutine look_from_master
 
     !> How far a node of the master may pass through a side of the slave [length].
@@ -199,8 +194,8 @@ contains
       gap_and_slip = [face%gap + dot_product(face%normal, apart), abs(cross_product(face%normal, apart))]
     end function gap_and_slip
 
-    !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises above
-    !! them, and as it bends [length].
+    !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises
+    !! above them, and as it bends [length].
     pure real(wp) function openness(line, sides, over)
       type(boundary_line), intent(in) :: line
       integer, intent(in) :: sides(:)   !! 0: none

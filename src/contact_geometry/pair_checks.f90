@@ -4,6 +4,7 @@ module epcont_contact_geometry_pair_checks
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_base_tolerances, only: least_difference, no_effect, rounded_off
+  use epcont_geometry_boundary_line, only: unit
   use epcont_geometry_plane, only: cross_product
   use epcont_model_finding, only: and_more, findings, of_couple, of_element, of_node, of_pair
   use epcont_model_model, only: model_type
@@ -18,7 +19,6 @@ module epcont_contact_geometry_pair_checks
   real(wp), parameter :: parallel = 0.999_wp
   !> The normal of a CGAP is that of a line, which bends from node to node, within 45 degrees.
   real(wp), parameter :: one_face = sqrt(0.5_wp)
-  character(len=*), parameter :: shared = ': forces would be shared between the two'
 
 contains
 
@@ -27,10 +27,10 @@ contains
   subroutine check_pairs(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    type(incidence) :: around          ! CGAPs at each node
-    !> Of the sides around each node: the longest, and their sum [length]; their chords, turned outward
-    real(wp), dimension(model%nodes) :: longest, length
-    real(wp) :: outward(2, model%nodes)
+    type(incidence) :: around, lines   ! CGAPs at each node; pairs of lines in which it stands on sides
+    logical :: on_line(0:model%nodes)  ! nodes of lines in contact
+    !> Of each node: the longest side there [length]; outward normal of the boundary, zero where there is none
+    real(wp) :: longest(model%nodes), outward(2, model%nodes)
     integer :: c, cgaps
 
     if (model%pairs == 0) return
@@ -43,8 +43,10 @@ contains
       call warn_of_sideways()
       call warn_of_held(1, cgaps, 0)
     end if
+    on_line = .false.
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
+        on_line([contact%slave%segment, contact%master%segment]) = .true.
         call warn_of_held(contact%first, contact%last, contact%couple(1))
       end associate
     end do
@@ -55,25 +57,24 @@ contains
     !> Of two pairs at one place each would bear a part of the force, and the pressure would be that of a
     !! part: CGAPs at the place of another, and at the place of a pair of lines.
     subroutine refuse_pairs_twice()
-      type(incidence) :: lines              ! pairs of lines in which a node stands on sides
       integer, dimension(cgaps) :: cgap, line   ! like each pair; 0: none
       integer :: k
 
       lines = new_incidence(reshape(model%row_node(model%row_start(cgaps + 1:model%pairs)), &
                                     [1, model%pairs - cgaps]), model%nodes)
       cgap = [(cgap_like(k), k=1, cgaps)]
-      line = [(line_pair_like(k, lines), k=1, cgaps)]
+      line = [(line_pair_like(k), k=1, cgaps)]
       k = findloc(cgap > 0, .true., dim=1)
       if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
                                       model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
-                                      'same gap'//shared//like_this(cgap), &
+                                      'same gap'//like_this(cgap), &
                                       'one CGAP for two nodes and a normal')
       k = findloc(line > 0, .true., dim=1)
       if (k == 0) return
       c = findloc(model%line_contact%last >= line(k), .true., dim=1)
       call found%add_error(of_pair, k, 1, ': joins nodes that '// &
                            model%name_of(of_couple, model%line_contact(c)%couple(1))// &
-                           ' joins along the same normal'//shared//like_this(line), 'either CGAPs or a BCONP')
+                           ' joins along the same normal'//like_this(line), 'either CGAPs or a BCONP')
     end subroutine refuse_pairs_twice
 
     !> The first CGAP before pair k that is between its nodes, along its normal, with its gap; 0: none.
@@ -100,9 +101,8 @@ contains
     end function cgap_like
 
     !> The first pair of lines that joins the nodes of CGAP k along its normal; 0: none.
-    pure integer function line_pair_like(k, lines) result(pair)
+    pure integer function line_pair_like(k) result(pair)
       integer, intent(in) :: k
-      type(incidence), intent(in) :: lines
       integer :: i, which
 
       do which = 1, 2
@@ -119,7 +119,7 @@ contains
     end function line_pair_like
 
     subroutine look_around_nodes()
-      real(wp) :: chord(2)
+      real(wp) :: chord(2), length(model%nodes)   ! of all sides around each node
       integer :: k, s
 
       longest = 0.0_wp
@@ -135,6 +135,10 @@ contains
           end do
         end associate
       end do
+      do k = 1, model%nodes   ! sides all round a node cancel
+        if (norm2(outward(:, k)) <= no_effect*length(k)) outward(:, k) = 0.0_wp
+        outward(:, k) = unit(outward(:, k))
+      end do
     end subroutine look_around_nodes
 
     !> Normals that go into the body of node A, or out of that of node B; but not where the other node says
@@ -144,7 +148,7 @@ contains
       integer :: i, k
 
       do k = 1, cgaps
-        along = [(along_boundary(model%pair_node(i, k), model%normal(:, k)), i=1, 2)]
+        along = [(dot_product(outward(:, model%pair_node(i, k)), model%normal(:, k)), i=1, 2)]
         if (along(1) >= same_way .or. along(2) <= -same_way) cycle
         if (along(1) <= -same_way .or. along(2) >= same_way) &
           call found%add_warning(of_pair, k, 1, ': its normal points the wrong way: into the body of GA, '// &
@@ -152,17 +156,6 @@ contains
                                  'GA and GB exchanged, or the x-axis of CID turned round')
       end do
     end subroutine warn_of_wrong_ways
-
-    !> A normal along the outward one of the boundary at a node; zero inside bodies, and where there is none.
-    pure real(wp) function along_boundary(node, normal)
-      integer, intent(in) :: node
-      real(wp), intent(in) :: normal(2)
-
-      along_boundary = 0.0_wp
-      associate (own => outward(:, node))   ! those of sides all round the node cancel
-        if (norm2(own) > no_effect*length(node)) along_boundary = dot_product(own/norm2(own), normal)
-      end associate
-    end function along_boundary
 
     !> One warning for all CGAPs whose two nodes, both of bodies, lie farther apart across the normal than a
     !! side there is long.
@@ -227,58 +220,41 @@ contains
     !! have no pair, the side passes through what the others touch. A middle alone may be a point of support;
     !! two beside each other are none.
     subroutine warn_of_half_sides()
-      logical :: on_line(0:model%nodes)
-      integer :: half, first, s
+      integer, allocatable :: half(:)
+      character(len=:), allocatable :: what
+      logical :: at(3)
+      integer :: s
 
-      on_line = .false.
-      do c = 1, size(model%line_contact)
-        on_line([model%line_contact(c)%slave%segment, model%line_contact(c)%master%segment]) = .true.
-      end do
-      half = 0
-      do s = model%body_outline%sides, 1, -1
-        associate (node => model%body_outline%node(:, s))
-          if (node(3) == 0) cycle
-          if (on_line(node(3)) .or. model%is_rigid(node)) cycle
-        end associate
-        if (.not. is_half(s)) cycle
-        half = half + 1
-        first = s
-      end do
-      associate (outline => model%body_outline)
-        if (half > 0) call add_half_side(outline%node(:, first), outline%element(first), half)
+      half = pack([(s, s=1, model%body_outline%sides)], [(is_half(s), s=1, model%body_outline%sides)])
+      if (size(half) == 0) return
+      associate (node => model%body_outline%node(:, half(1)), element => model%body_outline%element(half(1)))
+        at = has_pair(node)
+        what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
+        if (at(3)) what = ' at its middle, '//model%name_of(of_node, node(3))//', and none at its ends'
+        call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, &
+                               ': a side of '//model%name_of(of_element, element)//' has CGAPs'//what// &
+                               ': it will pass through what it touches, and the pressures are wrong'// &
+                               and_more(size(half), '; so it is with ', ' more'), &
+                               'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
       end associate
     end subroutine warn_of_half_sides
 
-    !> Has a six-node side pairs at its ends alone, or, beside another such side, at its middle alone?
+    !> Has a six-node side that can bend, of no line, pairs at its ends alone, or, beside another such side,
+    !! at its middle alone?
     pure logical function is_half(side)
       integer, intent(in) :: side
       logical :: at(3), beside(3)
 
-      associate (outline => model%body_outline)
-        at = has_pair(outline%node(:, side))
+      associate (outline => model%body_outline, node => model%body_outline%node(:, side))
+        is_half = node(3) > 0 .and. .not. on_line(node(3))
+        if (is_half) is_half = .not. model%is_rigid(node)
+        if (.not. is_half) return
+        at = has_pair(node)
         beside = has_pair(outline%node(:, outline%before(side))) .or. &
                  has_pair(outline%node(:, outline%after(side)))
       end associate
       is_half = merge(beside(3) .and. .not. any(at(:2)), all(at(:2)), at(3))
     end function is_half
-
-    subroutine add_half_side(node, element, half)
-      integer, intent(in) :: node(3), element, half   !! of the first of them; how many there are
-      character(len=:), allocatable :: what
-      logical :: at(3)
-
-      at = has_pair(node)
-      if (at(3)) then
-        what = ' at its middle, '//model%name_of(of_node, node(3))//', and none at its ends'
-      else
-        what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
-      end if
-      call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, &
-                             ': a side of '//model%name_of(of_element, element)//' has CGAPs'//what// &
-                             ': it will pass through what it touches, and the pressures are wrong'// &
-                             and_more(half, '; so it is with ', ' more'), &
-                             'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
-    end subroutine add_half_side
 
     !> Have the nodes of a six-node side a CGAP that presses on it?
     pure function has_pair(node)
@@ -293,18 +269,19 @@ contains
       across = [along(2), -along(1)]/norm2(along)
       do k = 1, 3
         associate (pairs => around%group(around%start(node(k)):around%start(node(k) + 1) - 1))
-          has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))), i=1, size(pairs))] >= same_way)
+          has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))) >= same_way, &
+                              i=1, size(pairs))])
         end associate
       end do
     end function has_pair
   end subroutine check_pairs
 
-  !> How many more CGAPs there are with such a pair than the one that is named.
+  !> Why a pair is refused, and how many more CGAPs there are with such a pair than the one that is named.
   pure function like_this(pair) result(text)
     integer, intent(in) :: pair(:)   !! 0: there is none
     character(len=:), allocatable :: text
 
-    text = ''
-    if (count(pair > 0) > 1) text = '; so it is with '//plural(count(pair > 0) - 1, 'more CGAP')
+    text = ': forces would be shared between the two'
+    if (count(pair > 0) > 1) text = text//'; so it is with '//plural(count(pair > 0) - 1, 'more CGAP')
   end function like_this
 end module epcont_contact_geometry_pair_checks

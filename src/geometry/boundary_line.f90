@@ -71,7 +71,6 @@ module epcont_geometry_boundary_line
     procedure :: tangent
     procedure :: scaled_normal
     procedure :: rise
-    procedure :: find_foot
   end type side_type
 
 contains
@@ -166,7 +165,7 @@ contains
     place%segment = segment
     side = side_of(self, segment)
     from = point - self%x(:, 1, segment)
-    call side%find_foot(from, place%s, place%found)
+    call find_foot(place%s, place%found)
     associate (s => place%s)
       place%found = place%found .and. s >= -beyond .and. s <= 1.0_wp + beyond
       if (.not. place%found) return
@@ -184,6 +183,35 @@ contains
       place%gap = dot_product(place%normal, point - self%x(:, end, segment))
       place%at_corner = self%corner(end, segment) .and. .not. mirrored
     end associate
+
+  contains
+
+    !> The place whose normal leads to the point, by Newton's method.
+    pure subroutine find_foot(s, found)
+      real(wp), intent(out) :: s      !! from 0 to 1, or beyond
+      logical, intent(out) :: found   !! there is one
+      real(wp) :: away(2), normal(2), rate, start(2), step, turn(2)
+      integer :: k
+
+      start = side%scaled_normal(0.0_wp)
+      turn = side%scaled_normal(1.0_wp) - start
+      associate (chord => side%x(:, 2))
+        s = dot_product(from, chord)/dot_product(chord, chord)
+      end associate
+      found = .false.
+      do k = 1, most_steps
+        if (abs(s) > 10.0_wp) return
+        away = from - matmul(side%x, side%values(s))
+        normal = start + s*turn
+        rate = cross_product(turn, away) - cross_product(normal, side%tangent(s))
+        if (rate == 0.0_wp) return
+        step = -cross_product(normal, away)/rate
+        s = s + step
+        found = abs(step) <= converged*max(1.0_wp, abs(s))
+        if (found) return
+      end do
+      found = abs(step) <= beyond
+    end subroutine find_foot
   end function face
 
   !> Cosine of the angle between the normals of two places.
@@ -219,35 +247,6 @@ contains
     side%normal = line%normal(:, :, segment)
     side%tangent_length = [(norm2(side%tangent(real(k, wp))), k=0, 1)]
   end function side_of
-
-  !> The place whose normal leads to a point, which is given from the side's start as well.
-  pure subroutine find_foot(self, point, s, found)
-    class(side_type), intent(in) :: self
-    real(wp), intent(in) :: point(2)   !! [length]
-    real(wp), intent(out) :: s         !! from 0 to 1, or beyond
-    logical, intent(out) :: found      !! there is one
-    real(wp) :: away(2), normal(2), rate, start(2), step, turn(2)
-    integer :: k
-
-    start = self%scaled_normal(0.0_wp)
-    turn = self%scaled_normal(1.0_wp) - start
-    associate (chord => self%x(:, 2))
-      s = dot_product(point, chord)/dot_product(chord, chord)
-    end associate
-    found = .false.
-    do k = 1, most_steps
-      if (abs(s) > 10.0_wp) return
-      away = point - matmul(self%x, self%values(s))
-      normal = start + s*turn
-      rate = cross_product(turn, away) - cross_product(normal, self%tangent(s))
-      if (rate == 0.0_wp) return
-      step = -cross_product(normal, away)/rate
-      s = s + step
-      found = abs(step) <= converged*max(1.0_wp, abs(s))
-      if (found) return
-    end do
-    found = abs(step) <= beyond
-  end subroutine find_foot
 
   !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is
   !! linear between them.)

@@ -34,7 +34,7 @@ contains
     nodes = 2**(bit_size(1) - leadz(max(size(low, 2) - 1, 0)) + 1) - 1
     allocate (tree%item(nodes), first(nodes), last(nodes), source=0)
     allocate (tree%low(2, nodes), source=huge(1.0_wp))
-    allocate (tree%high(2, nodes), source=-huge(1.0_wp))
+    tree%high = -tree%low
     order = [(i, i=1, size(low, 2))]
     if (size(order) == 0) return   ! a root that nothing meets
     first(1) = 1

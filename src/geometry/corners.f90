@@ -35,8 +35,9 @@ contains
     integer, intent(in) :: held(:, :)
     !> Turns above it are corners, others are not [degree]; 0: decided here
     real(wp), intent(in) :: angle
-    !> Normals of each side itself at its ends; turns of the boundary there, positive where it is convex
-    real(wp) :: own(2, 2, size(line%element)), turn(2, size(line%element))
+    !> Normals of each side itself at its ends; turns of the boundary there, positive where it is convex; none
+    !! beyond its ends
+    real(wp) :: own(2, 2, size(line%element)), turn(2, 0:size(line%element))
     logical :: ends_there(2, size(line%element))
     integer :: end, i, n
 
@@ -59,11 +60,11 @@ contains
     end do
     ends_there = line%neighbour == 0 .and. .not. line%mirrored
     if (angle > 0.0_wp) then
-      line%corner = ends_there .or. abs(turn) > angle*degree + rounding
+      line%corner = ends_there .or. abs(turn(:, 1:)) > angle*degree + rounding
     else
-      line%corner = ends_there .or. .not. (abs(turn) < always_smooth .or. is_on_curve())
+      line%corner = ends_there .or. .not. (abs(turn(:, 1:)) < always_smooth .or. is_on_curve())
     end if
-    line%tip = line%corner .and. (turn > 0.0_wp .or. ends_there) .and. .not. line%mirrored
+    line%tip = line%corner .and. (turn(:, 1:) > 0.0_wp .or. ends_there) .and. .not. line%mirrored
     call set_normals()
     call line%set_boxes()
 
@@ -76,11 +77,11 @@ contains
 
       associate (d => held(end, side), next => line%neighbour(end, side))
         is_mirrored = d /= 0 .and. d /= both .and. held(3 - end, side) /= d
-        if (is_mirrored) is_mirrored = .not. looks_along(own(:, end, side), d)
+        if (is_mirrored) is_mirrored = abs(own(3 - d, end, side)) >= abs(own(d, end, side))
         if (.not. is_mirrored .or. next == 0) return   ! nothing is known of what lies beyond
         ! A cut meets the side at a corner; on a curve the next side may look like one from 45 degrees on.
         is_mirrored = abs(turn(end, side)) >= always_corner .and. any(held(end, next) == [d, both]) .and. &
-                      looks_along(own(:, 3 - end, next), d)
+                      abs(own(3 - d, 3 - end, next)) < abs(own(d, 3 - end, next))
       end associate
     end function is_mirrored
 
@@ -88,50 +89,50 @@ contains
     !! beyond it.
     subroutine reflect(end, side)
       integer, intent(in) :: end, side
-      real(wp) :: beyond(2)
+      real(wp) :: mirrored(2)
 
       associate (across => held(end, side), normal => own(:, end, side))
         line%end_normal(3 - across, end, side) = sign(1.0_wp, normal(3 - across))
-        beyond = normal
-        beyond(across) = -normal(across)
-        turn(end, side) = merge(-1.0_wp, 1.0_wp, end == 1)*angle_between(normal, beyond)
+        mirrored = normal
+        mirrored(across) = -normal(across)
+        turn(end, side) = merge(-1.0_wp, 1.0_wp, end == 1)*angle_between(normal, mirrored)
       end associate
     end subroutine reflect
 
     !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the
     !! first or the last node of one (beside a node within it, and they turn like that)?
     pure function is_on_curve() result(on)
-      logical :: on(2, n)
-      logical :: alike_beside(2, 2, n), inner(2, 0:n)
+      logical :: alike_beside(2, 2, n), inner(2, 0:n), on(2, n)
       real(wp) :: beside(2)
-      integer :: end, i, next
+      integer :: at(2), end, i
 
       inner = .false.
       do i = 1, n
         do end = 1, 2
-          ! Along the side, and along the one that it meets there.
-          next = line%neighbour(end, i)
-          beside = [turn(3 - end, i), 0.0_wp]
-          if (line%mirrored(end, i)) then
-            beside(2) = beside(1)
-          else if (next > 0) then
-            beside(2) = turn(end, next)
-          end if
-          beside = beside*sign(1.0_wp, turn(end, i))
+          at = beyond(end, i)
+          beside = sign(1.0_wp, turn(end, i))*[turn(3 - end, i), turn(at(1), at(2))]
           alike_beside(:, end, i) = alike*beside > abs(turn(end, i))
-          inner(end, i) = all(alike_beside(:, end, i) .and. beside < always_corner)
+          inner(end, i) = abs(turn(end, i)) < always_corner .and. &
+                          all(alike_beside(:, end, i) .and. beside < always_corner)
         end do
       end do
-      inner(:, 1:) = inner(:, 1:) .and. abs(turn) < always_corner
       do i = 1, n
         do end = 1, 2
-          next = merge(0, line%neighbour(end, i), line%mirrored(end, i))
-          on(end, i) = inner(end, i) .or. &
-                       any([inner(3 - end, i), inner(end, next)] .and. alike_beside(:, end, i))
+          at = beyond(end, i)
+          on(end, i) = abs(turn(end, i)) < always_corner .and. &
+                       (inner(end, i) .or. &
+                        any([inner(3 - end, i), inner(at(1), at(2))] .and. alike_beside(:, end, i)))
         end do
       end do
-      on = on .and. abs(turn) < always_corner
     end function is_on_curve
+
+    !> The end of a side, and that side, beyond the end of another: of itself where it is mirrored.
+    pure function beyond(end, side)
+      integer, intent(in) :: end, side
+      integer :: beyond(2)
+
+      beyond = merge([3 - end, side], [end, line%neighbour(end, side)], line%mirrored(end, side))
+    end function beyond
 
     !> Normals from the sides that meet, or from the other end of the side.
     subroutine set_normals()
@@ -168,12 +169,4 @@ contains
 
     angle_between = atan2(cross_product(a, b), dot_product(a, b))
   end function angle_between
-
-  !> Does a vector lean more along an axis than across it?
-  pure logical function looks_along(vector, axis)
-    real(wp), intent(in) :: vector(2)
-    integer, intent(in) :: axis
-
-    looks_along = abs(vector(3 - axis)) < abs(vector(axis))
-  end function looks_along
 end module epcont_geometry_corners

@@ -69,10 +69,11 @@ contains
     type(facing_type) :: face(2)
     type(facing_type), allocatable :: met(:)
     integer, allocatable :: sides(:)
-    real(wp) :: more, rounding, within
+    real(wp) :: ahead(2), more, rounding, within
     integer :: k, round
 
     rounding = coordinate_rounding*maxval(abs(from%x))
+    ahead = from%x + aside*from%along
     more = min(search, 2.0_wp*norm2(from%along))
     do round = rounds, 0, -1
       within = search/widening**round
@@ -117,11 +118,11 @@ contains
       type(facing_type) :: place
       integer :: end
 
-      place = line%face(side, from%x + aside*from%along)
+      place = line%face(side, ahead)
       goes_on = place%found
       do end = 1, 2
         if (goes_on .or. line%neighbour(end, side) == 0) cycle
-        place = line%face(line%neighbour(end, side), from%x + aside*from%along)
+        place = line%face(line%neighbour(end, side), ahead)
         goes_on = place%found .and. place%gap < search .and. &
                   dot_product(place%normal, line%own_normal(side, 0.5_wp)) > same_face
       end do
@@ -130,7 +131,7 @@ contains
     !> Does a body stand between the point and what it faces?
     pure logical function is_blocked(face)
       type(facing_type), intent(in) :: face
-      real(wp) :: a(2), b(2), near(2)
+      real(wp) :: near(2), place(2)
       integer, allocatable :: between(:)
       integer :: i
 
@@ -138,11 +139,10 @@ contains
       if (abs(face%gap) <= thin*min(line%chord_length(face%segment), 2.0_wp*norm2(from%along))) return
       near = max([from%rise, rise_of(line, face%segment) + aside*norm2(from%along)]/abs(face%gap), at_end)
       if (sum(near) >= 1.0_wp) return
-      a = from%x + aside*from%along
-      b = a - face%gap*face%normal
-      between = obstacles%in_box(min(a, b), max(a, b))
+      place = ahead - face%gap*face%normal
+      between = obstacles%in_box(min(ahead, place), max(ahead, place))
       do i = 1, size(between)
-        is_blocked = crosses(a, b, near, obstacles%x(:, :2, between(i)))
+        is_blocked = crosses(ahead, place, near, obstacles%x(:, :2, between(i)))
         if (is_blocked) return
       end do
     end function is_blocked

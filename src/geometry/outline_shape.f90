@@ -26,7 +26,7 @@ module epcont_geometry_outline_shape
     procedure :: at
     procedure :: tangent
     procedure :: chord
-    procedure, private :: arch
+    procedure :: arch
     procedure :: near_side
     procedure :: nearest_place
     procedure :: is_inside
