@@ -80,7 +80,7 @@ contains
     !> What a card says of the freedoms of a node. Of those that are held at another displacement already one
     !! is told.
     subroutine take(card, node, digits)
-      integer, intent(in) :: card(3)        !! table, card, and the field or item of its list that names the node
+      integer, intent(in) :: card(3)        !! table, card, field or item of its list that names the node
       integer, intent(in) :: node, digits   !! and the field that names the freedoms
       integer :: c, conflict
       real(wp) :: displacement

@@ -80,8 +80,10 @@ contains
       character(len=:), allocatable :: remedy
 
       remedy = 'blank'
-      if (.not. allocated(table%entry%list_name)) remedy = 'blank; '//trim(table%entry%name)//' ends with field '// &
-                                                 text_of(number_of(size(table%entry%field)))
+      associate (entry => table%entry)
+        if (.not. allocated(entry%list_name)) &
+          remedy = 'blank; '//trim(entry%name)//' ends with field '//text_of(number_of(size(entry%field)))
+      end associate
       call refuse(slot, 'must be blank', remedy)
     end subroutine refuse_surplus
 

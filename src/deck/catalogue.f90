@@ -233,14 +233,15 @@ contains
   function catalogue() result(card)
     type(card_entry) :: card(card_kinds)
     type(field_entry) :: field
-    integer :: i, k
+    integer :: at, i, k
 
     k = 0
     do i = 1, size(cards)
       associate (line => cards(i))
         if (line(1:1) /= ' ') then
           k = k + 1
-          card(k) = card_entry(line(:index(line, ':') - 1), trim(line(index(line, ':') + 2:)), [field_entry ::])
+          at = index(line, ':')
+          card(k) = card_entry(line(:at - 1), trim(line(at + 2:)), [field_entry ::])
         else
           field = new_field(line)
           if (index(line, '; ids') + index(line, '; points') > 0) then

@@ -100,13 +100,14 @@ contains
     if (len(self%field_name(slot)) > 0) text = text//' ('//self%field_name(slot)//')'
   end function field_text
 
-  !> A field from its line in the catalogue: `name; what it may hold; meaning [unit] | reason`. It may hold an `id`
-  !! (from 1 on), a `system` (0 or an id), a `whole` number, a `real`, `digits` (directions, from 1 to 6), a `word`,
-  !! where some are listed one of these, or `any`thing; or it is `blank`. Behind that may stand, in any order: limits
-  !! (`from=`, `to=`, or `below=`, in place of which `instead=` would do), `positive`, `only_zero` (0 or blank),
-  !! `cause` (it loads the scene), `noted` (checked, without effect), `point_optional`; what a blank means: `zero`,
-  !! `default=`, or `as_last`, its neighbour; and whether it may be blank: ids and digits may if they are `optional`,
-  !! or where their neighbour (`with_next`, `with_last`) is, numbers if they are not `needed`. `times=` as often.
+  !> A field from its line in the catalogue: `name; what it may hold; meaning [unit] | reason`. It may hold
+  !! an `id` (from 1 on), a `system` (0 or an id), a `whole` number, a `real`, `digits` (directions, from 1
+  !! to 6), a `word`, where some are listed one of these, or `any`thing; or it is `blank`. Behind that may
+  !! stand, in any order: limits (`from=`, `to=`, or `below=`, in place of which `instead=` would do),
+  !! `positive`, `only_zero` (0 or blank), `cause` (it loads the scene), `noted` (checked, without effect),
+  !! `point_optional`; what a blank means: `zero`, `default=`, or `as_last`, its neighbour; and whether it
+  !! may be blank: ids and digits may if they are `optional`, or where their neighbour (`with_next`,
+  !! `with_last`) is, numbers if they are not `needed`. So many like it follow each other as `times=` says.
   pure type(field_entry) function new_field(line) result(field)
     character(len=*), intent(in) :: line   !! as above
     character(len=48) :: form   ! between blanks

@@ -1,7 +1,7 @@
 !> Freedoms that follow others (RBE2), those of reference (SUPORT), the bodies that elements and ties make of
-!> nodes, and the rigid motion that supports prescribe to a body as a whole. That is taken off before the body is
-!> solved and added afterwards, as the motions are that supports leave free: it strains nothing, and strains would
-!> lose their digits in it.
+!> nodes, and the rigid motion that supports prescribe to a body as a whole. That is taken off before the
+!> body is solved and added afterwards, as the motions are that supports leave free: it strains nothing, and
+!> strains would lose their digits in it.
 module epcont_model_freedoms
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
