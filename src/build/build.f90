@@ -17,16 +17,16 @@ module epcont_build_build
   use epcont_deck_diagnostic, only: diagnostic, diagnostics
   use epcont_deck_entry, only: least_cause
   use epcont_model_element_shapes, only: check_axis
-  use epcont_model_finding, only: findings, of_body, of_couple, of_element, of_line, of_node, of_pair, of_paper_ratio, &
-                                  of_scene
+  use epcont_model_finding, only: findings, of_body, of_couple, of_element, of_line, of_node, of_pair, &
+                                  of_paper_ratio, of_scene
   use epcont_model_model, only: model_type
   implicit none
   private
   public :: build_model, tell
 
   !> Cards with ids of their own.
-  integer, parameter :: own_ids(8) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, card_cord2r, &
-                                      card_blseg, card_bconp]
+  integer, parameter :: own_ids(8) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
+                                      card_cord2r, card_blseg, card_bconp]
 
 contains
 

@@ -8,10 +8,10 @@ module epcont_build_conditions
                                     card_suport
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
+  use epcont_model_freedoms, only: follow_to_the_end, freedom, set_reference, tie
   use epcont_model_finding, only: and_more, findings, of_element
   use epcont_model_model, only: model_type
   use epcont_model_pressure, only: add_pressure, element_behind
-  use epcont_model_ties, only: follow_to_the_end, freedom, set_reference, tie
   implicit none
   private
   public :: build_conditions
@@ -80,7 +80,7 @@ contains
     !> What a card says of the freedoms of a node. Of those that are held at another displacement already one
     !! is told.
     subroutine take(card, node, digits)
-      integer, intent(in) :: card(3)        !! table, card, and the field or item of its list that names the node
+      integer, intent(in) :: card(3)        !! table, card, field or item of its list that names the node
       integer, intent(in) :: node, digits   !! and the field that names the freedoms
       integer :: c, conflict
       real(wp) :: displacement

@@ -167,7 +167,7 @@ contains
     !> A field is at fault.
     subroutine refuse(card, i, name, what, remedy)
       integer, intent(in) :: card, i
-      character(len=*), intent(in) :: name, what, remedy   !! the field's name; what is wrong; what would be right
+      character(len=*), intent(in) :: name, what, remedy   !! of the field; is wrong; would be right
 
       call found%add_error(card, i, deck%card(card)%column(name), what, remedy)
     end subroutine refuse

@@ -17,11 +17,10 @@ module epcont_contact_geometry_complete
   use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
   use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_section
+  use epcont_model_freedoms, only: find_travels, follow_to_the_end, set_reference, tie
   use epcont_model_given, only: check_given
   use epcont_model_model, only: model_type
   use epcont_model_single_pairs, only: complete_pairs
-  use epcont_model_ties, only: follow_to_the_end, set_reference, tie
-  use epcont_model_travel, only: find_travels
   implicit none
   private
   public :: complete_model, raise_first, check_controls, finish_model

@@ -3,7 +3,7 @@ module epcont_contact_geometry_free_sides
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_geometry_outline, only: outline_type
   use epcont_model_model, only: model_type
-  use epcont_model_ties, only: join_nodes
+  use epcont_model_freedoms, only: join_nodes
   implicit none
   private
   public :: find_outline

@@ -11,8 +11,8 @@ module epcont_contact_geometry_line_contacts
   use epcont_contact_geometry_line_warnings, only: warn_of_both_ways, warn_of_contact
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_finding, only: findings, of_couple, of_line
+  use epcont_model_freedoms, only: find_bodies
   use epcont_model_model, only: line_contact, model_type
-  use epcont_model_ties, only: find_bodies
   implicit none
   private
   public :: find_contacts

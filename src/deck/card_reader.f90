@@ -1,16 +1,36 @@
 !> One card, field by field, into its table. Behind its fields there may be a list: of ids, `G1 G2 ..`, with
 !> `G1 THRU G2` and `G1 THRU G2 BY step` where the card allows it; or of points, `X1 Y1 X2 Y2 .. ENDT`.
 module epcont_deck_card_reader
-  use epcont_base_text, only: text_of, upper
+  use epcont_base_kinds, only: i8, wp
+  use epcont_base_text, only: short_real, text_of, upper
   use epcont_deck_card, only: card_fields
   use epcont_deck_diagnostic, only: diagnostics
-  use epcont_deck_entry, only: field, field_entry, integer_field, kind_blank, kind_word, number_of
-  use epcont_deck_field, only: scan_sound
+  use epcont_deck_entry, only: farthest, field_entry, kind_blank, kind_components, kind_integer, kind_real, &
+                               kind_word, largest_id, number_of
+  use epcont_deck_field, only: scan_components, scan_integer, scan_malformed, scan_no_point, scan_real, &
+                               scan_sound, scan_too_large, scan_too_long, scan_too_small, scan_word
   use epcont_deck_table, only: card_table, list_item
-  use epcont_deck_value, only: explain, field_value, read_value
   implicit none
   private
   public :: read_card
+
+  !> What lists hold.
+  type(field_entry), parameter :: &
+    id = field_entry(kind=kind_integer, lowest=1.0_wp, highest=real(largest_id, wp)), &
+    coordinate = field_entry(kind=kind_real)
+
+  !> Faults that are not of form, beside the outcomes of a scan.
+  integer, parameter :: out_of_range = -1, out_of_reach = -2
+  !> What fields hold, by their kinds.
+  character(len=*), parameter :: noun(4) = [character(len=20) :: &
+    'a whole number', 'a real number', 'a list of directions', 'a word']
+
+  !> What a field says. (Not initialised: that would take longer than reading it.)
+  type :: field_value
+    real(wp) :: number
+    character(len=8) :: word   !! in capitals
+    integer :: outcome         !! `scan_sound`, or what is wrong
+  end type field_value
 
 contains
 
@@ -60,8 +80,10 @@ contains
       character(len=:), allocatable :: remedy
 
       remedy = 'blank'
-      if (.not. allocated(table%entry%list_name)) remedy = 'blank; '//trim(table%entry%name)//' ends with field '// &
-                                                 text_of(number_of(size(table%entry%field)))
+      associate (entry => table%entry)
+        if (.not. allocated(entry%list_name)) &
+          remedy = 'blank; '//trim(entry%name)//' ends with field '//text_of(number_of(size(entry%field)))
+      end associate
       call refuse(slot, 'must be blank', remedy)
     end subroutine refuse_surplus
 
@@ -111,12 +133,44 @@ contains
       integer, intent(in) :: slot
       type(field_entry), intent(in) :: entry
       type(field_value), intent(in) :: value
-      character(len=:), allocatable :: what, remedy
+      character(len=:), allocatable :: text, what, remedy
+      integer :: last
 
-      what = 'is blank'
+      text = card%text(card%slot(slot)%first:card%slot(slot)%last)
       remedy = entry%allowed()
-      if (card%filled(slot)) &
-        call explain(card%text(card%slot(slot)%first:card%slot(slot)%last), entry, value, what, remedy)
+      select case (value%outcome)
+      case (scan_no_point)
+        what = 'is not a real number'
+        last = verify(text(2:)//'.', '0123456789')   ! of its digits
+        remedy = 'a real needs a decimal point: '//text(:last)//'.'//text(last + 1:)
+        if (last == len(text)) remedy = remedy//'0'
+      case (scan_too_large)
+        what = 'is too large for a number'
+        if (entry%kind == kind_real) remedy = 'at most 1.0E+30'
+      case (scan_too_small)
+        what = 'is too small for a number'
+        remedy = '0.0, or at least 2.226E-308'
+      case (out_of_reach)
+        what = 'is too far from 1.0'
+        remedy = 'other units: sizes'
+        if (entry%least > 0.0_wp) remedy = remedy//' from '//short_real(entry%least)
+        remedy = remedy//' to '//short_real(farthest)
+        if (entry%least > 0.0_wp .and. .not. entry%above_lowest) remedy = remedy//', or 0.0'
+      case (scan_too_long)
+        what = 'has more than 8 characters'
+      case (scan_malformed)
+        what = 'is not '//trim(noun(entry%kind))
+        if (len(text) == 0) what = 'is blank'
+      case default
+        what = 'is out of range'
+        if (entry%kind == kind_word) what = 'is not a word known here'
+        if (entry%withdrawn /= '' .and. value%word == entry%withdrawn) &
+          what = 'is '//trim(entry%withdrawn)//', which is no longer there'
+        if (entry%instead /= '' .and. value%number == entry%highest) then
+          what = 'is '//text//', '//trim(entry%reason)
+          remedy = 'less, such as '//trim(entry%instead)
+        end if
+      end select
       call refuse(slot, what, remedy)
     end subroutine refuse_value
 
@@ -134,22 +188,19 @@ contains
 
     !> The ids at the end of a card, one at least.
     subroutine read_ids()
-      type(field_entry) :: id
       integer :: slot
 
       slot = table%entry%list_slot
-      id = field('', 'id', '')
       if (.not. any(card%slot(slot:card%count)%last >= card%slot(slot:card%count)%first)) &
         call refuse(slot, 'is blank', id%allowed())
       do while (slot <= card%count)
-        if (card%filled(slot)) call read_range(id, slot)
+        if (card%filled(slot)) call read_range(slot)
         slot = slot + 1
       end do
     end subroutine read_ids
 
     !> One id, or a range of them.
-    subroutine read_range(id, slot)
-      type(field_entry), intent(in) :: id
+    subroutine read_range(slot)
       integer, intent(inout) :: slot   !! the first of the range, then its last
       type(field_value) :: value
       type(list_item) :: item
@@ -186,7 +237,8 @@ contains
       if (.not. is_word(slot + 1, 'BY')) return
       slot = slot + 2
       most = item%step*max(1, abs(length))
-      call read_slot(slot, integer_field('', '', min(item%step, most), max(item%step, most)), value)
+      call read_slot(slot, field_entry(kind=kind_integer, lowest=real(min(item%step, most), wp), &
+                                       highest=real(max(item%step, most), wp)), value)
       if (value%outcome /= scan_sound) return
       if (mod(length, nint(value%number)) == 0) then
         item%step = nint(value%number)
@@ -199,19 +251,17 @@ contains
     !> Points. A fault in one of them ends the list: what follows it would be taken for the wrong number.
     subroutine read_points()
       character(len=*), parameter :: end_word = 'ENDT'
-      type(field_entry) :: number
       type(field_value) :: value(2)
       integer :: k, slot
 
       slot = table%entry%list_slot
-      number = field('', 'real', '')
       do while (.not. is_word(slot, end_word))
         do k = 1, 2
           if (.not. card%filled(slot + k - 1)) then
             call refuse(slot + k - 1, 'is blank', 'a real, or '//end_word//' behind the last point')
             return
           end if
-          call read_slot(slot + k - 1, number, value(k))
+          call read_slot(slot + k - 1, coordinate, value(k))
           if (value(k)%outcome /= scan_sound) return
         end do
         call table%add_item(list_item(point=value%number, place=card%place(slot)))
@@ -225,4 +275,47 @@ contains
       end do
     end subroutine read_points
   end subroutine read_card
+
+  !> The value of a field; a blank one is malformed.
+  pure subroutine read_value(card, slot, entry, value)
+    type(card_fields), intent(in) :: card     !! its fields
+    integer, intent(in) :: slot               !! which field
+    type(field_entry), intent(in) :: entry    !! what it may hold
+    type(field_value), intent(out) :: value   !! what it says
+    integer(i8) :: whole
+
+    value%outcome = scan_sound
+    value%number = 0.0_wp
+    value%word = ''
+    associate (first => card%slot(slot)%first, last => card%slot(slot)%last)
+      select case (entry%kind)
+      case (kind_integer)
+        call scan_integer(card%text(first:last), whole, value%outcome)
+        value%number = real(whole, wp)
+      case (kind_real)
+        call scan_real(card%text(first:last), value%number, value%outcome)
+      case (kind_components)
+        call scan_components(card%text(first:last), whole, value%outcome)
+        value%number = real(whole, wp)
+      case (kind_word)
+        call scan_word(card%text(first:last), value%word, value%outcome)
+      end select
+    end associate
+    if (value%outcome == scan_no_point .and. entry%point_optional) then
+      if (card%is_large(slot)) value%outcome = scan_sound
+    end if
+    if (value%outcome /= scan_sound) return
+    associate (number => value%number)
+      if (entry%kind == kind_word) then
+        if (entry%choices /= '' .and. index(' '//entry%choices//' ', ' '//trim(value%word)//' ') == 0) &
+          value%outcome = out_of_range
+      else if (number < entry%lowest .or. (entry%above_lowest .and. number <= entry%lowest) .or. &
+               number > entry%highest .or. (entry%below_highest .and. number >= entry%highest)) then
+        value%outcome = out_of_range
+      else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
+        if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) &
+          value%outcome = out_of_reach
+      end if
+    end associate
+  end subroutine read_value
 end module epcont_deck_card_reader

@@ -80,10 +80,8 @@ contains
 
     !> Take one statement.
     subroutine take_statement()
-      character(len=6) :: word
       integer :: unused
 
-      word = 'NONE'
       select case (parts%word)
       case ('SOL')
         call take_number(control%solution)
@@ -103,16 +101,13 @@ contains
         control%load_place = parts%value_place
         call take_number(control%load)
       case ('ECHO')
-        call take_word('UNSORT, SORT, BOTH', control%echo)
+        control%echo = choice('UNSORT, SORT, BOTH')
       case ('DISPLACEMENT')
-        call take_word('ALL', word)
-        control%displacement = word == 'ALL'
+        control%displacement = choice('ALL') == 'ALL'
       case ('STRESS')
-        call take_word('ALL', word)
-        control%stress = word == 'ALL'
+        control%stress = choice('ALL') == 'ALL'
       case ('SPCFORCES')
-        call take_word('ALL', word)
-        control%spcforces = word == 'ALL'
+        control%spcforces = choice('ALL') == 'ALL'
       case ('SUBCASE')
         call take_number(unused)
       case ('NLPARM')
@@ -135,19 +130,16 @@ contains
       end if
     end subroutine take_number
 
-    !> A statement that takes NONE or one of some words.
-    subroutine take_word(words, word)
-      character(len=*), intent(in) :: words        !! with commas between
-      character(len=*), intent(inout) :: word
-      character(len=:), allocatable :: said
+    !> The word of a statement that takes NONE or one of others; NONE where it is none of these.
+    function choice(others) result(word)
+      character(len=*), intent(in) :: others   !! with commas between
+      character(len=:), allocatable :: word
 
-      said = upper(parts%value)
-      if (len(said) > 0 .and. scan(said, ', ') == 0 .and. index(', '//words//', NONE,', ', '//said//',') > 0) then
-        word = said
-      else
-        call refuse('a word', ' known here', words//' or NONE')
-      end if
-    end subroutine take_word
+      word = upper(parts%value)
+      if (scan(word, ', ') == 0 .and. index(', '//others//', NONE, ', ', '//word//', ') > 0) return
+      call refuse('a word', ' known here', others//' or NONE')
+      word = 'NONE'
+    end function choice
 
     !> A value that is missing, or cannot be taken.
     subroutine refuse(needed, which, remedy)

@@ -54,8 +54,8 @@ contains
     end do
   end subroutine forget_text
 
-  !> Where a field of a card stands; the card is cut into fields once more to find out. Items of lists, of which
-  !! a card may have ten thousands, have kept their places.
+  !> Where a field of a card stands; the card is cut into fields once more to find out. Items of lists, of
+  !! which a card may have ten thousands, have kept their places.
   type(place_type) function place(self, card, i, field)
     class(deck_type), intent(in) :: self
     integer, intent(in) :: card   !! which table: card_grid, ...

@@ -22,8 +22,8 @@ module epcont_deck_diagnostic
   type :: diagnostic
     integer :: severity = severity_error
     type(place_type) :: place
-    !> What it is about, where that is no place in a deck, or not yet: a card (above zero) or a part of a scene
-    !! (`epcont_model_finding`), which of these, which of its data
+    !> What it is about, where that is no place in a deck, or not yet: a card (above zero) or a part of a
+    !! scene (`epcont_model_finding`), which of these, which of its data
     integer :: of = 0, which = 0, item = 0
     character(len=:), allocatable :: what    !! `GRID 17: field 4 (X1) is not a real number`
     character(len=:), allocatable :: remedy  !! `a real such as 1.5`; may be empty

@@ -4,7 +4,7 @@ module epcont_deck_entry
   use epcont_base_text, only: text_of
   implicit none
   private
-  public :: field_entry, card_entry, field, integer_field, word_field, number_of
+  public :: field_entry, card_entry, new_field, number_of
 
   !> Kinds of fields.
   integer, parameter, public :: &
@@ -22,7 +22,7 @@ module epcont_deck_entry
   !! and of what rounding leaves where loads cancel.
   real(wp), parameter, public :: farthest = 1.0e30_wp, least_divisor = 1.0e-30_wp, least_cause = 1.0e-60_wp
 
-  !> One field of a card, or one PARAM. The functions below make it.
+  !> One field of a card, or one PARAM. `new_field` makes it.
   type :: field_entry
     character(len=8) :: name = ''
     integer :: kind = kind_blank       !! it must be blank
@@ -41,6 +41,7 @@ module epcont_deck_entry
     character(len=40) :: choices = ''    !! the words allowed, with blanks between; blank: any
     character(len=8) :: withdrawn = ''   !! a word that was allowed once
     character(len=60) :: reason = ''     !! why the upper limit is out of range, or why nothing but zero is in
+    integer :: times = 1                 !! so many fields like it follow each other
     character(len=8) :: instead = ''     !! a value near the upper limit that would do
   contains
     procedure :: allowed
@@ -57,7 +58,6 @@ module epcont_deck_entry
     logical :: has_points = .false.              !! the list is of points `X1 Y1 X2 Y2 .. ENDT`, not of ids
     character(len=:), allocatable :: list_name, list_meaning
   contains
-    procedure :: add_list
     procedure :: field_name
     procedure :: field_text
   end type card_entry
@@ -71,17 +71,6 @@ contains
 
     number_of = 10*((slot - 1)/fields_a_line) + mod(slot - 1, fields_a_line) + 2
   end function number_of
-
-  !> End the card with a list behind its fields.
-  pure subroutine add_list(self, name, meaning)
-    class(card_entry), intent(inout) :: self
-    character(len=*), intent(in) :: name      !! of its fields, before their numbers
-    character(len=*), intent(in) :: meaning   !! of them all
-
-    self%list_slot = size(self%field) + 1
-    self%list_name = name
-    self%list_meaning = meaning
-  end subroutine add_list
 
   !> The name of the field in a slot; empty where it has none.
   pure function field_name(self, slot) result(name)
@@ -111,66 +100,75 @@ contains
     if (len(self%field_name(slot)) > 0) text = text//' ('//self%field_name(slot)//')'
   end function field_text
 
-  !> A field; `form` says in words what it may hold. First comes `id` (from 1 on), `system` (0 or an id), `real`,
-  !! `digits` (directions, from 1 to 6) or `any`; then, in any order, `noted` (checked, without effect), `zero` (a
-  !! blank is 0), `only_zero` (0 or blank), `positive`, `below_one`, `cause` (it loads the scene), and whether it
-  !! may be blank: ids and digits may if they are `optional`, or where their neighbour (`with_next`, `with_last`)
-  !! is, other fields if they are not `needed`.
-  pure type(field_entry) function field(name, form, meaning, unit, reason)
-    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
-    character(len=*), intent(in) :: form            !! as above
-    character(len=*), intent(in), optional :: unit, reason   !! default: it has none; why it is `only_zero`
+  !> A field from its line in the catalogue: `name; what it may hold; meaning [unit] | reason`. It may hold
+  !! an `id` (from 1 on), a `system` (0 or an id), a `whole` number, a `real`, `digits` (directions, from 1
+  !! to 6), a `word`, where some are listed one of these, or `any`thing; or it is `blank`. Behind that may
+  !! stand, in any order: limits (`from=`, `to=`, or `below=`, in place of which `instead=` would do),
+  !! `positive`, `only_zero` (0 or blank), `cause` (it loads the scene), `noted` (checked, without effect),
+  !! `point_optional`; what a blank means: `zero`, `default=`, or `as_last`, its neighbour; and whether it
+  !! may be blank: ids and digits may if they are `optional`, or where their neighbour (`with_next`,
+  !! `with_last`) is, numbers if they are not `needed`. So many like it follow each other as `times=` says.
+  pure type(field_entry) function new_field(line) result(field)
+    character(len=*), intent(in) :: line   !! as above
+    character(len=48) :: form   ! between blanks
+    character(len=len(line)) :: rest
+    integer :: bar, first, second
+    logical :: id, only_zero, positive, system
 
-    field = field_entry(name, meaning=meaning, used=.not. says('noted'))
-    if (present(unit)) field%unit = unit
-    if (present(reason)) field%reason = reason
+    first = index(line, ';')
+    second = first + index(line(first + 1:), ';')
+    form = line(first + 1:second - 1)
+    rest = adjustl(line(second + 1:))
+    bar = index(rest//'|', '|')
+    id = says('id')
+    system = says('system')
+    only_zero = says('only_zero')
+    positive = says('positive')
+    field%name = adjustl(line(:first - 1))
+    field%meaning = rest(:scan(rest//'|', '[|') - 1)
+    if (index(rest, '[') > 0) field%unit = rest(index(rest, '[') + 1:index(rest, ']') - 1)
+    field%reason = adjustl(rest(bar + 1:))
+    field%kind = findloc([id .or. system .or. says('whole'), says('real'), says('digits'), &
+                          says('word'), says('any')], .true., dim=1)   ! kind_blank: none
+    if (says('word')) field%choices = form(len(' word ') + 1:)
+    field%times = nint(number('times', 1.0_wp))
+    field%lowest = number('from', merge(1.0_wp, -huge(1.0_wp), id))
+    if (system .or. only_zero .or. positive) field%lowest = 0.0_wp
+    field%highest = number('to', number('below', huge(1.0_wp)))
+    if (id .or. system) field%highest = largest_id
+    if (only_zero) field%highest = 0.0_wp
+    field%above_lowest = positive
+    field%below_highest = index(form, ' below=') > 0
+    if (index(form, 'instead=') > 0) field%instead = form(index(form, 'instead=') + len('instead='):)
+    if (positive) field%least = least_divisor
+    if (says('cause')) field%least = least_cause
+    field%used = .not. says('noted')
+    field%point_optional = says('point_optional')
+    field%default = number('default', 0.0_wp)
+    field%has_default = says('zero') .or. only_zero .or. index(form, ' default=') > 0
+    if (says('as_last')) field%same_as = last_field
     if (says('with_next')) field%with = next_field
     if (says('with_last')) field%with = last_field
-    field%required = says('needed')
-    if (says('id') .or. says('digits')) field%required = .not. says('optional') .and. field%with == 0
-    if (says('id') .or. says('system')) then
-      field%kind = kind_integer
-      field%lowest = merge(1, 0, says('id'))
-      field%highest = largest_id
-    else
-      field%kind = merge(kind_components, merge(kind_any, kind_real, says('any')), says('digits'))
-    end if
-    field%has_default = says('zero') .or. says('only_zero')
-    if (says('only_zero') .or. says('positive')) field%lowest = 0.0_wp
-    if (says('only_zero')) field%highest = 0.0_wp
-    field%above_lowest = says('positive')
-    if (says('positive')) field%least = least_divisor
-    if (says('cause')) field%least = least_cause
-    field%below_highest = says('below_one')
-    if (says('below_one')) field%highest = 1.0_wp
+    field%required = says('needed') .or. says('word') .or. &
+                     ((id .or. says('digits')) .and. .not. says('optional') .and. field%with == 0)
 
   contains
 
     pure logical function says(word)
       character(len=*), intent(in) :: word
 
-      says = index(' '//form//' ', ' '//word//' ') > 0
+      says = index(form, ' '//word//' ') > 0
     end function says
-  end function field
 
-  !> A whole number. Without default a blank has a meaning of its own.
-  pure type(field_entry) function integer_field(name, meaning, lowest, highest, default) result(field)
-    character(len=*), intent(in) :: name, meaning   !! as the manual of cards prints them
-    integer, intent(in) :: lowest, highest        !! the range
-    integer, intent(in), optional :: default      !! what a blank means
+    !> The number behind `name=`, where that stands.
+    pure real(wp) function number(name, otherwise)
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: otherwise
 
-    field = field_entry(name, kind_integer, meaning, lowest=real(lowest, wp), highest=real(highest, wp), &
-                        has_default=present(default))
-    if (present(default)) field%default = real(default, wp)
-  end function integer_field
-
-  !> A word, one of `choices` unless these are blank.
-  pure type(field_entry) function word_field(name, choices, meaning) result(field)
-    !> as the manual of cards prints them; `choices` with blanks between
-    character(len=*), intent(in) :: name, choices, meaning
-
-    field = field_entry(name, kind_word, meaning, required=.true., choices=choices)
-  end function word_field
+      number = otherwise
+      if (index(form, ' '//name//'=') > 0) read (form(index(form, ' '//name//'=') + len(name) + 2:), *) number
+    end function number
+  end function new_field
 
   !> What the field may hold, in words: `a real above 0.0`.
   pure function allowed(self) result(text)

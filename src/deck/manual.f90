@@ -3,7 +3,8 @@ module epcont_deck_manual
   use epcont_base_text, only: text_of, upper
   use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_catalogue, only: catalogue, parameters
-  use epcont_deck_entry, only: card_entry, field_entry, fields_a_line, kind_any, kind_blank, kind_real, number_of
+  use epcont_deck_entry, only: card_entry, field_entry, fields_a_line, kind_any, kind_blank, kind_real, &
+                               number_of
   implicit none
   private
   public :: manual

@@ -21,7 +21,7 @@ module epcont_deck_table
     integer :: count = 0                               !! cards
     real(wp), allocatable :: value(:, :)               !! numbers; integers are exact [columns, count]
     logical, allocatable :: given(:, :)                !! the field is not blank [columns, count]
-    character(len=8), allocatable :: word(:, :)        !! words; only where it has such fields [columns, count]
+    character(len=8), allocatable :: word(:, :)        !! words, where it has such fields [columns, count]
     logical, allocatable :: sound(:)                   !! the reader found no fault in the card [count]
     integer, allocatable :: line(:)                    !! where the card begins [count]
     integer :: items = 0                               !! in all lists

@@ -112,8 +112,8 @@ contains
       at_start(:, n + 1) = at_start(:, 1)
       at_end = 4.0_wp*middle - 3.0_wp*x(:, 2:) - x(:, :n)
       if (.not. all(at_start(1, 2:)*at_end(2, :) - at_start(2, 2:)*at_end(1, :) > 0.0_wp)) then
-        call found%add_error(of_element, e, 3, ': a middle node is so far from the middle of its side that '// &
-                             'the element folds over', remedy)
+        call found%add_error(of_element, e, 3, ': a middle node is so far from the middle of its side '// &
+                             'that the element folds over', remedy)
       else if (any([(norm2(2.0_wp*middle(:, k) - x(:, k) - x(:, k + 1)) > norm2(x(:, k + 1) - x(:, k)), &
                      k=1, n)])) then
         call found%add_warning(of_element, e, 3, ': a middle node is farther from the middle of its side '// &

@@ -153,8 +153,8 @@ contains
                 ': Poisson''s ratio is out of range', '0 or more, and less than 0.5')
       call need(model%thickness(s) > 0.0_wp .and. model%thickness(s) <= huge(1.0_wp), of_section, s, &
                 ': the thickness is not above zero', 'a length')
-      call need(model%kinematics(s) >= plane_strain .and. model%kinematics(s) <= axisymmetric, of_section, s, &
-                ': of no known kinematics', 'plane_strain, plane_stress or axisymmetric')
+      call need(model%kinematics(s) >= plane_strain .and. model%kinematics(s) <= axisymmetric, of_section, &
+                s, ': of no known kinematics', 'plane_strain, plane_stress or axisymmetric')
       if (found%errors > 0 .or. .not. allocated(model%curve(s)%strain)) return
       fault = fault_of_curve(model%curve(s)%strain, model%curve(s)%stress, model%young(s))
       if (fault%point > 0) call found%add_error(of_section, s, 0, ': '//fault%what, fault%remedy)

@@ -49,7 +49,8 @@ contains
              same_strain*abs(stress(2)/young)) then
       remedy = 'strain = stress/E within 1 %'
       if (stress(2) > 0.0_wp) remedy = 'strain '//short_real(stress(2)/young)//', stress/E, within 1 %'
-      fault = curve_fault(2, 'the yield point (the second one) is not on the elastic line of the MAT1', remedy)
+      fault = curve_fault(2, 'the yield point (the second one) is not on the elastic line of the MAT1', &
+                          remedy)
     else
       before = stress(2)/young
       do k = 3, size(strain)
