@@ -23,7 +23,7 @@ contains
 
   !> All integration points of an element.
   pure subroutine evaluate_points(kind, x, kinematics, thickness, point)
-    type(element_kind), intent(in) :: kind
+    type(element_kind), intent(in) :: kind   !! of the element
     real(wp), intent(in) :: x(:, :)          !! of its nodes [length] [directions, nodes]
     integer, intent(in) :: kinematics        !! plane_strain, plane_stress or axisymmetric
     real(wp), intent(in) :: thickness        !! of plane ones [length]
