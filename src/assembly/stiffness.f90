@@ -10,10 +10,9 @@ module epcont_assembly_stiffness
   use epcont_element_kinematics, only: directions
   use epcont_linalg_assembled, only: assembled_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
-  use epcont_linalg_front, only: front_matrix
-  use epcont_linalg_panel, only: panel_matrix
-  use epcont_linalg_single_front, only: single_front_matrix => front_matrix
-  use epcont_linalg_single_panel, only: single_panel_matrix => panel_matrix
+  use epcont_linalg_factors, only: front_matrix, panel_matrix
+  use epcont_linalg_single_factors, only: single_front_matrix => front_matrix, &
+    single_panel_matrix => panel_matrix
   use epcont_material_linear_law, only: linear_law
   use epcont_model_controls, only: solver_frontal
   use epcont_plan_numbering, only: most_freedoms

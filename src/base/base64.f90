@@ -20,32 +20,25 @@ contains
     left = size(bytes) - 3*whole
     allocate (character(len=4*((size(bytes) + 2)/3)) :: text)
     do group = 1, whole
-      text(4*group - 3:4*group) = encoded(bytes(3*group - 2), bytes(3*group - 1), bytes(3*group))
+      text(4*group - 3:4*group) = encoded(bytes(3*group - 2:3*group))
     end do
     if (left == 0) return
     last = 0_int8
     last(:left) = bytes(3*whole + 1:)
-    text(4*whole + 1:) = encoded(last(1), last(2), last(3))
+    text(4*whole + 1:) = encoded(last)
     text(4*whole + left + 2:) = repeat('=', 3 - left)
   end function base64
 
   !> Three bytes as four digits of six bits.
-  pure function encoded(first, second, third) result(text)
-    integer(int8), intent(in) :: first, second, third
+  pure function encoded(three) result(text)
+    integer(int8), intent(in) :: three(3)
     character(len=4) :: text
     integer :: bits, k, place
 
-    bits = ior(ior(shiftl(octet(first), 16), shiftl(octet(second), 8)), octet(third))
+    bits = dot_product(iand(int(three), 255), [65536, 256, 1])
     do k = 1, 4
       place = ibits(bits, 24 - 6*k, 6) + 1
       text(k:k) = digits(place:place)
     end do
   end function encoded
-
-  !> A byte as a number from 0 to 255.
-  pure integer function octet(byte)
-    integer(int8), intent(in) :: byte
-
-    octet = iand(int(byte), 255)
-  end function octet
 end module epcont_base_base64

@@ -6,11 +6,10 @@ module epcont_base_partition
 
   type :: partition
     private
-    integer, allocatable :: parent(:)
+    integer, allocatable :: parent(:)   !! a member before it of the same set, or itself
   contains
-    procedure, non_overridable :: join
-    procedure, non_overridable :: root
-    procedure, non_overridable :: numbers
+    procedure :: join
+    procedure :: numbers
   end type partition
 
 contains
@@ -28,48 +27,33 @@ contains
   pure subroutine join(self, a, b)
     class(partition), intent(inout) :: self
     integer, intent(in) :: a, b   !! members of the two sets
-    integer :: low, high
+    integer :: i, root(2)
 
-    call self%root(a, low)
-    call self%root(b, high)
-    self%parent(max(low, high)) = min(low, high)
+    root = [a, b]
+    do i = 1, 2
+      do while (self%parent(root(i)) /= root(i))
+        self%parent(root(i)) = self%parent(self%parent(root(i)))   ! a shorter way for the next call
+        root(i) = self%parent(root(i))
+      end do
+    end do
+    self%parent(maxval(root)) = minval(root)
   end subroutine join
-
-  !> The smallest member of the set of a.
-  pure subroutine root(self, a, top)
-    class(partition), intent(inout) :: self
-    integer, intent(in) :: a   !! a member
-    integer, intent(out) :: top   !! the smallest of its set
-    integer :: next, at
-
-    top = a
-    do while (self%parent(top) /= top)
-      top = self%parent(top)
-    end do
-    at = a
-    do while (self%parent(at) /= top)  ! shorten the way for the next call
-      next = self%parent(at)
-      self%parent(at) = top
-      at = next
-    end do
-  end subroutine root
 
   !> The sets numbered from 1 in order of their smallest members: the number of each member's set.
   pure subroutine numbers(self, number, count)
-    class(partition), intent(inout) :: self
+    class(partition), intent(in) :: self
     integer, allocatable, intent(out) :: number(:)   !! of each member's set
     integer, intent(out) :: count   !! of sets
-    integer :: i, top
+    integer :: i
 
     allocate (number(size(self%parent)))
     count = 0
     do i = 1, size(number)
-      call self%root(i, top)
-      if (top == i) then
+      if (self%parent(i) == i) then
         count = count + 1
         number(i) = count
       else
-        number(i) = number(top)
+        number(i) = number(self%parent(i))
       end if
     end do
   end subroutine numbers

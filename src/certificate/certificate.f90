@@ -159,8 +159,10 @@ contains
 
       n = model%order(e)
       ring = model%kinematics(model%section(e)) == axisymmetric
-      u(:, :n) = answer%deformation(:, model%connectivity(:n, e))
-      motion(:, :n) = answer%displacement(:, model%connectivity(:n, e)) - u(:, :n)
+      associate (node => model%connectivity(:n, e))
+        u(:, :n) = answer%deformation(:, node)
+        motion(:, :n) = answer%displacement(:, node) - u(:, :n)
+      end associate
       do p = 1, size(stress, 2)
         rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :n, p)))   ! of a strain by unit displacements
         strain = strain_by(u(:, :n), unit(:, :, :, p), ring)

@@ -37,7 +37,8 @@ module epcont_certificate_meeting
   !> What is worked with.
   type :: search_type
     type(outline_shape) :: drawn, now      !! the outlines as drawn, and displaced
-    real(wp), allocatable :: motion(:, :, :)   !! of begin, end, middle of each side [length] [directions, 3, sides]
+    !> Displacements of begin, end, middle of each side [length] [directions, 3, sides]
+    real(wp), allocatable :: motion(:, :, :)
     type(allowance_type) :: allowance
     type(point_type), allocatable :: middle(:)    !! a point within each part [parts]
     !> Of a circle whose outline is as long as the part's: however it lies, it is the same [length] [parts]

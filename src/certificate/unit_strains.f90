@@ -39,15 +39,18 @@ contains
   pure subroutine unit_strains(model, element, slope, strain, volume)
     type(model_type), intent(in) :: model        !! the scene
     integer, intent(in) :: element               !! which of its elements
-    real(wp), intent(in) :: slope(:, :, :)       !! of its kind, from `find_slopes`
+    real(wp), intent(in) :: slope(directions, most_nodes, most_points)   !! of its kind, from `find_slopes`
     !> [1/length] [components, directions, nodes, points]
     real(wp), intent(out) :: strain(components, directions, most_nodes, most_points)
     real(wp), intent(out) :: volume(most_points)                     !! [length**3]
-    real(wp) :: x(directions, most_nodes), side(directions, directions), determinant, radius
+    real(wp) :: x(directions, most_nodes), side(directions, directions), gradient(directions)
+    real(wp) :: determinant, radius
     integer :: k, n, p
 
     n = model%order(element)
-    x(:, :n) = model%x(:, model%connectivity(:n, element))
+    do k = 1, n
+      x(:, k) = model%x(:, model%connectivity(k, element))
+    end do
     associate (s => model%section(element), kind => model%kinds(model%kind(element)))
       do p = 1, kind%points
         ! d x/d local, one column each; from the first node, so that a place far from the origin takes no
@@ -60,10 +63,13 @@ contains
         determinant = side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1)
         volume(p) = kind%weight(p)*determinant*model%thickness(s)
         strain(:, :, :n, p) = 0.0_wp
-        strain(1, 1, :n, p) = (slope(1, :n, p)*side(2, 2) - slope(2, :n, p)*side(2, 1))/determinant
-        strain(2, 2, :n, p) = (slope(2, :n, p)*side(1, 1) - slope(1, :n, p)*side(1, 2))/determinant
-        strain(4, 1, :n, p) = strain(2, 2, :n, p)
-        strain(4, 2, :n, p) = strain(1, 1, :n, p)
+        do k = 1, n
+          gradient(1) = (slope(1, k, p)*side(2, 2) - slope(2, k, p)*side(2, 1))/determinant
+          gradient(2) = (slope(2, k, p)*side(1, 1) - slope(1, k, p)*side(1, 2))/determinant
+          strain(1, 1, k, p) = gradient(1)
+          strain(2, 2, k, p) = gradient(2)
+          strain(4, :, k, p) = gradient([2, 1])
+        end do
         if (model%kinematics(s) /= axisymmetric) cycle
         radius = dot_product(kind%values(:n, p), x(1, :n))
         strain(3, 1, :n, p) = kind%values(:n, p)/radius

@@ -60,29 +60,29 @@ module epcont_contact_basis
 contains
 
   !> Factor the equations of the chosen pairs. Pairs whose force depends on that of others are left out.
-  pure type(contact_basis) function new_basis(problem, chosen) result(basis)
-    type(scaled_problem), intent(in) :: problem   !! in its own units
+  pure type(contact_basis) function new_basis(scaled, chosen) result(basis)
+    type(scaled_problem), intent(in) :: scaled   !! in its own units
     logical, intent(in) :: chosen(:)   !! [n]
     integer, allocatable :: order(:)
     integer :: info, k, rank
 
     basis%pairs = pack([(k, k=1, size(chosen))], chosen)
-    basis%factor = regular_flexibility(problem, basis%pairs, basis%pairs)
+    basis%factor = regular_flexibility(scaled, basis%pairs, basis%pairs)
     call cholesky_factor(basis%factor, info)
-    if (.not. has_pivots(basis, info, lost_digits*problem%softest)) then
+    if (.not. has_pivots(basis, info, lost_digits*scaled%softest)) then
       ! The order of pivots, which takes longer, tells who depends on whom.
-      basis%factor = regular_flexibility(problem, basis%pairs, basis%pairs)
-      call pivoted_cholesky(basis%factor, problem%rank_tolerance, order, rank)
+      basis%factor = regular_flexibility(scaled, basis%pairs, basis%pairs)
+      call pivoted_cholesky(basis%factor, scaled%rank_tolerance, order, rank)
       basis%pairs = basis%pairs(order(:rank))
       basis%factor = basis%factor(:rank, :rank)
     end if
-    call hold_motions(basis, problem)
+    call hold_motions(basis, scaled)
   end function new_basis
 
   !> Go over to another set. Without unique forces the basis is not sound, and nothing is kept of its factor.
-  pure subroutine change_set(basis, problem, closed, firmness)
+  pure subroutine change_set(basis, scaled, closed, firmness)
     type(contact_basis), intent(inout) :: basis   !! none yet, or that of the set before
-    type(scaled_problem), intent(in) :: problem   !! in its own units
+    type(scaled_problem), intent(in) :: scaled   !! in its own units
     logical, intent(in) :: closed(:)      !! the set [n]
     real(wp), intent(in) :: firmness(:)   !! how likely pairs are to stay, largest first [n]
     integer, allocatable :: added(:)
@@ -101,10 +101,10 @@ contains
     added = pack([(k, k=1, size(closed))], missing)
     added = added(sorted_order(nint(-firmness_steps*firmness(added))))
     basis%pairs = [basis%pairs(:kept), added]
-    basis%factor(kept + 1:n, :n) = regular_flexibility(problem, added, basis%pairs)
+    basis%factor(kept + 1:n, :n) = regular_flexibility(scaled, added, basis%pairs)
     call extend_cholesky(size(closed), basis%factor, kept, n, info)
-    if (has_pivots(basis, info, problem%rank_tolerance)) then
-      call hold_motions(basis, problem)
+    if (has_pivots(basis, info, scaled%rank_tolerance)) then
+      call hold_motions(basis, scaled)
     else
       basis%sound = .false.
       basis%pairs = [integer ::]
@@ -123,17 +123,17 @@ contains
   end function has_pivots
 
   !> What the motions do to a set whose F_g is factored; it is sound if it holds all of them.
-  pure subroutine hold_motions(basis, problem)
+  pure subroutine hold_motions(basis, scaled)
     type(contact_basis), intent(inout) :: basis
-    type(scaled_problem), intent(in) :: problem
-    real(wp) :: resistance(size(problem%resultant), size(problem%resultant))
+    type(scaled_problem), intent(in) :: scaled
+    real(wp) :: resistance(size(scaled%resultant), size(scaled%resultant))
     integer :: info
 
-    basis%gamma = problem%gamma
-    basis%carried = problem%motion(basis%pairs, :)
+    basis%gamma = scaled%gamma
+    basis%carried = scaled%motion(basis%pairs, :)
     call cholesky_solve(basis%factor, basis%carried)
     resistance = 0.0_wp
-    call add_product(1.0_wp, transpose(problem%motion(basis%pairs, :)), basis%carried, resistance)
+    call add_product(1.0_wp, transpose(scaled%motion(basis%pairs, :)), basis%carried, resistance)
     call cholesky_factor(resistance, info)
     basis%resistance = resistance
     basis%sound = info == 0
@@ -157,13 +157,13 @@ contains
   end subroutine respond
 
   !> A block of F_g = F + gamma A A'.
-  pure function regular_flexibility(problem, rows, columns) result(block)
-    type(scaled_problem), intent(in) :: problem   !! in its own units
+  pure function regular_flexibility(scaled, rows, columns) result(block)
+    type(scaled_problem), intent(in) :: scaled   !! in its own units
     integer, intent(in) :: rows(:), columns(:)     !! pairs
     real(wp), allocatable :: block(:, :)
 
-    block = problem%flexibility(rows, columns)
-    call add_product(problem%gamma, problem%motion(rows, :), transpose(problem%motion(columns, :)), block)
+    block = scaled%flexibility(rows, columns)
+    call add_product(scaled%gamma, scaled%motion(rows, :), transpose(scaled%motion(columns, :)), block)
   end function regular_flexibility
 
   !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every

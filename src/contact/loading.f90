@@ -27,11 +27,6 @@ module epcont_contact_loading
   private
   public :: follow_load
 
-  !> How the load path ended.
-  integer, parameter, public :: path_complete = 0  !! all of the load is carried
-  integer, parameter, public :: path_ray = 1       !! the load cannot grow and nothing gives way
-  integer, parameter, public :: path_endless = 2   !! too many pivots: rounding has broken the order of ties
-
   !> Pivots allowed for each unknown before rounding is taken to have broken the path; sound ones were seen to
   !! take up to 2.
   integer, parameter :: pivots_per_unknown = 4
@@ -44,14 +39,16 @@ contains
 
   !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The
   !! partner of the variable that left enters next (Conry and Seireg 1971).
-  subroutine follow_load(scaled, state, start, solution, outcome, closed, ray)
+  subroutine follow_load(scaled, state, start, solution, complete, closed, ray)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_state), intent(in) :: state     !! a sound set at t = 1: its forces are basic at first
     real(wp), intent(in) :: start(:)             !! basic variable of each pair at t = 0, all >= 0 [n]
     type(contact_solution), intent(inout) :: solution   !! pivots are counted and recorded here
-    integer, intent(out) :: outcome                     !! one of the above
+    !> All of the load is carried; else there is a ray, or rounding has broken the order of ties.
+    logical, intent(out) :: complete
     logical, allocatable, intent(out) :: closed(:)      !! pairs with a basic force at the end [n]
-    real(wp), allocatable, intent(out) :: ray(:)        !! growth of the forces along a ray [n]
+    !> Growth of the forces where the load cannot grow and nothing gives way; else not allocated [n]
+    real(wp), allocatable, intent(out) :: ray(:)
     real(wp) :: settled(size(start), size(start) + 1)   ! the entries but for the last pivots
     integer :: pending                                  ! so many are these
     real(wp) :: pivot_columns(size(start), panel), pivot_rows(panel, size(start) + 1)
@@ -66,23 +63,20 @@ contains
 
     n = size(start)
     call begin_tableau()
-    allocate (ray(n), source=0.0_wp)
-    outcome = path_endless
     entering = load_factor
     do count = 0, pivots_per_unknown*(n + size(scaled%resultant))
+      if (count > 0) call pivot()
       column = -place(entering)
       slope = entries_of_column(column)
       call test_ratios()
-      if (is_complete()) then
-        outcome = path_complete
-      else if (row == 0) then
-        outcome = path_ray
-        ray(pack(basic, basic > 0)) = pack(slope, basic > 0)
-        if (entering > 0) ray(entering) = 1.0_wp
-      end if
-      if (outcome /= path_endless .or. count == pivots_per_unknown*(n + size(scaled%resultant))) exit
-      call pivot()
+      complete = is_complete()
+      if (complete .or. row == 0) exit
     end do
+    if (.not. complete .and. row == 0) then
+      allocate (ray(n), source=0.0_wp)
+      ray(pack(basic, basic > 0)) = pack(slope, basic > 0)
+      if (entering > 0) ray(entering) = 1.0_wp
+    end if
     closed = place(1:) > 0
     ! The force on its way in at full load is positive; where it moved no load it stays out.
     if (entering > 0 .and. load_rate > 0.0_wp) closed(entering) = .true.

@@ -14,7 +14,7 @@ module epcont_contact_simplex
   use epcont_contact_basis, only: basic_values, contact_state, fresh_state, guess_tolerance, &
     has_right_signs, solve_set
   use epcont_contact_block_pivoting, only: find_by_blocks
-  use epcont_contact_loading, only: follow_load, path_complete, path_ray
+  use epcont_contact_loading, only: follow_load
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: measure, scaled_problem
   implicit none
@@ -37,8 +37,8 @@ contains
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
     real(wp), allocatable :: lifted(:)   ! basic variable of each pair at t = 0 [n]
     logical, allocatable :: closed(:)
-    integer :: attempt, outcome
-    logical :: found
+    integer :: attempt
+    logical :: complete, found
 
     closed = scaled%first_touching
     if (allocated(scaled%guess)) closed = closed .or. scaled%guess
@@ -49,14 +49,14 @@ contains
       solution%state = contact_solved
       if (has_right_signs(scaled, state, merge(guess_tolerance, solved_to, attempt == 0))) return
       solution%restarts = attempt
-      call follow_load(scaled, state, lifted, solution, outcome, closed, ray)
-      if (outcome == path_ray) then
+      call follow_load(scaled, state, lifted, solution, complete, closed, ray)
+      if (allocated(ray)) then
         if (is_overlap(ray)) then
           solution%state = contact_overlap
           return
         end if
       end if
-      if (outcome == path_complete .and. mod(attempt, 2) == 0) then
+      if (complete .and. mod(attempt, 2) == 0) then
         call take_set(closed)
         if (has_right_signs(scaled, state, solved_to)) return
       else

@@ -23,35 +23,40 @@ contains
 
   !> All integration points of an element.
   pure subroutine evaluate_points(kind, x, kinematics, thickness, point)
-    type(element_kind), intent(in) :: kind
+    type(element_kind), intent(in) :: kind   !! of the element
     real(wp), intent(in) :: x(:, :)          !! of its nodes [length] [directions, nodes]
     integer, intent(in) :: kinematics        !! plane_strain, plane_stress or axisymmetric
     real(wp), intent(in) :: thickness        !! of plane ones [length]
     type(integration_point), intent(out) :: point(:)   !! [kind%points]
-    real(wp) :: jacobian(directions, directions), determinant, radius, from_first(directions, kind%nodes)
-    integer :: c, i, n, p
+    real(wp) :: jacobian(directions, directions), determinant, radius, from_first(directions, most_nodes)
+    integer :: i, n, p
 
     n = kind%nodes
-    from_first = x - spread(x(:, 1), 2, n)   ! far from the origin sums of x would lose the digits of the size
+    do i = 1, n
+      from_first(:, i) = x(:, i) - x(:, 1)   ! far from the origin sums of x would lose the digits of the size
+    end do
     do p = 1, kind%points
-      associate (slope => kind%slopes(:, :n, p), values => kind%values(:n, p), &
-                 b => point(p)%b(:, :directions*n))
+      associate (slope => kind%slopes(:, :n, p), values => kind%values(:n, p), b => point(p)%b)
         jacobian = 0.0_wp   ! d x_j/d local_i
         do i = 1, n
-          do c = 1, directions
-            jacobian(:, c) = jacobian(:, c) + slope(:, i)*from_first(c, i)
-          end do
+          jacobian(:, 1) = jacobian(:, 1) + slope(:, i)*from_first(1, i)
+          jacobian(:, 2) = jacobian(:, 2) + slope(:, i)*from_first(2, i)
         end do
         determinant = jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1)
         point(p)%volume = kind%weight(p)*determinant*thickness
-        b = 0.0_wp
-        b(1, 1::2) = (jacobian(2, 2)*slope(1, :) - jacobian(1, 2)*slope(2, :))/determinant
-        b(2, 2::2) = (jacobian(1, 1)*slope(2, :) - jacobian(2, 1)*slope(1, :))/determinant
-        b(4, 1::2) = b(2, 2::2)
-        b(4, 2::2) = b(1, 1::2)
+        b(:, :directions*n) = 0.0_wp
+        do i = 1, n
+          associate (dx => (jacobian(2, 2)*slope(1, i) - jacobian(1, 2)*slope(2, i))/determinant, &
+                     dy => (jacobian(1, 1)*slope(2, i) - jacobian(2, 1)*slope(1, i))/determinant)
+            b(1, 2*i - 1) = dx
+            b(2, 2*i) = dy
+            b(4, 2*i - 1) = dy
+            b(4, 2*i) = dx
+          end associate
+        end do
         if (kinematics /= axisymmetric) cycle
         radius = dot_product(values, x(1, :))
-        b(3, 1::2) = values/radius
+        b(3, 1:2*n:2) = values/radius
         point(p)%volume = kind%weight(p)*determinant*full_turn*radius
       end associate
     end do

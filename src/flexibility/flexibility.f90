@@ -140,9 +140,9 @@ contains
     end do
   end function pair_forces
 
-  !> A = -N Phi, the closing of the gaps by unit rigid motions, and P = Phi' f, the loads along these. There is
-  !! no closing of a pair that moves as a whole, or along itself, but for rounding: else a large force on it
-  !! would drive the body. Nor is there a load where loads cancel, or act across the motion: else rounding
+  !> A = -N Phi, the closing of the gaps by unit rigid motions, and P = Phi' f, the loads along these. There
+  !! is no closing of a pair that moves as a whole, or along itself, but for rounding: else a large force on
+  !! it would drive the body. Nor is there a load where loads cancel, or act across the motion: else rounding
   !! would tell whether the body moves off. What acts on a held freedom does not count: its support has it.
   pure subroutine see_motions(model, motions, closing, resultant)
     type(model_type), intent(in) :: model   !! the scene

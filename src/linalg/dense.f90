@@ -17,8 +17,7 @@ contains
     real(wp), contiguous, intent(inout) :: a(:, :)   !! symmetric [n, n]
     integer, intent(out) :: info          !! 0, or the order of the first minor that is not positive
 
-    info = 0
-    if (size(a, 1) > 0) call dpotrf('L', size(a, 1), a, size(a, 1), info)
+    call extend_cholesky(size(a, 1), a, 0, size(a, 1), info)
   end subroutine cholesky_factor
 
   !> Replace each column of `b` by the solution of LL'x = b, L being the leading rows of `factor`.

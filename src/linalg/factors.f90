@@ -1,0 +1,21 @@
+!> Symmetric positive definite matrices and their Cholesky factors, in panels of columns or in fronts.
+module epcont_linalg_factors
+  use epcont_base_kinds, only: i8, rp => wp, wp
+  use epcont_base_sorting, only: sorted_order
+  use epcont_linalg_assembled, only: add_compliance, assembled_matrix, probes, sparse_rows
+  use epcont_linalg_front_layout, only: front_layout
+  use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
+  use epcont_linalg_panel_layout, only: panel_layout
+  use epcont_system_large_pages, only: use_large_pages
+  implicit none
+  private
+  public :: front_matrix, panel_matrix
+
+  include 'blocks.inc'
+
+contains
+
+  include 'blocks_kernel.inc'
+  include 'panel_kernel.inc'
+  include 'front_kernel.inc'
+end module epcont_linalg_factors
