@@ -123,7 +123,7 @@ contains
   !! Pairs may press along the node's own normal instead of that of what it faces: of smooth boundaries these
   !! are the same only where the bodies touch. In narrow zones each pair by itself; in wide ones all normals
   !! of the one body, or of the other.
-  pure subroutine find_turned(model, line, answer, given, total, of_body)
+  subroutine find_turned(model, line, answer, given, total, of_body)
     type(model_type), intent(in) :: model               !! the scene
     class(contact_line), intent(in) :: line             !! of its pairs
     type(answer_type), intent(in) :: answer             !! with forces and zones
@@ -168,16 +168,15 @@ contains
       total = total + abs(more)
     end do
     of_body = of_body + abs(lean)
-    call turn_shared_places(total, of_body)
+    call turn_shared_places()
 
   contains
 
     !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the
     !! strongest there does.
-    pure subroutine turn_shared_places(total, of_body)
-      real(wp), intent(inout) :: total, of_body(:, :)
-      real(wp) :: change(2), way
-      integer :: b, body(2), k
+    subroutine turn_shared_places()
+      real(wp) :: way
+      integer :: k
       integer :: strongest(model%pairs)   !! at the place of each
 
       associate (start => line%at_place%start, force => answer%contact%force)
