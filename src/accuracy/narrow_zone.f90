@@ -50,7 +50,8 @@ contains
         do k = 1, 3
           if (near(k) == 0) cycle
           associate (angle => line%bend(near(k)), curvature => line%curvature(near(k)))
-            if (curvature <= 0.0_wp .or. angle > corner) cycle   ! beyond, one pair faces a step, or another side
+            ! beyond, one pair faces a step, or another side
+            if (curvature <= 0.0_wp .or. angle > corner) cycle
             bulge = max(bulge, angle**2/curvature/8.0_wp)   ! an eighth of angle times spacing
           end associate
         end do
@@ -127,7 +128,8 @@ contains
     type(model_type), intent(in) :: model               !! the scene
     class(contact_line), intent(in) :: line             !! of its pairs
     type(answer_type), intent(in) :: answer             !! with forces and zones
-    logical, intent(in) :: given(:, :)                  !! loads make that component of the resultant [2, bodies]
+    !> Loads make that component of the resultant [2, bodies]
+    logical, intent(in) :: given(:, :)
     real(wp), intent(out) :: total                      !! of the total contact force [force]
     real(wp), intent(out) :: of_body(2, model%bodies)   !! of the resultant on each body [force]
     real(wp) :: along, change(2), own(2), on(2), lean(2, model%bodies), more, resultant(2, model%bodies)

@@ -20,7 +20,8 @@ module epcont_accuracy_recovery
   type :: patch_table
     integer :: places = 0
     integer, allocatable :: node(:)        !! of each place [places]
-    integer, allocatable :: place(:, :)    !! of each node of an element, 0 where it has no more [most_nodes, elements]
+    !> Of each node of an element, 0 where it has no more [most_nodes, elements]
+    integer, allocatable :: place(:, :)
     type(incidence) :: around              !! elements at each place
     logical, allocatable :: inside(:)      !! elements go all around the place [places]
   end type patch_table
@@ -91,7 +92,8 @@ contains
     type(model_type), intent(in) :: model             !! the scene
     type(patch_table), intent(in) :: table            !! of its elements
     integer, intent(in) :: place                      !! which place
-    integer, intent(inout) :: seen(:)                 !! the last place that each element was taken for [elements]
+    !> The last place that each element was taken for [elements]
+    integer, intent(inout) :: seen(:)
     integer, allocatable, intent(out) :: patch(:)     !! elements
     integer :: i, j, k
 
@@ -121,7 +123,8 @@ contains
     real(wp), allocatable :: x(:, :), sample(:, :, :)
     integer, allocatable :: patch(:)
     integer :: seen(model%elements), e, p
-    integer :: fits(table%places)            !! of a node between corners: polynomials that reach it; of others -1
+    !> Of a node between corners: polynomials that reach it; of others -1
+    integer :: fits(table%places)
 
     call take_samples(x, sample)
     allocate (smooth(4, table%places, size(strain, 3)), source=0.0_wp)
@@ -165,7 +168,8 @@ contains
             do k = 1, kind%samples
               x(:, first + k - 1) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
               do f = 1, size(strain, 3)
-                sample(:, first + k - 1, f) = matmul(strain(:, first:last, f), kind%sample_of(:kind%points, k))
+                sample(:, first + k - 1, f) = matmul(strain(:, first:last, f), &
+                                                     kind%sample_of(:kind%points, k))
               end do
             end do
             cycle
@@ -186,13 +190,15 @@ contains
       integer, intent(in) :: p    !! the place
       real(wp), intent(inout) :: smooth(:, :, :)
       integer, intent(inout) :: fits(:)
-      real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic), at(2), reach, weight
-      integer :: f, i, j, k, s
+      real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic)
+      real(wp) :: at(2), reach, weight
+      integer :: e, f, i, j, k, s
 
       at = model%x(:, table%node(p))
       reach = 0.0_wp
       do i = 1, size(patch)
-        reach = max(reach, norm2(x(:, model%first_point(patch(i))) - at))   ! in any direction: a scene may be turned
+        ! in any direction: a scene may be turned
+        reach = max(reach, norm2(x(:, model%first_point(patch(i))) - at))
       end do
       matrix = 0.0_wp
       coefficient = 0.0_wp
@@ -211,8 +217,9 @@ contains
       call solve(matrix, size(coefficient, 1)*size(coefficient, 2), coefficient)
       smooth(:, p, :) = coefficient(:, :, 1)
       do i = table%around%start(p), table%around%start(p + 1) - 1
-        associate (place => table%place(:, table%around%group(i)), corners => model%corners(table%around%group(i)))
-          do k = corners + 1, model%order(table%around%group(i))
+        e = table%around%group(i)
+        associate (place => table%place(:, e), corners => model%corners(e))
+          do k = corners + 1, model%order(e)
             if (place(k - corners) /= p .and. place(mod(k - corners, corners) + 1) /= p) cycle
             term = terms((model%x(:, table%node(place(k))) - at)/reach)
             do f = 1, size(sample, 3)

@@ -20,7 +20,8 @@ module epcont_accuracy_sensitivity
 
   type :: contact_sensitivity
     logical :: known = .false.
-    real(wp) :: amplification = 0.0_wp   !! relative error of the forces / relative error of the flexibility, at most
+    !> Relative error of the forces / relative error of the flexibility, at most
+    real(wp) :: amplification = 0.0_wp
     real(wp) :: rounding = 0.0_wp        !! what rounding may leave in a force, of the largest
   end type contact_sensitivity
 

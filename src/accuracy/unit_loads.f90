@@ -26,8 +26,8 @@ module epcont_accuracy_unit_loads
     !> Of pairs in the sum of all, then in each resultant on a body that may be off by itself; what two bodies
     !! exert on each other is one [pairs, any]
     real(wp), allocatable :: share(:, :)
-    !> There, of each component of what contact exerts on each body; 0: loads alone make it; negative: not known
-    !! [2, bodies]
+    !> There, of each component of what contact exerts on each body; 0: loads alone make it; negative: not
+    !! known [2, bodies]
     integer, allocatable :: column(:, :)
   end type unit_loads
 
@@ -73,7 +73,9 @@ contains
             cycle
           end if
           do k = 2, size(loads%share, 2)
-            if (min(maxval(abs(loads%share(:, k) - one)), maxval(abs(loads%share(:, k) + one))) <= least_difference) exit
+            associate (other => loads%share(:, k))
+              if (min(maxval(abs(other - one)), maxval(abs(other + one))) <= least_difference) exit
+            end associate
           end do
           if (k > size(loads%share, 2)) loads%share = reshape([loads%share, one], [size(one), k])
           loads%column(c, i) = k
@@ -94,7 +96,8 @@ contains
       allocate (moved(2, size(nodes), 0))
       do m = 1, scene%motions%count
         if (scene%motions%body(m) /= body) cycle
-        basis = reshape([(scene%motions%displacement(scene%model, nodes(i), m), i=1, size(nodes))], [2, size(nodes)])
+        basis = reshape([(scene%motions%displacement(scene%model, nodes(i), m), i=1, size(nodes))], &
+                        [2, size(nodes)])
         rest = across(moved, basis)
         if (norm2(rest) > least_difference*norm2(basis)) &
           moved = reshape([moved, rest/norm2(rest)], [2, size(nodes), size(moved, 3) + 1])

@@ -27,7 +27,8 @@ module epcont_result_pressures
     !> Area and force, summed up to each corner, and beyond a line of symmetry as mirrored there; corner k has
     !! index k. A closed run goes on with itself. [2, corners]
     real(wp), allocatable :: total(:, :)
-    logical :: even(2) = .false.                    !! the pressure goes on evenly beyond the end: symmetry, the axis of rings
+    !> The pressure goes on evenly beyond the end: symmetry, the axis of rings
+    logical :: even(2) = .false.
   end type run_type
 
 contains
@@ -95,7 +96,8 @@ contains
       associate (corners => line%neighbour(:, pair))
         if (.not. line%middle(pair) .or. any(corners == 0)) return
         ! Where a line turns a corner, the corner's pair may belong to the other side alone.
-        is_whole = touching(pair) .and. all(touching(corners)) .and. all(any(line%neighbour(:, corners) == pair, dim=1))
+        is_whole = touching(pair) .and. all(touching(corners)) .and. &
+                   all(any(line%neighbour(:, corners) == pair, dim=1))
       end associate
     end function is_whole
 
@@ -154,8 +156,8 @@ contains
       end associate
     end subroutine sum_up
 
-    !> What a side has of the area and of the force of its corner: all of the latter where the next middle does
-    !! not touch.
+    !> What a side has of the area and of the force of its corner: all of the latter where the next middle
+    !! does not touch.
     pure function share_of_side(corner, middle) result(share)
       integer, intent(in) :: corner, middle
       real(wp) :: share(2), other
