@@ -41,7 +41,7 @@ module epcont_accuracy_error_fields
 contains
 
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
-  pure subroutine compare_fields(scene, linear, answer, table, unit_force, field)
+  subroutine compare_fields(scene, linear, answer, table, unit_force, field)
     type(planned_scene), intent(in) :: scene     !! that was solved
     type(linear_problem), intent(in) :: linear   !! of the last solve
     class(scene_state), intent(in) :: answer     !! to it

@@ -114,19 +114,19 @@ contains
   end subroutine wide_patch
 
   !> Strains at the places of a table, of several fields at once [4, places, fields].
-  pure function recover_strains(model, table, volume, strain) result(smooth)
+  function recover_strains(model, table, volume, strain) result(smooth)
     type(model_type), intent(in) :: model    !! the scene
     type(patch_table), intent(in) :: table   !! of its elements
     real(wp), intent(in) :: volume(:)        !! of the integration points [points]
     real(wp), intent(in) :: strain(:, :, :)  !! xx, yy, zz, xy [4, points, fields]
     real(wp), allocatable :: smooth(:, :, :)
-    real(wp), allocatable :: x(:, :), sample(:, :, :)
+    real(wp), allocatable :: x(:, :), sample(:, :, :)   !! samples: [length] [2, points], [4, points, fields]
     integer, allocatable :: patch(:)
     integer :: seen(model%elements), e, p
     !> Of a node between corners: polynomials that reach it; of others -1
     integer :: fits(table%places)
 
-    call take_samples(x, sample)
+    call take_samples()
     allocate (smooth(4, table%places, size(strain, 3)), source=0.0_wp)
     fits = -1
     do e = 1, model%elements
@@ -140,9 +140,9 @@ contains
         if (.not. table%inside(p) .or. size(patch) < merge(least_quadratic/3, least_linear, curved)) &
           call wide_patch(model, table, p, seen, patch)
         if (curved) then
-          call fit_quadratic(p, smooth, fits)
+          call fit_quadratic(p)
         else
-          call fit_linear(model, x, sample, patch, model%x(:, table%node(p)), smooth(:, p, :))
+          call fit_linear(p)
         end if
       end associate
     end do
@@ -154,9 +154,7 @@ contains
 
     !> Where the strains of the elements are best, and what they are there: the samples of an element have the
     !! numbers of its first points.
-    pure subroutine take_samples(x, sample)
-      real(wp), allocatable, intent(out) :: x(:, :)           !! [length] [2, points]
-      real(wp), allocatable, intent(out) :: sample(:, :, :)   !! [4, points, fields]
+    subroutine take_samples()
       integer :: e, f, k, p
 
       allocate (x(2, model%points))
@@ -184,12 +182,54 @@ contains
       end do
     end subroutine take_samples
 
+    !> The linear polynomials of one sample an element, at a place. A direction in which the samples do not
+    !! spread is constant.
+    subroutine fit_linear(p)
+      integer, intent(in) :: p
+      real(wp) :: at(2), mean(4), along(4), across(4), d(2), determinant
+      real(wp) :: m(2), xx, xy, yy   !! moments of the samples about the place, then about their middle
+      integer :: f, i, s
+
+      at = model%x(:, table%node(p))
+      m = 0.0_wp
+      xx = 0.0_wp
+      xy = 0.0_wp
+      yy = 0.0_wp
+      do i = 1, size(patch)
+        d = x(:, model%first_point(patch(i))) - at
+        m = m + d
+        xx = xx + d(1)*d(1)
+        xy = xy + d(1)*d(2)
+        yy = yy + d(2)*d(2)
+      end do
+      xx = xx - m(1)*m(1)/size(patch)
+      xy = xy - m(1)*m(2)/size(patch)
+      yy = yy - m(2)*m(2)/size(patch)
+      determinant = xx*yy - xy*xy
+      do f = 1, size(sample, 3)
+        mean = 0.0_wp
+        along = 0.0_wp
+        across = 0.0_wp
+        do i = 1, size(patch)
+          s = model%first_point(patch(i))
+          d = x(:, s) - at
+          mean = mean + sample(:, s, f)
+          along = along + d(1)*sample(:, s, f)
+          across = across + d(2)*sample(:, s, f)
+        end do
+        mean = mean/size(patch)
+        along = along - m(1)*mean
+        across = across - m(2)*mean
+        if (determinant > lost_digits*(xx + yy)**2) &
+          mean = mean - (m(1)*(yy*along - xy*across) + m(2)*(xx*across - xy*along))/(determinant*size(patch))
+        smooth(:, p, f) = mean
+      end do
+    end subroutine fit_linear
+
     !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
     !! meet there.
-    pure subroutine fit_quadratic(p, smooth, fits)
-      integer, intent(in) :: p    !! the place
-      real(wp), intent(inout) :: smooth(:, :, :)
-      integer, intent(inout) :: fits(:)
+    subroutine fit_quadratic(p)
+      integer, intent(in) :: p
       real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic)
       real(wp) :: at(2), reach, weight
       integer :: e, f, i, j, k, s
@@ -231,53 +271,6 @@ contains
       end do
     end subroutine fit_quadratic
   end function recover_strains
-
-  !> The linear polynomials of one sample an element, at a place. A direction in which the samples do not
-  !! spread is constant.
-  pure subroutine fit_linear(model, x, sample, patch, at, value)
-    type(model_type), intent(in) :: model
-    real(wp), contiguous, intent(in) :: x(:, :), sample(:, :, :)
-    integer, intent(in) :: patch(:)          !! elements
-    real(wp), intent(in) :: at(2)
-    real(wp), intent(out) :: value(:, :)     !! [4, fields]
-    real(wp) :: mean(4), along(4), across(4), d(2), determinant
-    real(wp) :: m(2), xx, xy, yy   !! moments of the samples about the place, then about their middle
-    integer :: f, i, s
-
-    m = 0.0_wp
-    xx = 0.0_wp
-    xy = 0.0_wp
-    yy = 0.0_wp
-    do i = 1, size(patch)
-      d = x(:, model%first_point(patch(i))) - at
-      m = m + d
-      xx = xx + d(1)*d(1)
-      xy = xy + d(1)*d(2)
-      yy = yy + d(2)*d(2)
-    end do
-    xx = xx - m(1)*m(1)/size(patch)
-    xy = xy - m(1)*m(2)/size(patch)
-    yy = yy - m(2)*m(2)/size(patch)
-    determinant = xx*yy - xy*xy
-    do f = 1, size(sample, 3)
-      mean = 0.0_wp
-      along = 0.0_wp
-      across = 0.0_wp
-      do i = 1, size(patch)
-        s = model%first_point(patch(i))
-        d = x(:, s) - at
-        mean = mean + sample(:, s, f)
-        along = along + d(1)*sample(:, s, f)
-        across = across + d(2)*sample(:, s, f)
-      end do
-      mean = mean/size(patch)
-      along = along - m(1)*mean
-      across = across - m(2)*mean
-      if (determinant > lost_digits*(xx + yy)**2) &
-        mean = mean - (m(1)*(yy*along - xy*across) + m(2)*(xx*across - xy*along))/(determinant*size(patch))
-      value(:, f) = mean
-    end do
-  end subroutine fit_linear
 
   !> Terms of a quadratic polynomial at a place.
   pure function terms(x) result(term)
