@@ -47,7 +47,7 @@ module epcont_result_contact_line
 contains
 
   !> Edges of the boundary at the pairs.
-  pure function find_contact_line(model) result(line)
+  function find_contact_line(model) result(line)
     type(model_type), intent(in) :: model   !! the scene
     type(contact_line) :: line
     type(incidence) :: at
@@ -251,7 +251,7 @@ contains
 
   !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
   !! them.
-  pure subroutine insert_masters(model, contact, at, line, places)
+  subroutine insert_masters(model, contact, at, line, places)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
     type(incidence), intent(in) :: at   !! the slave's pairs at each node
@@ -266,7 +266,7 @@ contains
     do side = 1, size(contact%slave%element)
       associate (masters => on_side%group(on_side%start(side):on_side%start(side + 1) - 1))
         if (size(masters) > 0) &
-          call link(side, run_on(side, contact%first_of_master - 1 + masters), line, places)
+          call link(side, run_on(side, contact%first_of_master - 1 + masters))
       end associate
     end do
 
@@ -307,11 +307,9 @@ contains
 
     !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of
     !! the side has no pair, the pieces at its end belong to none.
-    pure subroutine link(segment, run, line, places)
+    subroutine link(segment, run)
       integer, intent(in) :: segment   !! the side
       integer, intent(in) :: run(:)
-      type(contact_line), intent(inout) :: line
-      type(partition), intent(inout) :: places
       real(wp) :: apart, share(3), width
       integer :: i, k
 

@@ -34,7 +34,7 @@ module epcont_result_pressures
 contains
 
   !> Pressures; negative where no boundary belongs to a pair [stress] [pairs].
-  pure function pair_pressures(model, line, touching, force) result(pressure)
+  function pair_pressures(model, line, touching, force) result(pressure)
     type(model_type), intent(in) :: model   !! the scene
     type(contact_line), intent(in) :: line  !! of its pairs
     logical, intent(in) :: touching(:)      !! the pairs `in_contact` [pairs]
@@ -50,21 +50,20 @@ contains
       if (done(k) .or. .not. is_whole(k)) cycle
       run = run_of(k)
       done(run%middle) = .true.
-      call derive(run, pressure)
+      call derive(run)
     end do
     do k = 1, size(line%at_place%start) - 1
-      call level(line%at_place%group(line%at_place%start(k):line%at_place%start(k + 1) - 1), pressure)
+      call level(line%at_place%group(line%at_place%start(k):line%at_place%start(k + 1) - 1))
     end do
     do k = 1, model%pairs
-      if (line%tributary(k) <= 0.0_wp) call complete(k, maxval(line%neighbour(:, k)), pressure)
+      if (line%tributary(k) <= 0.0_wp) call complete(k, maxval(line%neighbour(:, k)))
     end do
 
   contains
 
     !> Pairs at one place have one pressure.
-    pure subroutine level(pairs, pressure)
+    subroutine level(pairs)
       integer, intent(in) :: pairs(:)
-      real(wp), intent(inout) :: pressure(:)
       integer :: i
 
       associate (area => sum(line%tributary(pairs)), together => sum(force(pairs)))
@@ -77,9 +76,8 @@ contains
 
     !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is
     !! at most where the corner has opened, which it does where pressures rise away from the axis.
-    pure subroutine complete(pair, next, pressure)
+    subroutine complete(pair, next)
       integer, intent(in) :: pair, next
-      real(wp), intent(inout) :: pressure(:)
 
       if (next == 0) return
       if (.not. touching(next)) return
@@ -171,9 +169,8 @@ contains
 
     !> Pressures of a run. At an end where contact ends, the last side's own are left: there the pressure has
     !! no polynomial.
-    pure subroutine derive(run, pressure)
+    subroutine derive(run)
       type(run_type), intent(in) :: run
-      real(wp), intent(inout) :: pressure(:)
       integer :: first, k, last
 
       if (size(run%total, 2) < least_corners) then
