@@ -6,10 +6,10 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
   use epcont_accuracy_recovery, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_sensitivity, only: contact_sensitivity, find_sensitivity
-  use epcont_accuracy_surface_line, only: new_surface_line, smooth_pressures, surface_line
-  use epcont_accuracy_unit_motion, only: find_unit_loads, unit_loads
-  use epcont_accuracy_weights, only: concentrated, estimate_weights, least_energy, of_shares, uncancelled, unresolved, &
-                                     wave_height, weights_of
+  use epcont_accuracy_surface_line, only: first_element, new_surface_line, smooth_pressures, surface_line
+  use epcont_accuracy_unit_loads, only: find_unit_loads, unit_loads
+  use epcont_accuracy_weights, only: concentrated, estimate_weights, least_energy, of_shares, uncancelled, &
+                                     unresolved, wave_height, weights_of
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: alike, least_difference
@@ -26,16 +26,20 @@ module epcont_accuracy_accuracy
   integer, parameter, public :: worst_count = 5
 
   type :: accuracy_type
-    real(wp) :: energy_norm = 0.0_wp               !! error of the mesh over the size of the answer, in the energy norm
+    !> Error of the mesh over the size of the answer, in the energy norm
+    real(wp) :: energy_norm = 0.0_wp
     real(wp), allocatable :: element(:)            !! square of each element's error [energy] [elements]
     integer, allocatable :: worst(:)               !! elements with the largest errors
     type(zone_error), allocatable :: zone(:)
-    real(wp) :: max_pressure = -1.0_wp             !! error of the largest pressure of all; negative: unknown [stress]
+    !> Error of the largest pressure of all; negative: unknown [stress]
+    real(wp) :: max_pressure = -1.0_wp
     logical :: pressure_unbounded = .false.        !! it grows with every finer mesh
     real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
     logical, allocatable :: approach_unbounded(:)  !! it grows with every finer mesh [motions]
-    real(wp) :: total_force = -1.0_wp              !! error of the total contact force; negative: unknown [force]
-    real(wp), allocatable :: body_force(:, :)      !! of its resultants on bodies; negative: unknown [force] [2, answer's bodies]
+    !> Error of the total contact force; negative: unknown [force]
+    real(wp) :: total_force = -1.0_wp
+    !> Of its resultants on bodies; negative: unknown [force] [2, answer's bodies]
+    real(wp), allocatable :: body_force(:, :)
     type(contact_sensitivity) :: sensitivity
     logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
   end type accuracy_type
@@ -48,7 +52,7 @@ contains
     type(linear_problem), intent(in) :: linear     !! of the last solve
     type(contact_line), intent(in) :: line         !! of the pairs
     type(answer_type), intent(in) :: answer        !! with its pressures and zones
-    type(accuracy_type), intent(out) :: accuracy
+    type(accuracy_type), intent(out) :: accuracy   !! of its figures
     type(patch_table) :: table
     type(unit_loads) :: loads
     type(error_fields) :: field
@@ -62,8 +66,10 @@ contains
     else
       allocate (loads%force(scene%model%pairs, 0), loads%moved(0))
     end if
-    allocate (accuracy%approach(scene%motions%count), accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
-    allocate (accuracy%approach_unbounded(scene%motions%count), accuracy%weak(scene%model%pairs), source=.false.)
+    associate (motions => scene%motions%count)
+      allocate (accuracy%approach(motions), accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
+      allocate (accuracy%approach_unbounded(motions), accuracy%weak(scene%model%pairs), source=.false.)
+    end associate
     allocate (accuracy%zone(0))
     call assess_mesh()
     if (pressed) call assess_zones()
@@ -97,26 +103,32 @@ contains
       real(wp) :: energy   !! error of the mesh over all of it, but for that of point loads
       integer :: z
 
-      surface = new_surface_line(scene%model, line, smooth_pressures(scene%model, linear%materials, field%smooth))
-      energy = accuracy%energy_norm**2*part(sum(accuracy%element, mask=.not. beside_point_loads()), sum(accuracy%element))
-      accuracy%zone = [(estimate_zone(scene%model, surface, answer, energy, answer%zones(z)), z=1, size(answer%zones))]
-      do z = 1, size(accuracy%zone)
-        accuracy%zone(z)%too_near = &
-          too_near(scene%model, surface, answer%contact%force, accuracy%zone(z), answer%zones(z)%pairs)
-      end do
+      associate (model => scene%model, element => accuracy%element, zones => answer%zones)
+        surface = new_surface_line(model, line, smooth_pressures(model, linear%materials, field%smooth))
+        energy = accuracy%energy_norm**2*part(sum(element, mask=.not. beside_point_loads()), sum(element))
+        accuracy%zone = [(estimate_zone(model, surface, answer, energy, zones(z)), z=1, size(zones))]
+        do z = 1, size(zones)
+          accuracy%zone(z)%too_near = &
+            too_near(model, surface, answer%contact%force, accuracy%zone(z), zones(z)%pairs)
+        end do
+      end associate
     end subroutine assess_zones
 
     !> Approaches and forces, and what errors may do to pairs.
     subroutine assess_sums()
-      real(wp) :: off(size(loads%force, 2))   !! error of each approach, of the sum of forces, of what bodies bear
+      !> Error of each approach, of the sum of forces, of what bodies bear
+      real(wp) :: off(size(loads%force, 2))
       real(wp) :: relative
-      real(wp), allocatable :: travel(:)      !! what the gaps of the pairs are the sum of, added up [length] [pairs]
+      !> What the gaps of the pairs are the sum of, added up [length] [pairs]
+      real(wp), allocatable :: travel(:)
       integer :: j
 
       associate (problem => linear%problem)
-        travel = abs(problem%initial_gap) + abs(problem%load_gap) + matmul(abs(problem%motion), abs(answer%contact%approach))
+        travel = abs(problem%initial_gap) + abs(problem%load_gap) &
+                 + matmul(abs(problem%motion), abs(answer%contact%approach))
       end associate
-      accuracy%sensitivity = find_sensitivity(loads%problem, loads%basis, answer%contact%force, travel, answer%condition)
+      accuracy%sensitivity = find_sensitivity(loads%problem, loads%basis, answer%contact%force, travel, &
+                                              answer%condition)
       ! What the last step of refinement has not changed is right.
       accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
       off = errors()
@@ -125,8 +137,8 @@ contains
         accuracy%approach_unbounded = known .and. [(is_point_load(j), j=1, motions)]
         call assess_forces(off(motions + 1:))
       end associate
-      ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones nothing
-      ! else tells.
+      ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones
+      ! nothing else tells.
       relative = accuracy%total_force/sum(answer%contact%force)
       where (accuracy%zone%pressure >= 0.0_wp) &
         accuracy%zone%pressure = max(accuracy%zone%pressure, relative*answer%zones%max_pressure)
@@ -144,8 +156,8 @@ contains
       end do
       associate (motions => scene%motions)
         associate (of_motions => matmul(transpose(loads%share), loads%force(:, :motions%count)))
-          off(motions%count + 1:) = off(motions%count + 1:) &
-                                    + sum(abs(matmul(of_motions, shifted_loads(scene%model, line, motions, answer))), dim=2)
+          off(motions%count + 1:) = off(motions%count + 1:) + &
+            sum(abs(matmul(of_motions, shifted_loads(scene%model, line, motions, answer))), dim=2)
         end associate
       end associate
     end function errors
@@ -167,8 +179,8 @@ contains
         associate (zone => accuracy%zone(z), force => loads%force(answer%zones(z)%pairs, loads%moved(j)))
           weights = zone%weights
           at_end = answer%zones(z)%max_pressure*zone%half_length*surface%compliance(zone%peak)
-          ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it says
-          ! nothing of one.
+          ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it
+          ! says nothing of one.
           if (.not. zone%unbounded) near = near + weights%between*(at_end*zone%resolution**2)*sum(force)
           if (.not. zone%resolved) vague = unresolved
           ! Of a tilt of either sign the ends count, not the sum.
@@ -183,8 +195,8 @@ contains
       end associate
       ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its
       ! field is too small.
-      error = weights%product*short &
-              /max(least_energy, 1.0_wp - accuracy%energy_norm**2)/max(least_energy, 1.0_wp - field%missing(j)) + end_error
+      error = weights%product*short/max(least_energy, 1.0_wp - accuracy%energy_norm**2) &
+              /max(least_energy, 1.0_wp - field%missing(j)) + end_error
       error = vague*error
     end function error_along
 
@@ -235,13 +247,14 @@ contains
 
       associate (model => scene%model, motions => scene%motions, node => scene%motions%node(j), &
                  c => scene%motions%component(j))
-        is_point_load = abs(model%load(c, node)) > concentrated*sum(abs(model%load(c, :)), mask=model%body == motions%body(j)) &
-                        .and. count(model%leader(c, :) == node) == 1 .and. model%around%start(node + 1) > model%around%start(node)
+        is_point_load = abs(model%load(c, node)) > &
+                        concentrated*sum(abs(model%load(c, :)), mask=model%body == motions%body(j)) .and. &
+                        count(model%leader(c, :) == node) == 1 .and. first_element(model, node) > 0
       end associate
     end function is_point_load
 
-    !> Elements at a load on one node, and around these: there no mesh is fine enough, and the contact does not
-    !! feel it [elements].
+    !> Elements at a load on one node, and around these: there no mesh is fine enough, and the contact does
+    !! not feel it [elements].
     pure function beside_point_loads() result(beside)
       logical :: beside(scene%model%elements)
       integer :: seen(scene%model%elements)
@@ -265,7 +278,8 @@ contains
 
       off = 0.0_wp
       do z = 1, size(accuracy%zone)
-        associate (pairs => answer%zones(z)%pairs, beyond => answer%zones(z)%beyond, error => accuracy%zone(z)%pressure)
+        associate (pairs => answer%zones(z)%pairs, beyond => answer%zones(z)%beyond, &
+                   error => accuracy%zone(z)%pressure)
           off(pairs) = max(0.0_wp, error)
           do k = 1, size(beyond)
             off(beyond(k)) = max(off(beyond(k)), error)

@@ -34,20 +34,22 @@ module epcont_accuracy_error_fields
   !> What the errors of fields of strain have in common, and what each misses.
   type :: error_product
     real(wp), allocatable :: element(:, :)   !! [energy] [elements, fields]
-    real(wp), allocatable :: missing(:)      !! part of the energy, of elastic bodies; not found of the first field [fields]
+    !> Part of the energy, of elastic bodies; not found of the first field [fields]
+    real(wp), allocatable :: missing(:)
   end type error_product
 
 contains
 
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
-  pure subroutine compare_fields(scene, linear, answer, table, unit_force, field)
+  subroutine compare_fields(scene, linear, answer, table, unit_force, field)
     type(planned_scene), intent(in) :: scene     !! that was solved
     type(linear_problem), intent(in) :: linear   !! of the last solve
     class(scene_state), intent(in) :: answer     !! to it
     type(patch_table), intent(in) :: table       !! of its elements
     real(wp), intent(in) :: unit_force(:, :)     !! contact forces under each unit load [pairs, loads]
-    type(error_fields), intent(out) :: field
-    real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)   !! of the answer, then of some unit loads [4, any, 1 + loads]
+    type(error_fields), intent(out) :: field     !! what is off
+    !> Of the answer, then of some unit loads [4, any, 1 + loads]
+    real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)
     type(error_product) :: product
     integer :: first, j, k, loads
 
@@ -88,15 +90,17 @@ contains
     real(wp), intent(in) :: volume(:)                     !! of the integration points [points]
     real(wp), contiguous, intent(in) :: strain(:, :, :)   !! [4, points, fields]
     real(wp), contiguous, intent(in) :: smooth(:, :, :)   !! [4, places, fields]
-    type(point_state), allocatable, intent(in) :: state(:)   !! of the first field, where anything yields [points]
+    !> Of the first field, where anything yields [points]
+    type(point_state), allocatable, intent(in) :: state(:)
     type(error_product) :: product
     type(point_state) :: before, after
     real(wp) :: own(4, most_places), error(4, most_places, size(strain, 3)), part(most_places), cross, one
     real(wp) :: energy(2, size(strain, 3))   !! of each field's error, and of its own strain
     logical :: yielded
-    integer :: e, f, k
+    integer :: e, f, fields, k
 
-    allocate (product%element(model%elements, size(strain, 3)), product%missing(size(strain, 3)), source=0.0_wp)
+    fields = size(strain, 3)
+    allocate (product%element(model%elements, fields), product%missing(fields), source=0.0_wp)
     energy = 0.0_wp
     do e = 1, model%elements
       associate (first => model%first_point(e), last => model%first_point(e + 1) - 1, &
@@ -105,12 +109,14 @@ contains
         do k = 1, kind%places
           part(k) = sum(kind%v(:last - first + 1, k)*volume(first:last))
         end do
-        do f = size(strain, 3), 1, -1   ! last the first, whose own strain is wanted
-          call compare(kind, table%place(:kind%nodes, e), strain(:, first:last, f), smooth(:, :, f), own, error(:, :, f))
+        do f = fields, 1, -1   ! last the first, whose own strain is wanted
+          call compare(kind, table%place(:kind%nodes, e), strain(:, first:last, f), smooth(:, :, f), own, &
+                       error(:, :, f))
           if (f == 1) exit
           do k = 1, kind%places
-            energy(:, f) = energy(:, f) + part(k)*[elastic_product(cross, law%shear, error(:, k, f), error(:, k, f)), &
-                                                   elastic_product(cross, law%shear, own(:, k), own(:, k))]
+            energy(:, f) = energy(:, f) + &
+                           part(k)*[elastic_product(cross, law%shear, error(:, k, f), error(:, k, f)), &
+                                    elastic_product(cross, law%shear, own(:, k), own(:, k))]
           end do
         end do
         do k = 1, kind%places
@@ -124,7 +130,7 @@ contains
             call law%update(own(:, k) + error(:, k, 1), point_state(), after)
             yielded = before%yielded .or. after%yielded
           end if
-          do f = 1, size(strain, 3)
+          do f = 1, fields
             if (yielded) then
               one = dot_product(after%stress - before%stress, error(:, k, f))
             else

@@ -56,7 +56,8 @@ contains
         if (line%mirrored(pair)) mirror(across, k) = line%x(across, pair)
       end associate
     end do
-    within = [zone%pairs, pack(zone%beyond, line%tributary(zone%beyond) == 0.0_wp)]   ! a corner on the axis bears nothing by itself
+    ! a corner on the axis bears nothing by itself
+    within = [zone%pairs, pack(zone%beyond, line%tributary(zone%beyond) == 0.0_wp)]
     do k = 1, size(within)
       associate (pair => within(k), least => tip_matters*largest*line%compliance(within(k)))
         if (least <= 0.0_wp) cycle
@@ -175,8 +176,8 @@ contains
       integer, intent(in) :: c   !! the direction across
       integer, intent(in) :: other
 
-      associate (x => model%x(c, [node, other]), near => same_place*norm2(model%x(:, node) - model%x(:, other)), &
-                 held => model%held(:, [node, other]))
+      associate (x => model%x(c, [node, other]), held => model%held(:, [node, other]), &
+                 near => same_place*norm2(model%x(:, node) - model%x(:, other)))
         along_symmetry = any(abs(mirror(c, :) - x(1)) <= near .and. abs(mirror(c, :) - x(2)) <= near)
         if (abs(x(1) - x(2)) > near) return
         along_symmetry = along_symmetry .or. all(held(c, :)) .and. .not. any(held(3 - c, :)) &

@@ -50,7 +50,8 @@ contains
         do k = 1, 3
           if (near(k) == 0) cycle
           associate (angle => line%bend(near(k)), curvature => line%curvature(near(k)))
-            if (curvature <= 0.0_wp .or. angle > corner) cycle   ! beyond, one pair faces a step, or another side
+            ! beyond, one pair faces a step, or another side
+            if (curvature <= 0.0_wp .or. angle > corner) cycle
             bulge = max(bulge, angle**2/curvature/8.0_wp)   ! an eighth of angle times spacing
           end associate
         end do
@@ -123,11 +124,12 @@ contains
   !! Pairs may press along the node's own normal instead of that of what it faces: of smooth boundaries these
   !! are the same only where the bodies touch. In narrow zones each pair by itself; in wide ones all normals
   !! of the one body, or of the other.
-  pure subroutine find_turned(model, line, answer, given, total, of_body)
+  subroutine find_turned(model, line, answer, given, total, of_body)
     type(model_type), intent(in) :: model               !! the scene
     class(contact_line), intent(in) :: line             !! of its pairs
     type(answer_type), intent(in) :: answer             !! with forces and zones
-    logical, intent(in) :: given(:, :)                  !! loads make that component of the resultant [2, bodies]
+    !> Loads make that component of the resultant [2, bodies]
+    logical, intent(in) :: given(:, :)
     real(wp), intent(out) :: total                      !! of the total contact force [force]
     real(wp), intent(out) :: of_body(2, model%bodies)   !! of the resultant on each body [force]
     real(wp) :: along, change(2), own(2), on(2), lean(2, model%bodies), more, resultant(2, model%bodies)
@@ -168,16 +170,15 @@ contains
       total = total + abs(more)
     end do
     of_body = of_body + abs(lean)
-    call turn_shared_places(total, of_body)
+    call turn_shared_places()
 
   contains
 
     !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the
     !! strongest there does.
-    pure subroutine turn_shared_places(total, of_body)
-      real(wp), intent(inout) :: total, of_body(:, :)
-      real(wp) :: change(2), way
-      integer :: b, body(2), k
+    subroutine turn_shared_places()
+      real(wp) :: way
+      integer :: k
       integer :: strongest(model%pairs)   !! at the place of each
 
       associate (start => line%at_place%start, force => answer%contact%force)

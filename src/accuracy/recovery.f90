@@ -20,7 +20,8 @@ module epcont_accuracy_recovery
   type :: patch_table
     integer :: places = 0
     integer, allocatable :: node(:)        !! of each place [places]
-    integer, allocatable :: place(:, :)    !! of each node of an element, 0 where it has no more [most_nodes, elements]
+    !> Of each node of an element, 0 where it has no more [most_nodes, elements]
+    integer, allocatable :: place(:, :)
     type(incidence) :: around              !! elements at each place
     logical, allocatable :: inside(:)      !! elements go all around the place [places]
   end type patch_table
@@ -91,7 +92,8 @@ contains
     type(model_type), intent(in) :: model             !! the scene
     type(patch_table), intent(in) :: table            !! of its elements
     integer, intent(in) :: place                      !! which place
-    integer, intent(inout) :: seen(:)                 !! the last place that each element was taken for [elements]
+    !> The last place that each element was taken for [elements]
+    integer, intent(inout) :: seen(:)
     integer, allocatable, intent(out) :: patch(:)     !! elements
     integer :: i, j, k
 
@@ -112,18 +114,19 @@ contains
   end subroutine wide_patch
 
   !> Strains at the places of a table, of several fields at once [4, places, fields].
-  pure function recover_strains(model, table, volume, strain) result(smooth)
+  function recover_strains(model, table, volume, strain) result(smooth)
     type(model_type), intent(in) :: model    !! the scene
     type(patch_table), intent(in) :: table   !! of its elements
     real(wp), intent(in) :: volume(:)        !! of the integration points [points]
     real(wp), intent(in) :: strain(:, :, :)  !! xx, yy, zz, xy [4, points, fields]
     real(wp), allocatable :: smooth(:, :, :)
-    real(wp), allocatable :: x(:, :), sample(:, :, :)
+    real(wp), allocatable :: x(:, :), sample(:, :, :)   !! samples: [length] [2, points], [4, points, fields]
     integer, allocatable :: patch(:)
     integer :: seen(model%elements), e, p
-    integer :: fits(table%places)            !! of a node between corners: polynomials that reach it; of others -1
+    !> Of a node between corners: polynomials that reach it; of others -1
+    integer :: fits(table%places)
 
-    call take_samples(x, sample)
+    call take_samples()
     allocate (smooth(4, table%places, size(strain, 3)), source=0.0_wp)
     fits = -1
     do e = 1, model%elements
@@ -137,9 +140,9 @@ contains
         if (.not. table%inside(p) .or. size(patch) < merge(least_quadratic/3, least_linear, curved)) &
           call wide_patch(model, table, p, seen, patch)
         if (curved) then
-          call fit_quadratic(p, smooth, fits)
+          call fit_quadratic(p)
         else
-          call fit_linear(model, x, sample, patch, model%x(:, table%node(p)), smooth(:, p, :))
+          call fit_linear(p)
         end if
       end associate
     end do
@@ -151,9 +154,7 @@ contains
 
     !> Where the strains of the elements are best, and what they are there: the samples of an element have the
     !! numbers of its first points.
-    pure subroutine take_samples(x, sample)
-      real(wp), allocatable, intent(out) :: x(:, :)           !! [length] [2, points]
-      real(wp), allocatable, intent(out) :: sample(:, :, :)   !! [4, points, fields]
+    subroutine take_samples()
       integer :: e, f, k, p
 
       allocate (x(2, model%points))
@@ -165,7 +166,8 @@ contains
             do k = 1, kind%samples
               x(:, first + k - 1) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
               do f = 1, size(strain, 3)
-                sample(:, first + k - 1, f) = matmul(strain(:, first:last, f), kind%sample_of(:kind%points, k))
+                sample(:, first + k - 1, f) = matmul(strain(:, first:last, f), &
+                                                     kind%sample_of(:kind%points, k))
               end do
             end do
             cycle
@@ -180,19 +182,63 @@ contains
       end do
     end subroutine take_samples
 
+    !> The linear polynomials of one sample an element, at a place. A direction in which the samples do not
+    !! spread is constant.
+    subroutine fit_linear(p)
+      integer, intent(in) :: p
+      real(wp) :: at(2), mean(4), along(4), across(4), d(2), determinant
+      real(wp) :: m(2), xx, xy, yy   !! moments of the samples about the place, then about their middle
+      integer :: f, i, s
+
+      at = model%x(:, table%node(p))
+      m = 0.0_wp
+      xx = 0.0_wp
+      xy = 0.0_wp
+      yy = 0.0_wp
+      do i = 1, size(patch)
+        d = x(:, model%first_point(patch(i))) - at
+        m = m + d
+        xx = xx + d(1)*d(1)
+        xy = xy + d(1)*d(2)
+        yy = yy + d(2)*d(2)
+      end do
+      xx = xx - m(1)*m(1)/size(patch)
+      xy = xy - m(1)*m(2)/size(patch)
+      yy = yy - m(2)*m(2)/size(patch)
+      determinant = xx*yy - xy*xy
+      do f = 1, size(sample, 3)
+        mean = 0.0_wp
+        along = 0.0_wp
+        across = 0.0_wp
+        do i = 1, size(patch)
+          s = model%first_point(patch(i))
+          d = x(:, s) - at
+          mean = mean + sample(:, s, f)
+          along = along + d(1)*sample(:, s, f)
+          across = across + d(2)*sample(:, s, f)
+        end do
+        mean = mean/size(patch)
+        along = along - m(1)*mean
+        across = across - m(2)*mean
+        if (determinant > lost_digits*(xx + yy)**2) &
+          mean = mean - (m(1)*(yy*along - xy*across) + m(2)*(xx*across - xy*along))/(determinant*size(patch))
+        smooth(:, p, f) = mean
+      end do
+    end subroutine fit_linear
+
     !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
     !! meet there.
-    pure subroutine fit_quadratic(p, smooth, fits)
-      integer, intent(in) :: p    !! the place
-      real(wp), intent(inout) :: smooth(:, :, :)
-      integer, intent(inout) :: fits(:)
-      real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic), at(2), reach, weight
-      integer :: f, i, j, k, s
+    subroutine fit_quadratic(p)
+      integer, intent(in) :: p
+      real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic)
+      real(wp) :: at(2), reach, weight
+      integer :: e, f, i, j, k, s
 
       at = model%x(:, table%node(p))
       reach = 0.0_wp
       do i = 1, size(patch)
-        reach = max(reach, norm2(x(:, model%first_point(patch(i))) - at))   ! in any direction: a scene may be turned
+        ! in any direction: a scene may be turned
+        reach = max(reach, norm2(x(:, model%first_point(patch(i))) - at))
       end do
       matrix = 0.0_wp
       coefficient = 0.0_wp
@@ -211,8 +257,9 @@ contains
       call solve(matrix, size(coefficient, 1)*size(coefficient, 2), coefficient)
       smooth(:, p, :) = coefficient(:, :, 1)
       do i = table%around%start(p), table%around%start(p + 1) - 1
-        associate (place => table%place(:, table%around%group(i)), corners => model%corners(table%around%group(i)))
-          do k = corners + 1, model%order(table%around%group(i))
+        e = table%around%group(i)
+        associate (place => table%place(:, e), corners => model%corners(e))
+          do k = corners + 1, model%order(e)
             if (place(k - corners) /= p .and. place(mod(k - corners, corners) + 1) /= p) cycle
             term = terms((model%x(:, table%node(place(k))) - at)/reach)
             do f = 1, size(sample, 3)
@@ -224,53 +271,6 @@ contains
       end do
     end subroutine fit_quadratic
   end function recover_strains
-
-  !> The linear polynomials of one sample an element, at a place. A direction in which the samples do not
-  !! spread is constant.
-  pure subroutine fit_linear(model, x, sample, patch, at, value)
-    type(model_type), intent(in) :: model
-    real(wp), contiguous, intent(in) :: x(:, :), sample(:, :, :)
-    integer, intent(in) :: patch(:)          !! elements
-    real(wp), intent(in) :: at(2)
-    real(wp), intent(out) :: value(:, :)     !! [4, fields]
-    real(wp) :: mean(4), along(4), across(4), d(2), determinant
-    real(wp) :: m(2), xx, xy, yy   !! moments of the samples about the place, then about their middle
-    integer :: f, i, s
-
-    m = 0.0_wp
-    xx = 0.0_wp
-    xy = 0.0_wp
-    yy = 0.0_wp
-    do i = 1, size(patch)
-      d = x(:, model%first_point(patch(i))) - at
-      m = m + d
-      xx = xx + d(1)*d(1)
-      xy = xy + d(1)*d(2)
-      yy = yy + d(2)*d(2)
-    end do
-    xx = xx - m(1)*m(1)/size(patch)
-    xy = xy - m(1)*m(2)/size(patch)
-    yy = yy - m(2)*m(2)/size(patch)
-    determinant = xx*yy - xy*xy
-    do f = 1, size(sample, 3)
-      mean = 0.0_wp
-      along = 0.0_wp
-      across = 0.0_wp
-      do i = 1, size(patch)
-        s = model%first_point(patch(i))
-        d = x(:, s) - at
-        mean = mean + sample(:, s, f)
-        along = along + d(1)*sample(:, s, f)
-        across = across + d(2)*sample(:, s, f)
-      end do
-      mean = mean/size(patch)
-      along = along - m(1)*mean
-      across = across - m(2)*mean
-      if (determinant > lost_digits*(xx + yy)**2) &
-        mean = mean - (m(1)*(yy*along - xy*across) + m(2)*(xx*across - xy*along))/(determinant*size(patch))
-      value(:, f) = mean
-    end do
-  end subroutine fit_linear
 
   !> Terms of a quadratic polynomial at a place.
   pure function terms(x) result(term)

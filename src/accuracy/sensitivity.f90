@@ -5,7 +5,7 @@
 !> (Skeel 1979). Its largest entry is the 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs
 !> are few, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_accuracy_sensitivity
-  use epcont_accuracy_unit_motion, only: forces_under
+  use epcont_accuracy_unit_loads, only: forces_under
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis
   use epcont_contact_scaling, only: scaled_problem
@@ -20,7 +20,8 @@ module epcont_accuracy_sensitivity
 
   type :: contact_sensitivity
     logical :: known = .false.
-    real(wp) :: amplification = 0.0_wp   !! relative error of the forces / relative error of the flexibility, at most
+    !> Relative error of the forces / relative error of the flexibility, at most
+    real(wp) :: amplification = 0.0_wp
     real(wp) :: rounding = 0.0_wp        !! what rounding may leave in a force, of the largest
   end type contact_sensitivity
 

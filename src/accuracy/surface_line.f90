@@ -16,7 +16,8 @@ module epcont_accuracy_surface_line
   use epcont_result_contact_line, only: contact_line
   implicit none
   private
-  public :: elements_behind, find_waves, first_element, new_surface_line, smooth_pressures, surface_compliance, surface_line
+  public :: elements_behind, find_waves, first_element, new_surface_line, smooth_pressures, &
+            surface_compliance, surface_line
 
   !> An outline that turns by more than this ends [rad].
   real(wp), parameter, public :: corner = 35.0_wp*acos(-1.0_wp)/180.0_wp
@@ -26,7 +27,8 @@ module epcont_accuracy_surface_line
   type, extends(contact_line) :: surface_line
     real(wp), allocatable :: compliance(:)        !! `surface_compliance` [1/stress] [pairs]
     real(wp), allocatable :: bend(:)              !! by how much the gap bends open [rad] [pairs]
-    real(wp), allocatable :: curvature(:)         !! that over the length that the pair stands for [1/length] [pairs]
+    !> That over the length that the pair stands for [1/length] [pairs]
+    real(wp), allocatable :: curvature(:)
     real(wp), allocatable :: smooth_pressure(:)   !! `smooth_pressures` [stress] [pairs]
   contains
     procedure :: beyond
@@ -93,7 +95,9 @@ contains
     integer, intent(in) :: node             !! any
 
     element = 0
-    if (model%around%start(node + 1) > model%around%start(node)) element = model%around%group(model%around%start(node))
+    associate (first => model%around%start(node), beyond => model%around%start(node + 1))
+      if (beyond > first) element = model%around%group(first)
+    end associate
   end function first_element
 
   !> The elements at a node that tell how it gives way: those of the section of the first; none where it is
@@ -108,8 +112,15 @@ contains
     if (size(elements) == 0) return
     elements = pack(elements, model%section(elements) == model%section(elements(1)))
     if (model%held(1, model%leader(1, node)) .and. model%held(2, model%leader(2, node)) .or. &
-        all([(model%is_rigid(model%connectivity(:model%order(elements(i)), elements(i))), i=1, size(elements))])) &
-      elements = [integer ::]
+        all([(is_rigid(elements(i)), i=1, size(elements))])) elements = [integer ::]
+
+  contains
+
+    pure logical function is_rigid(element)
+      integer, intent(in) :: element
+
+      is_rigid = model%is_rigid(model%connectivity(:model%order(element), element))
+    end function is_rigid
   end function elements_behind
 
   !> The normal stress at each pair, as a pressure: the mean of both sides', of which each has errors of its
@@ -132,8 +143,11 @@ contains
         associate (elements => elements_behind(model, model%row_node(i)), normal => model%normal(:, k), &
                    stress => state%stress)
           if (size(elements) == 0) cycle
-          call materials%section(model%section(elements(1)))%law%update(smooth(:, model%row_node(i)), point_state(), state)
-          n = merge(1, 2, i == model%row_start(k))   ! the row's first node is one side, the others share the other
+          associate (section => materials%section(model%section(elements(1))))
+            call section%law%update(smooth(:, model%row_node(i)), point_state(), state)
+          end associate
+          ! the row's first node is one side, the others share the other
+          n = merge(1, 2, i == model%row_start(k))
           side(n) = side(n) - model%row_weight(i)*(stress(1)*normal(1)**2 + stress(2)*normal(2)**2 + &
                                                    2.0_wp*stress(4)*normal(1)*normal(2))
           weight(n) = weight(n) + model%row_weight(i)

@@ -11,7 +11,8 @@ module epcont_accuracy_weights
 
   !> Weights that differ from one kind of elements to another.
   type :: estimate_weights
-    real(wp) :: parabola, stress, smaller, spacing, square, graded, pressure_energy   !! of the largest pressure
+    !> Of the largest pressure
+    real(wp) :: parabola, stress, smaller, spacing, square, graded, pressure_energy
     real(wp) :: step, width_energy                                                    !! of the half-width
     real(wp) :: product, between, end                                                 !! of the approach
   end type estimate_weights
@@ -39,7 +40,8 @@ module epcont_accuracy_weights
     3200, 3400, 100, 800, 200, 500, 750, 650, 500, 500, &
     ! Approach: the product of two fields of errors, whose parts may cancel
     1600, 2600, 1600, 1500, 1800, 1700, 1400, 1300, 1400, 2100, &
-    ! of pressure (h/b)**2 b/E*, by which bodies come too near since their nodes touch and not the line between
+    ! of pressure (h/b)**2 b/E*, by which bodies come too near since their nodes touch and not the line
+    ! between
     0, 0, 300, 400, 0, 0, 0, 0, 0, 0, &
     ! the same for contact that ends at a node: a distance d from the true end counts as d**2
     100, 400, 150, 300, 140, 750, 200, 120, 350, 400], [10, 12])
@@ -82,7 +84,8 @@ module epcont_accuracy_weights
   real(wp), parameter, public :: concentrated = 0.5_wp
   !> A tip's curvature is so many times that of the nodes around it (test_limits.py).
   real(wp), parameter, public :: tip_stands_out = 4.0_wp
-  !> The pressure that its bend adds, E* times its angle, is at least this part of the largest (test_limits.py).
+  !> The pressure that its bend adds, E* times its angle, is at least this part of the largest
+  !! (test_limits.py).
   real(wp), parameter, public :: tip_matters = 0.1_wp
   !> Part of a zone's pairs at which the gap bends by turns from which on that is waves
   !! (tests/accuracy/test_waves).

@@ -30,22 +30,26 @@ module epcont_accuracy_zone_error
     integer :: peak = 0                  !! pair of the largest pressure
     logical :: unbounded = .false.       !! the pressure grows with every finer mesh: a tip, a sharp edge
     logical :: resolved = .true.         !! there are pairs enough to see where it is largest
-    real(wp) :: pressure = -1.0_wp       !! of the largest pressure; negative: unbounded, or not resolved [stress]
+    !> Of the largest pressure; negative: unbounded, or not resolved [stress]
+    real(wp) :: pressure = -1.0_wp
     real(wp) :: half_width = -1.0_wp     !! negative: unknown [length]
     real(wp) :: resolution = 1.0_wp      !! spacing of the pairs over half of the zone's length
     real(wp) :: end_resolution = 1.0_wp  !! the same of the larger spacing at its ends
     real(wp) :: half_length = 0.0_wp     !! of the zone, to where the pressure vanishes [length]
     real(wp) :: wave_height = 0.0_wp     !! of waves of its gap [length]
     real(wp) :: waviness = 0.0_wp        !! what flattens these waves, of the largest pressure
-    real(wp) :: too_near = 0.0_wp        !! what contact on few pairs leaves open of how near the bodies come [length]
+    !> What contact on few pairs leaves open of how near the bodies come [length]
+    real(wp) :: too_near = 0.0_wp
     type(estimate_weights) :: weights    !! of the elements there
   end type zone_error
 
   !> What is seen at an end of a zone that is no line of symmetry.
   type :: zone_end
-    real(wp) :: step = 0.0_wp       !! to the first open pair, or between the last two, if that is more [length]
+    !> To the first open pair, or between the last two, if that is more [length]
+    real(wp) :: step = 0.0_wp
     real(wp) :: beyond = 0.0_wp     !! to where the pressure vanishes [length]
-    real(wp) :: short = 0.0_wp      !! what a mean over the last side is short of the pressure at its end [stress]
+    !> What a mean over the last side is short of the pressure at its end [stress]
+    real(wp) :: short = 0.0_wp
     logical :: open = .false.       !! contact ends, not the candidates
     logical :: edge = .false.       !! the candidates do, and the pressure does not fall towards it
     logical :: cut_off = .false.    !! the pressure is largest at the last pair, though contact ends there
@@ -69,12 +73,13 @@ contains
 
     n = size(zone%pairs)
     p = answer%pressure(zone%pairs)
-    ! Of equal pressures, but for rounding, that on the largest area: a corner on the axis may have its neighbour's.
+    ! Of equal pressures, but for rounding, that on the largest area: a corner on the axis may have its
+    ! neighbour's.
     peak = maxloc(line%tributary(zone%pairs), mask=p >= maxval(p) - least_difference*abs(maxval(p)), dim=1)
     error%peak = zone%pairs(peak)
     largest = p(peak)
-    kind = 1
-    if (first_element(model, line%node(zone%first)) > 0) kind = model%kind(first_element(model, line%node(zone%first)))
+    kind = first_element(model, line%node(zone%first))
+    kind = merge(model%kind(max(kind, 1)), 1, kind > 0)
     error%weights = weights_of(model%kinds(kind)%estimated_as, model%has_rings(), any(answer%plastic))
     if (largest <= 0.0_wp) return
     mirrored = line%mirrored([zone%first, zone%last])
@@ -95,10 +100,12 @@ contains
     if (n > 1 .and. .not. any(ends%open) .and. maxval(p) - minval(p) <= alike*largest) then
       error%resolution = 0.0_wp
     else
-      if (error%half_length > spacing .and. n > 1) error%resolution = spacing/error%half_length   ! of a single pair it stays 1
+      ! of a single pair it stays 1
+      if (error%half_length > spacing .and. n > 1) error%resolution = spacing/error%half_length
       error%unbounded = any(ends%edge)
       if (.not. error%unbounded) error%unbounded = has_tip(model, line, zone, largest)
-      error%resolved = error%unbounded .or. .not. any(ends%cut_off) .and. n + count(mirrored)*(n - 1) >= few .and. &
+      error%resolved = error%unbounded .or. .not. any(ends%cut_off) .and. &
+                       n + count(mirrored)*(n - 1) >= few .and. &
                        (model%kinds(kind)%degree == 1 .or. n > one_side)
     end if
     error%end_resolution = error%resolution
@@ -127,7 +134,8 @@ contains
       if (found%open) then
         found%cut_off = n > few .and. peak == first
       else
-        associate (tell => edge_pairs(model, line, zone%pairs(first)), high => p([first, second]) >= falls*largest)
+        associate (tell => edge_pairs(model, line, zone%pairs(first)), &
+                   high => p([first, second]) >= falls*largest)
           found%edge = any(high(:tell))
         end associate
         if (peak == first) found%short = beyond_mean*(largest - p(second))
@@ -162,7 +170,8 @@ contains
           do i = 1, size(elements)
             associate (corner => model%connectivity(:model%corners(elements(i)), elements(i)))
               associate (along => matmul(model%normal(:, error%peak), model%x(:, corner)))
-                depth = max(depth, (maxval(along) - minval(along))/model%kinds(model%kind(elements(i)))%degree)
+                depth = max(depth, (maxval(along) - minval(along)) &
+                                   /model%kinds(model%kind(elements(i)))%degree)
               end associate
             end associate
           end do
@@ -193,7 +202,8 @@ contains
         right = right + y(k)*[1.0_wp, x(k), x(k)**2]
       end do
       square = determinant(m, m(0:2))
-      if (square > dependent*m(0)*m(2)*m(4)) off = abs(largest - sqrt(max(0.0_wp, determinant(m, right)/square)))
+      if (square > dependent*m(0)*m(2)*m(4)) &
+        off = abs(largest - sqrt(max(0.0_wp, determinant(m, right)/square)))
     end function off_parabola
   end function estimate_zone
 

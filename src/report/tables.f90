@@ -1,6 +1,6 @@
 !> The tables: what their columns are, and what stands in their rows. They go to files, the listing or both.
 module epcont_report_tables
-  use epcont_accuracy_body_shares, only: most_bodies
+  use epcont_accuracy_unit_loads, only: most_bodies
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_contact_problem, only: pivot_record

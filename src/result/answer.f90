@@ -26,9 +26,11 @@ module epcont_result_answer
     ! At the integration point of each element where it is largest.
     real(wp), allocatable :: largest_stress(:)       !! von Mises [stress] [elements]
     integer, allocatable :: largest_at(:)            !! that point [elements]
-    logical, allocatable :: plastic(:)               !! beyond the yield point, at any of its points [elements]
+    !> Beyond the yield point, at any of its points [elements]
+    logical, allocatable :: plastic(:)
     logical, allocatable :: beyond(:)                !! beyond the end of the material's table [elements]
-    real(wp), allocatable :: pressure(:)             !! at the pairs; negative: no boundary there [stress] [pairs]
+    !> At the pairs; negative: no boundary there [stress] [pairs]
+    real(wp), allocatable :: pressure(:)
     type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
     type(body_force), allocatable :: bodies(:)       !! what contact exerts on each that has elements
@@ -37,8 +39,10 @@ module epcont_result_answer
     integer :: precision = precision_double          !! of the factors
     integer :: asked_precision = precision_double    !! that did not do, where it is another one
     real(wp) :: largest_rounding_error = 0.0_wp      !! that single precision may leave
-    real(wp) :: last_correction = huge(1.0_wp)       !! of displacements and forces by refinement's last step, relative
-    character(len=:), allocatable :: against_double  !! single precision has failed, and this stands against double
+    !> Of displacements and forces by refinement's last step, relative
+    real(wp) :: last_correction = huge(1.0_wp)
+    !> Single precision has failed, and this stands against double
+    character(len=:), allocatable :: against_double
     integer :: load_steps = 1                        !! taken
     integer :: asked_load_steps = 1                  !! that did not lead to an answer, where they are fewer
   contains

@@ -33,7 +33,8 @@ contains
     where (abs(sums) <= cancelled*sum(force)) sums = 0.0_wp
     if (model%has_rings()) sums(1, :) = 0.0_wp
     associate (bodies => pack([(b, b=1, model%bodies)], has_elements))
-      found = [(body_force(bodies(i), findloc(model%body, bodies(i), dim=1), sums(:, bodies(i))), i=1, size(bodies))]
+      found = [(body_force(body=bodies(i), node=findloc(model%body, bodies(i), dim=1), &
+                           resultant=sums(:, bodies(i))), i=1, size(bodies))]
     end associate
   end function find_body_forces
 
@@ -61,7 +62,8 @@ contains
 
     do k = 1, model%pairs
       associate (first => model%row_start(k), last => model%row_start(k + 1) - 1)
-        share(k) = model%normal(c, k)*sum(model%row_weight(first:last), mask=model%body(model%row_node(first:last)) == body)
+        share(k) = model%normal(c, k)*sum(model%row_weight(first:last), &
+                                          mask=model%body(model%row_node(first:last)) == body)
       end associate
     end do
   end function shares_of_pairs

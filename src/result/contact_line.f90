@@ -30,9 +30,11 @@ module epcont_result_contact_line
     !! pressure on the edges exerts along the normal what it would on that area. [pairs]
     real(wp), allocatable :: tributary(:)
     integer, allocatable :: neighbour(:, :) !! pairs at the other ends of its edges, 0: none [2, pairs]
-    real(wp), allocatable :: part(:, :)     !! of the area, towards each neighbour; of a middle node not set [2, pairs]
+    !> Of the area, towards each neighbour; of a middle node not set [2, pairs]
+    real(wp), allocatable :: part(:, :)
     logical, allocatable :: middle(:)       !! the middle node of an edge [pairs]
-    integer, allocatable :: node(:)         !! of the boundary at each pair: B, or A where B has no elements [pairs]
+    !> Of the boundary at each pair: B, or A where B has no elements [pairs]
+    integer, allocatable :: node(:)
     real(wp), allocatable :: x(:, :)        !! where that is [length] [2, pairs]
     logical, allocatable :: mirrored(:)     !! the line ends at the pair, on a line of symmetry [pairs]
     !> The pairs at each place: those so near to each other that the force is divided between them by chance.
@@ -45,7 +47,7 @@ module epcont_result_contact_line
 contains
 
   !> Edges of the boundary at the pairs.
-  pure function find_contact_line(model) result(line)
+  function find_contact_line(model) result(line)
     type(model_type), intent(in) :: model   !! the scene
     type(contact_line) :: line
     type(incidence) :: at
@@ -125,10 +127,10 @@ contains
 
   contains
 
-    !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there, and
-    !! so is the other body where it ends at the same line, or all over if it is rigid; a body that goes on
-    !! beyond the line is not mirrored. One of the two is held along the boundary alone: one held all over, or
-    !! tied by RBE2, does not tell.
+    !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there,
+    !! and so is the other body where it ends at the same line, or all over if it is rigid; a body that goes
+    !! on beyond the line is not mirrored. One of the two is held along the boundary alone: one held all over,
+    !! or tied by RBE2, does not tell.
     pure logical function is_on_symmetry(pair, node, side)
       integer, intent(in) :: pair, node
       real(wp), intent(in) :: side   !! length of the longest side at the node [length]
@@ -145,7 +147,8 @@ contains
         associate (other => model%row_node(i))
           if (other == node) cycle
           rigid = rigid .and. is_held(along, other)
-          if (.not. is_held(along, other) .or. abs(model%x(along, other) - model%x(along, node)) > beside_line*side) cycle
+          if (.not. is_held(along, other)) cycle
+          if (abs(model%x(along, other) - model%x(along, node)) > beside_line*side) cycle
           ends = .true.
           guided = guided .or. is_guided(along, other)
         end associate
@@ -212,7 +215,7 @@ contains
   !> What a uniform pressure on a side gives to each of its nodes, along a normal or in all, over that
   !! pressure: their parts of its area [length**2].
   pure function shares_of_nodes(model, element, side, normal) result(share)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model          !! the scene
     integer, intent(in) :: element, side(3)        !! the side's, and its nodes
     real(wp), intent(in), optional :: normal(2)    !! from where it is seen
     real(wp) :: share(3)
@@ -240,13 +243,15 @@ contains
     if (node == 0) return
     associate (there => at%group(at%start(node):at%start(node + 1) - 1))
       if (size(there) == 0) return
-      pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), model%normal(:, there))), dim=1))
+      associate (along => model%x(:, side(2)) - model%x(:, side(1)))
+        pair = there(minloc(abs(matmul(along, model%normal(:, there))), dim=1))
+      end associate
     end associate
   end function pair_of_side
 
   !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
   !! them.
-  pure subroutine insert_masters(model, contact, at, line, places)
+  subroutine insert_masters(model, contact, at, line, places)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
     type(incidence), intent(in) :: at   !! the slave's pairs at each node
@@ -256,11 +261,12 @@ contains
     integer :: side
 
     if (contact%last < contact%first_of_master) return
-    on_side = new_incidence(reshape(contact%stands_on, [1, size(contact%stands_on)]), size(contact%slave%element))
+    on_side = new_incidence(reshape(contact%stands_on, [1, size(contact%stands_on)]), &
+                            size(contact%slave%element))
     do side = 1, size(contact%slave%element)
       associate (masters => on_side%group(on_side%start(side):on_side%start(side + 1) - 1))
         if (size(masters) > 0) &
-          call link(side, run_on(side, contact%first_of_master - 1 + masters), line, places)
+          call link(side, run_on(side, contact%first_of_master - 1 + masters))
       end associate
     end do
 
@@ -273,7 +279,8 @@ contains
 
       x = model%x(:, line%node(pair))
       if (pair < contact%first_of_master) return
-      associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)   ! behind the node itself
+      ! behind the node itself
+      associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)
         x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
       end associate
     end function foot_of
@@ -300,12 +307,10 @@ contains
 
     !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of
     !! the side has no pair, the pieces at its end belong to none.
-    pure subroutine link(segment, run, line, places)
+    subroutine link(segment, run)
       integer, intent(in) :: segment   !! the side
       integer, intent(in) :: run(:)
-      type(contact_line), intent(inout) :: line
-      type(partition), intent(inout) :: places
-      real(wp) :: apart, width
+      real(wp) :: apart, share(3), width
       integer :: i, k
 
       associate (element => contact%slave%element(segment), side => contact%slave%segment(:, segment), &
@@ -315,9 +320,9 @@ contains
         do i = 1, size(run)
           associate (pair => run(i))
             if (pair >= contact%first_of_master) cycle
+            share = shares_of_nodes(model, element, side, model%normal(:, pair))
             if (is_along(model, side, model%normal(:, pair))) &
-              line%tributary(pair) = line%tributary(pair) - sum(shares_of_nodes(model, element, side, model%normal(:, pair)), &
-                                                                mask=side == line%node(pair))
+              line%tributary(pair) = line%tributary(pair) - sum(share, mask=side == line%node(pair))
             do k = 1, 2
               if (.not. (line%middle(pair) .or. any(run == line%neighbour(k, pair)))) cycle
               line%neighbour(k, pair) = 0

@@ -52,7 +52,7 @@ contains
 
       n = model%corners(e)
       associate (node => model%connectivity(:n, e), x => model%x, u => displacement)
-        ! Across a quadrilateral along its diagonals, across a triangle along two sides: gradient (s t) = (p q).
+        ! In a quadrilateral along its diagonals, in a triangle along two sides: gradient (s t) = (p q).
         associate (from => node(max(1, n - 3)), to => node(n - 1))
           t = x(:, to) - x(:, from)
           q = u(:, to) - u(:, from)

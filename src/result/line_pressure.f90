@@ -16,7 +16,8 @@ module epcont_result_line_pressure
     real(wp) :: force = 0.0_wp          !! sum of their forces [force]
     real(wp) :: on_slave = 0.0_wp       !! largest pressure [stress]
     real(wp) :: on_master = 0.0_wp      !! largest pressure [stress]
-    real(wp) :: difference = 0.0_wp     !! largest, at a touching pair, as a part of the largest on the slave line
+    !> Largest, at a touching pair, as a part of the largest on the slave line
+    real(wp) :: difference = 0.0_wp
   end type line_pressure
 
 contains
@@ -35,7 +36,8 @@ contains
 
     pure type(line_pressure) function compared(contact) result(found)
       type(line_contact), intent(in) :: contact
-      real(wp), allocatable :: area(:), received(:)   !! by the nodes of the master, over their area in the end
+      !> By the nodes of the master, over their area in the end
+      real(wp), allocatable :: area(:), received(:)
       real(wp) :: there
       integer :: i, k
 
@@ -51,7 +53,8 @@ contains
       end do
       where (area > 0.0_wp) received = received/area
       do i = 1, size(contact%master%element)
-        ! Corners on the axis of rings, which no boundary belongs to, have the pressure of the middle beside them.
+        ! Corners on the axis of rings, which no boundary belongs to, have the pressure of the middle beside
+        ! them.
         associate (corner => contact%master%segment(:2, i), middle => contact%master%segment(3, i))
           if (middle == 0) cycle
           where (area(corner) == 0.0_wp) received(corner) = received(middle)

@@ -14,7 +14,8 @@ module epcont_result_locking
 
   type :: locking_type
     integer :: elements = 0            !! three-node elements beyond that ratio
-    real(wp) :: scatter = 0.0_wp       !! of their mean stress about that of their neighbours, r.m.s. over equivalent stress, r.m.s.
+    !> Of their mean stress about that of their neighbours, r.m.s. over equivalent stress, r.m.s.
+    real(wp) :: scatter = 0.0_wp
   end type locking_type
 
 contains

@@ -27,13 +27,14 @@ module epcont_result_pressures
     !> Area and force, summed up to each corner, and beyond a line of symmetry as mirrored there; corner k has
     !! index k. A closed run goes on with itself. [2, corners]
     real(wp), allocatable :: total(:, :)
-    logical :: even(2) = .false.                    !! the pressure goes on evenly beyond the end: symmetry, the axis of rings
+    !> The pressure goes on evenly beyond the end: symmetry, the axis of rings
+    logical :: even(2) = .false.
   end type run_type
 
 contains
 
   !> Pressures; negative where no boundary belongs to a pair [stress] [pairs].
-  pure function pair_pressures(model, line, touching, force) result(pressure)
+  function pair_pressures(model, line, touching, force) result(pressure)
     type(model_type), intent(in) :: model   !! the scene
     type(contact_line), intent(in) :: line  !! of its pairs
     logical, intent(in) :: touching(:)      !! the pairs `in_contact` [pairs]
@@ -49,21 +50,20 @@ contains
       if (done(k) .or. .not. is_whole(k)) cycle
       run = run_of(k)
       done(run%middle) = .true.
-      call derive(run, pressure)
+      call derive(run)
     end do
     do k = 1, size(line%at_place%start) - 1
-      call level(line%at_place%group(line%at_place%start(k):line%at_place%start(k + 1) - 1), pressure)
+      call level(line%at_place%group(line%at_place%start(k):line%at_place%start(k + 1) - 1))
     end do
     do k = 1, model%pairs
-      if (line%tributary(k) <= 0.0_wp) call complete(k, maxval(line%neighbour(:, k)), pressure)
+      if (line%tributary(k) <= 0.0_wp) call complete(k, maxval(line%neighbour(:, k)))
     end do
 
   contains
 
     !> Pairs at one place have one pressure.
-    pure subroutine level(pairs, pressure)
+    subroutine level(pairs)
       integer, intent(in) :: pairs(:)
-      real(wp), intent(inout) :: pressure(:)
       integer :: i
 
       associate (area => sum(line%tributary(pairs)), together => sum(force(pairs)))
@@ -76,9 +76,8 @@ contains
 
     !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is
     !! at most where the corner has opened, which it does where pressures rise away from the axis.
-    pure subroutine complete(pair, next, pressure)
+    subroutine complete(pair, next)
       integer, intent(in) :: pair, next
-      real(wp), intent(inout) :: pressure(:)
 
       if (next == 0) return
       if (.not. touching(next)) return
@@ -95,7 +94,8 @@ contains
       associate (corners => line%neighbour(:, pair))
         if (.not. line%middle(pair) .or. any(corners == 0)) return
         ! Where a line turns a corner, the corner's pair may belong to the other side alone.
-        is_whole = touching(pair) .and. all(touching(corners)) .and. all(any(line%neighbour(:, corners) == pair, dim=1))
+        is_whole = touching(pair) .and. all(touching(corners)) .and. &
+                   all(any(line%neighbour(:, corners) == pair, dim=1))
       end associate
     end function is_whole
 
@@ -154,8 +154,8 @@ contains
       end associate
     end subroutine sum_up
 
-    !> What a side has of the area and of the force of its corner: all of the latter where the next middle does
-    !! not touch.
+    !> What a side has of the area and of the force of its corner: all of the latter where the next middle
+    !! does not touch.
     pure function share_of_side(corner, middle) result(share)
       integer, intent(in) :: corner, middle
       real(wp) :: share(2), other
@@ -169,9 +169,8 @@ contains
 
     !> Pressures of a run. At an end where contact ends, the last side's own are left: there the pressure has
     !! no polynomial.
-    pure subroutine derive(run, pressure)
+    subroutine derive(run)
       type(run_type), intent(in) :: run
-      real(wp), intent(inout) :: pressure(:)
       integer :: first, k, last
 
       if (size(run%total, 2) < least_corners) then

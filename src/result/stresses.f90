@@ -72,7 +72,8 @@ contains
       do node = 1, model%nodes
         do c = 1, 2
           associate (leader => model%leader(c, node))
-            if (model%held(c, leader)) reaction(c, leader) = reaction(c, leader) + force(c, node) - applied(c, node)
+            if (model%held(c, leader)) &
+              reaction(c, leader) = reaction(c, leader) + force(c, node) - applied(c, node)
           end associate
         end do
       end do

@@ -20,7 +20,8 @@ module epcont_result_zones
     integer, allocatable :: pairs(:)        !! from end to end
     real(wp), allocatable :: along(:)       !! place of each, from the first on [length] [its pairs]
     integer, allocatable :: beyond(:)       !! pairs next to those at its ends
-    real(wp) :: open(2) = 0.0_wp            !! from each end to the first open pair; 0: the end is the last candidate [length]
+    !> From each end to the first open pair; 0: the end is the last candidate [length]
+    real(wp) :: open(2) = 0.0_wp
   end type contact_zone
 
 contains
@@ -118,7 +119,8 @@ contains
     !! towards it.
     pure subroutine extend(run, open, beyond, falling)
       integer, intent(in) :: run(:)
-      real(wp), intent(out) :: open, beyond   !! to the first open pair; to where the pressure vanishes [length]
+      !> To the first open pair; to where the pressure vanishes [length]
+      real(wp), intent(out) :: open, beyond
       logical, intent(out) :: falling
       integer, allocatable :: next(:)   !! open pairs
       real(wp) :: drop

@@ -1,0 +1,173 @@
+!> What the scene does, the pairs in contact held closed, under a unit load along each free motion, and when
+!> their gaps shrink: what tells of an error anywhere how much of it arrives at the approach, and at sums of
+!> contact forces.
+module epcont_accuracy_unit_loads
+  use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: least_difference, solved_to
+  use epcont_contact_basis, only: contact_basis, new_basis, respond
+  use epcont_contact_scaling, only: scale_problem, scaled_problem
+  use epcont_linear_linear_problem, only: linear_problem
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_result_answer, only: answer_type
+  use epcont_result_body_force, only: shares_of_pairs
+  implicit none
+  private
+  public :: closing_forces, find_unit_loads, forces_under, unit_loads
+
+  !> Bodies up to which errors are estimated of what each bears: one costs as much as two load cases.
+  integer, parameter, public :: most_bodies = 12
+
+  !> A unit load along each free motion, then gaps that shrink by what each pair counts in a sum of forces.
+  type :: unit_loads
+    type(scaled_problem) :: problem
+    type(contact_basis) :: basis              !! of the pairs in contact
+    real(wp), allocatable :: force(:, :)      !! at the pairs, under each [pairs, loads]
+    integer, allocatable :: moved(:)          !! the loads that say something
+    !> Of pairs in the sum of all, then in each resultant on a body that may be off by itself; what two bodies
+    !! exert on each other is one [pairs, any]
+    real(wp), allocatable :: share(:, :)
+    !> There, of each component of what contact exerts on each body; 0: loads alone make it; negative: not
+    !! known [2, bodies]
+    integer, allocatable :: column(:, :)
+  end type unit_loads
+
+contains
+
+  !> Unit loads on a scene whose contact has been found.
+  function find_unit_loads(scene, linear, answer) result(loads)
+    type(planned_scene), intent(in) :: scene     !! that was solved
+    type(linear_problem), intent(in) :: linear   !! of the last solve
+    type(answer_type), intent(in) :: answer      !! with some contact
+    type(unit_loads) :: loads
+    integer :: j
+
+    loads%problem = scale_problem(linear%problem)
+    loads%basis = new_basis(loads%problem, answer%contact%force > 0.0_wp)
+    call find_shares()
+    associate (pairs => scene%model%pairs, motions => scene%motions%count)
+      loads%force = reshape([unit_forces(), closing_forces(loads%problem, loads%basis, loads%share)], &
+                            [pairs, motions + size(loads%share, 2)])
+      loads%moved = pack([(j, j=1, size(loads%force, 2))], any(loads%force /= 0.0_wp, dim=1) .and. &
+                         [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))])
+    end associate
+
+  contains
+
+    !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
+    subroutine find_shares()
+      real(wp), allocatable :: one(:)
+      integer :: c, i, k
+
+      allocate (loads%share(scene%model%pairs, 1), source=1.0_wp)
+      allocate (loads%column(2, size(answer%bodies)), source=merge(-1, 0, size(answer%bodies) > most_bodies))
+      if (size(answer%bodies) > most_bodies) return
+      do i = 1, size(answer%bodies)
+        do c = merge(2, 1, scene%model%has_rings()), 2
+          associate (body => answer%bodies(i)%body)
+            if (is_free(body, c)) cycle
+            one = shares_of_pairs(scene%model, body, c)
+          end associate
+          if (any(abs(one) > least_difference) .and. all(answer%bodies(i)%resultant == 0.0_wp) .and. &
+              .not. any(abs(one) > least_difference .and. answer%contact%touching)) then
+            loads%column(c, i) = -1
+            cycle
+          end if
+          do k = 2, size(loads%share, 2)
+            associate (other => loads%share(:, k))
+              if (min(maxval(abs(other - one)), maxval(abs(other + one))) <= least_difference) exit
+            end associate
+          end do
+          if (k > size(loads%share, 2)) loads%share = reshape([loads%share, one], [size(one), k])
+          loads%column(c, i) = k
+        end do
+      end do
+    end subroutine find_shares
+
+    !> Is a body free to move along a component? Then contact bears its loads that way. Motions are measured
+    !! at SUPORT freedoms: that one may be a sum of some that turn the body.
+    pure logical function is_free(body, c)
+      integer, intent(in) :: body, c
+      real(wp), allocatable :: basis(:, :), rest(:, :)   !! displacements of its nodes [2, nodes]
+      real(wp), allocatable :: moved(:, :, :)            !! orthonormal ones of its motions [2, nodes, any]
+      integer, allocatable :: nodes(:)
+      integer :: i, m
+
+      nodes = pack([(i, i=1, scene%model%nodes)], scene%model%body == body)
+      allocate (moved(2, size(nodes), 0))
+      do m = 1, scene%motions%count
+        if (scene%motions%body(m) /= body) cycle
+        basis = reshape([(scene%motions%displacement(scene%model, nodes(i), m), i=1, size(nodes))], &
+                        [2, size(nodes)])
+        rest = across(moved, basis)
+        if (norm2(rest) > least_difference*norm2(basis)) &
+          moved = reshape([moved, rest/norm2(rest)], [2, size(nodes), size(moved, 3) + 1])
+      end do
+      basis = spread(merge(1.0_wp, 0.0_wp, [1, 2] == c), 2, size(nodes))
+      is_free = norm2(across(moved, basis)) <= least_difference*norm2(basis)
+    end function is_free
+
+    !> Contact forces under unit loads; zero for motions that are not kept [pairs, motions].
+    pure function unit_forces() result(force)
+      real(wp) :: force(scene%model%pairs, scene%motions%count)
+      real(wp), allocatable :: opening(:, :), load(:, :), carried(:, :), approach(:, :)
+      integer :: j
+
+      force = 0.0_wp
+      if (.not. loads%basis%sound) return
+      associate (pairs => loads%basis%pairs, kept => loads%problem%kept)
+        allocate (opening(size(pairs), size(kept)), load(size(kept), size(kept)), source=0.0_wp)
+        do j = 1, size(kept)
+          load(j, j) = 1.0_wp/loads%problem%motion_size(kept(j))
+        end do
+        call respond(loads%basis, opening, load, carried, approach)
+        force(pairs, kept) = carried
+      end associate
+    end function unit_forces
+  end function find_unit_loads
+
+  !> What none of some orthonormal motions makes of a displacement; twice, for rounding.
+  pure function across(moved, displacement) result(rest)
+    real(wp), intent(in) :: moved(:, :, :), displacement(:, :)
+    real(wp) :: rest(size(moved, 1), size(moved, 2))
+    integer :: k
+
+    rest = displacement
+    do k = 1, 2*size(moved, 3)
+      associate (along => moved(:, :, 1 + mod(k - 1, size(moved, 3))))
+        rest = rest - sum(along*rest)*along
+      end associate
+    end do
+  end function across
+
+  !> Contact forces when the gap of each pair shrinks by its weight; none where motions give way to that
+  !! [force/length] [pairs, any].
+  pure function closing_forces(problem, basis, weight) result(force)
+    type(scaled_problem), intent(in) :: problem   !! of the contact
+    type(contact_basis), intent(in) :: basis      !! of the pairs in contact
+    real(wp), intent(in) :: weight(:, :)          !! [pairs, any]
+    real(wp) :: force(size(problem%gap), size(weight, 2))
+    real(wp), allocatable :: opening(:, :), carried(:, :)
+    integer :: j
+
+    force = 0.0_wp
+    if (.not. basis%sound) return
+    opening = -weight(basis%pairs, :)/problem%gap_unit
+    carried = forces_under(basis, opening)
+    do j = 1, size(weight, 2)
+      if (maxval(abs(carried(:, j))) > solved_to*maxval(abs(opening(:, j)))) &
+        force(basis%pairs, j) = carried(:, j)*problem%force_unit
+    end do
+  end function closing_forces
+
+  !> Forces that keep the pairs in contact closed where their gaps would open so, nothing else driving them
+  !! [pairs in contact, any].
+  pure function forces_under(basis, opening) result(carried)
+    type(contact_basis), intent(in) :: basis                 !! a sound one
+    real(wp), contiguous, intent(in) :: opening(:, :)        !! in scaled units [pairs in contact, any]
+    real(wp), allocatable :: carried(:, :), approach(:, :)
+    real(wp) :: load(size(basis%resistance, 1), size(opening, 2))
+
+    load = 0.0_wp
+    call respond(basis, opening, load, carried, approach)
+  end function forces_under
+end module epcont_accuracy_unit_loads
