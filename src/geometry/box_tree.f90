@@ -44,10 +44,8 @@ contains
       associate (own => order(first(i):last(i)))
         tree%low(:, i) = minval(low(:, own), dim=2)
         tree%high(:, i) = maxval(high(:, own), dim=2)
-        if (size(own) == 1) then
-          tree%item(i) = own(1)
-          cycle
-        end if
+        if (size(own) == 1) tree%item(i) = own(1)   ! a leaf
+        if (size(own) == 1) cycle
         axis = maxloc(tree%high(:, i) - tree%low(:, i), dim=1)
         call halve(low(axis, own) + high(axis, own), own)
         middle = first(i) + size(own)/2
