@@ -51,10 +51,8 @@ contains
     !> Ties and reference freedoms, one by one: each is checked against those before it.
     subroutine complete_freedoms()
       integer :: c, i, leader(2, model%nodes)
-      logical :: reference(2, model%nodes)
 
       leader = model%leader
-      reference = model%reference
       model%leader = spread([(i, i=1, model%nodes)], 1, 2)
       do i = 1, model%nodes
         do c = 1, 2
@@ -64,7 +62,7 @@ contains
       call follow_to_the_end(model%leader)
       do i = 1, model%nodes
         do c = 1, 2
-          if (reference(c, i)) call set_reference(model, c, i, [of_node, i, 0], found)
+          if (model%reference(c, i)) call set_reference(model, c, i, [of_node, i, 0], found)
         end do
       end do
     end subroutine complete_freedoms

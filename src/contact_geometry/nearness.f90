@@ -149,7 +149,7 @@ contains
         if (smooth .and. all(holds(slave%segment(:, s)) .or. slave%segment(:, s) == 0)) then
           ! It is where the mesh has it; a pair of its own would be one too many.
           left_open = most*travel
-        else if (is_held_off(slave, s)) then
+        else if (is_held_off(s)) then
           ! Over a side of the slave gaps are closed in the mean, however short the master's are.
           beside = 0
           if (which < 3) beside = master%neighbour(which, side)
@@ -166,14 +166,13 @@ contains
       left_open = min(left_open, most*travel)
     end function left_open
 
-    !> Does a node of a side, or of those beside it, stand on the other line? Then contact ends near by,
-    !! between nodes.
-    pure logical function is_held_off(line, side)
-      type(boundary_line), intent(in) :: line
+    !> Does a node of a side of the slave, or of those beside it, stand on the other line? Then contact ends
+    !! near by, between nodes.
+    pure logical function is_held_off(side)
       integer, intent(in) :: side
 
-      associate (near => pack([side, line%neighbour(:, side)], [.true., line%neighbour(:, side) > 0]))
-        is_held_off = any(holds([line%segment(:, near)]))
+      associate (beside => contact%slave%neighbour(:, side))
+        is_held_off = any(holds([contact%slave%segment(:, [side, pack(beside, beside > 0)])]))
       end associate
     end function is_held_off
 

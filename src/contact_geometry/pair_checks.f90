@@ -50,7 +50,7 @@ contains
         call warn_of_held(contact%first, contact%last, contact%couple(1))
       end associate
     end do
-    if (cgaps > 0 .and. any(model%body_outline%node(3, :) > 0)) call warn_of_half_sides()
+    if (cgaps > 0) call warn_of_half_sides()
 
   contains
 
