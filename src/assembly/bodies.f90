@@ -39,7 +39,6 @@ module epcont_assembly_bodies
     procedure :: finish
     procedure :: estimate_condition
     procedure :: weakest
-    procedure :: lacks_memory
   end type factored_bodies
 
 contains
@@ -85,17 +84,6 @@ contains
       end do
     end do
   end subroutine prescribe
-
-  !> Whether there was not enough memory for the factor of a body.
-  pure logical function lacks_memory(self)
-    class(factored_bodies), intent(in) :: self
-    integer :: b
-
-    lacks_memory = .false.
-    do b = 1, size(self%body)
-      if (allocated(self%body(b)%matrix)) lacks_memory = lacks_memory .or. self%body(b)%matrix%lacks_memory
-    end do
-  end function lacks_memory
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
   !! not as stiff as it was when it was assembled first.

@@ -26,6 +26,7 @@ module epcont_assembly_stiffness
     real(wp), allocatable :: coupling(:, :)   !! K_br, then W [equations, border]
     real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
     logical :: single = .false.               !! K_bb is factored in single precision
+    logical :: lacks_memory = .false.         !! there was not enough for K_bb
     !> K is over this, in the range of single precision; a power of four [force/length]
     real(wp) :: unit = 1.0_wp
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
@@ -66,7 +67,8 @@ contains
         deallocate (self%coupling, self%schur)
       end if
       allocate (self%coupling(body%equations, body%border), self%schur(body%border, body%border), source=0.0_wp)
-      if (self%matrix%lacks_memory) return
+      self%lacks_memory = self%matrix%lacks_memory
+      if (self%lacks_memory) return
       allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
       do e = 1, size(body%element)
         number = scene%numbering%of_element(scene%model, body%element(e))
@@ -213,7 +215,7 @@ contains
     integer :: at, info
 
     self%smallest_ratio = 0.0_wp
-    if (self%matrix%lacks_memory) return
+    if (self%lacks_memory) return
     call self%matrix%factor(self%smallest_ratio, at)
     if (self%smallest_ratio == 0.0_wp .or. size(self%schur) == 0) return
     coupled = self%coupling

@@ -3,13 +3,12 @@
 module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: negligible, solved_to
+  use epcont_base_tolerances, only: negligible, no_effect, solved_to
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, &
     pair_forces, see_motions
-  use epcont_linear_completion, only: complete_state
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed
@@ -143,7 +142,7 @@ contains
       call solve_once()
     end if
     if (state%contact%state /= contact_solved) return
-    call complete_state(scene, self%law, self%problem, part, state)
+    call complete(self, scene, part, state)
     call watch%lap(stage_displacements)
 
   contains
@@ -233,7 +232,7 @@ contains
     call watch%lap(stage_contact)
     if (refined%contact%state /= contact_solved) return
     call correct(self, scene, part, refined, strained)
-    call complete_state(scene, self%law, self%problem, part, refined)
+    call complete(self, scene, part, refined)
     change = max(relative_change(state%displacement, refined%displacement, of=refined%displacement), &
                  force_change(state%contact, refined%contact, of=refined%contact))
     if (allocated(refined%point)) deallocate (refined%point)   ! those of the strain before
@@ -310,4 +309,42 @@ contains
     self%problem%resultant = part*self%resultant
     call solve_contact(self%problem, state%contact, touching, self%plan%contact%by_blocks)
   end subroutine correct_contact
+  !> What follows from deformation, strains and contact: stresses, displacements and gaps.
+  pure subroutine complete(self, scene, part, state)
+    type(linear_problem), intent(in) :: self
+    type(planned_scene), intent(in) :: scene
+    real(wp), intent(in) :: part
+    type(scene_state), intent(inout) :: state
+    real(wp), allocatable :: opening(:), travel(:)   ! of gaps by deformation, by what supports travel [length]
+    real(wp), allocatable :: moved(:)                ! closing of a gap by each free motion [length]
+    real(wp) :: gap, terms                           ! what the gap is the sum of, added up
+    integer :: i, k, node
+
+    state%point_stress = self%law%stress(state%strain)
+    state%displacement = state%deformation + part*scene%model%travel
+    do k = 1, scene%motions%count
+      do node = 1, scene%model%nodes
+        state%displacement(:, node) = state%displacement(:, node) &
+          + state%contact%approach(k)*scene%motions%displacement(scene%model, node, k)
+      end do
+    end do
+    opening = gap_opening(scene%model, state%deformation)
+    travel = part*self%travel_gap
+    associate (contact => state%contact, model => scene%model, problem => self%problem)
+      do k = 1, model%pairs
+        if (contact%force(k) > 0.0_wp) cycle
+        ! Where a rigid stop takes the load, what the flexibility says of this gap is rounding of two deformations
+        ! that cancel: a pair that seemed to touch may be open, as the displacements have it.
+        moved = problem%motion(k, :)*contact%approach
+        gap = problem%initial_gap(k) + (opening(k) + travel(k)) - sum(moved)
+        terms = abs(problem%initial_gap(k)) + abs(travel(k)) + sum(abs(moved))
+        do i = model%row_start(k), model%row_start(k + 1) - 1
+          terms = terms + abs(model%row_weight(i))*maxval(abs(state%deformation(:, model%row_node(i))))
+        end do
+        if (contact%touching(k) .and. gap <= no_effect*terms) cycle
+        contact%touching(k) = .false.
+        contact%gap(k) = max(gap, 0.0_wp)
+      end do
+    end associate
+  end subroutine complete
 end module epcont_linear_linear_problem

@@ -31,12 +31,12 @@ contains
     type(point_state), intent(in) :: committed
     type(point_state), intent(out) :: trial
 
-    if (self%sheet) then
-      trial = state_in_space(self, [strain(:2), strain_across(self, strain), strain(4)])
-      trial%stress(3) = 0.0_wp
-    else
-      trial = state_in_space(self, strain)
-    end if
+    real(wp) :: in_space(components)
+
+    in_space = strain
+    if (self%sheet) in_space(3) = strain_across(self, strain)
+    trial = state_in_space(self, in_space)
+    if (self%sheet) trial%stress(3) = 0.0_wp
   end subroutine update
 
   !> The state with the strain zz as it is given.

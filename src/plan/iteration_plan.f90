@@ -74,9 +74,8 @@ contains
     plan%yields = any(plan%body)
     plan%precision = plan_precision(model%controls, plan%yields)
     plan%rounding_error = largest_error
-    if (model%controls%accuracy > 0.0_wp) then
+    if (model%controls%accuracy > 0.0_wp) &
       plan%rounding_error = min(largest_error, part_of_accuracy*model%controls%accuracy)
-    end if
     if (plan%yields) plan%load_steps = model%controls%load_steps
     plan%chosen_here = model%controls%method == method_auto
     plan%method = model%controls%method

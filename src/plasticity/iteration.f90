@@ -85,7 +85,7 @@ contains
       part = real(step, wp)/plan%load_steps
       call iterate()
       answer%factorizations = linear%factorizations
-      answer%lacks_memory = linear%lacks_memory()
+      answer%lacks_memory = any(linear%body%lacks_memory)
       if (answer%singular > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call answer%take(state)
@@ -188,15 +188,16 @@ contains
       logical :: possible
 
       singular = 0
-      if (linear%materials%yields) call method%linearise(about, linear)
-      call watch%lap(stage_yielding)
-      if (stiff .and. (plan%method == method_inistr .or. elastic .and. yielded == 0)) return
-      elastic = yielded == 0
+      method%blend = 0.0_wp
       do
+        if (linear%materials%yields) call method%linearise(about, linear)
+        call watch%lap(stage_yielding)
+        if (singular == 0 .and. stiff .and. (plan%method == method_inistr .or. elastic .and. yielded == 0)) return
+        elastic = yielded == 0
         call linear%set_stiffness(scene, singular, watch)
         stiff = .true.
-        if (singular == 0 .or. linear%lacks_memory() .or. .not. linear%materials%yields) return
-        call method%stiffen(about, linear, possible)
+        if (singular == 0 .or. any(linear%body%lacks_memory)) return
+        call method%stiffen(possible)
         if (.not. possible) return
       end do
     end subroutine set_law
@@ -217,7 +218,7 @@ contains
         now%force_error = merge(now%force_change, 0.0_wp, iteration > 1)
       end if
       answer%history = [answer%history, now]
-      converged = is_over(answer%history)
+      converged = is_over()
       if (converged .and. wants_test(now)) call step_by_tangent(found)
     end subroutine judge
 
@@ -231,8 +232,7 @@ contains
 
       now%load_factor = part
       now%change = ratio(maxval(abs(found%displacement - about%displacement)), maxval(abs(found%displacement)))
-      if (size(force) > 0) &
-        now%force_change = ratio(maxval(abs(found%contact%force - force)), maxval(found%contact%force))
+      now%force_change = ratio(maxval(abs(found%contact%force - force)), maxval(found%contact%force))
       now%touching = count(found%contact%touching)
       now%pivots = found%contact%pivots
       now%pivot = found%contact%history
@@ -292,17 +292,13 @@ contains
     !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than
     !! the tolerance. Where nothing has yielded, the first solve was exact; and where stresses are on their
     !! curves to rounding while the changes fall no more, rounding allows no smaller ones.
-    pure logical function is_over(history)
-      type(iteration_record), intent(in) :: history(:)   !! to this iteration
-      integer :: n
-
-      n = size(history)
-      associate (now => history(n))
+    pure logical function is_over()
+      associate (now => answer%history(size(answer%history)), before => answer%history(max(1, size(answer%history) - 2)))
         is_over = now%yielded + yielded == 0
         if (now%change <= plan%tolerance .and. now%residual <= plan%off_curve) is_over = is_over .or. &
           now%residual <= solved_to .or. now%error >= 0.0_wp .and. doubt*now%error <= plan%tolerance
         if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
-          is_over = is_over .or. now%change >= history(n - 2)%change
+          is_over = is_over .or. now%change >= before%change
       end associate
     end function is_over
 
