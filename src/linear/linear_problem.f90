@@ -64,7 +64,7 @@ contains
     integer, intent(out) :: singular            !! first body that could not be factored; 0: all could
     class(stopwatch), intent(inout) :: watch    !! takes the time
 
-    associate (yields => self%plan%body, first => .not. allocated(self%problem%flexibility))
+    associate (yields => scene%numbering%body%can_yield, first => .not. allocated(self%problem%flexibility))
       call factor_bodies(yields .or. first)
       self%law%changed = .false.
       call watch%lap(stage_factor)
@@ -160,7 +160,7 @@ contains
                               part*self%travel_gap
       self%problem%resultant = part*self%resultant
       call watch%lap(stage_displacements)
-      call solve_contact(self%problem, state%contact, start, self%plan%contact%by_blocks)
+      call solve_contact(self%problem, state%contact, start, self%plan%by_blocks)
       call watch%lap(stage_contact)
       if (state%contact%state /= contact_solved) return
       call self%add_forces(scene%numbering, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
@@ -307,7 +307,7 @@ contains
     self%problem%load_gap = gap_opening(scene%model, state%deformation) + part*self%travel_gap - &
                             matmul(self%problem%flexibility, state%contact%force)
     self%problem%resultant = part*self%resultant
-    call solve_contact(self%problem, state%contact, touching, self%plan%contact%by_blocks)
+    call solve_contact(self%problem, state%contact, touching, self%plan%by_blocks)
   end subroutine correct_contact
   !> What follows from deformation, strains and contact: stresses, displacements and gaps.
   pure subroutine complete(self, scene, part, state)

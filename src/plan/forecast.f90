@@ -112,7 +112,7 @@ contains
     ! A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice, and
     ! the sets on the way to it are smaller, or little of them is factored.
     expected%operations = expected%operations + &
-                          merge(2.0_wp/3.0_wp, 2.0_wp, plan%contact%by_blocks)*real(pairs, wp)**3
+                          merge(2.0_wp/3.0_wp, 2.0_wp, plan%by_blocks)*real(pairs, wp)**3
 
   contains
 

@@ -90,14 +90,7 @@ contains
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call answer%take(state)
       if (answer%contact%state /= contact_solved) return
-      if (converged .or. step == 1) then
-        answer%load_factor = part
-        call linear%estimate_condition(scene, answer%condition)
-        answer%weakest = linear%weakest()
-        if (plan%precision == precision_single) &
-          call linear%rounding_error(scene, part, answer%scene_state, answer%rounding_error)
-        call watch%lap(stage_accuracy)
-      end if
+      if (converged .or. step == 1) call estimate_rounding()
       if (.not. converged) exit
       if (plan%load_steps > 1) call find_unloaded()
       call watch%lap(stage_yielding)
@@ -352,6 +345,16 @@ contains
       end if
       stiff = .false.
     end subroutine step_by_tangent
+
+    !> What rounding may have done to the answer.
+    subroutine estimate_rounding()
+      answer%load_factor = part
+      call linear%estimate_condition(scene, answer%condition)
+      answer%weakest = linear%weakest()
+      if (plan%precision == precision_single) &
+        call linear%rounding_error(scene, part, answer%scene_state, answer%rounding_error)
+      call watch%lap(stage_accuracy)
+    end subroutine estimate_rounding
 
     !> Elements beyond yield whose strain falls as the load grows: total theory takes them back along the
     !! curve.
