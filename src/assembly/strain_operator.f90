@@ -2,7 +2,7 @@
 !> displacements, nodal forces of stresses, element stiffness.
 module epcont_assembly_strain_operator
   use epcont_base_kinds, only: wp
-  use epcont_element_element_kind, only: most_points
+  use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_integration_point, only: evaluate_points, integration_point
   use epcont_element_kinematics, only: components, directions
   use epcont_material_linear_law, only: linear_law
@@ -29,16 +29,19 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     type(strain_operator) :: operator
     type(integration_point) :: point(most_points)
+    real(wp) :: x(directions, most_nodes)
     integer :: column, e, k, points
 
-    points = model%points
-    allocate (operator%column(points), operator%volume(points))
+    allocate (operator%column(model%points), operator%volume(model%points))
     allocate (operator%b(components, directions*sum(model%order(model%point_element))))
     column = 0
     do e = 1, model%elements
       points = model%first_point(e + 1) - model%first_point(e)
+      do k = 1, model%order(e)
+        x(:, k) = model%x(:, model%connectivity(k, e))
+      end do
       associate (section => model%section(e), columns => directions*model%order(e))
-        call evaluate_points(model%kinds(model%kind(e)), model%coordinates(e), model%kinematics(section), &
+        call evaluate_points(model%kinds(model%kind(e)), x(:, :model%order(e)), model%kinematics(section), &
                              model%thickness(section), point(:points))
         do k = 1, points
           operator%b(:, column + 1:column + columns) = point(k)%b(:, :columns)

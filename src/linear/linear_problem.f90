@@ -50,7 +50,7 @@ contains
 
     linear%plan = plan
     call find_materials(scene%model, linear%materials)
-    linear%factored_bodies = new_bodies(scene%model, plan%precision /= precision_double)
+    linear%factored_bodies = new_bodies(scene, plan%precision /= precision_double)
     linear%problem%initial_gap = scene%model%initial_gap
     linear%travel_gap = gap_opening(scene%model, scene%model%travel)
     call see_motions(scene%model, scene%motions, linear%problem%motion, linear%resultant)
@@ -69,7 +69,7 @@ contains
       self%law%changed = .false.
       call watch%lap(stage_factor)
       if (singular > 0) return
-      call self%settle(scene%model)
+      call self%settle(scene)
       call watch%lap(stage_displacements)
       if (first) then
         allocate (self%problem%flexibility(scene%model%pairs, scene%model%pairs), source=0.0_wp)
@@ -155,7 +155,7 @@ contains
       force = part*scene%model%load
       if (any(self%law%initial_stress /= 0.0_wp)) &
         force = force - self%operator%nodal_forces(scene%model, self%law%initial_stress)
-      call self%add_forces(scene%numbering, force, part, half)
+      call self%add_forces(scene, force, part, half)
       self%problem%load_gap = gap_opening(scene%model, self%finish(scene, half, part, .true.)) + &
                               part*self%travel_gap
       self%problem%resultant = part*self%resultant
@@ -163,7 +163,7 @@ contains
       call solve_contact(self%problem, state%contact, start, self%plan%by_blocks)
       call watch%lap(stage_contact)
       if (state%contact%state /= contact_solved) return
-      call self%add_forces(scene%numbering, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
+      call self%add_forces(scene, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
       ! Strains are of the deformation: added to a long travel it would lose their digits.
       state%deformation = self%finish(scene, half, part, .false.)
       state%strain = self%operator%strains(scene%model, state%deformation)
@@ -182,7 +182,7 @@ contains
         allocate (state%deformation(directions, scene%model%nodes), state%contact%force(scene%model%pairs), &
                   source=0.0_wp)
       end if
-      call prescribe(scene%model, part, state%deformation)
+      call prescribe(scene, part, state%deformation)
       state%strain = self%operator%strains(scene%model, state%deformation)
       if (allocated(start)) touching = start
       before = 0.0_wp

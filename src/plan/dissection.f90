@@ -151,26 +151,28 @@ contains
     !! where it is shorter.
     subroutine find_separator(joining)
       integer, intent(in) :: joining(:)   !! these elements
-      integer, allocatable :: at_edge(:)
-      integer :: e, edges(left:right), i, n, shorter
+      integer, allocatable :: at_edge(:, :)
+      integer :: e, edges(left:right), half, i, shorter
 
-      allocate (at_edge(sum(in_half)))
+      allocate (at_edge(maxval(in_half), left:right))
       edges = 0
       do e = 1, size(joining)
         do i = 1, size(model%connectivity, 1)
           associate (node => model%connectivity(i, joining(e)))
-            if (side(node) /= left .and. side(node) /= right) cycle
-            edges(side(node)) = edges(side(node)) + 1
-            at_edge(sum(edges)) = node
-            side(node) = side(node) + edge
+            half = side(node)
+            if (half /= left .and. half /= right) cycle
+            edges(half) = edges(half) + 1
+            at_edge(edges(half), half) = node
+            side(node) = half + edge
           end associate
         end do
       end do
-      n = sum(edges)
       shorter = merge(left, right, edges(left) <= edges(right))
+      half = both - shorter
+      side(at_edge(:edges(half), half)) = half
+      side(at_edge(:edges(shorter), shorter)) = edge
       in_half(shorter) = in_half(shorter) - edges(shorter)
-      side(at_edge(:n)) = merge(edge, side(at_edge(:n)) - edge, side(at_edge(:n)) == shorter + edge)
-      call shift_separator(pack(at_edge(:n), side(at_edge(:n)) == edge))
+      call shift_separator(at_edge(:edges(shorter), shorter))
     end subroutine find_separator
 
     !> Let nodes of the separator go to a half: if they have no neighbours in the other, or only one, which

@@ -56,7 +56,6 @@ contains
     expected%solved_at = begun
     expected%first_solve = begun + operations/likely_rate
     if (.not. plan%yields) expected%seconds = expected%first_solve + end_part*begun
-    allocate (expected%distance(0))
   end function new_expectation
 
   !> A solve was done at `seconds`; `over` if it was the last one at its load. The next will take as long as
