@@ -169,7 +169,8 @@ contains
     end subroutine add_to_body
   end subroutine add_forces
 
-  !> The other half: displacements under all that has been put on, SUPORT freedoms at zero [directions, nodes].
+  !> The other half: displacements under all that has been put on, SUPORT freedoms at zero
+  !! [directions, nodes].
   pure function finish(self, scene, half, part, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
     type(planned_scene), intent(in) :: scene       !! with the numbers of its equations

@@ -66,7 +66,8 @@ contains
         call self%matrix%clear(stale(1:))
         deallocate (self%coupling, self%schur)
       end if
-      allocate (self%coupling(body%equations, body%border), self%schur(body%border, body%border), source=0.0_wp)
+      allocate (self%coupling(body%equations, body%border), source=0.0_wp)
+      allocate (self%schur(body%border, body%border), source=0.0_wp)
       self%lacks_memory = self%matrix%lacks_memory
       if (self%lacks_memory) return
       allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
@@ -93,7 +94,8 @@ contains
       type(single_panel_matrix), allocatable :: single_panels
 
       associate (body => scene%numbering%body(b))
-        associate (once => .not. body%can_yield, trailing => merge(body%contact_equations, 0, body%contact_last))
+        associate (once => .not. body%can_yield, &
+                   trailing => merge(body%contact_equations, 0, body%contact_last))
           if (self%single) self%unit = unit_of(body%element)
           if (body%solver == solver_frontal .and. self%single) then
             allocate (single_fronts)
@@ -140,7 +142,8 @@ contains
 
       largest = 0.0_wp
       do e = 1, size(element)
-        associate (columns => directions*scene%model%order(element(e)), first => scene%model%first_point(element(e):))
+        associate (columns => directions*scene%model%order(element(e)), &
+                   first => scene%model%first_point(element(e):))
           do p = first(1), first(2) - 1
             largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
                           *maxval(abs(operator%b(:, operator%column(p) + 1:operator%column(p) + columns)))**2)

@@ -7,15 +7,16 @@ module epcont_linear_linear_problem
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
-  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, &
-    pair_forces, see_motions
+  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, &
+    gap_opening, pair_forces, see_motions
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
-  use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, stopwatch
+  use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, &
+    stopwatch
   implicit none
   private
   public :: linear_problem, new_linear_problem
@@ -31,7 +32,8 @@ module epcont_linear_linear_problem
     !> Flexibility of the bodies that cannot yield, where others can [length/force] [pairs, pairs]
     real(wp), allocatable, private :: lasting_flexibility(:, :)
     type(scene_state), allocatable, private :: last  !! found by refinement, from which the next begins
-    real(wp), allocatable, private :: travel_gap(:)  !! opening of gaps by what supports travel [length] [pairs]
+    !> Opening of gaps by what supports travel [length] [pairs]
+    real(wp), allocatable, private :: travel_gap(:)
     real(wp), allocatable, private :: resultant(:)   !! of all loads along the free motions [motions]
   contains
     procedure :: set_stiffness
@@ -107,8 +109,8 @@ contains
       singular = findloc([(chosen(i) .and. .not. self%body(i)%is_sound(), i=1, size(chosen))], .true., dim=1)
     end subroutine factor_bodies
 
-    !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are
-    !! the same on any number of threads.
+    !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings
+    !! are the same on any number of threads.
     subroutine add_flexibilities(chosen)
       logical, intent(in) :: chosen(:)     !! [bodies]
       type(body_flexibility) :: own
@@ -258,7 +260,8 @@ contains
     call correct(self, scene, part, refined, second)
     touching = state%contact%touching
     call correct_contact(self, scene, part, touching, refined)
-    if (second > max(slowest_rate*error, solved_to) .or. refined%contact%state /= contact_solved) error = 1.0_wp
+    if (second > max(slowest_rate*error, solved_to)) error = 1.0_wp
+    if (refined%contact%state /= contact_solved) error = 1.0_wp
     error = max(error, relative_change(state%deformation, refined%deformation, of=state%deformation), &
                 force_change(state%contact, refined%contact, of=state%contact))
   end subroutine rounding_error
@@ -315,7 +318,7 @@ contains
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: part
     type(scene_state), intent(inout) :: state
-    real(wp), allocatable :: opening(:), travel(:)   ! of gaps by deformation, by what supports travel [length]
+    real(wp), allocatable :: opening(:), travel(:)   ! of gaps by deformation, by what supports travel
     real(wp), allocatable :: moved(:)                ! closing of a gap by each free motion [length]
     real(wp) :: gap, terms                           ! what the gap is the sum of, added up
     integer :: i, k, node
@@ -333,8 +336,8 @@ contains
     associate (contact => state%contact, model => scene%model, problem => self%problem)
       do k = 1, model%pairs
         if (contact%force(k) > 0.0_wp) cycle
-        ! Where a rigid stop takes the load, what the flexibility says of this gap is rounding of two deformations
-        ! that cancel: a pair that seemed to touch may be open, as the displacements have it.
+        ! Where a rigid stop takes the load, what the flexibility says of this gap is rounding of two
+        ! deformations that cancel: a pair that seemed to touch may be open, as the displacements have it.
         moved = problem%motion(k, :)*contact%approach
         gap = problem%initial_gap(k) + (opening(k) + travel(k)) - sum(moved)
         terms = abs(problem%initial_gap(k)) + abs(travel(k)) + sum(abs(moved))

@@ -107,8 +107,8 @@ contains
       factors = square
       call lu_solve(factors, unit, info)
       if (norm2(unit)*norm2(square) > largest_condition) then
-        call found%add_error(of_body, nodes(1), 0, body//': its SUPORT freedoms hardly tell its free motions'// &
-                             ' apart', 'SUPORT nodes farther from each other')
+        call found%add_error(of_body, nodes(1), 0, body//': its SUPORT freedoms hardly tell its free'// &
+                             ' motions apart', 'SUPORT nodes farther from each other')
         return
       end if
       motions%count = motions%count + m
@@ -192,7 +192,8 @@ contains
       moving = 0
       do i = 1, size(nodes)
         associate (of_part => loose(:, motions%parts%of_node(nodes(i)), :))
-          motion(directions*(i - 1) + 1:directions*i, :) = matmul(motions%parts%rows(model, nodes(i)), of_part)
+          motion(directions*(i - 1) + 1:directions*i, :) = &
+            matmul(motions%parts%rows(model, nodes(i)), of_part)
           if (moving == 0 .and. any(abs(of_part) > no_effect*maxval(abs(loose)))) moving = nodes(i)
         end associate
       end do
@@ -208,8 +209,10 @@ contains
         j = k + at(2) - 1
         motion(:, [k, j]) = motion(:, [j, k])
         motion(:, k) = motion(:, k)/motion(i, k)
-        text = text//', '//words(motion(:, k), (i + 1)/directions)
-        card = card//','//text_of(model%node_id(nodes((i + 1)/directions)))//','//text_of(2 - mod(i, directions))
+        associate (node => (i + 1)/directions)
+          text = text//', '//words(motion(:, k), node)
+          card = card//','//text_of(model%node_id(nodes(node)))//','//text_of(2 - mod(i, directions))
+        end associate
         do j = 1, size(motion, 2)
           if (j /= k) motion(:, j) = motion(:, j) - motion(i, j)*motion(:, k)
         end do

@@ -54,7 +54,8 @@ contains
     parts%body(parts%of_node) = model%body
     do e = 1, model%elements
       parts%body(of_element(e)) = model%body(model%connectivity(1, e))
-      if (model%kinematics(model%section(e)) == axisymmetric) parts%cannot(::directions, of_element(e)) = .true.
+      if (model%kinematics(model%section(e)) == axisymmetric) &
+        parts%cannot(::directions, of_element(e)) = .true.
     end do
     call find_hinges()
     call measure()

@@ -44,7 +44,7 @@ contains
   !> Before the first solve, where `begun` seconds have gone. With yielding it is not known how many solves
   !! there will be.
   pure function new_expectation(plan, most_iterations, operations, begun) result(expected)
-    type(iteration_plan), intent(in) :: plan
+    type(iteration_plan), intent(in) :: plan   !! how yielding is iterated
     integer, intent(in) :: most_iterations   !! at a load
     real(wp), intent(in) :: operations       !! of a solve
     real(wp), intent(in) :: begun            !! [s]
@@ -62,9 +62,9 @@ contains
   !! it did.
   pure subroutine learn(self, now, over, seconds)
     class(expectation_type), intent(inout) :: self
-    type(iteration_record), intent(in) :: now
-    logical, intent(in) :: over
-    real(wp), intent(in) :: seconds
+    type(iteration_record), intent(in) :: now   !! that solve
+    logical, intent(in) :: over                 !! see above
+    real(wp), intent(in) :: seconds             !! since the run began [s]
     integer :: left    ! solves at this load
     real(wp) :: each   ! solves at each load to come: as at those behind, or else as at this one
 
@@ -93,7 +93,7 @@ contains
   !! last one, each time `order` times as far; negative where it does not fall.
   pure integer function solves_to_come(distance, order, most) result(solves)
     real(wp), intent(in) :: distance(:)   !! of each solve so far; at 1 the iteration is over
-    real(wp), intent(in) :: order
+    real(wp), intent(in) :: order         !! of convergence
     integer, intent(in) :: most           !! iterations that are allowed
     real(wp) :: fall, left
     integer :: n

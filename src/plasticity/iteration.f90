@@ -8,7 +8,8 @@ module epcont_plasticity_iteration
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_linear_law, only: elastic_law
-  use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant, precision_single
+  use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant, &
+    precision_single
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_initial_stress, only: initial_stress_method
@@ -47,7 +48,8 @@ module epcont_plasticity_iteration
     integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest            !! of the stiffness
-    real(wp) :: rounding_error = 0.0_wp    !! of displacements, strains and forces, relative: what single precision left
+    !> Of displacements, strains and forces, relative: what single precision left
+    real(wp) :: rounding_error = 0.0_wp
     type(iteration_record), allocatable :: history(:)   !! every solve
     integer :: unloaded = 0                !! elements whose strain fell, after yielding, as the load grew
     integer :: first_unloaded = 0          !! one of them
@@ -70,7 +72,7 @@ contains
     ! The last displacements, g of x, and g - x; by how much both had changed: |dg|/|d(g - x)| of the steps at
     ! this load, the contact forces' [force/length].
     real(wp), allocatable :: displacement(:, :), rest(:, :), gain(:), force_gain(:)
-    real(wp), allocatable :: strained(:)      ! e of points that yielded in the last load step, else 0 [points]
+    real(wp), allocatable :: strained(:)      ! e of points that yielded in the last load step, else 0
     real(wp) :: part                          ! of the loads
     real(wp) :: doubt                         ! times what was estimated is what a tangent step has shown
     integer :: yielded                        ! elements that yield in the state that the law is about
@@ -113,7 +115,8 @@ contains
       allocate (linear)
       call new_linear_problem(scene, plan, linear)
       associate (model => scene%model)
-        allocate (about%displacement(directions, model%nodes), about%strain(components, model%points), source=0.0_wp)
+        allocate (about%displacement(directions, model%nodes), source=0.0_wp)
+        allocate (about%strain(components, model%points), source=0.0_wp)
         allocate (force(model%pairs), strained(model%points), source=0.0_wp)
       end associate
       if (linear%materials%yields) about%point = linear%materials%states(about%strain)
@@ -178,14 +181,15 @@ contains
     subroutine set_law(method, singular)
       class(secant_method), intent(inout) :: method
       integer, intent(out) :: singular
-      logical :: possible
+      logical :: may_stay, possible
 
       singular = 0
       method%blend = 0.0_wp
       do
         if (linear%materials%yields) call method%linearise(about, linear)
         call watch%lap(stage_yielding)
-        if (singular == 0 .and. stiff .and. (plan%method == method_inistr .or. elastic .and. yielded == 0)) return
+        may_stay = plan%method == method_inistr .or. elastic .and. yielded == 0
+        if (singular == 0 .and. stiff .and. may_stay) return
         elastic = yielded == 0
         call linear%set_stiffness(scene, singular, watch)
         stiff = .true.
@@ -224,7 +228,8 @@ contains
       integer :: p
 
       now%load_factor = part
-      now%change = ratio(maxval(abs(found%displacement - about%displacement)), maxval(abs(found%displacement)))
+      now%change = ratio(maxval(abs(found%displacement - about%displacement)), &
+                         maxval(abs(found%displacement)))
       now%force_change = ratio(maxval(abs(found%contact%force - force)), maxval(found%contact%force))
       now%touching = count(found%contact%touching)
       now%pivots = found%contact%pivots
@@ -248,8 +253,8 @@ contains
     !>
     !> An iteration takes x to g(x). To first order a step dx changes g by J dx and the rest g - x by (J - 1)
     !> dx, so that of a rest r there is J/(1 - J) r to come in g. How much that is at most, the steps behind
-    !> tell: |dg|/|d(g - x)|. In an iteration without mixing it is the sum of the changes to come, each the last
-    !> times the rate at which they fall; its last steps are the slowest.
+    !> tell: |dg|/|d(g - x)|. In an iteration without mixing it is the sum of the changes to come, each the
+    !> last times the rate at which they fall; its last steps are the slowest.
     subroutine estimate_errors(found, now)
       type(scene_state), intent(in) :: found
       type(iteration_record), intent(inout) :: now   !! its errors are set; negative: not known
@@ -269,9 +274,10 @@ contains
           force_gain = [force_gain, ratio(maxval([0.0_wp, abs(now_force - force)]), step)]
           if (largest < maxval(abs(last_rest)) .or. largest == 0.0_wp) then
             first = merge(1, max(1, size(gain) - 1), allocated(method%mixer))
-            ! A step may by chance be short where much is to come: as long as stresses are off their curves, no
-            ! less than the last change.
-            now%error = max(ratio(maxval(gain(first:))*largest, maxval(abs(u))), min(now%change, now%residual))
+            ! A step may by chance be short where much is to come: as long as stresses are off their curves,
+            ! no less than the last change.
+            now%error = max(ratio(maxval(gain(first:))*largest, maxval(abs(u))), &
+                            min(now%change, now%residual))
             now%force_error = 0.0_wp
             if (any(now_force > 0.0_wp)) &
               now%force_error = max(ratio(maxval(force_gain(first:))*largest, maxval(now_force)), &
@@ -286,7 +292,10 @@ contains
     !! the tolerance. Where nothing has yielded, the first solve was exact; and where stresses are on their
     !! curves to rounding while the changes fall no more, rounding allows no smaller ones.
     pure logical function is_over()
-      associate (now => answer%history(size(answer%history)), before => answer%history(max(1, size(answer%history) - 2)))
+      integer :: n
+
+      n = size(answer%history)
+      associate (now => answer%history(n), before => answer%history(max(1, n - 2)))
         is_over = now%yielded + yielded == 0
         if (now%change <= plan%tolerance .and. now%residual <= plan%off_curve) is_over = is_over .or. &
           now%residual <= solved_to .or. now%error >= 0.0_wp .and. doubt*now%error <= plan%tolerance
@@ -299,8 +308,9 @@ contains
     pure logical function wants_test(now)
       type(iteration_record), intent(in) :: now
 
-      wants_test = plan%method /= method_secant .or. now%iteration <= few_solves .or. now%iteration > many_solves &
-                   .or. now%error > slow*now%change .or. any(scene%model%prescribed /= 0.0_wp)
+      wants_test = plan%method /= method_secant .or. now%iteration <= few_solves .or. &
+                   now%iteration > many_solves .or. now%error > slow*now%change .or. &
+                   any(scene%model%prescribed /= 0.0_wp)
       wants_test = wants_test .and. now%residual > solved_to .and. plan%method /= method_newton .and. &
                    .not. scene%model%controls%paper_ratio
     end function wants_test

@@ -26,7 +26,8 @@ module epcont_plasticity_newton
   integer, parameter :: most_slopes = 30
 
   type, extends(secant_method) :: newton_method
-    logical, private :: takes_full_step = .true.   !! prescribed displacements and overlaps go in with the first
+    !> Prescribed displacements and overlaps go in with the first step
+    logical, private :: takes_full_step = .true.
   contains
     procedure :: restart
     procedure :: linearise

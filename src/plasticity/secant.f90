@@ -1,6 +1,7 @@
 !> What the loop asks of an iteration method: a linear law about a state, and from what that law finds the
-!> next state. As it stands it is METHOD SECANT, the paper's: all load each time, moduli from the last strains,
-!> until nothing changes; with a mixer MODSEC: moduli from a mixture of the last strains. Others extend it.
+!> next state. As it stands it is METHOD SECANT, the paper's: all load each time, moduli from the last
+!> strains, until nothing changes; with a mixer MODSEC: moduli from a mixture of the last strains. Others
+!> extend it.
 module epcont_plasticity_secant
   use epcont_base_kinds, only: wp
   use epcont_linear_linear_problem, only: linear_problem
