@@ -181,9 +181,10 @@ contains
     real(wp), allocatable :: border(:, :), inner(:, :)
     integer :: b, c, i
 
-    allocate (u(directions, scene%model%nodes))
+    allocate (u(directions, scene%model%nodes), source=0.0_wp)
+    call prescribe(scene, part, u)
     do b = 1, size(half)
-      associate (body => scene%numbering%body(b), model => scene%model)
+      associate (body => scene%numbering%body(b))
         inner = half(b)%inner
         border = half(b)%border
         if (half(b)%loaded) &
@@ -191,13 +192,8 @@ contains
         do i = 1, size(body%node)
           do c = 1, directions
             associate (node => body%node(i), number => scene%numbering%equation(c, body%node(i)))
-              if (number > 0) then
-                u(c, node) = inner(number, 1)
-              else if (number < 0) then
-                u(c, node) = border(-number, 1)
-              else
-                u(c, node) = part*model%beyond_travel(c, model%leader(c, node))
-              end if
+              if (number > 0) u(c, node) = inner(number, 1)
+              if (number < 0) u(c, node) = border(-number, 1)
             end associate
           end do
         end do

@@ -67,6 +67,7 @@ contains
     class(secant_method), allocatable :: method
     type(scene_state) :: about                ! that the law is about
     type(scene_state), allocatable :: state   ! found at this load
+    type(iteration_record) :: now             ! of the last solve
     logical, allocatable :: touching(:)       ! the last contact set: the next simplex starts from it [pairs]
     real(wp), allocatable :: force(:)         ! the last contact forces [force] [pairs]
     ! The last displacements, g of x, and g - x; by how much both had changed: |dg|/|d(g - x)| of the steps at
@@ -159,16 +160,14 @@ contains
         if (answer%runs_away) return
         if (.not. scene%model%controls%original) touching = found%contact%touching
         force = found%contact%force
-        associate (now => answer%history(size(answer%history)))
-          yielded = now%yielded
-          ! Behind the last load step nothing is linearised any more.
-          if (linear%materials%yields .and. .not. (converged .and. part >= 1.0_wp)) &
-            call method%advance(scene%model, linear, part, found, about)
-          call watch%lap(stage_yielding)
-          call watch%solved(now, converged)
-          if (.not. converged .and. now%residual > least_residual) cycle
-          least_residual = now%residual
-        end associate
+        yielded = now%yielded
+        ! Behind the last load step nothing is linearised any more.
+        if (linear%materials%yields .and. .not. (converged .and. part >= 1.0_wp)) &
+          call method%advance(scene%model, linear, part, found, about)
+        call watch%lap(stage_yielding)
+        call watch%solved(now, converged)
+        if (.not. converged .and. now%residual > least_residual) cycle
+        least_residual = now%residual
         call move_alloc(found, state)
         if (converged) return
         if (allocated(state%point)) deallocate (state%point)
@@ -204,11 +203,10 @@ contains
     subroutine judge(iteration, found)
       integer, intent(in) :: iteration
       type(scene_state), allocatable, intent(inout) :: found
-      type(iteration_record) :: now
 
-      now%iteration = iteration
-      call measure(found, now)
-      call estimate_errors(found, now)
+      now = iteration_record(iteration=iteration)
+      call measure(found)
+      call estimate_errors(found)
       if (now%yielded + yielded == 0 .or. now%residual <= solved_to .and. now%error < 0.0_wp) then
         ! What changes is rounding, if anything.
         now%error = merge(now%change, 0.0_wp, iteration > 1)
@@ -216,14 +214,13 @@ contains
       end if
       answer%history = [answer%history, now]
       converged = is_over()
-      if (converged .and. wants_test(now)) call step_by_tangent(found)
+      if (converged .and. wants_test()) call step_by_tangent(found)
     end subroutine judge
 
     !> How far the state found is from the last, and its stresses from the curve. Equilibrium and contact are
     !! exact in each solve: that distance is all that is left of the scene's equations.
-    subroutine measure(found, now)
+    subroutine measure(found)
       type(scene_state), intent(inout) :: found         !! its points are set
-      type(iteration_record), intent(inout) :: now
       logical, allocatable :: yields(:)
       integer :: p
 
@@ -255,9 +252,8 @@ contains
     !> dx, so that of a rest r there is J/(1 - J) r to come in g. How much that is at most, the steps behind
     !> tell: |dg|/|d(g - x)|. In an iteration without mixing it is the sum of the changes to come, each the
     !> last times the rate at which they fall; its last steps are the slowest.
-    subroutine estimate_errors(found, now)
+    subroutine estimate_errors(found)
       type(scene_state), intent(in) :: found
-      type(iteration_record), intent(inout) :: now   !! its errors are set; negative: not known
       real(wp), allocatable :: last_rest(:, :)
       real(wp) :: step, largest
       integer :: first
@@ -295,19 +291,15 @@ contains
       integer :: n
 
       n = size(answer%history)
-      associate (now => answer%history(n), before => answer%history(max(1, n - 2)))
-        is_over = now%yielded + yielded == 0
-        if (now%change <= plan%tolerance .and. now%residual <= plan%off_curve) is_over = is_over .or. &
-          now%residual <= solved_to .or. now%error >= 0.0_wp .and. doubt*now%error <= plan%tolerance
-        if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
-          is_over = is_over .or. now%change >= before%change
-      end associate
+      is_over = now%yielded + yielded == 0
+      if (now%change <= plan%tolerance .and. now%residual <= plan%off_curve) is_over = is_over .or. &
+        now%residual <= solved_to .or. now%error >= 0.0_wp .and. doubt*now%error <= plan%tolerance
+      if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
+        is_over = is_over .or. now%change >= answer%history(n - 2)%change
     end function is_over
 
     !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
-    pure logical function wants_test(now)
-      type(iteration_record), intent(in) :: now
-
+    pure logical function wants_test()
       wants_test = plan%method /= method_secant .or. now%iteration <= few_solves .or. &
                    now%iteration > many_solves .or. now%error > slow*now%change .or. &
                    any(scene%model%prescribed /= 0.0_wp)
@@ -322,13 +314,13 @@ contains
       type(newton_method) :: tangent
       type(scene_state), allocatable :: next
       type(scene_state) :: before
-      type(iteration_record) :: now
+      type(iteration_record) :: last
       integer :: singular
 
       converged = .false.
-      now = answer%history(size(answer%history))
       if (now%iteration == scene%model%controls%most_iterations) return
       before = about
+      last = now
       about = found
       force = found%contact%force
       yielded = now%yielded
@@ -339,7 +331,7 @@ contains
       call set_law(tangent, singular)
       if (singular == 0 .and. tangent%blend < too_stiff) then
         call linear%solve(scene, part, found%contact%touching, next, watch)
-        if (next%contact%state == contact_solved) call measure(next, now)
+        if (next%contact%state == contact_solved) call measure(next)
       end if
       converged = now%change <= plan%tolerance .and. now%residual <= plan%off_curve
       if (converged) then
@@ -349,7 +341,8 @@ contains
         answer%history = [answer%history, now]
         call move_alloc(next, found)
       else
-        doubt = max(2.0_wp*doubt, min(now%change/answer%history(size(answer%history))%error, most_doubt))
+        doubt = max(2.0_wp*doubt, min(now%change/last%error, most_doubt))
+        now = last
         about = before
         linear%law = elastic_law(linear%materials)
       end if
