@@ -72,12 +72,14 @@ contains
     type(planned_scene), intent(in) :: scene        !! that has them
     real(wp), intent(in) :: part                    !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
-    integer :: c
+    integer :: c, node
 
-    do c = 1, directions
-      associate (model => scene%model, leader => scene%model%leader(c, :))
-        where (model%held(c, leader)) displacement(c, :) = part*model%beyond_travel(c, leader)
-      end associate
+    do node = 1, scene%model%nodes
+      do c = 1, directions
+        associate (model => scene%model, leader => scene%model%leader(c, node))
+          if (model%held(c, leader)) displacement(c, node) = part*model%beyond_travel(c, leader)
+        end associate
+      end do
     end do
   end subroutine prescribe
 
