@@ -81,7 +81,10 @@ contains
       if (e <= self%deviatoric(1)) return
       point%yielded = .true.
       if (self%ends) point%beyond = e > self%deviatoric(size(self%deviatoric))*(1.0_wp + least_difference)
-      k = count(self%deviatoric <= e)
+      k = size(self%deviatoric)
+      do while (e < self%deviatoric(k))
+        k = k - 1
+      end do
       if (self%paper_ratio) then
         call find_paper_secant(self, k, e, point%total, secant)
         point%modulus = young/(young/secant - young*shift)  ! (2-5)

@@ -91,7 +91,8 @@ contains
         call say('elastic material only: one solve, no iteration')
         return
       end if
-      call say('total theory of plasticity; bodies that can yield: '//text_of(count(scene%numbering%body%can_yield)))
+      call say('total theory of plasticity; bodies that can yield: '// &
+               text_of(count(scene%numbering%body%can_yield)))
       call say('iteration '//trim(method_name(scene%iteration%method))//': '// &
                method_text(scene%iteration%method))
       if (scene%iteration%chosen_here) call say('  chosen here (AUTO): '// &
@@ -201,7 +202,7 @@ contains
           width = text_of(body%half_bandwidth)
           if (body%solver /= solver_band) width = solver_name(body%solver)
           times = '1'
-          if (scene%numbering%body(b)%can_yield .and. scene%iteration%method /= method_inistr) times = 'each iteration'
+          if (body%can_yield .and. scene%iteration%method /= method_inistr) times = 'each iteration'
           if (body%equations == 0) times = '0'
           way = '-'
           if (body%contact_equations > 0) way = merge('inversion   ', 'substitution', body%contact_last)
