@@ -5,8 +5,6 @@ module epcont_assembly_bodies
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
   use epcont_material_linear_law, only: linear_law
-  use epcont_model_model, only: model_type
-  use epcont_plan_numbering, only: numbering_type
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
@@ -39,63 +37,51 @@ module epcont_assembly_bodies
     procedure :: finish
     procedure :: estimate_condition
     procedure :: weakest
-    procedure :: lacks_memory
   end type factored_bodies
 
 contains
 
   !> Bodies with room for their factors, without a law.
-  pure function new_bodies(model, single) result(bodies)
-    type(model_type), intent(in) :: model   !! the scene
-    logical, intent(in) :: single    !! factored in single precision
+  pure function new_bodies(scene, single) result(bodies)
+    type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
+    logical, intent(in) :: single              !! factored in single precision
     type(factored_bodies) :: bodies
 
-    bodies%operator = new_strain_operator(model)
-    allocate (bodies%body(model%bodies))
+    bodies%operator = new_strain_operator(scene%model)
+    allocate (bodies%body(scene%model%bodies))
     bodies%body%single = single
-    allocate (bodies%settlement(directions, model%nodes), source=0.0_wp)
+    allocate (bodies%settlement(directions, scene%model%nodes), source=0.0_wp)
   end function new_bodies
 
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
-  pure subroutine settle(self, model)
+  pure subroutine settle(self, scene)
     class(factored_bodies), intent(inout) :: self
-    type(model_type), intent(in) :: model   !! the scene
+    type(planned_scene), intent(in) :: scene   !! that they are of
     real(wp), allocatable :: prescribed(:, :)
 
-    if (all(model%beyond_travel == 0.0_wp)) return
-    allocate (prescribed(directions, model%nodes), source=0.0_wp)
-    call prescribe(model, 1.0_wp, prescribed)
-    associate (operator => self%operator)
+    associate (operator => self%operator, model => scene%model)
+      if (all(model%beyond_travel == 0.0_wp)) return
+      allocate (prescribed(directions, model%nodes), source=0.0_wp)
+      call prescribe(scene, 1.0_wp, prescribed)
       self%settlement = -operator%nodal_forces(model, self%law%increment(operator%strains(model, prescribed)))
     end associate
   end subroutine settle
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.
-  pure subroutine prescribe(model, part, displacement)
-    type(model_type), intent(in) :: model   !! the scene
-    real(wp), intent(in) :: part   !! of the prescribed displacements
+  pure subroutine prescribe(scene, part, displacement)
+    type(planned_scene), intent(in) :: scene        !! that has them
+    real(wp), intent(in) :: part                    !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
     integer :: c, node
 
-    do node = 1, model%nodes
+    do node = 1, scene%model%nodes
       do c = 1, directions
-        associate (leader => model%leader(c, node))
+        associate (model => scene%model, leader => scene%model%leader(c, node))
           if (model%held(c, leader)) displacement(c, node) = part*model%beyond_travel(c, leader)
         end associate
       end do
     end do
   end subroutine prescribe
-
-  !> Whether there was not enough memory for the factor of a body.
-  pure logical function lacks_memory(self)
-    class(factored_bodies), intent(in) :: self
-    integer :: b
-
-    lacks_memory = .false.
-    do b = 1, size(self%body)
-      if (allocated(self%body(b)%matrix)) lacks_memory = lacks_memory .or. self%body(b)%matrix%lacks_memory
-    end do
-  end function lacks_memory
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
   !! not as stiff as it was when it was assembled first.
@@ -131,21 +117,21 @@ contains
     real(wp), allocatable :: u(:, :)
     type(half_solved_body), allocatable :: half(:)
 
-    call self%add_forces(scene%numbering, force, part, half)
+    call self%add_forces(scene, force, part, half)
     u = self%finish(scene, half, part, .false.)
   end function displacements
 
   !> Put forces on the bodies: the half of the solve that can be done before all of them are known.
-  pure subroutine add_forces(self, numbering, force, part, half)
+  pure subroutine add_forces(self, scene, force, part, half)
     class(factored_bodies), intent(in) :: self
-    type(numbering_type), intent(in) :: numbering   !! of the equations
+    type(planned_scene), intent(in) :: scene     !! with the numbers of its equations
     real(wp), intent(in) :: force(:, :)          !! [directions, nodes]
     real(wp), intent(in) :: part                 !! of the prescribed displacements, with their forces
     !> What has been put on before; not allocated: nothing [bodies]
     type(half_solved_body), allocatable, intent(inout) :: half(:)
     integer :: b
 
-    if (.not. allocated(half)) allocate (half(size(numbering%body)))
+    if (.not. allocated(half)) allocate (half(size(self%body)))
     do b = 1, size(half)
       call add_to_body(b, half(b))
     end do
@@ -160,11 +146,11 @@ contains
       real(wp) :: own
       integer :: c, i
 
-      associate (body => numbering%body(b))
+      associate (body => scene%numbering%body(b))
         allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
         do i = 1, size(body%node)
           do c = 1, directions
-            associate (number => numbering%equation(c, body%node(i)))
+            associate (number => scene%numbering%equation(c, body%node(i)))
               own = force(c, body%node(i)) + part*self%settlement(c, body%node(i))
               if (number > 0) inner(number, 1) = inner(number, 1) + own
               if (number < 0) border(-number, 1) = border(-number, 1) + own
@@ -185,7 +171,8 @@ contains
     end subroutine add_to_body
   end subroutine add_forces
 
-  !> The other half: displacements under all that has been put on, SUPORT freedoms at zero [directions, nodes].
+  !> The other half: displacements under all that has been put on, SUPORT freedoms at zero
+  !! [directions, nodes].
   pure function finish(self, scene, half, part, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
     type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
@@ -196,9 +183,10 @@ contains
     real(wp), allocatable :: border(:, :), inner(:, :)
     integer :: b, c, i
 
-    allocate (u(directions, scene%model%nodes))
+    allocate (u(directions, scene%model%nodes), source=0.0_wp)
+    call prescribe(scene, part, u)
     do b = 1, size(half)
-      associate (body => scene%numbering%body(b), model => scene%model)
+      associate (body => scene%numbering%body(b))
         inner = half(b)%inner
         border = half(b)%border
         if (half(b)%loaded) &
@@ -206,13 +194,8 @@ contains
         do i = 1, size(body%node)
           do c = 1, directions
             associate (node => body%node(i), number => scene%numbering%equation(c, body%node(i)))
-              if (number > 0) then
-                u(c, node) = inner(number, 1)
-              else if (number < 0) then
-                u(c, node) = border(-number, 1)
-              else
-                u(c, node) = part*model%beyond_travel(c, model%leader(c, node))
-              end if
+              if (number > 0) u(c, node) = inner(number, 1)
+              if (number < 0) u(c, node) = border(-number, 1)
             end associate
           end do
         end do

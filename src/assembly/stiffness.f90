@@ -26,6 +26,7 @@ module epcont_assembly_stiffness
     real(wp), allocatable :: coupling(:, :)   !! K_br, then W [equations, border]
     real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
     logical :: single = .false.               !! K_bb is factored in single precision
+    logical :: lacks_memory = .false.         !! there was not enough for K_bb
     !> K is over this, in the range of single precision; a power of four [force/length]
     real(wp) :: unit = 1.0_wp
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
@@ -65,8 +66,10 @@ contains
         call self%matrix%clear(stale(1:))
         deallocate (self%coupling, self%schur)
       end if
-      allocate (self%coupling(body%equations, body%border), self%schur(body%border, body%border), source=0.0_wp)
-      if (self%matrix%lacks_memory) return
+      allocate (self%coupling(body%equations, body%border), source=0.0_wp)
+      allocate (self%schur(body%border, body%border), source=0.0_wp)
+      self%lacks_memory = self%matrix%lacks_memory
+      if (self%lacks_memory) return
       allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
       do e = 1, size(body%element)
         number = scene%numbering%of_element(scene%model, body%element(e))
@@ -91,7 +94,8 @@ contains
       type(single_panel_matrix), allocatable :: single_panels
 
       associate (body => scene%numbering%body(b))
-        associate (once => .not. body%can_yield, trailing => merge(body%contact_equations, 0, body%contact_last))
+        associate (once => .not. body%can_yield, &
+                   trailing => merge(body%contact_equations, 0, body%contact_last))
           if (self%single) self%unit = unit_of(body%element)
           if (body%solver == solver_frontal .and. self%single) then
             allocate (single_fronts)
@@ -138,7 +142,8 @@ contains
 
       largest = 0.0_wp
       do e = 1, size(element)
-        associate (columns => directions*scene%model%order(element(e)), first => scene%model%first_point(element(e):))
+        associate (columns => directions*scene%model%order(element(e)), &
+                   first => scene%model%first_point(element(e):))
           do p = first(1), first(2) - 1
             largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
                           *maxval(abs(operator%b(:, operator%column(p) + 1:operator%column(p) + columns)))**2)
@@ -213,7 +218,7 @@ contains
     integer :: at, info
 
     self%smallest_ratio = 0.0_wp
-    if (self%matrix%lacks_memory) return
+    if (self%lacks_memory) return
     call self%matrix%factor(self%smallest_ratio, at)
     if (self%smallest_ratio == 0.0_wp .or. size(self%schur) == 0) return
     coupled = self%coupling

@@ -4,6 +4,7 @@ module epcont_assembly_strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_integration_point, only: evaluate_points, integration_point
+  use epcont_element_kinematics, only: components, directions
   use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type
   implicit none
@@ -11,7 +12,8 @@ module epcont_assembly_strain_operator
   public :: strain_operator, new_strain_operator
 
   type :: strain_operator
-    real(wp), allocatable :: b(:, :)         !! rows xx, yy, zz, xy; two columns a node, point by point [1/length] [4, columns]
+    !> Rows xx, yy, zz, xy; two columns a node, point by point [1/length] [components, columns]
+    real(wp), allocatable :: b(:, :)
     integer, allocatable :: column(:)        !! column before the first of each point [points]
     real(wp), allocatable :: volume(:)       !! that belongs to each point [length**3] [points]
   contains
@@ -22,73 +24,77 @@ module epcont_assembly_strain_operator
 
 contains
 
+  !> The operator of a scene.
   pure function new_strain_operator(model) result(operator)
-    type(model_type), intent(in) :: model
+    type(model_type), intent(in) :: model   !! the scene
     type(strain_operator) :: operator
     type(integration_point) :: point(most_points)
-    real(wp) :: x(2, most_nodes)
-    integer :: column, e, k, n, points
+    real(wp) :: x(directions, most_nodes)
+    integer :: column, e, k, points
 
     allocate (operator%column(model%points), operator%volume(model%points))
-    allocate (operator%b(4, 2*sum(model%order*(model%first_point(2:) - model%first_point(:model%elements)))))
+    allocate (operator%b(components, directions*sum(model%order(model%point_element))))
     column = 0
     do e = 1, model%elements
-      n = model%order(e)
       points = model%first_point(e + 1) - model%first_point(e)
-      do k = 1, n
+      do k = 1, model%order(e)
         x(:, k) = model%x(:, model%connectivity(k, e))
       end do
-      associate (section => model%section(e))
-        call evaluate_points(model%kinds(model%kind(e)), x(:, :n), model%kinematics(section), model%thickness(section), &
-                             point(:points))
+      associate (section => model%section(e), columns => directions*model%order(e))
+        call evaluate_points(model%kinds(model%kind(e)), x(:, :model%order(e)), model%kinematics(section), &
+                             model%thickness(section), point(:points))
+        do k = 1, points
+          operator%b(:, column + 1:column + columns) = point(k)%b(:, :columns)
+          operator%volume(model%first_point(e) + k - 1) = point(k)%volume
+          operator%column(model%first_point(e) + k - 1) = column
+          column = column + columns
+        end do
       end associate
-      do k = 1, points
-        operator%b(:, column + 1:column + 2*n) = point(k)%b(:, :2*n)
-        operator%volume(model%first_point(e) + k - 1) = point(k)%volume
-        operator%column(model%first_point(e) + k - 1) = column
-        column = column + 2*n
-      end do
     end do
   end function new_strain_operator
 
-  !> Strains xx, yy, zz, xy (engineering) [4, points].
+  !> Strains xx, yy, zz, xy (engineering) [components, points].
   pure function strains(self, model, displacement) result(strain)
     class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    type(model_type), intent(in) :: model        !! the scene
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp), allocatable :: strain(:, :)
-    real(wp) :: now(4)
-    integer :: c, i, node, p
+    real(wp) :: now(components)
+    integer :: c, i, p
 
-    allocate (strain(4, model%points))
+    allocate (strain(components, model%points))
     do p = 1, model%points
       now = 0.0_wp
       c = self%column(p)
       do i = 1, model%order(model%point_element(p))
-        node = model%connectivity(i, model%point_element(p))
-        now = now + self%b(:, c + 2*i - 1)*displacement(1, node) + self%b(:, c + 2*i)*displacement(2, node)
+        associate (u => displacement(:, model%connectivity(i, model%point_element(p))))
+          now = now + self%b(:, c + 1)*u(1) + self%b(:, c + 2)*u(2)
+        end associate
+        c = c + directions
       end do
       strain(:, p) = now
     end do
   end function strains
 
-  !> Forces that nodes must exert on the elements to hold their stresses [force] [2, nodes].
+  !> Forces that nodes must exert on the elements to hold their stresses [force] [directions, nodes].
   pure function nodal_forces(self, model, stress) result(force)
     class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model
-    real(wp), intent(in) :: stress(:, :)         !! xx, yy, zz, xy [stress] [4, points]
+    type(model_type), intent(in) :: model        !! the scene
+    real(wp), intent(in) :: stress(:, :)         !! xx, yy, zz, xy [stress] [components, points]
     real(wp), allocatable :: force(:, :)
-    real(wp) :: s(4)
-    integer :: c, i, node, p
+    real(wp) :: s(components)
+    integer :: c, i, p
 
-    allocate (force(2, model%nodes), source=0.0_wp)
+    allocate (force(directions, model%nodes), source=0.0_wp)
     do p = 1, model%points
       s = self%volume(p)*stress(:, p)
       c = self%column(p)
       do i = 1, model%order(model%point_element(p))
-        node = model%connectivity(i, model%point_element(p))
-        force(1, node) = force(1, node) + dot_product(s, self%b(:, c + 2*i - 1))
-        force(2, node) = force(2, node) + dot_product(s, self%b(:, c + 2*i))
+        associate (f => force(:, model%connectivity(i, model%point_element(p))))
+          f(1) = f(1) + dot_product(s, self%b(:, c + 1))
+          f(2) = f(2) + dot_product(s, self%b(:, c + 2))
+        end associate
+        c = c + directions
       end do
     end do
   end function nodal_forces
@@ -96,11 +102,11 @@ contains
   !> Stiffness of an element: B'D B times the volume of each point [force/length].
   pure subroutine element_stiffness(self, model, element, law, n, k)
     class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: element
-    type(linear_law), intent(in) :: law
+    type(model_type), intent(in) :: model        !! the scene
+    integer, intent(in) :: element               !! which
+    type(linear_law), intent(in) :: law          !! stresses of strains
     integer, intent(in) :: n                     !! freedoms of the element
-    real(wp), intent(out) :: k(n, n)
+    real(wp), intent(out) :: k(n, n)             !! its stiffness
     integer :: i, j, p
 
     k = 0.0_wp
@@ -117,9 +123,9 @@ contains
   !> Add the part of a point, above the diagonal.
   pure subroutine add_point(n, b, volume, d, k)
     integer, intent(in) :: n
-    real(wp), intent(in) :: b(4, n), volume, d(4, 4)
+    real(wp), intent(in) :: b(components, n), volume, d(components, components)
     real(wp), intent(inout) :: k(n, n)
-    real(wp) :: stress(4)
+    real(wp) :: stress(components)
     integer :: i, j
 
     do j = 1, n

@@ -3,20 +3,20 @@
 module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: negligible, solved_to
+  use epcont_base_tolerances, only: negligible, no_effect, solved_to
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
-  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, gap_opening, &
-    pair_forces, see_motions
-  use epcont_linear_completion, only: complete_state
+  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, &
+    gap_opening, pair_forces, see_motions
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
-  use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, stopwatch
+  use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, &
+    stopwatch
   implicit none
   private
   public :: linear_problem, new_linear_problem
@@ -32,7 +32,8 @@ module epcont_linear_linear_problem
     !> Flexibility of the bodies that cannot yield, where others can [length/force] [pairs, pairs]
     real(wp), allocatable, private :: lasting_flexibility(:, :)
     type(scene_state), allocatable, private :: last  !! found by refinement, from which the next begins
-    real(wp), allocatable, private :: travel_gap(:)  !! opening of gaps by what supports travel [length] [pairs]
+    !> Opening of gaps by what supports travel [length] [pairs]
+    real(wp), allocatable, private :: travel_gap(:)
     real(wp), allocatable, private :: resultant(:)   !! of all loads along the free motions [motions]
   contains
     procedure :: set_stiffness
@@ -51,7 +52,7 @@ contains
 
     linear%plan = plan
     call find_materials(scene%model, linear%materials)
-    linear%factored_bodies = new_bodies(scene%model, plan%precision /= precision_double)
+    linear%factored_bodies = new_bodies(scene, plan%precision /= precision_double)
     linear%problem%initial_gap = scene%model%initial_gap
     linear%travel_gap = gap_opening(scene%model, scene%model%travel)
     call see_motions(scene%model, scene%motions, linear%problem%motion, linear%resultant)
@@ -65,12 +66,12 @@ contains
     integer, intent(out) :: singular            !! first body that could not be factored; 0: all could
     class(stopwatch), intent(inout) :: watch    !! takes the time
 
-    associate (yields => self%plan%body, first => .not. allocated(self%problem%flexibility))
+    associate (yields => scene%numbering%body%can_yield, first => .not. allocated(self%problem%flexibility))
       call factor_bodies(yields .or. first)
       self%law%changed = .false.
       call watch%lap(stage_factor)
       if (singular > 0) return
-      call self%settle(scene%model)
+      call self%settle(scene)
       call watch%lap(stage_displacements)
       if (first) then
         allocate (self%problem%flexibility(scene%model%pairs, scene%model%pairs), source=0.0_wp)
@@ -108,8 +109,8 @@ contains
       singular = findloc([(chosen(i) .and. .not. self%body(i)%is_sound(), i=1, size(chosen))], .true., dim=1)
     end subroutine factor_bodies
 
-    !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are
-    !! the same on any number of threads.
+    !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings
+    !! are the same on any number of threads.
     subroutine add_flexibilities(chosen)
       logical, intent(in) :: chosen(:)     !! [bodies]
       type(body_flexibility) :: own
@@ -143,7 +144,7 @@ contains
       call solve_once()
     end if
     if (state%contact%state /= contact_solved) return
-    call complete_state(scene, self%law, self%problem, part, state)
+    call complete(self, scene, part, state)
     call watch%lap(stage_displacements)
 
   contains
@@ -156,15 +157,15 @@ contains
       force = part*scene%model%load
       if (any(self%law%initial_stress /= 0.0_wp)) &
         force = force - self%operator%nodal_forces(scene%model, self%law%initial_stress)
-      call self%add_forces(scene%numbering, force, part, half)
+      call self%add_forces(scene, force, part, half)
       self%problem%load_gap = gap_opening(scene%model, self%finish(scene, half, part, .true.)) + &
                               part*self%travel_gap
       self%problem%resultant = part*self%resultant
       call watch%lap(stage_displacements)
-      call solve_contact(self%problem, state%contact, start, self%plan%contact%by_blocks)
+      call solve_contact(self%problem, state%contact, start, self%plan%by_blocks)
       call watch%lap(stage_contact)
       if (state%contact%state /= contact_solved) return
-      call self%add_forces(scene%numbering, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
+      call self%add_forces(scene, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
       ! Strains are of the deformation: added to a long travel it would lose their digits.
       state%deformation = self%finish(scene, half, part, .false.)
       state%strain = self%operator%strains(scene%model, state%deformation)
@@ -183,7 +184,7 @@ contains
         allocate (state%deformation(directions, scene%model%nodes), state%contact%force(scene%model%pairs), &
                   source=0.0_wp)
       end if
-      call prescribe(scene%model, part, state%deformation)
+      call prescribe(scene, part, state%deformation)
       state%strain = self%operator%strains(scene%model, state%deformation)
       if (allocated(start)) touching = start
       before = 0.0_wp
@@ -233,7 +234,7 @@ contains
     call watch%lap(stage_contact)
     if (refined%contact%state /= contact_solved) return
     call correct(self, scene, part, refined, strained)
-    call complete_state(scene, self%law, self%problem, part, refined)
+    call complete(self, scene, part, refined)
     change = max(relative_change(state%displacement, refined%displacement, of=refined%displacement), &
                  force_change(state%contact, refined%contact, of=refined%contact))
     if (allocated(refined%point)) deallocate (refined%point)   ! those of the strain before
@@ -259,7 +260,8 @@ contains
     call correct(self, scene, part, refined, second)
     touching = state%contact%touching
     call correct_contact(self, scene, part, touching, refined)
-    if (second > max(slowest_rate*error, solved_to) .or. refined%contact%state /= contact_solved) error = 1.0_wp
+    if (second > max(slowest_rate*error, solved_to)) error = 1.0_wp
+    if (refined%contact%state /= contact_solved) error = 1.0_wp
     error = max(error, relative_change(state%deformation, refined%deformation, of=state%deformation), &
                 force_change(state%contact, refined%contact, of=state%contact))
   end subroutine rounding_error
@@ -308,6 +310,44 @@ contains
     self%problem%load_gap = gap_opening(scene%model, state%deformation) + part*self%travel_gap - &
                             matmul(self%problem%flexibility, state%contact%force)
     self%problem%resultant = part*self%resultant
-    call solve_contact(self%problem, state%contact, touching, self%plan%contact%by_blocks)
+    call solve_contact(self%problem, state%contact, touching, self%plan%by_blocks)
   end subroutine correct_contact
+  !> What follows from deformation, strains and contact: stresses, displacements and gaps.
+  pure subroutine complete(self, scene, part, state)
+    type(linear_problem), intent(in) :: self
+    type(planned_scene), intent(in) :: scene
+    real(wp), intent(in) :: part
+    type(scene_state), intent(inout) :: state
+    real(wp), allocatable :: opening(:), travel(:)   ! of gaps by deformation, by what supports travel
+    real(wp), allocatable :: moved(:)                ! closing of a gap by each free motion [length]
+    real(wp) :: gap, terms                           ! what the gap is the sum of, added up
+    integer :: i, k, node
+
+    state%point_stress = self%law%stress(state%strain)
+    state%displacement = state%deformation + part*scene%model%travel
+    do k = 1, scene%motions%count
+      do node = 1, scene%model%nodes
+        state%displacement(:, node) = state%displacement(:, node) &
+          + state%contact%approach(k)*scene%motions%displacement(scene%model, node, k)
+      end do
+    end do
+    opening = gap_opening(scene%model, state%deformation)
+    travel = part*self%travel_gap
+    associate (contact => state%contact, model => scene%model, problem => self%problem)
+      do k = 1, model%pairs
+        if (contact%force(k) > 0.0_wp) cycle
+        ! Where a rigid stop takes the load, what the flexibility says of this gap is rounding of two
+        ! deformations that cancel: a pair that seemed to touch may be open, as the displacements have it.
+        moved = problem%motion(k, :)*contact%approach
+        gap = problem%initial_gap(k) + (opening(k) + travel(k)) - sum(moved)
+        terms = abs(problem%initial_gap(k)) + abs(travel(k)) + sum(abs(moved))
+        do i = model%row_start(k), model%row_start(k + 1) - 1
+          terms = terms + abs(model%row_weight(i))*maxval(abs(state%deformation(:, model%row_node(i))))
+        end do
+        if (contact%touching(k) .and. gap <= no_effect*terms) cycle
+        contact%touching(k) = .false.
+        contact%gap(k) = max(gap, 0.0_wp)
+      end do
+    end associate
+  end subroutine complete
 end module epcont_linear_linear_problem

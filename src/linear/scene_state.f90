@@ -8,10 +8,12 @@ module epcont_linear_scene_state
   public :: scene_state
 
   type :: scene_state
-    real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
-    real(wp), allocatable :: deformation(:, :)    !! displacements before the rigid motions are added [length] [2, nodes]
-    real(wp), allocatable :: strain(:, :)         !! xx, yy, zz, xy (engineering) [4, points]
-    real(wp), allocatable :: point_stress(:, :)   !! xx, yy, zz, xy, in equilibrium [stress] [4, points]
+    real(wp), allocatable :: displacement(:, :)   !! [length] [directions, nodes]
+    !> Displacements before the rigid motions are added [length] [directions, nodes]
+    real(wp), allocatable :: deformation(:, :)
+    real(wp), allocatable :: strain(:, :)         !! xx, yy, zz, xy (engineering) [components, points]
+    !> xx, yy, zz, xy, in equilibrium [stress] [components, points]
+    real(wp), allocatable :: point_stress(:, :)
     !> Of the materials at that strain, where any yields [points]; not allocated: not found yet.
     type(point_state), allocatable :: point(:)
     type(contact_solution) :: contact
@@ -24,7 +26,7 @@ contains
   !> Take another state's place; that is empty then.
   pure subroutine take(self, from)
     class(scene_state), intent(inout) :: self
-    type(scene_state), intent(inout) :: from
+    type(scene_state), intent(inout) :: from   !! empty afterwards
 
     call move_alloc(from%displacement, self%displacement)
     call move_alloc(from%deformation, self%deformation)

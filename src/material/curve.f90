@@ -81,7 +81,10 @@ contains
       if (e <= self%deviatoric(1)) return
       point%yielded = .true.
       if (self%ends) point%beyond = e > self%deviatoric(size(self%deviatoric))*(1.0_wp + least_difference)
-      k = segment(self%deviatoric, e)
+      k = size(self%deviatoric)
+      do while (e < self%deviatoric(k))
+        k = k - 1
+      end do
       if (self%paper_ratio) then
         call find_paper_secant(self, k, e, point%total, secant)
         point%modulus = young/(young/secant - young*shift)  ! (2-5)
@@ -92,23 +95,6 @@ contains
       end if
     end associate
   end function at_strain
-
-  !> The last point at or below a strain; the first of them is.
-  pure integer function segment(strain, e)
-    real(wp), intent(in) :: strain(:), e
-    integer :: high, middle
-
-    segment = 1
-    high = size(strain)
-    do while (segment < high)
-      middle = high - (high - segment)/2
-      if (strain(middle) <= e) then
-        segment = middle
-      else
-        high = middle - 1
-      end if
-    end do
-  end function segment
 
   !> eps_i, and E' = sigma_i/eps_i, with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 + (a -
   !! c - b e) eps = e a.

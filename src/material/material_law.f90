@@ -67,9 +67,10 @@ contains
   !! there, or the yield stress below yield. (The mean parts are elastic in every law.)
   pure real(wp) function distance(self, state, stress)
     class(material_law), intent(in) :: self      !! one that yields
-    type(point_state), intent(in) :: state
+    type(point_state), intent(in) :: state       !! that `update` has found
     real(wp), intent(in) :: stress(components)   !! [stress]
 
-    distance = equivalent_stress((stress - state%stress)/max(state%modulus*state%deviatoric, self%yield_stress))
+    distance = equivalent_stress((stress - state%stress)/max(state%modulus*state%deviatoric, &
+                                                             self%yield_stress))
   end function distance
 end module epcont_material_material_law

@@ -32,6 +32,7 @@ contains
     type(model_type), intent(in) :: model             !! the scene
     type(scene_materials), intent(out) :: materials   !! of its sections and points
     type(total_theory) :: law
+    logical :: yields(size(model%young))
     integer :: s
 
     allocate (materials%section(size(model%young)))
@@ -42,10 +43,11 @@ contains
       if (law%yields) law%yield_stress = model%curve(s)%stress(2)
       law%curve = new_curve(model%curve(s), law%elasticity, model%controls%paper_ratio)
       materials%section(s)%law = law
-      materials%yields = materials%yields .or. law%yields
+      yields(s) = law%yields
     end do
+    materials%yields = any(yields)
     materials%of_point = model%section(model%point_element)
-    materials%can_yield = model%can_yield(model%point_element)
+    materials%can_yield = yields(materials%of_point)
   end subroutine find_materials
 
   !> The states of all points at their strains [points].

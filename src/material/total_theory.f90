@@ -25,18 +25,19 @@ module epcont_material_total_theory
 
 contains
 
+  !> The state at a strain.
   pure subroutine update(self, strain, committed, trial)
     class(total_theory), intent(in) :: self
-    real(wp), intent(in) :: strain(components)
-    type(point_state), intent(in) :: committed
-    type(point_state), intent(out) :: trial
+    real(wp), intent(in) :: strain(components)      !! xx, yy, zz, xy
+    type(point_state), intent(in) :: committed      !! without effect
+    type(point_state), intent(out) :: trial         !! found
 
-    if (self%sheet) then
-      trial = state_in_space(self, [strain(:2), strain_across(self, strain), strain(4)])
-      trial%stress(3) = 0.0_wp
-    else
-      trial = state_in_space(self, strain)
-    end if
+    real(wp) :: in_space(components)
+
+    in_space = strain
+    if (self%sheet) in_space(3) = strain_across(self, strain)
+    trial = state_in_space(self, in_space)
+    if (self%sheet) trial%stress(3) = 0.0_wp
   end subroutine update
 
   !> The state with the strain zz as it is given.
@@ -102,10 +103,11 @@ contains
     if (state%yielded) radial_stiffness = 4.0_wp/9.0_wp*(state%slope - state%modulus)/state%deviatoric**2
   end function radial_stiffness
 
+  !> D of d stress = D d strain [stress].
   pure function tangent_matrix(self, strain, state) result(d)
     class(total_theory), intent(in) :: self
-    real(wp), intent(in) :: strain(components)
-    type(point_state), intent(in) :: state
+    real(wp), intent(in) :: strain(components)   !! xx, yy, zz, xy
+    type(point_state), intent(in) :: state       !! that `update` has found there
     real(wp) :: d(components, components)
     real(wp) :: across(components), deviator(components), radial
     integer :: j

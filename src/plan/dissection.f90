@@ -8,6 +8,7 @@
 module epcont_plan_dissection
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: halve
+  use epcont_element_kinematics, only: directions
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -28,7 +29,7 @@ module epcont_plan_dissection
   !> A half may not have more of its set than this.
   real(wp), parameter :: largest_half = 0.6_wp
   !> Coordinates along which sets may be halved, and nodes of a set whose median serves for that of all.
-  integer, parameter :: axes = 3, sample = 128
+  integer, parameter :: axes = directions + 1, sample = 128
 
   !> Where a node is, seen from the set that is being halved. At the edge of their half are nodes that have
   !! neighbours across; of these, those of the separator then belong to neither half.
@@ -53,8 +54,8 @@ contains
     integer :: fronts, ordered
 
     allocate (coordinate(axes, size(further)))
-    coordinate(:2, :) = model%x
-    coordinate(3, :) = further
+    coordinate(:directions, :) = model%x
+    coordinate(axes, :) = further
     allocate (side(0:size(further)), source=outside)
     allocate (found%node(size(nodes)), found%first(size(nodes) + 1))
     fronts = 0
@@ -137,40 +138,41 @@ contains
     !> Halve a set at the median of that coordinate of the plane along which it spreads most.
     subroutine cut_midway(node)
       integer, intent(inout) :: node(:)
-      integer :: axis
+      integer :: axis, k
 
-      axis = maxloc([variance(coordinate(1, node)), variance(coordinate(2, node))], dim=1)
+      axis = maxloc([(variance(coordinate(k, node)), k=1, directions)], dim=1)
       call halve(coordinate(axis, node), node)
-      in_half(left) = size(node)/2
-      in_half(right) = size(node) - in_half(left)
+      in_half = [size(node)/2, (size(node) + 1)/2]
+      side(node) = right
       side(node(:in_half(left))) = left
-      side(node(in_half(left) + 1:)) = right
     end subroutine cut_midway
 
     !> Mark the separator: the shorter of the edges that the halves have where elements join them, moved to
     !! where it is shorter.
     subroutine find_separator(joining)
       integer, intent(in) :: joining(:)   !! these elements
-      integer, allocatable :: at_edge(:)
-      integer :: e, edges(left:right), i, n, shorter
+      integer, allocatable :: at_edge(:, :)
+      integer :: e, edges(left:right), half, i, shorter
 
-      allocate (at_edge(sum(in_half)))
+      allocate (at_edge(maxval(in_half), left:right))
       edges = 0
       do e = 1, size(joining)
         do i = 1, size(model%connectivity, 1)
           associate (node => model%connectivity(i, joining(e)))
-            if (side(node) /= left .and. side(node) /= right) cycle
-            edges(side(node)) = edges(side(node)) + 1
-            at_edge(sum(edges)) = node
-            side(node) = side(node) + edge
+            half = side(node)
+            if (half /= left .and. half /= right) cycle
+            edges(half) = edges(half) + 1
+            at_edge(edges(half), half) = node
+            side(node) = half + edge
           end associate
         end do
       end do
-      n = sum(edges)
       shorter = merge(left, right, edges(left) <= edges(right))
+      half = both - shorter
+      side(at_edge(:edges(half), half)) = half
+      side(at_edge(:edges(shorter), shorter)) = edge
       in_half(shorter) = in_half(shorter) - edges(shorter)
-      side(at_edge(:n)) = merge(edge, side(at_edge(:n)) - edge, side(at_edge(:n)) == shorter + edge)
-      call shift_separator(pack(at_edge(:n), side(at_edge(:n)) == edge))
+      call shift_separator(at_edge(:edges(shorter), shorter))
     end subroutine find_separator
 
     !> Let nodes of the separator go to a half: if they have no neighbours in the other, or only one, which
@@ -190,10 +192,8 @@ contains
         half = merge(left, right, in_half(left) < in_half(right))
         other = both - half
         if (beside(other) /= none .and. beside(half) == none .and. &
-            in_half(other) < largest_half*sum(in_half)) then
-          half = other
-          other = both - half
-        end if
+            in_half(other) < largest_half*sum(in_half)) half = other
+        other = both - half
         if (beside(other) == several) cycle
         if (beside(other) /= none) then
           if (in_half(half) + 1 >= in_half(other)) cycle

@@ -109,10 +109,10 @@ contains
               (motion_matrices*pairs + part_motions*motions%parts%count)*motions%count
     expected%double_bytes = real_bytes*entries + beside_matrices(min(motions%count, loads_at_once))
     expected%bytes = expected%double_bytes - saved
-    ! A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice, and
-    ! the sets on the way to it are smaller, or little of them is factored.
+    ! A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice,
+    ! and the sets on the way to it are smaller, or little of them is factored.
     expected%operations = expected%operations + &
-                          merge(2.0_wp/3.0_wp, 2.0_wp, plan%contact%by_blocks)*real(pairs, wp)**3
+                          merge(2.0_wp/3.0_wp, 2.0_wp, plan%by_blocks)*real(pairs, wp)**3
 
   contains
 
@@ -139,7 +139,8 @@ contains
       integer, intent(in) :: loads
       integer :: p
 
-      bytes = of_process + (of_node + load_of_node*loads)*model%nodes + (of_point + load_of_point*loads)*model%points
+      bytes = of_process + (of_node + load_of_node*loads)*model%nodes + &
+              (of_point + load_of_point*loads)*model%points
       do p = 1, model%points
         associate (e => model%point_element(p))
           bytes = bytes + of_node_of_point*model%order(e) + merge(of_yielding_point, 0_i8, model%can_yield(e))

@@ -6,13 +6,12 @@
 module epcont_plan_free_motion
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: plural
-  use epcont_base_tolerances, only: dependent
+  use epcont_base_text, only: plural, short_real, text_of
+  use epcont_base_tolerances, only: dependent, no_effect
   use epcont_element_kinematics, only: directions
   use epcont_linalg_dense, only: lu_solve, null_space
   use epcont_model_finding, only: findings, of_body, of_node
   use epcont_model_model, only: model_type
-  use epcont_plan_loose_body, only: add_loose_body
   use epcont_plan_rigid_parts, only: find_rigid_parts, part_motions, rigid_parts
   implicit none
   private
@@ -21,6 +20,8 @@ module epcont_plan_free_motion
   !> SUPORT freedoms that measure the motions with a condition above this are too close to each other: six
   !! digits of the displacements would be lost.
   real(wp), parameter :: largest_condition = 1.0e6_wp
+  !> Freedoms that move by this part of the largest motion may take its place.
+  real(wp), parameter :: nearly = 0.999_wp
 
   !> The free motions of all bodies.
   type :: free_motions
@@ -94,7 +95,7 @@ contains
     loose = matmul(basis, null_space(square, dependent))
     body = 'the body of '//model%name_of(of_node, nodes(1))
     if (size(loose, 2) > 0) then
-      call add_loose_body(model, motions%parts, nodes, of_parts(loose), found)
+      call add_loose_body(of_parts(loose))
     else if (size(node) > m) then
       call found%add_error(of_body, nodes(1), 0, body//' has '//plural(m, 'free motion')//' and '// &
                            plural(size(node), 'SUPORT freedom'), 'as many SUPORT freedoms as free motions')
@@ -106,8 +107,8 @@ contains
       factors = square
       call lu_solve(factors, unit, info)
       if (norm2(unit)*norm2(square) > largest_condition) then
-        call found%add_error(of_body, nodes(1), 0, body//': its SUPORT freedoms hardly tell its free motions'// &
-                             ' apart', 'SUPORT nodes farther from each other')
+        call found%add_error(of_body, nodes(1), 0, body//': its SUPORT freedoms hardly tell its free'// &
+                             ' motions apart', 'SUPORT nodes farther from each other')
         return
       end if
       motions%count = motions%count + m
@@ -140,8 +141,7 @@ contains
       end associate
     end function row
 
-    !> Rows of what hinges, ties and supports hold, and of what parts cannot do: rings do not move along x nor
-    !! turn, and what has no elements does not turn.
+    !> Rows of what hinges, ties and supports hold, and of what parts cannot do.
     pure function held_rows() result(held)
       real(wp), allocatable :: held(:, :)
       logical :: bound(directions, size(nodes))
@@ -161,8 +161,8 @@ contains
           rows = rows + directions
         end do
         do i = 1, size(own)
-          do c = 1, part_motions, 2   ! along x, turn
-            if (.not. (parts%ring(own(i)) .or. (c == part_motions .and. .not. parts%turns(own(i))))) cycle
+          do c = 1, part_motions
+            if (.not. parts%cannot(c, own(i))) cycle
             rows = rows + 1
             held(rows, column(own(i)) + c) = 1.0_wp
           end do
@@ -180,5 +180,64 @@ contains
       end associate
       held = held(:rows, :)
     end function held_rows
+
+    !> Say how the body moves, and the freedoms that would hold it: those that move most, one after the other,
+    !! each motion taken out of the others at the freedom chosen for it.
+    subroutine add_loose_body(loose)
+      real(wp), intent(in) :: loose(:, :, :)     !! motions that nothing holds [part_motions, parts, any]
+      real(wp) :: motion(directions*size(nodes), size(loose, 3))
+      character(len=:), allocatable :: card, text
+      integer :: at(2), i, j, k, moving
+
+      moving = 0
+      do i = 1, size(nodes)
+        associate (of_part => loose(:, motions%parts%of_node(nodes(i)), :))
+          motion(directions*(i - 1) + 1:directions*i, :) = &
+            matmul(motions%parts%rows(model, nodes(i)), of_part)
+          if (moving == 0 .and. any(abs(of_part) > no_effect*maxval(abs(loose)))) moving = nodes(i)
+        end associate
+      end do
+      if (moving /= nodes(1)) body = 'a part of '//body//', with '//model%name_of(of_node, moving)//','
+      text = ''
+      card = ''
+      do k = 1, size(motion, 2)
+        ! The first of those that move nearly as much as the largest, so that rounding does not choose.
+        associate (moved => abs(motion(:, k:)))
+          at = findloc(moved >= nearly*maxval(moved), .true.)
+        end associate
+        i = at(1)
+        j = k + at(2) - 1
+        motion(:, [k, j]) = motion(:, [j, k])
+        motion(:, k) = motion(:, k)/motion(i, k)
+        associate (node => (i + 1)/directions)
+          text = text//', '//words(motion(:, k), node)
+          card = card//','//text_of(model%node_id(nodes(node)))//','//text_of(2 - mod(i, directions))
+        end associate
+        do j = 1, size(motion, 2)
+          if (j /= k) motion(:, j) = motion(:, j) - motion(i, j)*motion(:, k)
+        end do
+      end do
+      call found%add_error(of_body, moving, 0, body//' is free to move: '//text(3:), &
+                           'hold it by SPC1, or solve for the motion by SUPORT'//card)
+    end subroutine add_loose_body
+
+    !> A motion, as one of the body's nodes has it. A part shifts whose nodes all move alike.
+    pure function words(motion, k) result(text)
+      real(wp), intent(in) :: motion(directions, size(nodes))
+      integer, intent(in) :: k   !! the node's place in the list
+      character(len=:), allocatable :: text
+      real(wp) :: unit(directions)
+      logical :: beside(directions, size(nodes))
+
+      associate (part => motions%parts%of_node(nodes))
+        beside = spread(part == part(k), 1, directions)
+      end associate
+      text = 'it shifts'
+      if (sum(maxval(motion, dim=2, mask=beside) - minval(motion, dim=2, mask=beside)) > no_effect) &
+        text = 'it turns, '//model%name_of(of_node, nodes(k))//' moving'
+      ! Without rounding.
+      unit = real(nint(motion(:, k)/norm2(motion(:, k))*1.0e4_wp), wp)*1.0e-4_wp
+      text = text//' along ('//short_real(unit(1))//', '//short_real(unit(2))//')'
+    end function words
   end subroutine examine_body
 end module epcont_plan_free_motion

@@ -7,7 +7,7 @@ module epcont_plan_iteration_plan
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: contact_plan, iteration_plan, plan_contact, plan_iteration, plan_precision
+  public :: iteration_plan, plan_iteration, plan_precision
 
   !> TOL of NEWTON, which gets there in a step or two more, and of the methods that pay for every digit.
   real(wp), parameter :: newton_tolerance = 1.0e-8_wp, secant_tolerance = 0.01_wp
@@ -35,14 +35,8 @@ module epcont_plan_iteration_plan
   !! the growing load that the listing can show.
   integer, parameter, public :: many_pairs = 100
 
-  type :: contact_plan
-    logical :: by_blocks = .false.      !! RULE BLOCK, else CONRY
-    logical :: chosen_here = .false.    !! the deck leaves the rule to us
-  end type contact_plan
-
   type :: iteration_plan
     logical :: yields = .false.            !! there is something that can yield; else there is no iteration
-    logical, allocatable :: body(:)        !! which bodies can [bodies]
     integer :: load_steps = 1              !! more than one only where something can yield
     integer :: method = method_secant
     logical :: chosen_here = .false.       !! the deck leaves the method to us
@@ -54,7 +48,8 @@ module epcont_plan_iteration_plan
     !> What stands against solving anew in double; not allocated: nothing.
     character(len=:), allocatable :: against_double
     integer :: threads = 1                 !! that bodies may be worked on by, side by side
-    type(contact_plan) :: contact          !! the rule that finds the pairs in contact
+    logical :: by_blocks = .false.         !! contact by RULE BLOCK, else CONRY
+    logical :: rule_chosen_here = .false.  !! the deck leaves that to us
     real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
   end type iteration_plan
 
@@ -66,49 +61,34 @@ contains
     type(iteration_plan) :: plan
     integer :: e
 
-    plan%contact = plan_contact(model)
-    allocate (plan%body(model%bodies), source=.false.)
-    do e = 1, model%elements
-      if (model%can_yield(e)) plan%body(model%body(model%connectivity(1, e))) = .true.
-    end do
-    plan%yields = any(plan%body)
-    plan%precision = plan_precision(model%controls, plan%yields)
-    plan%rounding_error = largest_error
-    if (model%controls%accuracy > 0.0_wp) then
-      plan%rounding_error = min(largest_error, part_of_accuracy*model%controls%accuracy)
-    end if
-    if (plan%yields) plan%load_steps = model%controls%load_steps
-    plan%chosen_here = model%controls%method == method_auto
-    plan%method = model%controls%method
-    ! NEWTON has no tangent for MUP PAPER, which is there to follow the paper: by its own method, then.
-    if (plan%chosen_here) plan%method = merge(method_secant, method_newton, model%controls%paper_ratio)
-    plan%tolerance = model%controls%tolerance
-    if (plan%tolerance == 0.0_wp) plan%tolerance = own_tolerance(plan, model%controls%accuracy)
-    if (plan%yields) plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, plan%method == method_newton)
+    associate (asked => model%controls)
+      plan%rule_chosen_here = asked%rule == rule_auto
+      plan%by_blocks = asked%rule == rule_block .or. (plan%rule_chosen_here .and. model%pairs >= many_pairs)
+      do e = 1, model%elements
+        plan%yields = plan%yields .or. model%can_yield(e)
+      end do
+      plan%precision = plan_precision(asked, plan%yields)
+      plan%rounding_error = largest_error
+      if (asked%accuracy > 0.0_wp) plan%rounding_error = min(largest_error, part_of_accuracy*asked%accuracy)
+      if (plan%yields) plan%load_steps = asked%load_steps
+      plan%chosen_here = asked%method == method_auto
+      plan%method = asked%method
+      ! NEWTON has no tangent for MUP PAPER, which is there to follow the paper: by its own method, then.
+      if (plan%chosen_here) plan%method = merge(method_secant, method_newton, asked%paper_ratio)
+      associate (by_newton => plan%method == method_newton)
+        if (asked%tolerance /= 0.0_wp) then
+          plan%tolerance = asked%tolerance
+        else if (asked%accuracy > 0.0_wp) then
+          plan%tolerance = asked%accuracy*merge(newton_part, secant_part, by_newton)
+        else if (.not. by_newton) then
+          plan%tolerance = secant_tolerance
+        else
+          plan%tolerance = merge(single_tolerance, newton_tolerance, plan%precision == precision_single)
+        end if
+        if (plan%yields) plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, by_newton)
+      end associate
+    end associate
   end function plan_iteration
-
-  !> TOL, where the deck leaves it out.
-  pure real(wp) function own_tolerance(plan, accuracy) result(tolerance)
-    type(iteration_plan), intent(in) :: plan
-    real(wp), intent(in) :: accuracy   !! PARAM ACCURACY; 0: none
-
-    if (accuracy > 0.0_wp) then
-      tolerance = accuracy*merge(newton_part, secant_part, plan%method == method_newton)
-    else if (plan%method /= method_newton) then
-      tolerance = secant_tolerance
-    else
-      tolerance = merge(single_tolerance, newton_tolerance, plan%precision == precision_single)
-    end if
-  end function own_tolerance
-
-  !> The rule that finds the pairs in contact.
-  pure function plan_contact(model) result(plan)
-    type(model_type), intent(in) :: model   !! the scene
-    type(contact_plan) :: plan
-
-    plan%chosen_here = model%controls%rule == rule_auto
-    plan%by_blocks = model%controls%rule == rule_block .or. (plan%chosen_here .and. model%pairs >= many_pairs)
-  end function plan_contact
 
   !> That of the deck, else that of the accuracy it wants, else double. Refinement pays where bodies are
   !! factored once (0.8 of the time of double with 42 000 nodes, level with 11 000); where each iteration

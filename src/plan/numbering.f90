@@ -90,8 +90,8 @@ contains
   contains
 
     !> Number a body for nested fronts, the contact nodes in the last of them. It is parted along x, along y
-    !! and along the distance from the contact, in elements: there they are the smallest, mostly, and what lies
-    !! around it has the shortest edge.
+    !! and along the distance from the contact, in elements: there they are the smallest, mostly, and what
+    !! lies around it has the shortest edge.
     subroutine number_fronts(body)
       type(body_numbering), intent(inout) :: body
       type(level_order) :: outward
@@ -221,7 +221,9 @@ contains
         end do
         if (filled > first) then
           found = order%node(first:filled)
-          order%node(first:filled) = found(sorted_order(model%around%start(found + 1) - model%around%start(found)))
+          associate (elements => model%around%start(found + 1) - model%around%start(found))
+            order%node(first:filled) = found(sorted_order(elements))
+          end associate
         end if
       end do
     end function sweep

@@ -18,8 +18,8 @@ module epcont_plan_rigid_parts
     integer :: count = 0
     integer, allocatable :: of_node(:)      !! a part of each node [nodes]
     integer, allocatable :: body(:)         !! of each part [count]
-    logical, allocatable :: turns(:)        !! the part can turn [count]
-    logical, allocatable :: ring(:)         !! the part can move along y alone [count]
+    !> Rings do not move along x nor turn, and what has no elements does not turn [part_motions, count]
+    logical, allocatable :: cannot(:, :)
     integer, allocatable :: hinge(:, :)     !! node, part, other part of each hinge [3, hinges]
     real(wp), allocatable :: centre(:, :)   !! of each body [length] [directions, bodies]
     real(wp), allocatable :: extent(:)      !! of each body, largest half width [length] [bodies]
@@ -48,13 +48,14 @@ contains
         parts%of_node(i) = parts%count
       end if
     end do
-    parts%turns = [(i <= solid, i=1, parts%count)]
     allocate (parts%body(parts%count))
-    allocate (parts%ring(parts%count), source=.false.)
+    allocate (parts%cannot(part_motions, parts%count), source=.false.)
+    parts%cannot(part_motions, solid + 1:) = .true.
     parts%body(parts%of_node) = model%body
     do e = 1, model%elements
       parts%body(of_element(e)) = model%body(model%connectivity(1, e))
-      parts%ring(of_element(e)) = model%kinematics(model%section(e)) == axisymmetric
+      if (model%kinematics(model%section(e)) == axisymmetric) &
+        parts%cannot(::directions, of_element(e)) = .true.
     end do
     call find_hinges()
     call measure()

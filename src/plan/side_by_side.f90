@@ -20,10 +20,8 @@ contains
     type(numbering_type), intent(in) :: numbering   !! of its equations
     integer(i8), intent(in) :: bytes      !! that the run will hold on one thread
     integer, intent(in) :: granted   !! threads, by OMP_NUM_THREADS
-    real(wp), allocatable :: operations(:)
 
-    operations = numbering%body%operations
-    threads = threads_for(operations, granted)
+    threads = threads_for(numbering%body%operations, granted)
     if (threads == 1) return
     if (.not. has_memory(most_memory(bytes) + (threads - 1)*memory_of_thread)) threads = 1
   end function plan_threads

@@ -4,7 +4,6 @@
 !> does harm it is the plain iteration.
 module epcont_plasticity_anderson
   use epcont_base_kinds, only: wp
-  use epcont_element_kinematics, only: components
   use epcont_linear_scene_state, only: scene_state
   use epcont_model_model, only: model_type
   implicit none
@@ -39,7 +38,7 @@ module epcont_plasticity_anderson
 contains
 
   !> The next x, when the last one was `about` and g(about) is `found`.
-  pure subroutine mix(self, model, volume, found, about)
+  subroutine mix(self, model, volume, found, about)
     class(anderson_mixer), intent(inout) :: self
     type(model_type), intent(in) :: model        !! the scene
     real(wp), intent(in) :: volume(:)            !! of each point [length**3]
@@ -51,13 +50,13 @@ contains
 
     now = step_type(found%strain - about%strain, found%strain, found%displacement)
     if (allocated(self%weight)) then
-      call remember(self, now)
+      call remember()
     else
       self%weight = volume*model%young(model%section(model%point_element))
     end if
     self%last = now
     share = 0.0_wp
-    if (self%plain == 0) share = best_shares(self)
+    if (self%plain == 0) share = best_shares()
     self%mixed = any(share /= 0.0_wp)
     self%plain = max(0, self%plain - 1)
     about%displacement = found%displacement
@@ -66,73 +65,69 @@ contains
       about%displacement = about%displacement - share(k)*self%change(k)%displacement
       about%strain = about%strain - share(k)*self%change(k)%strain
     end do
-  end subroutine mix
 
-  !> Add the step from the last x to this one.
-  pure subroutine remember(self, now)
-    type(anderson_mixer), intent(inout) :: self
-    type(step_type), intent(in) :: now
-    integer :: k
+  contains
 
-    associate (last => self%last)
-      if (self%mixed .and. product_of(self, now%rest, now%rest) > product_of(self, last%rest, last%rest)) then
-        self%steps = 0
-        self%penalty = max(1, 2*self%penalty)
-        self%plain = self%penalty
-        return
-      end if
-      self%steps = min(memory, self%steps + 1)
-      do k = self%steps, 2, -1
-        self%change(k) = self%change(k - 1)
-      end do
-      self%change(1) = step_type(now%rest - last%rest, now%strain - last%strain, now%displacement - last%displacement)
-    end associate
-  end subroutine remember
-
-  !> Shares of the steps that make the last g - x least: least squares by Gram and Schmidt.
-  pure function best_shares(self) result(share)
-    type(anderson_mixer), intent(in) :: self
-    real(wp) :: share(memory)
-    type(step_type) :: unit(memory)
-    real(wp) :: factor(memory, memory), length
-    integer :: j, k
-
-    share = 0.0_wp
-    factor = 0.0_wp
-    do k = 1, self%steps
-      unit(k)%rest = self%change(k)%rest
-      associate (own => unit(k)%rest)
-        length = sqrt(product_of(self, own, own))
-        do j = 1, k - 1
-          factor(j, k) = product_of(self, unit(j)%rest, own)
-          own = own - factor(j, k)*unit(j)%rest
-        end do
-        factor(k, k) = sqrt(product_of(self, own, own))
-        if (factor(k, k) <= dependent*length) then
-          factor(k, k) = 0.0_wp
-          own = 0.0_wp
-        else
-          own = own/factor(k, k)
-          share(k) = product_of(self, own, self%last%rest)
+    !> Add the step from the last x to this one.
+    subroutine remember()
+      associate (last => self%last)
+        if (self%mixed .and. product_of(now%rest, now%rest) > product_of(last%rest, last%rest)) then
+          self%steps = 0
+          self%penalty = max(1, 2*self%penalty)
+          self%plain = self%penalty
+          return
         end if
+        self%steps = min(memory, self%steps + 1)
+        do k = self%steps, 2, -1
+          self%change(k) = self%change(k - 1)
+        end do
+        self%change(1) = step_type(now%rest - last%rest, now%strain - last%strain, &
+                                   now%displacement - last%displacement)
       end associate
-    end do
-    do k = self%steps, 1, -1
-      if (factor(k, k) == 0.0_wp) cycle
-      share(k) = (share(k) - dot_product(factor(k, k + 1:self%steps), share(k + 1:self%steps)))/factor(k, k)
-    end do
-  end function best_shares
+    end subroutine remember
 
-  !> Product of two strain fields [components, points].
-  pure real(wp) function product_of(self, a, b)
-    type(anderson_mixer), intent(in) :: self
-    real(wp), intent(in) :: a(:, :), b(:, :)
-    integer :: p
+    !> Shares of the steps that make the last g - x least: least squares by Gram and Schmidt.
+    pure function best_shares() result(share)
+      real(wp) :: share(memory)
+      type(step_type) :: unit(memory)
+      real(wp) :: factor(memory, memory), length
+      integer :: j, k
 
-    product_of = 0.0_wp
-    do p = 1, size(a, 2)
-      product_of = product_of + self%weight(p)*(dot_product(a(:3, p), b(:3, p)) &
-                                                + 0.5_wp*a(components, p)*b(components, p))
-    end do
-  end function product_of
+      share = 0.0_wp
+      factor = 0.0_wp
+      do k = 1, self%steps
+        unit(k)%rest = self%change(k)%rest
+        associate (own => unit(k)%rest)
+          length = sqrt(product_of(own, own))
+          do j = 1, k - 1
+            factor(j, k) = product_of(unit(j)%rest, own)
+            own = own - factor(j, k)*unit(j)%rest
+          end do
+          factor(k, k) = sqrt(product_of(own, own))
+          if (factor(k, k) <= dependent*length) then
+            factor(k, k) = 0.0_wp
+            own = 0.0_wp
+          else
+            own = own/factor(k, k)
+            share(k) = product_of(own, now%rest)
+          end if
+        end associate
+      end do
+      do k = self%steps, 1, -1
+        if (factor(k, k) == 0.0_wp) cycle
+        share(k) = (share(k) - dot_product(factor(k, k + 1:self%steps), share(k + 1:self%steps)))/factor(k, k)
+      end do
+    end function best_shares
+
+    !> Product of two strain fields [components, points].
+    pure real(wp) function product_of(a, b)
+      real(wp), intent(in) :: a(:, :), b(:, :)
+      integer :: p
+
+      product_of = 0.0_wp
+      do p = 1, size(a, 2)
+        product_of = product_of + self%weight(p)*(dot_product(a(:3, p), b(:3, p)) + 0.5_wp*a(4, p)*b(4, p))
+      end do
+    end function product_of
+  end subroutine mix
 end module epcont_plasticity_anderson

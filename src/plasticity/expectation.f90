@@ -33,7 +33,8 @@ module epcont_plasticity_expectation
     real(wp), private :: solved_at = 0.0_wp  !! when the last one was done [s]
     integer, private :: solves = 0           !! at loads that are behind
     integer, private :: load_steps = 0       !! of these
-    real(wp), allocatable, private :: distance(:)   !! of each solve at this load from the end of the iteration: at 1 it is there
+    !> Of each solve at this load from the end of the iteration: at 1 it is there
+    real(wp), allocatable, private :: distance(:)
   contains
     procedure :: learn
   end type expectation_type
@@ -43,7 +44,7 @@ contains
   !> Before the first solve, where `begun` seconds have gone. With yielding it is not known how many solves
   !! there will be.
   pure function new_expectation(plan, most_iterations, operations, begun) result(expected)
-    type(iteration_plan), intent(in) :: plan
+    type(iteration_plan), intent(in) :: plan   !! how yielding is iterated
     integer, intent(in) :: most_iterations   !! at a load
     real(wp), intent(in) :: operations       !! of a solve
     real(wp), intent(in) :: begun            !! [s]
@@ -55,52 +56,44 @@ contains
     expected%solved_at = begun
     expected%first_solve = begun + operations/likely_rate
     if (.not. plan%yields) expected%seconds = expected%first_solve + end_part*begun
-    allocate (expected%distance(0))
   end function new_expectation
 
   !> A solve was done at `seconds`; `over` if it was the last one at its load. The next will take as long as
   !! it did.
   pure subroutine learn(self, now, over, seconds)
     class(expectation_type), intent(inout) :: self
-    type(iteration_record), intent(in) :: now
-    logical, intent(in) :: over
-    real(wp), intent(in) :: seconds
-    integer :: left
+    type(iteration_record), intent(in) :: now   !! that solve
+    logical, intent(in) :: over                 !! see above
+    real(wp), intent(in) :: seconds             !! since the run began [s]
+    integer :: left    ! solves at this load
+    real(wp) :: each   ! solves at each load to come: as at those behind, or else as at this one
 
     if (now%iteration == 1) self%distance = [real(wp) ::]
-    self%distance = [self%distance, max(now%change/max(self%plan%tolerance, least), now%residual/max(self%plan%off_curve, least))]
+    self%distance = [self%distance, max(now%change/max(self%plan%tolerance, least), &
+                                        now%residual/max(self%plan%off_curve, least))]
+    left = 0
     if (over) then
       self%solves = self%solves + now%iteration
       self%load_steps = self%load_steps + 1
-      left = 0
     else
-      left = solves_to_come(self%distance, merge(newton_order, 1.0_wp, self%plan%method == method_newton), self%most_iterations)
+      left = solves_to_come(self%distance, merge(newton_order, 1.0_wp, self%plan%method == method_newton), &
+                            self%most_iterations)
     end if
     self%seconds = -1.0_wp
-    if (left >= 0) self%seconds = seconds + (seconds - self%solved_at)*(left + later_solves(self, left, over)) &
-                                  + end_part*self%begun
+    if (left >= 0) then
+      each = real(size(self%distance) + left, wp)
+      if (self%load_steps > 0) each = real(self%solves, wp)/self%load_steps
+      each = each*max(0, self%plan%load_steps - self%load_steps - merge(0, 1, over))
+      self%seconds = seconds + (seconds - self%solved_at)*(left + each) + end_part*self%begun
+    end if
     self%solved_at = seconds
   end subroutine learn
-
-  !> Solves at the loads to come: as many at each as at those behind, or else as at this one.
-  pure real(wp) function later_solves(self, left, over)
-    type(expectation_type), intent(in) :: self
-    integer, intent(in) :: left     !! at this load
-    logical, intent(in) :: over     !! this load is behind, too
-
-    if (self%load_steps > 0) then
-      later_solves = real(self%solves, wp)/self%load_steps
-    else
-      later_solves = real(size(self%distance) + left, wp)
-    end if
-    later_solves = later_solves*max(0, self%plan%load_steps - self%load_steps - merge(0, 1, over))
-  end function later_solves
 
   !> Solves to come at a load, if the logarithm of the distance from the end goes on to fall as it did in the
   !! last one, each time `order` times as far; negative where it does not fall.
   pure integer function solves_to_come(distance, order, most) result(solves)
     real(wp), intent(in) :: distance(:)   !! of each solve so far; at 1 the iteration is over
-    real(wp), intent(in) :: order
+    real(wp), intent(in) :: order         !! of convergence
     integer, intent(in) :: most           !! iterations that are allowed
     real(wp) :: fall, left
     integer :: n

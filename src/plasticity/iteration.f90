@@ -8,7 +8,8 @@ module epcont_plasticity_iteration
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_linear_law, only: elastic_law
-  use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant, precision_single
+  use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant, &
+    precision_single
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_initial_stress, only: initial_stress_method
@@ -47,7 +48,8 @@ module epcont_plasticity_iteration
     integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest            !! of the stiffness
-    real(wp) :: rounding_error = 0.0_wp    !! of displacements, strains and forces, relative: what single precision left
+    !> Of displacements, strains and forces, relative: what single precision left
+    real(wp) :: rounding_error = 0.0_wp
     type(iteration_record), allocatable :: history(:)   !! every solve
     integer :: unloaded = 0                !! elements whose strain fell, after yielding, as the load grew
     integer :: first_unloaded = 0          !! one of them
@@ -65,12 +67,13 @@ contains
     class(secant_method), allocatable :: method
     type(scene_state) :: about                ! that the law is about
     type(scene_state), allocatable :: state   ! found at this load
+    type(iteration_record) :: now             ! of the last solve
     logical, allocatable :: touching(:)       ! the last contact set: the next simplex starts from it [pairs]
     real(wp), allocatable :: force(:)         ! the last contact forces [force] [pairs]
     ! The last displacements, g of x, and g - x; by how much both had changed: |dg|/|d(g - x)| of the steps at
     ! this load, the contact forces' [force/length].
     real(wp), allocatable :: displacement(:, :), rest(:, :), gain(:), force_gain(:)
-    real(wp), allocatable :: strained(:)      ! e of points that yielded in the last load step, else 0 [points]
+    real(wp), allocatable :: strained(:)      ! e of points that yielded in the last load step, else 0
     real(wp) :: part                          ! of the loads
     real(wp) :: doubt                         ! times what was estimated is what a tangent step has shown
     integer :: yielded                        ! elements that yield in the state that the law is about
@@ -85,19 +88,12 @@ contains
       part = real(step, wp)/plan%load_steps
       call iterate()
       answer%factorizations = linear%factorizations
-      answer%lacks_memory = linear%lacks_memory()
+      answer%lacks_memory = any(linear%body%lacks_memory)
       if (answer%singular > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call answer%take(state)
       if (answer%contact%state /= contact_solved) return
-      if (converged .or. step == 1) then
-        answer%load_factor = part
-        call linear%estimate_condition(scene, answer%condition)
-        answer%weakest = linear%weakest()
-        if (plan%precision == precision_single) &
-          call linear%rounding_error(scene, part, answer%scene_state, answer%rounding_error)
-        call watch%lap(stage_accuracy)
-      end if
+      if (converged .or. step == 1) call estimate_rounding()
       if (.not. converged) exit
       if (plan%load_steps > 1) call find_unloaded()
       call watch%lap(stage_yielding)
@@ -120,7 +116,8 @@ contains
       allocate (linear)
       call new_linear_problem(scene, plan, linear)
       associate (model => scene%model)
-        allocate (about%displacement(directions, model%nodes), about%strain(components, model%points), source=0.0_wp)
+        allocate (about%displacement(directions, model%nodes), source=0.0_wp)
+        allocate (about%strain(components, model%points), source=0.0_wp)
         allocate (force(model%pairs), strained(model%points), source=0.0_wp)
       end associate
       if (linear%materials%yields) about%point = linear%materials%states(about%strain)
@@ -163,16 +160,14 @@ contains
         if (answer%runs_away) return
         if (.not. scene%model%controls%original) touching = found%contact%touching
         force = found%contact%force
-        associate (now => answer%history(size(answer%history)))
-          yielded = now%yielded
-          ! Behind the last load step nothing is linearised any more.
-          if (linear%materials%yields .and. .not. (converged .and. part >= 1.0_wp)) &
-            call method%advance(scene%model, linear, part, found, about)
-          call watch%lap(stage_yielding)
-          call watch%solved(now, converged)
-          if (.not. converged .and. now%residual > least_residual) cycle
-          least_residual = now%residual
-        end associate
+        yielded = now%yielded
+        ! Behind the last load step nothing is linearised any more.
+        if (linear%materials%yields .and. .not. (converged .and. part >= 1.0_wp)) &
+          call method%advance(scene%model, linear, part, found, about)
+        call watch%lap(stage_yielding)
+        call watch%solved(now, converged)
+        if (.not. converged .and. now%residual > least_residual) cycle
+        least_residual = now%residual
         call move_alloc(found, state)
         if (converged) return
         if (allocated(state%point)) deallocate (state%point)
@@ -185,18 +180,20 @@ contains
     subroutine set_law(method, singular)
       class(secant_method), intent(inout) :: method
       integer, intent(out) :: singular
-      logical :: possible
+      logical :: may_stay, possible
 
       singular = 0
-      if (linear%materials%yields) call method%linearise(about, linear)
-      call watch%lap(stage_yielding)
-      if (stiff .and. (plan%method == method_inistr .or. elastic .and. yielded == 0)) return
-      elastic = yielded == 0
+      method%blend = 0.0_wp
       do
+        if (linear%materials%yields) call method%linearise(about, linear)
+        call watch%lap(stage_yielding)
+        may_stay = plan%method == method_inistr .or. elastic .and. yielded == 0
+        if (singular == 0 .and. stiff .and. may_stay) return
+        elastic = yielded == 0
         call linear%set_stiffness(scene, singular, watch)
         stiff = .true.
-        if (singular == 0 .or. linear%lacks_memory() .or. .not. linear%materials%yields) return
-        call method%stiffen(about, linear, possible)
+        if (singular == 0 .or. any(linear%body%lacks_memory)) return
+        call method%stiffen(possible)
         if (.not. possible) return
       end do
     end subroutine set_law
@@ -206,33 +203,31 @@ contains
     subroutine judge(iteration, found)
       integer, intent(in) :: iteration
       type(scene_state), allocatable, intent(inout) :: found
-      type(iteration_record) :: now
 
-      now%iteration = iteration
-      call measure(found, now)
-      call estimate_errors(found, now)
+      now = iteration_record(iteration=iteration)
+      call measure(found)
+      call estimate_errors(found)
       if (now%yielded + yielded == 0 .or. now%residual <= solved_to .and. now%error < 0.0_wp) then
         ! What changes is rounding, if anything.
         now%error = merge(now%change, 0.0_wp, iteration > 1)
         now%force_error = merge(now%force_change, 0.0_wp, iteration > 1)
       end if
       answer%history = [answer%history, now]
-      converged = is_over(answer%history)
-      if (converged .and. wants_test(now)) call step_by_tangent(found)
+      converged = is_over()
+      if (converged .and. wants_test()) call step_by_tangent(found)
     end subroutine judge
 
     !> How far the state found is from the last, and its stresses from the curve. Equilibrium and contact are
     !! exact in each solve: that distance is all that is left of the scene's equations.
-    subroutine measure(found, now)
+    subroutine measure(found)
       type(scene_state), intent(inout) :: found         !! its points are set
-      type(iteration_record), intent(inout) :: now
       logical, allocatable :: yields(:)
       integer :: p
 
       now%load_factor = part
-      now%change = ratio(maxval(abs(found%displacement - about%displacement)), maxval(abs(found%displacement)))
-      if (size(force) > 0) &
-        now%force_change = ratio(maxval(abs(found%contact%force - force)), maxval(found%contact%force))
+      now%change = ratio(maxval(abs(found%displacement - about%displacement)), &
+                         maxval(abs(found%displacement)))
+      now%force_change = ratio(maxval(abs(found%contact%force - force)), maxval(found%contact%force))
       now%touching = count(found%contact%touching)
       now%pivots = found%contact%pivots
       now%pivot = found%contact%history
@@ -255,11 +250,10 @@ contains
     !>
     !> An iteration takes x to g(x). To first order a step dx changes g by J dx and the rest g - x by (J - 1)
     !> dx, so that of a rest r there is J/(1 - J) r to come in g. How much that is at most, the steps behind
-    !> tell: |dg|/|d(g - x)|. In an iteration without mixing it is the sum of the changes to come, each the last
-    !> times the rate at which they fall; its last steps are the slowest.
-    subroutine estimate_errors(found, now)
+    !> tell: |dg|/|d(g - x)|. In an iteration without mixing it is the sum of the changes to come, each the
+    !> last times the rate at which they fall; its last steps are the slowest.
+    subroutine estimate_errors(found)
       type(scene_state), intent(in) :: found
-      type(iteration_record), intent(inout) :: now   !! its errors are set; negative: not known
       real(wp), allocatable :: last_rest(:, :)
       real(wp) :: step, largest
       integer :: first
@@ -276,9 +270,10 @@ contains
           force_gain = [force_gain, ratio(maxval([0.0_wp, abs(now_force - force)]), step)]
           if (largest < maxval(abs(last_rest)) .or. largest == 0.0_wp) then
             first = merge(1, max(1, size(gain) - 1), allocated(method%mixer))
-            ! A step may by chance be short where much is to come: as long as stresses are off their curves, no
-            ! less than the last change.
-            now%error = max(ratio(maxval(gain(first:))*largest, maxval(abs(u))), min(now%change, now%residual))
+            ! A step may by chance be short where much is to come: as long as stresses are off their curves,
+            ! no less than the last change.
+            now%error = max(ratio(maxval(gain(first:))*largest, maxval(abs(u))), &
+                            min(now%change, now%residual))
             now%force_error = 0.0_wp
             if (any(now_force > 0.0_wp)) &
               now%force_error = max(ratio(maxval(force_gain(first:))*largest, maxval(now_force)), &
@@ -292,26 +287,22 @@ contains
     !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than
     !! the tolerance. Where nothing has yielded, the first solve was exact; and where stresses are on their
     !! curves to rounding while the changes fall no more, rounding allows no smaller ones.
-    pure logical function is_over(history)
-      type(iteration_record), intent(in) :: history(:)   !! to this iteration
+    pure logical function is_over()
       integer :: n
 
-      n = size(history)
-      associate (now => history(n))
-        is_over = now%yielded + yielded == 0
-        if (now%change <= plan%tolerance .and. now%residual <= plan%off_curve) is_over = is_over .or. &
-          now%residual <= solved_to .or. now%error >= 0.0_wp .and. doubt*now%error <= plan%tolerance
-        if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
-          is_over = is_over .or. now%change >= history(n - 2)%change
-      end associate
+      n = size(answer%history)
+      is_over = now%yielded + yielded == 0
+      if (now%change <= plan%tolerance .and. now%residual <= plan%off_curve) is_over = is_over .or. &
+        now%residual <= solved_to .or. now%error >= 0.0_wp .and. doubt*now%error <= plan%tolerance
+      if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
+        is_over = is_over .or. now%change >= answer%history(n - 2)%change
     end function is_over
 
     !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
-    pure logical function wants_test(now)
-      type(iteration_record), intent(in) :: now
-
-      wants_test = plan%method /= method_secant .or. now%iteration <= few_solves .or. now%iteration > many_solves &
-                   .or. now%error > slow*now%change .or. any(scene%model%prescribed /= 0.0_wp)
+    pure logical function wants_test()
+      wants_test = plan%method /= method_secant .or. now%iteration <= few_solves .or. &
+                   now%iteration > many_solves .or. now%error > slow*now%change .or. &
+                   any(scene%model%prescribed /= 0.0_wp)
       wants_test = wants_test .and. now%residual > solved_to .and. plan%method /= method_newton .and. &
                    .not. scene%model%controls%paper_ratio
     end function wants_test
@@ -323,13 +314,13 @@ contains
       type(newton_method) :: tangent
       type(scene_state), allocatable :: next
       type(scene_state) :: before
-      type(iteration_record) :: now
+      type(iteration_record) :: last
       integer :: singular
 
       converged = .false.
-      now = answer%history(size(answer%history))
       if (now%iteration == scene%model%controls%most_iterations) return
       before = about
+      last = now
       about = found
       force = found%contact%force
       yielded = now%yielded
@@ -340,7 +331,7 @@ contains
       call set_law(tangent, singular)
       if (singular == 0 .and. tangent%blend < too_stiff) then
         call linear%solve(scene, part, found%contact%touching, next, watch)
-        if (next%contact%state == contact_solved) call measure(next, now)
+        if (next%contact%state == contact_solved) call measure(next)
       end if
       converged = now%change <= plan%tolerance .and. now%residual <= plan%off_curve
       if (converged) then
@@ -350,12 +341,23 @@ contains
         answer%history = [answer%history, now]
         call move_alloc(next, found)
       else
-        doubt = max(2.0_wp*doubt, min(now%change/answer%history(size(answer%history))%error, most_doubt))
+        doubt = max(2.0_wp*doubt, min(now%change/last%error, most_doubt))
+        now = last
         about = before
         linear%law = elastic_law(linear%materials)
       end if
       stiff = .false.
     end subroutine step_by_tangent
+
+    !> What rounding may have done to the answer.
+    subroutine estimate_rounding()
+      answer%load_factor = part
+      call linear%estimate_condition(scene, answer%condition)
+      answer%weakest = linear%weakest()
+      if (plan%precision == precision_single) &
+        call linear%rounding_error(scene, part, answer%scene_state, answer%rounding_error)
+      call watch%lap(stage_accuracy)
+    end subroutine estimate_rounding
 
     !> Elements beyond yield whose strain falls as the load grows: total theory takes them back along the
     !! curve.

@@ -26,8 +26,8 @@ module epcont_plasticity_newton
   integer, parameter :: most_slopes = 30
 
   type, extends(secant_method) :: newton_method
-    logical, private :: takes_full_step = .true.   !! prescribed displacements and overlaps go in with the first
-    real(wp) :: blend = 0.0_wp                     !! part of the secant matrix in the last tangent
+    !> Prescribed displacements and overlaps go in with the first step
+    logical, private :: takes_full_step = .true.
   contains
     procedure :: restart
     procedure :: linearise
@@ -44,33 +44,12 @@ contains
     self%takes_full_step = .true.
   end subroutine restart
 
-  !> Tangents: stress(strain) + D_t (d strain).
+  !> Tangents: stress(strain) + D (d strain), D = D_t + blend (D_secant - D_t): a flat curve makes D_t
+  !! semidefinite.
   pure subroutine linearise(self, about, linear)
     class(newton_method), intent(inout) :: self
     type(scene_state), intent(in) :: about           !! its strain, and its points
     type(linear_problem), intent(inout) :: linear    !! its law is set
-
-    self%blend = 0.0_wp
-    call set_law(about, self%blend, linear)
-  end subroutine linearise
-
-  !> D_t + w (D_secant - D_t): a flat curve makes D_t semidefinite.
-  pure subroutine stiffen(self, about, linear, possible)
-    class(newton_method), intent(inout) :: self
-    type(scene_state), intent(in) :: about           !! as above
-    type(linear_problem), intent(inout) :: linear    !! as above
-    logical, intent(out) :: possible                 !! w can still grow
-
-    possible = self%blend < blends(size(blends))
-    if (.not. possible) return
-    self%blend = minval(blends, mask=blends > self%blend)
-    call set_law(about, self%blend, linear)
-  end subroutine stiffen
-
-  pure subroutine set_law(about, blend, linear)
-    type(scene_state), intent(in) :: about
-    real(wp), intent(in) :: blend
-    type(linear_problem), intent(inout) :: linear
     real(wp) :: matrix(components, components)
     integer :: p
 
@@ -81,16 +60,25 @@ contains
         linear%law%initial_stress(:, p) = 0.0_wp
         matrix = material%secant_matrix(state)
         if (state%yielded) then
-          matrix = blend*matrix + (1.0_wp - blend)*material%tangent_matrix(strain, state)
+          matrix = self%blend*matrix + (1.0_wp - self%blend)*material%tangent_matrix(strain, state)
           linear%law%initial_stress(:, p) = state%stress - matmul(matrix, strain)
         end if
         call linear%law%set_matrix(p, matrix)
       end associate
     end do
-  end subroutine set_law
+  end subroutine linearise
+
+  !> The next of `blends`.
+  pure subroutine stiffen(self, possible)
+    class(newton_method), intent(inout) :: self
+    logical, intent(out) :: possible                 !! there is one
+
+    possible = self%blend < maxval(blends)
+    if (possible) self%blend = minval(blends, mask=blends > self%blend)
+  end subroutine stiffen
 
   !> Go along the step as far as the energy falls.
-  pure subroutine advance(self, model, linear, part, found, about)
+  subroutine advance(self, model, linear, part, found, about)
     class(newton_method), intent(inout) :: self
     type(model_type), intent(in) :: model            !! the scene
     type(linear_problem), intent(in) :: linear       !! that was solved
@@ -120,33 +108,26 @@ contains
     pure subroutine find_length(length, point)
       real(wp), intent(out) :: length
       type(point_state), allocatable, intent(out) :: point(:)   !! at that length; not allocated for 1
-      real(wp) :: begin, low, high, slope, slope_low, slope_high, terms
-      integer :: k, side
+      real(wp) :: at(2), begin, slope, slopes(2), terms   ! before and behind the zero
+      integer :: k, last, side
 
       length = 1.0_wp
-      call find_slope(about%point, slope_low, terms)
-      call find_slope(found%point, slope_high, terms)
-      begin = slope_low
-      if (begin >= -slope_rounding*terms .or. slope_high <= -flat_enough*begin) return
-      low = 0.0_wp
-      high = 1.0_wp
-      side = 0
+      at = [0.0_wp, 1.0_wp]
+      call find_slope(about%point, slopes(1), terms)
+      call find_slope(found%point, slopes(2), terms)
+      begin = slopes(1)
+      if (begin >= -slope_rounding*terms .or. slopes(2) <= -flat_enough*begin) return
+      last = 0
       do k = 1, most_slopes
-        length = (low*slope_high - high*slope_low)/(slope_high - slope_low)
+        length = (at(1)*slopes(2) - at(2)*slopes(1))/(slopes(2) - slopes(1))
         point = linear%materials%states(about%strain + length*along)
         call find_slope(point, slope, terms)
         if (abs(slope) <= -found_enough*begin) return
-        if (slope > 0.0_wp) then
-          high = length
-          slope_high = slope
-          if (side > 0) slope_low = 0.5_wp*slope_low
-          side = 1
-        else
-          low = length
-          slope_low = slope
-          if (side < 0) slope_high = 0.5_wp*slope_high
-          side = -1
-        end if
+        side = merge(2, 1, slope > 0.0_wp)
+        at(side) = length
+        slopes(side) = slope
+        if (side == last) slopes(3 - side) = 0.5_wp*slopes(3 - side)
+        last = side
       end do
     end subroutine find_length
 

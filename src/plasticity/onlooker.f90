@@ -15,9 +15,10 @@ module epcont_plasticity_onlooker
     integer :: iteration = 0           !! its number in its load step
     real(wp) :: change = 0.0_wp        !! largest change of a displacement / largest displacement
     real(wp) :: force_change = 0.0_wp  !! largest change of a contact force / largest contact force
-    real(wp) :: residual = 0.0_wp      !! largest distance of a stress from its curve / the curve's stress there
-    real(wp) :: error = 0.0_wp         !! of a displacement, estimated / largest displacement; negative: not known
-    real(wp) :: force_error = 0.0_wp   !! of a contact force, estimated / largest contact force; negative: not known
+    !> Largest distance of a stress from its curve / the curve's stress there
+    real(wp) :: residual = 0.0_wp
+    !> Of a displacement, of a contact force, estimated / largest of these; negative: not known
+    real(wp) :: error = 0.0_wp, force_error = 0.0_wp
     logical :: by_tangent = .false.    !! the step that tests what was estimated, and ends the iteration
     integer :: touching = 0            !! pairs
     integer :: yielded = 0             !! elements
@@ -45,7 +46,7 @@ contains
   !> A solve has been done; `over` if it was the last at its load.
   subroutine solved(self, now, over)
     class(onlooker), intent(inout) :: self
-    type(iteration_record), intent(in) :: now
-    logical, intent(in) :: over
+    type(iteration_record), intent(in) :: now   !! that solve
+    logical, intent(in) :: over                 !! the next is at another load
   end subroutine solved
 end module epcont_plasticity_onlooker

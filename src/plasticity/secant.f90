@@ -1,6 +1,7 @@
 !> What the loop asks of an iteration method: a linear law about a state, and from what that law finds the
-!> next state. As it stands it is METHOD SECANT, the paper's: all load each time, moduli from the last strains,
-!> until nothing changes; with a mixer MODSEC: moduli from a mixture of the last strains. Others extend it.
+!> next state. As it stands it is METHOD SECANT, the paper's: all load each time, moduli from the last
+!> strains, until nothing changes; with a mixer MODSEC: moduli from a mixture of the last strains. Others
+!> extend it.
 module epcont_plasticity_secant
   use epcont_base_kinds, only: wp
   use epcont_linear_linear_problem, only: linear_problem
@@ -13,6 +14,7 @@ module epcont_plasticity_secant
 
   type :: secant_method
     type(anderson_mixer), allocatable :: mixer   !! not allocated: what was found is taken as it is
+    real(wp) :: blend = 0.0_wp                   !! part of the secant matrix in a tangent
   contains
     procedure :: restart
     procedure :: linearise
@@ -45,18 +47,17 @@ contains
     end do
   end subroutine linearise
 
-  !> Another law, where a stiffness made of the last could not be factored. Most methods have none.
-  pure subroutine stiffen(self, about, linear, possible)
+  !> Make the next law a stiffer one, where a stiffness made of the last could not be factored. Most methods
+  !! have none.
+  pure subroutine stiffen(self, possible)
     class(secant_method), intent(inout) :: self
-    type(scene_state), intent(in) :: about           !! as above
-    type(linear_problem), intent(inout) :: linear    !! as above
     logical, intent(out) :: possible                 !! there is one
 
     possible = .false.
   end subroutine stiffen
 
   !> The state to linearise about next, when the law about `about` has led to `found`.
-  pure subroutine advance(self, model, linear, part, found, about)
+  subroutine advance(self, model, linear, part, found, about)
     class(secant_method), intent(inout) :: self
     type(model_type), intent(in) :: model            !! the scene
     type(linear_problem), intent(in) :: linear       !! that was solved

@@ -91,7 +91,8 @@ contains
         call say('elastic material only: one solve, no iteration')
         return
       end if
-      call say('total theory of plasticity; bodies that can yield: '//text_of(count(scene%iteration%body)))
+      call say('total theory of plasticity; bodies that can yield: '// &
+               text_of(count(scene%numbering%body%can_yield)))
       call say('iteration '//trim(method_name(scene%iteration%method))//': '// &
                method_text(scene%iteration%method))
       if (scene%iteration%chosen_here) call say('  chosen here (AUTO): '// &
@@ -111,11 +112,11 @@ contains
     subroutine say_rule()
       if (scene%model%pairs == 0) then
         call say('no pairs: no flexibility, no simplex')
-      else if (.not. scene%iteration%contact%by_blocks) then
+      else if (.not. scene%iteration%by_blocks) then
         call say('contact by the simplex with contact entry rule (CONRY)')
       else
         call say('contact by block pivoting of the contacts (BLOCK)')
-        if (scene%iteration%contact%chosen_here) &
+        if (scene%iteration%rule_chosen_here) &
           call say('  chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on')
       end if
     end subroutine say_rule
@@ -201,7 +202,7 @@ contains
           width = text_of(body%half_bandwidth)
           if (body%solver /= solver_band) width = solver_name(body%solver)
           times = '1'
-          if (scene%iteration%body(b) .and. scene%iteration%method /= method_inistr) times = 'each iteration'
+          if (body%can_yield .and. scene%iteration%method /= method_inistr) times = 'each iteration'
           if (body%equations == 0) times = '0'
           way = '-'
           if (body%contact_equations > 0) way = merge('inversion   ', 'substitution', body%contact_last)

@@ -26,7 +26,7 @@ program bench_ours
   use epcont_model_model, only: model_type
   use epcont_element_element_kind, only: most_nodes
   use epcont_plan_free_motion, only: find_free_motions, free_motions
-  use epcont_plan_iteration_plan, only: contact_plan, plan_contact
+  use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_plan_planned_scene, only: planned_scene
   use statistics, only: median
@@ -47,7 +47,7 @@ program bench_ours
   type(factored_bodies) :: bodies
   type(contact_problem) :: problem
   type(contact_solution) :: solution
-  type(contact_plan) :: plan
+  type(iteration_plan) :: plan
   real(wp), allocatable, save :: displacement(:, :)   ! said, since gfortran 12 puts it where no leak detector looks at the end
   real(wp) :: seconds(times, most_runs), condition, spent
   real(wp) :: begun = 0.0_wp   !! of what `lap` measures
@@ -90,7 +90,7 @@ contains
     call build_model(deck, model, faults)
     if (faults%errors > 0) error stop 'this deck has faults'
     call find_free_motions(model, motions, loose)
-    plan = plan_contact(model)
+    plan = plan_iteration(model)
     operator = new_strain_operator(model)
     call find_materials(model, materials)
     law = elastic_law(materials)
@@ -110,7 +110,7 @@ contains
     spent(ordering) = lap()
     scene%model = model
     scene%numbering = numbering
-    bodies = new_bodies(model, single=.false.)
+    bodies = new_bodies(scene, single=.false.)
     bodies%law = law
     call solve_once(spent)
     spent(all_stages) = sum(spent(ordering:displacing))
