@@ -155,7 +155,7 @@ contains
       real(wp), dimension(directions, most_nodes) :: motion, u
       real(wp) :: rounding, strain(components)
       integer :: n, p
-      logical :: ring
+      logical :: moves, ring
 
       n = model%order(e)
       ring = model%kinematics(model%section(e)) == axisymmetric
@@ -163,12 +163,13 @@ contains
         u(:, :n) = answer%deformation(:, node)
         motion(:, :n) = answer%displacement(:, node) - u(:, :n)
       end associate
+      moves = any(motion(:, :n) /= 0.0_wp)
       do p = 1, size(stress, 2)
         rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :n, p)))   ! of a strain by unit displacements
         strain = strain_by(u(:, :n), unit(:, :, :, p), ring)
         stored = stored + volume(p)*dot_product(stress(:, p), strain)
         call check_stress(model%section(e), strain, stress(:, p), rounding*maxval(abs(u(:, :n))))
-        if (all(motion(:, :n) == 0.0_wp)) cycle
+        if (.not. moves) cycle
         strain = strain_by(motion(:, :n), unit(:, :, :, p), ring)
         rounding = rounding*maxval(abs(motion(:, :n)) + abs(u(:, :n)))
         certificate%motion_strain = max(certificate%motion_strain, ratio(maxval(abs(strain)), rounding))

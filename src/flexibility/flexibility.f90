@@ -169,6 +169,7 @@ contains
       all_loads = 0.0_wp
       do i = 1, model%nodes
         load = [(merge(0.0_wp, model%load(c, i), model%held(c, model%leader(c, i))), c=1, directions)]
+        if (all(load == 0.0_wp)) cycle
         resultant(m) = resultant(m) + dot_product(moved(:, i), load)
         all_loads = all_loads + norm2(moved(:, i))*norm2(load)
       end do

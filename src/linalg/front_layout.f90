@@ -23,7 +23,6 @@ module epcont_linalg_front_layout
     !> The elements in the order of the first fronts that they have equations of.
     integer, allocatable :: element(:)
   contains
-    procedure :: places
     procedure :: reached_by
     procedure :: entries
     procedure :: update_starts
@@ -118,23 +117,6 @@ contains
       list(length) = number(i)
     end do
   end subroutine add_new
-
-  !> Where equations, ascending, stand among the rows of a front; they must be there.
-  pure function places(self, number, front) result(place)
-    class(front_layout), intent(in) :: self
-    integer, intent(in) :: number(:), front   !! equations, ascending
-    integer :: place(size(number)), at, i
-
-    at = self%row_start(front)
-    do i = 1, size(number)
-      place(i) = number(i) - self%first(front) + 1
-      if (place(i) <= self%own(front)) cycle
-      do while (self%row(at) < number(i))
-        at = at + 1
-      end do
-      place(i) = self%own(front) + at - self%row_start(front) + 1
-    end do
-  end function places
 
   !> The equations that a front reaches, ascending.
   pure function reached_by(self, front) result(row)
