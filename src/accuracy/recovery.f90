@@ -38,7 +38,7 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     type(patch_table) :: table
     integer, allocatable :: turn(:)
-    integer :: corners, e
+    integer :: corners, e, k
 
     call split_places(table%place, table%node)
     table%places = size(table%node)
@@ -47,8 +47,10 @@ contains
     allocate (turn(table%places), source=0)
     do e = 1, model%elements
       corners = model%corners(e)
-      associate (place => table%place(:corners, e))
-        turn(place) = turn(place) + cshift(place, 1) - cshift(place, -1)
+      associate (place => table%place(:, e))
+        do k = 1, corners
+          turn(place(k)) = turn(place(k)) + place(mod(k, corners) + 1) - place(mod(k + corners - 2, corners) + 1)
+        end do
       end associate
     end do
     table%inside = turn == 0
@@ -95,22 +97,26 @@ contains
     !> The last place that each element was taken for [elements]
     integer, intent(inout) :: seen(:)
     integer, allocatable, intent(out) :: patch(:)     !! elements
-    integer :: i, j, k
+    integer :: count, i, j, k
 
-    allocate (patch(0))
+    count = 0
     associate (start => table%around%start, group => table%around%group)
+      allocate (patch(8*(start(place + 1) - start(place))))
       do i = start(place), start(place + 1) - 1
         do k = 1, model%corners(group(i))
           associate (corner => table%place(k, group(i)))
             do j = start(corner), start(corner + 1) - 1
               if (seen(group(j)) == place) cycle
               seen(group(j)) = place
-              patch = [patch, group(j)]
+              if (count == size(patch)) patch = [patch, patch]
+              count = count + 1
+              patch(count) = group(j)
             end do
           end associate
         end do
       end do
     end associate
+    patch = patch(:count)
   end subroutine wide_patch
 
   !> Strains at the places of a table, of several fields at once [4, places, fields].
@@ -122,7 +128,7 @@ contains
     real(wp), allocatable :: smooth(:, :, :)
     real(wp), allocatable :: x(:, :), sample(:, :, :)   !! samples: [length] [2, points], [4, points, fields]
     integer, allocatable :: patch(:)
-    integer :: seen(model%elements), e, p
+    integer :: seen(model%elements), e, k, p
     !> Of a node between corners: polynomials that reach it; of others -1
     integer :: fits(table%places)
 
@@ -130,7 +136,9 @@ contains
     allocate (smooth(4, table%places, size(strain, 3)), source=0.0_wp)
     fits = -1
     do e = 1, model%elements
-      fits(table%place(model%corners(e) + 1:model%order(e), e)) = 0
+      do k = model%corners(e) + 1, model%order(e)
+        fits(table%place(k, e)) = 0
+      end do
     end do
     seen = 0
     do p = 1, table%places

@@ -154,15 +154,16 @@ contains
       real(wp), intent(in) :: unit(:, :, :, :)      !! strains by unit displacements
       real(wp), dimension(directions, most_nodes) :: motion, u
       real(wp) :: rounding, strain(components)
-      integer :: n, p
+      integer :: k, n, node, p
       logical :: moves, ring
 
       n = model%order(e)
       ring = model%kinematics(model%section(e)) == axisymmetric
-      associate (node => model%connectivity(:n, e))
-        u(:, :n) = answer%deformation(:, node)
-        motion(:, :n) = answer%displacement(:, node) - u(:, :n)
-      end associate
+      do k = 1, n
+        node = model%connectivity(k, e)
+        u(:, k) = answer%deformation(:, node)
+        motion(:, k) = answer%displacement(:, node) - u(:, k)
+      end do
       moves = any(motion(:, :n) /= 0.0_wp)
       do p = 1, size(stress, 2)
         rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :n, p)))   ! of a strain by unit displacements

@@ -243,8 +243,8 @@ contains
           at = index(line, ':')
           card(k) = card_entry(line(:at - 1), trim(line(at + 2:)), [field_entry ::])
         else
-          field = new_field(line)
-          if (index(line, '; ids') + index(line, '; points') > 0) then
+          field = new_field(trim(line))
+          if (index(line(:12), '; ids') + index(line(:12), '; points') > 0) then
             card(k)%list_slot = size(card(k)%field) + 1
             card(k)%list_name = trim(field%name)
             card(k)%list_meaning = trim(field%meaning)
@@ -260,12 +260,12 @@ contains
   end function catalogue
 
   !> All PARAMs.
-  pure function parameters() result(field)
+  function parameters() result(field)
     type(field_entry) :: field(size(choices))
     integer :: i
 
     do i = 1, size(choices)
-      field(i) = new_field(choices(i))
+      field(i) = new_field(trim(choices(i)))
     end do
     field%required = .true.
     where (field%name == 'SOLVER') field%withdrawn = 'SPARSE'

@@ -108,66 +108,103 @@ contains
   !! `point_optional`; what a blank means: `zero`, `default=`, or `as_last`, its neighbour; and whether it
   !! may be blank: ids and digits may if they are `optional`, or where their neighbour (`with_next`,
   !! `with_last`) is, numbers if they are not `needed`. So many like it follow each other as `times=` says.
-  pure type(field_entry) function new_field(line) result(field)
+  type(field_entry) function new_field(line) result(field)
     character(len=*), intent(in) :: line   !! as above
-    character(len=48) :: form   ! between blanks
+    character(len=48) :: form   ! its words that are still to be read
     character(len=len(line)) :: rest
-    integer :: bar, first, second
-    logical :: id, only_zero, positive, system
+    character(len=:), allocatable :: word
+    integer :: behind, first, second
+    logical :: may_be_blank
 
     first = index(line, ';')
     second = first + index(line(first + 1:), ';')
-    form = line(first + 1:second - 1)
-    rest = adjustl(line(second + 1:))
-    bar = index(rest//'|', '|')
-    id = says('id')
-    system = says('system')
-    only_zero = says('only_zero')
-    positive = says('positive')
     field%name = adjustl(line(:first - 1))
+    form = adjustl(line(first + 1:second - 1))
+    rest = adjustl(line(second + 1:))
+    behind = index(rest, '|')
+    if (behind > 0) field%reason = adjustl(rest(behind + 1:))
+    behind = index(rest, '[')
+    if (behind > 0) field%unit = rest(behind + 1:index(rest, ']') - 1)
     field%meaning = rest(:scan(rest//'|', '[|') - 1)
-    if (index(rest, '[') > 0) field%unit = rest(index(rest, '[') + 1:index(rest, ']') - 1)
-    field%reason = adjustl(rest(bar + 1:))
-    field%kind = findloc([id .or. system .or. says('whole'), says('real'), says('digits'), &
-                          says('word'), says('any')], .true., dim=1)   ! kind_blank: none
-    if (says('word')) field%choices = form(len(' word ') + 1:)
-    field%times = nint(number('times', 1.0_wp))
-    field%lowest = number('from', merge(1.0_wp, -huge(1.0_wp), id))
-    if (system .or. only_zero .or. positive) field%lowest = 0.0_wp
-    field%highest = number('to', number('below', huge(1.0_wp)))
-    if (id .or. system) field%highest = largest_id
-    if (only_zero) field%highest = 0.0_wp
-    field%above_lowest = positive
-    field%below_highest = index(form, ' below=') > 0
-    if (index(form, 'instead=') > 0) field%instead = form(index(form, 'instead=') + len('instead='):)
-    if (positive) field%least = least_divisor
-    if (says('cause')) field%least = least_cause
-    field%used = .not. says('noted')
-    field%point_optional = says('point_optional')
-    field%default = number('default', 0.0_wp)
-    field%has_default = says('zero') .or. only_zero .or. index(form, ' default=') > 0
-    if (says('as_last')) field%same_as = last_field
-    if (says('with_next')) field%with = next_field
-    if (says('with_last')) field%with = last_field
-    field%required = says('needed') .or. says('word') .or. &
-                     ((id .or. says('digits')) .and. .not. says('optional') .and. field%with == 0)
+    may_be_blank = .true.
+    do while (form /= '')
+      word = form(:index(form, ' ') - 1)
+      form = adjustl(form(len(word) + 1:))
+      call take_word()
+    end do
+    field%required = field%required .or. .not. (may_be_blank .or. field%with /= 0)
 
   contains
 
-    pure logical function says(word)
-      character(len=*), intent(in) :: word
+    !> What a word says of the field.
+    subroutine take_word()
+      integer :: equals
 
-      says = index(form, ' '//word//' ') > 0
-    end function says
-
-    !> The number behind `name=`, where that stands.
-    pure real(wp) function number(name, otherwise)
-      character(len=*), intent(in) :: name
-      real(wp), intent(in) :: otherwise
-
-      number = otherwise
-      if (index(form, ' '//name//'=') > 0) read (form(index(form, ' '//name//'=') + len(name) + 2:), *) number
-    end function number
+      equals = index(word//'=', '=')
+      select case (word(:equals - 1))
+      case ('id')
+        field%kind = kind_integer
+        field%lowest = 1.0_wp
+        field%highest = largest_id
+        may_be_blank = .false.
+      case ('system')
+        field%kind = kind_integer
+        field%lowest = 0.0_wp
+        field%highest = largest_id
+      case ('whole')
+        field%kind = kind_integer
+      case ('real')
+        field%kind = kind_real
+      case ('digits')
+        field%kind = kind_components
+        may_be_blank = .false.
+      case ('any')
+        field%kind = kind_any
+      case ('word')
+        field%kind = kind_word
+        field%choices = form
+        field%required = .true.
+        form = ''
+      case ('from')
+        read (word(equals + 1:), *) field%lowest
+      case ('to', 'below')
+        read (word(equals + 1:), *) field%highest
+        field%below_highest = word(:equals - 1) == 'below'
+      case ('times')
+        read (word(equals + 1:), *) field%times
+      case ('default')
+        read (word(equals + 1:), *) field%default
+        field%has_default = .true.
+      case ('instead')
+        field%instead = word(equals + 1:)
+      case ('positive')
+        field%lowest = 0.0_wp
+        field%above_lowest = .true.
+        field%least = least_divisor
+      case ('only_zero')
+        field%lowest = 0.0_wp
+        field%highest = 0.0_wp
+        field%has_default = .true.
+      case ('zero')
+        field%has_default = .true.
+      case ('cause')
+        field%least = least_cause
+      case ('noted')
+        field%used = .false.
+      case ('point_optional')
+        field%point_optional = .true.
+      case ('as_last')
+        field%same_as = last_field
+      case ('with_next')
+        field%with = next_field
+      case ('with_last')
+        field%with = last_field
+      case ('needed')
+        field%required = .true.
+      case ('optional')
+        may_be_blank = .true.
+      end select
+    end subroutine take_word
   end function new_field
 
   !> What the field may hold, in words: `a real above 0.0`.
