@@ -49,7 +49,8 @@ contains
       corners = model%corners(e)
       associate (place => table%place(:, e))
         do k = 1, corners
-          turn(place(k)) = turn(place(k)) + place(mod(k, corners) + 1) - place(mod(k + corners - 2, corners) + 1)
+          turn(place(k)) = turn(place(k)) + place(mod(k, corners) + 1) &
+                                          - place(mod(k + corners - 2, corners) + 1)
         end do
       end associate
     end do

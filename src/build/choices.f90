@@ -3,15 +3,16 @@ module epcont_build_choices
   use epcont_base_kinds, only: wp
   use epcont_deck_card_kinds, only: card_param
   use epcont_deck_deck, only: deck_type
-  use epcont_model_controls, only: controls_type, method_name, original_controls, precision_name, rule_name, solver_name
+  use epcont_model_controls, only: controls_type, method_name, original_controls, precision_name, &
+                                   rule_name, solver_name
   use epcont_model_finding, only: findings
   implicit none
   private
   public :: read_controls, check_once
 
   !> What PARAM ORIGINAL YES leaves no choice of.
-  character(len=8), parameter :: chosen(*) = [character(len=8) :: 'SOLVER', 'FLEXIB', 'RULE', 'METHOD', 'TOL', &
-                                              'MUP', 'PRECIS', 'ACCURACY', 'NLOAD']
+  character(len=8), parameter :: chosen(*) = [character(len=8) :: &
+    'SOLVER', 'FLEXIB', 'RULE', 'METHOD', 'TOL', 'MUP', 'PRECIS', 'ACCURACY', 'NLOAD']
 
 contains
 

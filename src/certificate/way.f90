@@ -130,12 +130,12 @@ contains
 
       middle = 0.5_wp*(time(1) + time(2))
       within = (time(2) - time(1))*length
-      place = nearest(point, part, middle, 0.5_wp*within)   ! no farther is the crossing
+      place = nearest_place(point, part, middle, 0.5_wp*within)   ! no farther is the crossing
       if (place%side == 0 .or. .not. place%inside) return
       found = meet(search, point, place)
       if (found%depth <= found%allowed) return
       do i = 1, 2
-        ends(i) = nearest(point, part, time(i), within + place%distance)
+        ends(i) = nearest_place(point, part, time(i), within + place%distance)
         if (ends(i)%inside) found%depth = min(found%depth, place%distance - ends(i)%distance)
         along(:, i) = search%now%tangent(ends(i)%side, ends(i)%s)   ! of the side where it enters, or leaves
       end do
@@ -149,7 +149,7 @@ contains
     end subroutine look_between
 
     !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none.
-    type(near_place) function nearest(point, part, time, reach) result(best)
+    type(near_place) function nearest_place(point, part, time, reach) result(best)
       type(point_type), intent(in) :: point
       integer, intent(in) :: part
       real(wp), intent(in) :: time, reach     !! from 0 to 1; [length]
@@ -171,7 +171,7 @@ contains
         if (place%distance < best%distance) best = place
       end do
       if (best%side > 0) best%inside = between%is_inside(best, x)
-    end function nearest
+    end function nearest_place
   end subroutine look_at_ways
 
   !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area

@@ -162,7 +162,7 @@ contains
         field%kind = kind_any
       case ('word')
         field%kind = kind_word
-        field%choices = form
+        field%choices = form(:len(field%choices))
         field%required = .true.
         form = ''
       case ('from')

@@ -47,8 +47,8 @@ module epcont_model_controls
 
   !> What PARAM ORIGINAL YES chooses. Each contact problem is solved from the start, by pivots, too.
   type(controls_type), parameter, public :: original_controls = controls_type( &
-    rule=rule_conry, method=method_secant, solver=solver_band, precision=precision_double, tolerance=0.01_wp, &
-    by_inversion=.true., paper_ratio=.true., original=.true.)
+    rule=rule_conry, method=method_secant, solver=solver_band, precision=precision_double, &
+    tolerance=0.01_wp, by_inversion=.true., paper_ratio=.true., original=.true.)
 
   !> Uniaxial curve of a material that yields: total strain and stress, from (0, 0) over the yield point on.
   !! Beyond the last point its last slope goes on. Not allocated: the material does not yield.

@@ -16,7 +16,12 @@ LAYERS = ["base", "system", "deck", "element", "geometry", "model", "contact_geo
 SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "linear", "plasticity"}}
 VERSION = "src/base/version.f90"
 PAGE = [VERSION, "src/app/help.f90", "src/app/options.f90"]   # what the manual page is made of
-FILE_LINES, PROCEDURE_LINES, COLUMNS = 400, 80, 132
+FILE_LINES, PROCEDURE_LINES, ARGUMENTS = 400, 80, 7
+#: Columns of a line: of the sources, and of tests, whose assertions are long.
+COLUMNS, TEST_COLUMNS = 110, 132
+#: Lines of the procedures of the sources, without their internal procedures: the median, and what 90 % do not exceed.
+MEDIAN, MOST = 14, 30
+LAPACK = "src/linalg/lapack.f90"   # whose arguments are not ours
 
 USE = re.compile(r"\s*use\s+epcont_(\w+)\b(\s*,\s*only\s*:)?", re.IGNORECASE)
 OLD = re.compile(r"\s*(?:common\b|equivalence\b|entry\s+\w+\s*(?:\(|$)|save\b)|.*(?:\bgo\s*to\s+\d|,\s*save\b)", re.IGNORECASE)
@@ -42,17 +47,47 @@ def procedures(lines):
             begun.append((BEGIN.match(code)[1].lower(), n))
 
 
-def check_size(lines, most=FILE_LINES):
+def own_lines(lines):
+    """(name, first line, number of lines) of each procedure, up to where its internal procedures begin."""
+    for name, first, last in procedures(lines):
+        inside = [n for n in range(first, last) if code_of(lines[n]).strip().lower() == "contains"]
+        yield name, first, (inside[0] + 2 if inside else last) - first
+
+
+def check_size(lines, most=FILE_LINES, columns=TEST_COLUMNS):
     if len(lines) > most:
         yield len(lines), f"more than {most} lines in a file"
     for n, line in enumerate(lines, 1):
-        if len(line) > COLUMNS:
-            yield n, f"longer than {COLUMNS} columns"
-    found = list(procedures(lines))
-    for name, first, last in found:
-        internal = sum(end - begin for _, begin, end in found if first < begin and end < last)
-        if last - first - internal > PROCEDURE_LINES:
+        if len(line) > columns:
+            yield n, f"longer than {columns} columns"
+    for name, first, own in own_lines(lines):
+        if own > PROCEDURE_LINES:
             yield first + 1, f"{name} has more than {PROCEDURE_LINES} lines, without its internal procedures"
+
+
+def check_arguments(lines):
+    for name, first, _ in procedures(lines):
+        if head_of(lines, first).count(",") >= ARGUMENTS:
+            yield first + 1, f"{name} has more than {ARGUMENTS} arguments"
+
+
+def head_of(lines, first):
+    """What stands between the brackets behind a procedure's name."""
+    head = ""
+    for line in lines[first:]:
+        code = code_of(line)
+        head += code.strip().rstrip("&")
+        if not code.endswith("&"):
+            break
+    return re.sub(r"^.*?(?:subroutine|function)\s+\w+\s*\(([^)]*)\).*$|^.*$", r"\1", head, flags=re.IGNORECASE)
+
+
+def check_shape(sources):
+    """The lengths of all procedures: a few may be long, most are short."""
+    lengths = sorted(own for lines in sources for _, _, own in own_lines(lines))
+    middle, most = lengths[len(lengths) // 2], lengths[int(0.9 * len(lengths))]
+    if middle > MEDIAN or most > MOST:
+        yield f"half of the procedures have up to {middle} lines, 90 % up to {most}: {MEDIAN} and {MOST} would be right"
 
 
 def check_habits(lines):
@@ -146,13 +181,16 @@ def last_change(root):
 
 def check(root):
     """All faults, as (path, line, text)."""
-    for path in sorted((root / "src").rglob("*.f90")):
+    sources = sorted((root / "src").rglob("*.f90"))
+    for path in sources:
         lines = path.read_text().splitlines()
-        for checks in (check_size(lines), check_habits(lines), check_module(path, root / "src", lines)):
+        for checks in (check_size(lines, columns=COLUMNS), check_habits(lines), check_module(path, root / "src", lines),
+                       () if path == root / LAPACK else check_arguments(lines)):
             yield from ((path, n, text) for n, text in checks)
-    yield from ((path, 1, text) for path, text in check_names(sorted((root / "src").rglob("*.f90"))))
+    yield from ((root / "src", 1, text) for text in check_shape(path.read_text().splitlines() for path in sources))
+    yield from ((path, 1, text) for path, text in check_names(sources))
     for path in sorted((root / "src").rglob("*.inc")):
-        yield from ((path, n, text) for n, text in check_size(path.read_text().splitlines()))
+        yield from ((path, n, text) for n, text in check_size(path.read_text().splitlines(), columns=COLUMNS))
     for path in sorted((root / "tests").rglob("*.f90")):
         lines = path.read_text().splitlines()
         yield from ((path, n, text) for checks in (check_size(lines), check_habits(lines)) for n, text in checks)
