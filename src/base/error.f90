@@ -2,7 +2,7 @@
 !>
 !> A procedure that can fail takes an allocatable `error_type` as its last argument and leaves it
 !> unallocated when all went well. Only the driver prints it. Faults of a deck are diagnostics
-!> (`epcont_deck_diagnostic`), collected so that all of them are reported in one run.
+!> (`epcont_base_diagnostic`), collected so that all of them are reported in one run.
 module epcont_base_error
   implicit none
   private

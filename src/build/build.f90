@@ -1,5 +1,6 @@
 !> From the cards of a deck to the scene, and what is found of it to messages with their places in the deck.
 module epcont_build_build
+  use epcont_base_diagnostic, only: diagnostic, diagnostics
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: text_of
@@ -14,7 +15,6 @@ module epcont_build_build
                                     card_mats1, card_param, card_pgap, card_pshell, card_psolid, card_rbe2, &
                                     card_spc, card_spc1, card_tables1
   use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostic, diagnostics
   use epcont_deck_entry, only: least_cause
   use epcont_model_element_shapes, only: check_axis
   use epcont_model_finding, only: findings, of_body, of_couple, of_element, of_line, of_node, of_pair, &

@@ -1,10 +1,10 @@
 !> Ids of cards: unique in their space, found where other cards name them; and which set of supports or loads
 !> is used.
 module epcont_build_reference
+  use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_sorting, only: id_index, new_id_index, sorted_order
   use epcont_base_text, only: text_of
   use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostic, severity_note
   use epcont_model_finding, only: findings, of_scene
   implicit none
   private

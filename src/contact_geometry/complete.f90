@@ -7,11 +7,11 @@
 !> by PARAM (controls). Nodes are known by their columns. `complete_model` checks it all and finds the rest.
 !> Pressures come last (add_pressure).
 module epcont_contact_geometry_complete
+  use epcont_base_diagnostic, only: severity_error
   use epcont_base_error, only: error_type, raise, status_deck
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
   use epcont_contact_geometry_pair_checks, only: check_pairs
-  use epcont_deck_diagnostic, only: severity_error
   use epcont_element_kinematics, only: plane_strain
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
   use epcont_model_controls, only: method_newton

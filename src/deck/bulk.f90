@@ -1,11 +1,11 @@
 !> The bulk data: each card checked field by field against the catalogue, and stored in its table.
 module epcont_deck_bulk
+  use epcont_base_diagnostic, only: diagnostics
   use epcont_base_text, only: text_of, upper
   use epcont_deck_card, only: card_fields, continues, find_name, gather
   use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_card_reader, only: read_card
   use epcont_deck_catalogue, only: catalogue, parameters
-  use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_entry, only: card_entry, field_entry, kind_word
   use epcont_deck_field, only: scan_sound, scan_word
   use epcont_deck_source, only: source

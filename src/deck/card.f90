@@ -8,8 +8,8 @@
 !>     *       0.0                                     fields 6 to 9
 !>     +       ...                                     fields 12 to 19
 module epcont_deck_card
+  use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_text, only: text_of
-  use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_entry, only: fields_a_line
   use epcont_deck_source, only: source
   implicit none

@@ -1,10 +1,10 @@
 !> One card, field by field, into its table. Behind its fields there may be a list: of ids, `G1 G2 ..`, with
 !> `G1 THRU G2` and `G1 THRU G2 BY step` where the card allows it; or of points, `X1 Y1 X2 Y2 .. ENDT`.
 module epcont_deck_card_reader
+  use epcont_base_diagnostic, only: diagnostics
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: short_real, text_of, upper
   use epcont_deck_card, only: card_fields
-  use epcont_deck_diagnostic, only: diagnostics
   use epcont_deck_entry, only: farthest, field_entry, kind_blank, kind_components, kind_integer, kind_real, &
                                kind_word, largest_id, number_of
   use epcont_deck_field, only: scan_components, scan_integer, scan_malformed, scan_no_point, scan_real, &

@@ -1,8 +1,8 @@
 !> The statements before BEGIN BULK: which sets are used, titles, and what output is wanted.
 module epcont_deck_case_control
+  use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_kinds, only: i8
   use epcont_base_text, only: text_of, upper
-  use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_entry, only: largest_id
   use epcont_deck_field, only: scan_integer, scan_sound
   use epcont_deck_source, only: source

@@ -1,12 +1,12 @@
 !> A deck as the rest of the program sees it: what case control says, and a table of cards for each name.
 module epcont_deck_deck
+  use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_deck_bulk, only: read_bulk
   use epcont_deck_card, only: card_fields, gather
   use epcont_deck_card_kinds, only: card_param
   use epcont_deck_case_control, only: case_control, read_case_control
-  use epcont_deck_diagnostic, only: diagnostics, place_type
   use epcont_deck_source, only: read_source, source
   use epcont_deck_table, only: card_table
   implicit none

@@ -3,10 +3,10 @@
 !> All files lie one after the other in one buffer, a newline behind each; a line is a stretch of it.
 !> INCLUDE and ENDDATA are dealt with here, so that what reads the cards sees one run of lines.
 module epcont_deck_source
+  use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_kinds, only: i8
   use epcont_base_text, only: shown, text_of, upper
-  use epcont_deck_diagnostic, only: diagnostics, place_type
   implicit none
   private
   public :: source, read_source

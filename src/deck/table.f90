@@ -1,8 +1,8 @@
 !> The cards of one name, field by field, as the reader hands them on.
 module epcont_deck_table
+  use epcont_base_diagnostic, only: place_type
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_deck_diagnostic, only: place_type
   use epcont_deck_entry, only: card_entry, kind_word
   implicit none
   private

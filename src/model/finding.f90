@@ -2,8 +2,8 @@
 !> arrays the first error is told in a sentence; of one made from a deck everything has its place among the
 !> cards.
 module epcont_model_finding
+  use epcont_base_diagnostic, only: findings => diagnostics
   use epcont_base_text, only: text_of
-  use epcont_deck_diagnostic, only: findings => diagnostics
   implicit none
   private
   public :: findings, and_more

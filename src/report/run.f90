@@ -1,7 +1,7 @@
 !> What is known of one deck's run: all that the listing, the tables and the messages are written from.
 module epcont_report_run
+  use epcont_base_diagnostic, only: diagnostics
   use epcont_deck_deck, only: deck_type
-  use epcont_deck_diagnostic, only: diagnostics
   use epcont_report_outcome, only: outcome_type, remarks_type
   use epcont_solution, only: solution_type
   implicit none

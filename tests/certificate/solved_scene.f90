@@ -3,7 +3,7 @@ module solved_scene
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_deck_deck, only: deck_type, read_deck
-  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_base_diagnostic, only: diagnostics
   use epcont_build_build, only: build_model
   use epcont_model_finding, only: findings
   use epcont_plasticity_onlooker, only: onlooker

@@ -201,6 +201,13 @@ class Links(unittest.TestCase):
         named = {path.name for path in (TOP / "tests").iterdir() if re.search(rf"^\| `{path.name}[`/]", page, re.MULTILINE)}
         self.assertEqual(set(), {path.name for path in (TOP / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"} - named - layers)
 
+    def test_sources_that_are_named_exist(self):
+        for page in documents():
+            if page.name == "CHANGELOG.md":   # tells of old ones
+                continue
+            for name in re.findall(r"`((?:\w+/)+\w+\.(?:f90|inc|pf|py))[`,]", page.read_text(encoding="utf-8")):
+                self.assertTrue(any((TOP / folder / name).exists() for folder in ("", "src", "tests", "tools")), f"{page.relative_to(TOP)}: {name}")
+
     def test_relative_links_resolve(self):
         seen = 0
         for page in documents():

@@ -2,7 +2,7 @@
 module deck_faults
   use epcont_base_error, only: error_type
   use epcont_deck_deck, only: deck_type, read_deck
-  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_base_diagnostic, only: diagnostics
   use epcont_deck_render, only: render
   use epcont_build_build, only: build_model, tell
   use epcont_model_model, only: model_type

@@ -15,7 +15,7 @@ program bench_ours
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved
   use epcont_contact_solver, only: solve_contact
   use epcont_deck_deck, only: deck_type, read_deck
-  use epcont_deck_diagnostic, only: diagnostics
+  use epcont_base_diagnostic, only: diagnostics
   use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, &
     gap_opening, pair_forces, see_motions
   use epcont_material_linear_law, only: elastic_law, linear_law

@@ -1,6 +1,6 @@
 !> Faults of a deck or of a scene: what is wrong, where, and what would be right. They are collected, so that
 !> one run reports them all; `epcont_deck_render` turns them into text.
-module epcont_deck_diagnostic
+module epcont_base_diagnostic
   use epcont_base_sorting, only: sorted_order
   implicit none
   private
@@ -119,4 +119,4 @@ contains
     order = sorted_order(self%list(:self%count)%place%first)
     order = order(sorted_order(line(order)))
   end function in_deck_order
-end module epcont_deck_diagnostic
+end module epcont_base_diagnostic
