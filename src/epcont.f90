@@ -15,7 +15,7 @@ module epcont
   use epcont_model_model, only: line_couple, model_type, named_line
   use epcont_model_pressure, only: add_pressure
   use epcont_model_yield_curve, only: bilinear_curve
-  use epcont_plasticity_onlooker, only: onlooker
+  use epcont_plasticity_observer, only: observer
   use epcont_report_outcome, only: judge, outcome_type
   use epcont_solution, only: solution_type
   use epcont_system_threads, only: use_one_thread
@@ -45,7 +45,7 @@ contains
     type(error_type), allocatable, intent(out) :: error
     real(wp), intent(in), optional :: memory        !! that may be taken, at most [GB]
     type(findings) :: found
-    type(onlooker) :: watch
+    type(observer) :: watch
     real(wp) :: limit
 
     limit = huge(limit)

@@ -9,14 +9,14 @@ module epcont_solution
   use epcont_contact_geometry_nearness, only: enter_nodes_that_came_near
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
+  use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_controls, only: precision_double
   use epcont_plan_forecast, only: check_memory
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_plasticity_iteration, only: follow_loads, followed_loads
-  use epcont_linear_linear_problem, only: linear_problem
-  use epcont_plasticity_onlooker, only: onlooker
+  use epcont_plasticity_observer, only: observer
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: find_body_forces
   use epcont_result_contact_line, only: contact_line, find_contact_line
@@ -56,7 +56,7 @@ contains
   subroutine solve(self, limit, watch, error)
     class(solution_type), intent(inout) :: self
     real(wp), intent(in) :: limit                         !! of memory [GB]
-    class(onlooker), intent(inout) :: watch               !! takes the time, and is told of each solve
+    class(observer), intent(inout) :: watch               !! takes the time, and is told of each solve
     type(error_type), allocatable, intent(out) :: error   !! there is not enough memory
     type(error_type), allocatable :: in_double
     integer :: count
@@ -84,7 +84,7 @@ contains
     type(answer_type), intent(out) :: answer
     type(certificate_type), intent(out) :: certificate
     type(accuracy_type), intent(out) :: accuracy
-    class(onlooker), intent(inout) :: watch
+    class(observer), intent(inout) :: watch
     type(linear_problem), allocatable :: linear
     type(contact_line) :: line
     type(answer_type) :: found                      ! before refinement
@@ -125,7 +125,7 @@ contains
     type(contact_line), intent(in) :: line
     type(answer_type), intent(inout) :: answer
     type(certificate_type), intent(out) :: certificate
-    class(onlooker), intent(inout) :: watch
+    class(observer), intent(inout) :: watch
     logical, allocatable :: touching(:)
 
     if (linear%materials%yields .and. .not. allocated(answer%point)) &
@@ -154,7 +154,7 @@ contains
     type(planned_scene), intent(in) :: scene
     type(linear_problem), allocatable, intent(out) :: linear
     type(answer_type), intent(inout) :: answer
-    class(onlooker), intent(inout) :: watch
+    class(observer), intent(inout) :: watch
     type(iteration_plan) :: now
 
     now = scene%iteration
@@ -185,7 +185,7 @@ contains
     type(iteration_plan), intent(inout) :: plan   !! its load steps become those that were taken
     type(linear_problem), allocatable, intent(out) :: linear
     type(followed_loads), intent(out) :: answer
-    class(onlooker), intent(inout) :: watch
+    class(observer), intent(inout) :: watch
 
     call follow_loads(scene, plan, linear, answer, watch)
     if (.not. (plan%chosen_here .and. plan%yields)) return

@@ -1,4 +1,4 @@
-"""What each choice costs and buys: mesh x element x method x tolerance x precision x rule, on scenes with known answers.
+"""Time, memory and accuracy of each choice: mesh x element x method x tolerance x precision x rule, on scenes with known answers.
 
     tools/tradeoff                  tools/tradeoff.md and tools/tradeoff.png
     tools/tradeoff --quick          coarse meshes and few choices: the same tables in a minute
@@ -228,7 +228,7 @@ PRECISION = (
 
 def page(found, quick, spent, picture):
     count = sum(len(runs) + len(failed) for _, runs, failed in found)
-    text = ["# What each choice costs and buys",
+    text = ["# Time, memory and accuracy of each choice",
             f"`tools/tradeoff{' --quick' if quick else ''}`, {platform.machine()}: {count} choices of mesh, element, method, tolerance, precision and rule in "
             f"{spent / 60:.0f} minutes. Time: processor, whole process, one thread, the least of three runs. Memory: its peak. Errors: true ones, the worst "
             "largest pressure and the worst approach (tube: mean u(a)) in per cent; beside them what the program itself says. mesh: elements across the contact (cylinders), round "

@@ -71,7 +71,7 @@ contains
       allocate (next(size(node)), section(size(node)), source=0)
       places = model%nodes
       do e = 1, model%elements
-        do k = 1, model%order(e)
+        do k = 1, model%node_count(e)
           at = place(k, e)
           if (section(at) == 0) section(at) = model%section(e)
           do while (section(at) /= model%section(e))
@@ -137,7 +137,7 @@ contains
     allocate (smooth(4, table%places, size(strain, 3)), source=0.0_wp)
     fits = -1
     do e = 1, model%elements
-      do k = model%corners(e) + 1, model%order(e)
+      do k = model%corners(e) + 1, model%node_count(e)
         fits(table%place(k, e)) = 0
       end do
     end do
@@ -169,7 +169,7 @@ contains
       allocate (x(2, model%points))
       sample = strain
       do e = 1, model%elements
-        associate (node => model%connectivity(:model%order(e), e), kind => model%kinds(model%kind(e)), &
+        associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)), &
                    first => model%first_point(e), last => model%first_point(e + 1) - 1)
           if (kind%degree > 1) then
             do k = 1, kind%samples
@@ -268,7 +268,7 @@ contains
       do i = table%around%start(p), table%around%start(p + 1) - 1
         e = table%around%group(i)
         associate (place => table%place(:, e), corners => model%corners(e))
-          do k = corners + 1, model%order(e)
+          do k = corners + 1, model%node_count(e)
             if (place(k - corners) /= p .and. place(mod(k - corners, corners) + 1) /= p) cycle
             term = terms((model%x(:, table%node(place(k))) - at)/reach)
             do f = 1, size(sample, 3)

@@ -119,7 +119,7 @@ contains
     pure logical function is_rigid(element)
       integer, intent(in) :: element
 
-      is_rigid = model%is_rigid(model%connectivity(:model%order(element), element))
+      is_rigid = model%is_rigid(model%connectivity(:model%node_count(element), element))
     end function is_rigid
   end function elements_behind
 

@@ -6,7 +6,7 @@ module epcont_app_progress_display
   use epcont_base_text, only: newline, short_real, text_of
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plasticity_expectation, only: expectation_type, new_expectation
-  use epcont_plasticity_onlooker, only: iteration_record, onlooker
+  use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_report_columns, only: rounding_number
   use epcont_system_stopwatch, only: stage_name, stages, stopwatch
   implicit none
@@ -16,7 +16,7 @@ module epcont_app_progress_display
   !> Nobody waits for runs that are shorter [s].
   real(wp), parameter :: short_run = 1.0_wp
 
-  type, extends(onlooker) :: progress_type
+  type, extends(observer) :: progress_type
     character(len=:), allocatable, private :: stem   !! of the deck
     logical, private :: on_terminal = .false.
     real(wp), private :: silent_to = 0.0_wp          !! nothing is shown of runs that are shorter [s]

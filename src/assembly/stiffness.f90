@@ -74,7 +74,7 @@ contains
       do e = 1, size(body%element)
         number = scene%numbering%of_element(scene%model, body%element(e))
         if (.not. any(stale(number))) cycle
-        n = directions*scene%model%order(body%element(e))
+        n = directions*scene%model%node_count(body%element(e))
         call operator%element_stiffness(scene%model, body%element(e), law, n, k)
         if (self%single) k(:n**2) = k(:n**2)/self%unit
         call self%matrix%add(n, number, k)
@@ -142,7 +142,7 @@ contains
 
       largest = 0.0_wp
       do e = 1, size(element)
-        associate (columns => directions*scene%model%order(element(e)), &
+        associate (columns => directions*scene%model%node_count(element(e)), &
                    first => scene%model%first_point(element(e):))
           do p = first(1), first(2) - 1
             largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
@@ -167,7 +167,7 @@ contains
     row_sum = 0.0_wp
     do e = 1, size(scene%numbering%body(b)%element)
       associate (element => scene%numbering%body(b)%element(e))
-        n = directions*scene%model%order(element)
+        n = directions*scene%model%node_count(element)
         call operator%element_stiffness(scene%model, element, law, n, k)
         call add_magnitudes(n, scene%numbering%of_element(scene%model, element), k, row_sum)
       end associate

@@ -33,15 +33,16 @@ contains
     integer :: column, e, k, points
 
     allocate (operator%column(model%points), operator%volume(model%points))
-    allocate (operator%b(components, directions*sum(model%order(model%point_element))))
+    allocate (operator%b(components, directions*sum(model%node_count(model%point_element))))
     column = 0
     do e = 1, model%elements
       points = model%first_point(e + 1) - model%first_point(e)
-      do k = 1, model%order(e)
+      do k = 1, model%node_count(e)
         x(:, k) = model%x(:, model%connectivity(k, e))
       end do
-      associate (section => model%section(e), columns => directions*model%order(e))
-        call evaluate_points(model%kinds(model%kind(e)), x(:, :model%order(e)), model%kinematics(section), &
+      associate (section => model%section(e), columns => directions*model%node_count(e))
+        call evaluate_points(model%kinds(model%kind(e)), x(:, :model%node_count(e)), &
+                             model%kinematics(section), &
                              model%thickness(section), point(:points))
         do k = 1, points
           operator%b(:, column + 1:column + columns) = point(k)%b(:, :columns)
@@ -66,7 +67,7 @@ contains
     do p = 1, model%points
       now = 0.0_wp
       c = self%column(p)
-      do i = 1, model%order(model%point_element(p))
+      do i = 1, model%node_count(model%point_element(p))
         associate (u => displacement(:, model%connectivity(i, model%point_element(p))))
           now = now + self%b(:, c + 1)*u(1) + self%b(:, c + 2)*u(2)
         end associate
@@ -89,7 +90,7 @@ contains
     do p = 1, model%points
       s = self%volume(p)*stress(:, p)
       c = self%column(p)
-      do i = 1, model%order(model%point_element(p))
+      do i = 1, model%node_count(model%point_element(p))
         associate (f => force(:, model%connectivity(i, model%point_element(p))))
           f(1) = f(1) + dot_product(s, self%b(:, c + 1))
           f(2) = f(2) + dot_product(s, self%b(:, c + 2))

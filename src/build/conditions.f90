@@ -8,8 +8,8 @@ module epcont_build_conditions
                                     card_suport
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
-  use epcont_model_freedoms, only: follow_to_the_end, freedom, set_reference, tie
   use epcont_model_finding, only: and_more, findings, of_element
+  use epcont_model_freedoms, only: follow_to_the_end, freedom, set_reference, tie
   use epcont_model_model, only: model_type
   use epcont_model_pressure, only: add_pressure, element_behind
   implicit none
@@ -153,7 +153,7 @@ contains
         call resolve(deck, card_ploadx1, ga + 1, nodes, found, b)
         do i = 1, pressure%count
           if (element(i) == 0 .or. a(i) == 0 .or. b(i) == 0 .or. nint(pressure%value(1, i)) /= load_set) cycle
-          if (any(model%connectivity(:model%order(element(i)), element(i)) == 0)) cycle  ! said of the element
+          if (any(model%connectivity(:model%node_count(element(i)), element(i)) == 0)) cycle
           side = model%side_between(element(i), a(i), b(i))
           if (side == 0) then
             call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &

@@ -132,7 +132,7 @@ contains
         call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
         associate (stress => answer%point_stress(:, model%first_point(e):model%first_point(e + 1) - 1))
           call check_points(e, stress, unit, volume)
-          do k = 1, model%order(e)
+          do k = 1, model%node_count(e)
             force = 0.0_wp
             do p = 1, size(stress, 2)
               do c = 1, directions
@@ -157,7 +157,7 @@ contains
       integer :: k, n, node, p
       logical :: moves, ring
 
-      n = model%order(e)
+      n = model%node_count(e)
       ring = model%kinematics(model%section(e)) == axisymmetric
       do k = 1, n
         node = model%connectivity(k, e)

@@ -47,7 +47,7 @@ contains
     real(wp) :: determinant, radius
     integer :: k, n, p
 
-    n = model%order(element)
+    n = model%node_count(element)
     do k = 1, n
       x(:, k) = model%x(:, model%connectivity(k, element))
     end do

@@ -18,7 +18,7 @@ module epcont_contact_problem
   integer, parameter, public :: contact_no_equilibrium = 1
   !> The pairs `overlapping` are too close and nothing gives way.
   integer, parameter, public :: contact_overlap = 2
-  !> No set of touching pairs passed the test: rounding has won.
+  !> No set of touching pairs passed the test: inconclusive because of rounding.
   integer, parameter, public :: contact_stalled = 3
 
   !> Number of pivots kept in `history`; all are counted.

@@ -25,7 +25,7 @@ contains
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: e, next, plane, ring
 
-    model%order = model%kinds(model%kind)%nodes
+    model%node_count = model%kinds(model%kind)%nodes
     model%points = sum(model%kinds(model%kind)%points)
     allocate (model%first_point(model%elements + 1), model%point_element(model%points))
     next = 1
@@ -33,7 +33,7 @@ contains
       model%first_point(e) = next
       next = next + model%kinds(model%kind(e))%points
       model%point_element(model%first_point(e):next - 1) = e
-      if (all(model%connectivity(:model%order(e), e) > 0)) call check_shape(e, model%corners(e))
+      if (all(model%connectivity(:model%node_count(e), e) > 0)) call check_shape(e, model%corners(e))
     end do
     model%first_point(e) = next
     model%around = new_incidence(model%connectivity, model%nodes)
@@ -54,7 +54,7 @@ contains
       integer :: k
       logical :: bends_wrong
 
-      associate (node => model%connectivity(:model%order(e), e))
+      associate (node => model%connectivity(:model%node_count(e), e))
         do k = 1, n
           x(:, k) = model%x(:, node(k))
         end do
@@ -131,7 +131,7 @@ contains
 
     in_ring = .false.
     do e = 1, model%elements
-      associate (node => model%connectivity(:model%order(e), e))
+      associate (node => model%connectivity(:model%node_count(e), e))
         if (model%is_ring(e) .and. all(node > 0)) in_ring(node) = .true.
       end associate
     end do

@@ -103,7 +103,7 @@ contains
 
     joined = new_partition(model%nodes)
     do i = 1, model%elements
-      do k = 2, model%order(i)
+      do k = 2, model%node_count(i)
         call joined%join(model%connectivity(1, i), model%connectivity(k, i))
       end do
     end do

@@ -56,7 +56,7 @@ module epcont_model_model
     integer, allocatable :: element_id(:)       !! [elements]
     type(element_kind), allocatable :: kinds(:) !! the table of elements [any]
     integer, allocatable :: kind(:)             !! of each element: its row there [elements]
-    integer, allocatable :: order(:)            !! nodes of each element [elements]
+    integer, allocatable :: node_count(:)       !! nodes of each element [elements]
     !> The nodes of each element: its corners counter-clockwise, then the middles of its sides, the first
     !! behind the first corner; 0 where it has no more. [most of all, elements]
     integer, allocatable :: connectivity(:, :)
@@ -118,13 +118,13 @@ module epcont_model_model
 
 contains
 
-  !> Coordinates of the nodes of an element [length] [2, order].
+  !> Coordinates of the nodes of an element [length] [2, its nodes].
   pure function coordinates(self, element) result(x)
     class(model_type), intent(in) :: self
     integer, intent(in) :: element   !! which element
-    real(wp) :: x(2, self%order(element))
+    real(wp) :: x(2, self%node_count(element))
 
-    x = self%x(:, self%connectivity(:self%order(element), element))
+    x = self%x(:, self%connectivity(:self%node_count(element), element))
   end function coordinates
 
   !> Corners, and sides, of an element.
@@ -144,7 +144,7 @@ contains
 
     associate (node => self%connectivity(:, element), n => self%corners(element))
       edge = [node(side), node(mod(side, n) + 1), 0]
-      if (self%order(element) > n) edge(3) = node(n + side)
+      if (self%node_count(element) > n) edge(3) = node(n + side)
     end associate
   end function edge
 

@@ -67,7 +67,7 @@ contains
 
       edge = huge(1.0_wp)
       do e = 1, model%elements
-        if (any(model%connectivity(:model%order(e), e) == 0)) cycle
+        if (any(model%connectivity(:model%node_count(e), e) == 0)) cycle
         do k = 1, model%corners(e)
           side = model%edge(e, k)
           associate (node => side(:merge(3, 2, side(3) > 0)))

@@ -143,7 +143,8 @@ contains
               (of_point + load_of_point*loads)*model%points
       do p = 1, model%points
         associate (e => model%point_element(p))
-          bytes = bytes + of_node_of_point*model%order(e) + merge(of_yielding_point, 0_i8, model%can_yield(e))
+          bytes = bytes + of_node_of_point*model%node_count(e) + &
+                  merge(of_yielding_point, 0_i8, model%can_yield(e))
         end associate
       end do
     end function beside_matrices

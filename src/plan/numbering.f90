@@ -119,7 +119,7 @@ contains
           first(i) = max(first(i - 1), maxval(equation) + 1)
         end associate
       end do
-      allocate (numbers(directions*maxval(model%order(body%element)), size(body%element)))
+      allocate (numbers(directions*maxval(model%node_count(body%element)), size(body%element)))
       do i = 1, size(body%element)
         number = numbering%of_element(model, body%element(i))
         numbers(:, i) = number(:size(numbers, 1))
@@ -216,7 +216,7 @@ contains
         first = filled + 1
         do k = model%around%start(order%node(at)), model%around%start(order%node(at) + 1) - 1
           associate (e => model%around%group(k))
-            call add_new(model%connectivity(:model%order(e), e), seen, order%node, filled)
+            call add_new(model%connectivity(:model%node_count(e), e), seen, order%node, filled)
           end associate
         end do
         if (filled > first) then
@@ -311,7 +311,7 @@ contains
     integer :: i
 
     number = 0
-    do i = 1, model%order(element)
+    do i = 1, model%node_count(element)
       number(directions*(i - 1) + 1:directions*i) = self%equation(:, model%connectivity(i, element))
     end do
   end function of_element

@@ -71,7 +71,7 @@ contains
       sets = new_partition(model%elements)
       allocate (met_by(model%elements), source=0)
       do e = 1, model%elements
-        do k = 1, model%order(e)
+        do k = 1, model%node_count(e)
           associate (node => model%connectivity(k, e))
             do j = model%around%start(node), model%around%start(node + 1) - 1
               associate (neighbour => model%around%group(j))

@@ -4,7 +4,7 @@ module epcont_plasticity_expectation
   use epcont_base_kinds, only: wp
   use epcont_model_controls, only: method_newton
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plasticity_onlooker, only: iteration_record
+  use epcont_plasticity_observer, only: iteration_record
   implicit none
   private
   public :: expectation_type, new_expectation, solves_to_come

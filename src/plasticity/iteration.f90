@@ -14,7 +14,7 @@ module epcont_plasticity_iteration
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_initial_stress, only: initial_stress_method
   use epcont_plasticity_newton, only: newton_method
-  use epcont_plasticity_onlooker, only: iteration_record, onlooker
+  use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_secant, only: secant_method
   use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
   implicit none
@@ -63,7 +63,7 @@ contains
     type(iteration_plan), intent(in) :: plan                   !! how; it may differ from the scene's
     type(linear_problem), allocatable, intent(out) :: linear   !! as the last solve left it
     type(followed_loads), intent(out) :: answer                !! what came of it
-    class(onlooker), intent(inout) :: watch                    !! takes the time, and is told of each solve
+    class(observer), intent(inout) :: watch                    !! takes the time, and is told of each solve
     class(secant_method), allocatable :: method
     type(scene_state) :: about                ! that the law is about
     type(scene_state), allocatable :: state   ! found at this load

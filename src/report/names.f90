@@ -44,7 +44,7 @@ contains
     integer, intent(in) :: element          !! its number
     character(len=:), allocatable :: name
 
-    name = point_name(sum(model%coordinates(element), dim=2)/model%order(element))
+    name = point_name(sum(model%coordinates(element), dim=2)/model%node_count(element))
   end function centre_name
 
   !> `1, 2, 3, and 4 more`: numbers, those beyond the first `most` only counted.

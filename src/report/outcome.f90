@@ -72,7 +72,7 @@ contains
                     joined(pack(run%model%pair_id, run%answer%contact%overlapping), ' ', most_pairs))
     else if (run%answer%contact%state /= contact_solved) then
       call conclude(status_numerical, 'contact not found', 'no set of touching pairs passed the test: '// &
-                    'rounding has won (condition of the stiffness)')
+                    'inconclusive because of rounding (condition of the stiffness)')
     else
       call judge_answer()
       outcome%has_answer = .true.

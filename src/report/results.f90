@@ -332,8 +332,8 @@ contains
                  percent(sum(run%accuracy%element(run%accuracy%worst)), sum(run%accuracy%element))// &
                  ' of the error')
       if (.not. any(run%accuracy%weak)) return   ! nor is it known of each pair
-      call list_pairs('pressed by less than the error of the force', .true.)
-      call list_pairs('open by less than the error of the gap', .false.)
+      call list_pairs('contact state uncertain: pressed by less than the error of the force', .true.)
+      call list_pairs('contact state uncertain: open by less than the error of the gap', .false.)
     end subroutine list_mesh
 
     !> Pairs that touch, or that do not, but may as well.

@@ -166,7 +166,7 @@ contains
     subroutine put_sensitivity()
       if (.not. run%accuracy%sensitivity%known) return
       call put('contact_amplification', none, factor, run%accuracy%sensitivity%amplification, &
-               'they magnify errors of the stiffness', '   times at most')
+               'contact forces amplify stiffness errors', '   times at most')
       call put('rounding_error_force', none, known, &
                max(run%accuracy%sensitivity%rounding, run%answer%rounding_error))
       call put_word('weak_pairs', text_of(count(run%accuracy%weak)), '')

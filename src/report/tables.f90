@@ -231,7 +231,7 @@ contains
       do k = 1, run%model%elements
         associate (model => run%model, answer => run%answer)
           call table%row([model%element_id(k)], &
-                         [sum(model%coordinates(k), dim=2)/model%order(k), answer%stress(:, k), &
+                         [sum(model%coordinates(k), dim=2)/model%node_count(k), answer%stress(:, k), &
                           answer%equivalent_stress(k), &
                           answer%largest_stress(k), place_of_point(model, answer%largest_at(k)), &
                           answer%equivalent_strain(k), answer%secant_modulus(k)], &

@@ -55,7 +55,7 @@ contains
         node = pack([(i, i=1, model%nodes)], start(2:) > start(:model%nodes))
         allocate (point(model%nodes))
         point(node) = [(i, i=1, size(node))]
-        last = model%order
+        last = model%node_count
         do i = 2, size(last)
           last(i) = last(i - 1) + last(i)
         end do

@@ -6,7 +6,7 @@ module solved_scene
   use epcont_base_diagnostic, only: diagnostics
   use epcont_build_build, only: build_model
   use epcont_model_finding, only: findings
-  use epcont_plasticity_onlooker, only: onlooker
+  use epcont_plasticity_observer, only: observer
   use epcont_solution, only: solution_type
   implicit none
   private
@@ -45,7 +45,7 @@ contains
     type(diagnostics) :: faults
     type(error_type), allocatable :: error
     type(findings) :: loose
-    type(onlooker) :: watch
+    type(observer) :: watch
 
     call read_deck(path, deck, faults, error)
     call build_model(deck, solved%model, faults)

@@ -170,7 +170,7 @@ contains
     integer :: e
 
     do e = 1, size(element)
-      call operator%element_stiffness(model, element(e), law, 2*model%order(element(e)), k)
+      call operator%element_stiffness(model, element(e), law, 2*model%node_count(element(e)), k)
     end do
   end subroutine make_elements
 
@@ -235,11 +235,11 @@ contains
     integer, allocatable :: number(:)
     integer :: e, i, j, last, n
 
-    last = sum((2*model%order)**2)
+    last = sum((2*model%node_count)**2)
     allocate (row(last), column(last), value(last))
     last = 0
     do e = 1, model%elements
-      n = model%order(e)
+      n = model%node_count(e)
       call operator%element_stiffness(model, e, law, 2*n, k)
       number = reshape(equation(:, model%connectivity(:n, e)), [2*n])
       do j = 1, 2*n

@@ -1,13 +1,13 @@
 !> Who may look on while loads are followed: the stopwatch, and whoever is told of each solve. What it does
 !> changes nothing.
-module epcont_plasticity_onlooker
+module epcont_plasticity_observer
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: pivot_record
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_system_stopwatch, only: stopwatch
   implicit none
   private
-  public :: iteration_record, onlooker
+  public :: iteration_record, observer
 
   !> One solve.
   type :: iteration_record
@@ -27,17 +27,17 @@ module epcont_plasticity_onlooker
   end type iteration_record
 
   !> One that says nothing.
-  type, extends(stopwatch) :: onlooker
+  type, extends(stopwatch) :: observer
   contains
     procedure :: expect
     procedure :: solved
-  end type onlooker
+  end type observer
 
 contains
 
   !> The plan is made; solves begin.
   subroutine expect(self, plan, most_iterations, operations)
-    class(onlooker), intent(inout) :: self
+    class(observer), intent(inout) :: self
     type(iteration_plan), intent(in) :: plan   !! how yielding is iterated
     integer, intent(in) :: most_iterations     !! at a load
     real(wp), intent(in) :: operations         !! of a solve
@@ -45,8 +45,8 @@ contains
 
   !> A solve has been done; `over` if it was the last at its load.
   subroutine solved(self, now, over)
-    class(onlooker), intent(inout) :: self
+    class(observer), intent(inout) :: self
     type(iteration_record), intent(in) :: now   !! that solve
     logical, intent(in) :: over                 !! the next is at another load
   end subroutine solved
-end module epcont_plasticity_onlooker
+end module epcont_plasticity_observer
