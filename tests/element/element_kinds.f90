@@ -17,13 +17,18 @@ module element_kinds
 
   integer, parameter, public :: node_numbers(4) = [3, 6, 4, 8]
   real(wp), parameter, public :: thickness = 0.7_wp
+  real(wp), parameter, public :: rounding = 1.0e-13_wp
+  !> A general displacement gradient and shift, and a turn.
+  real(wp), parameter, public :: gradient(2, 2) = reshape([0.6_wp, -0.3_wp, 0.8_wp, -0.5_wp], [2, 2])
+  real(wp), parameter, public :: shift(2) = [0.4_wp, -0.7_wp]
+  real(wp), parameter, public :: turn(2, 2) = reshape([real(wp) :: 0, 1, -1, 0], [2, 2])
   character(len=*), parameter, public :: kinematics_name(3) = [', plane strain', ', plane stress', ', ring        ']
 
   !> One element; all are to the right of the axis of rings.
   type, public :: element_shape
     character(len=30) :: name
     real(wp), allocatable :: x(:, :)   !! [2, nodes]
-    logical :: straight = .true.       !! sides, with their nodes in their middles
+    logical :: straight                !! sides, with their nodes in their middles
   end type element_shape
 
   !> Elements that share nodes.
@@ -38,54 +43,53 @@ contains
   !> Elements of all numbers of nodes.
   function sample_shapes() result(shape)
     type(element_shape), allocatable :: shape(:)
-    real(wp), parameter :: right(2, 3) = reshape([1.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 1.0_wp, 1.0_wp], [2, 3])
+    real(wp), parameter :: right(2, 3) = reshape([real(wp) :: 1, 0, 2, 0, 1, 1], [2, 3])
     real(wp), parameter :: scalene(2, 3) = reshape([0.3_wp, -0.2_wp, 2.1_wp, 0.4_wp, 0.9_wp, 1.7_wp], [2, 3])
     real(wp), parameter :: flat(2, 3) = reshape([4.0_wp, 0.3_wp, 2.6_wp, 0.5_wp, 1.0_wp, 0.0_wp], [2, 3])
     real(wp), parameter :: axis(2, 3) = reshape([0.0_wp, 1.5_wp, 0.0_wp, 0.1_wp, 1.2_wp, 0.4_wp], [2, 3])
-    real(wp), parameter :: none(2, 3) = 0.0_wp
     real(wp), parameter :: one_arc(2, 3) = reshape([0.05_wp, -0.15_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], [2, 3])
     real(wp), parameter :: arcs(2, 3) = reshape([0.0_wp, -0.1_wp, -0.08_wp, -0.06_wp, 0.1_wp, 0.02_wp], [2, 3])
-    real(wp), parameter :: straight(2, 4) = 0.0_wp
     real(wp), parameter :: four_arcs(2, 4) = reshape([0.0_wp, -0.1_wp, 0.08_wp, 0.05_wp, 0.1_wp, 0.06_wp, 0.0_wp, 0.0_wp], [2, 4])
-    real(wp), parameter :: square(8) = [1.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 1.0_wp, 1.0_wp, 1.0_wp]
-    real(wp), parameter :: skew(8) = [1.0_wp, 0.0_wp, 2.5_wp, 0.3_wp, 3.3_wp, 1.4_wp, 1.8_wp, 1.1_wp]
-    real(wp), parameter :: trapezoid(8) = [1.0_wp, 0.0_wp, 3.0_wp, 0.0_wp, 2.2_wp, 1.0_wp, 1.5_wp, 1.0_wp]
-    real(wp), parameter :: irregular(8) = [2.1_wp, 1.3_wp, 0.8_wp, 1.5_wp, 0.4_wp, -0.1_wp, 1.6_wp, -0.6_wp]
-    real(wp), parameter :: at_axis(8) = [0.0_wp, 0.0_wp, 0.9_wp, 0.2_wp, 1.1_wp, 0.8_wp, 0.0_wp, 1.2_wp]
+    real(wp), parameter :: square(2, 4) = reshape([real(wp) :: 1, 0, 2, 0, 2, 1, 1, 1], [2, 4])
+    real(wp), parameter :: skew(2, 4) = reshape([1.0_wp, 0.0_wp, 2.5_wp, 0.3_wp, 3.3_wp, 1.4_wp, 1.8_wp, 1.1_wp], [2, 4])
+    real(wp), parameter :: trapezoid(2, 4) = reshape([1.0_wp, 0.0_wp, 3.0_wp, 0.0_wp, 2.2_wp, 1.0_wp, 1.5_wp, 1.0_wp], [2, 4])
+    real(wp), parameter :: irregular(2, 4) = reshape([2.1_wp, 1.3_wp, 0.8_wp, 1.5_wp, 0.4_wp, -0.1_wp, 1.6_wp, -0.6_wp], [2, 4])
+    real(wp), parameter :: at_axis(2, 4) = reshape([0.0_wp, 0.0_wp, 0.9_wp, 0.2_wp, 1.1_wp, 0.8_wp, 0.0_wp, 1.2_wp], [2, 4])
+    integer :: k
 
     allocate (shape(20))
-    call name(shape(1), 'right tria3', right)
-    call name(shape(2), 'scalene tria3', scalene)
-    call name(shape(3), 'flat tria3', flat)
-    call name(shape(4), 'tria3 at the axis', axis)
-    call name(shape(5), 'right tria6', with_middles(right, none))
-    call name(shape(6), 'scalene tria6', with_middles(scalene, none))
-    call name(shape(7), 'flat tria6', with_middles(flat, none))
-    call name(shape(8), 'tria6 at the axis', with_middles(axis, none))
-    call name(shape(9), 'tria6 with one arc', with_middles(right, one_arc))
-    call name(shape(10), 'tria6 with three arcs', with_middles(scalene, arcs))
-    shape(9:10)%straight = .false.
-    call name(shape(11), 'square quad4', reshape(square, [2, 4]))
-    call name(shape(12), 'skew quad4', reshape(skew, [2, 4]))
-    call name(shape(13), 'trapezoid quad4', reshape(trapezoid, [2, 4]))
-    call name(shape(14), 'irregular quad4', reshape(irregular, [2, 4]))
-    call name(shape(15), 'quad4 at the axis', reshape(at_axis, [2, 4]))
-    call name(shape(16), 'square quad8', with_middles(reshape(square, [2, 4]), straight))
-    call name(shape(17), 'skew quad8', with_middles(reshape(skew, [2, 4]), straight))
-    call name(shape(18), 'irregular quad8', with_middles(reshape(irregular, [2, 4]), straight))
-    call name(shape(19), 'quad8 at the axis', with_middles(reshape(at_axis, [2, 4]), straight))
-    call name(shape(20), 'quad8 with arcs', with_middles(reshape(trapezoid, [2, 4]), four_arcs))
-    shape(20)%straight = .false.
+    k = 0
+    call add('right tria3', right)
+    call add('scalene tria3', scalene)
+    call add('flat tria3', flat)
+    call add('tria3 at the axis', axis)
+    call add('right tria6', with_middles(right))
+    call add('scalene tria6', with_middles(scalene))
+    call add('flat tria6', with_middles(flat))
+    call add('tria6 at the axis', with_middles(axis))
+    call add('tria6 with one arc', with_middles(right, one_arc))
+    call add('tria6 with three arcs', with_middles(scalene, arcs))
+    call add('square quad4', square)
+    call add('skew quad4', skew)
+    call add('trapezoid quad4', trapezoid)
+    call add('irregular quad4', irregular)
+    call add('quad4 at the axis', at_axis)
+    call add('square quad8', with_middles(square))
+    call add('skew quad8', with_middles(skew))
+    call add('irregular quad8', with_middles(irregular))
+    call add('quad8 at the axis', with_middles(at_axis))
+    call add('quad8 with arcs', with_middles(trapezoid, four_arcs))
   contains
     ! An array constructor of shapes leaks with gfortran 12.
-    subroutine name(one, words, x)
-      type(element_shape), intent(inout) :: one
-      character(len=*), intent(in) :: words
+    subroutine add(name, x)
+      character(len=*), intent(in) :: name
       real(wp), intent(in) :: x(:, :)
 
-      one%name = words
-      one%x = x
-    end subroutine name
+      k = k + 1
+      shape(k)%name = name
+      shape(k)%x = x
+      shape(k)%straight = index(name, ' arc') == 0
+    end subroutine add
   end function sample_shapes
 
   function label(shape, kinematics) result(text)
@@ -98,12 +102,29 @@ contains
 
   !> Six or eight nodes from three or four corners, the middle ones moved by `bend`.
   pure function with_middles(corner, bend) result(x)
-    real(wp), intent(in) :: corner(:, :), bend(:, :)
+    real(wp), intent(in) :: corner(:, :)
+    real(wp), intent(in), optional :: bend(:, :)
     real(wp) :: x(2, 2*size(corner, 2))
 
-    x(:, :size(corner, 2)) = corner
-    x(:, size(corner, 2) + 1:) = 0.5_wp*(corner + cshift(corner, 1, dim=2)) + bend
+    associate (n => size(corner, 2))
+      x(:, :n) = corner
+      x(:, n + 1:) = 0.5_wp*(corner + cshift(corner, 1, dim=2))
+      if (present(bend)) x(:, n + 1:) = x(:, n + 1:) + bend
+    end associate
   end function with_middles
+
+  !> The corners, or these with the middles between them.
+  pure function with_nodes(nodes, corner) result(x)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: corner(:, :)
+    real(wp) :: x(2, nodes)
+
+    if (nodes == size(corner, 2)) then
+      x = corner
+    else
+      x = with_middles(corner)
+    end if
+  end function with_nodes
 
   !> Places all over the square from -1 to 1, without pattern.
   pure function sample_place(i) result(place)
@@ -117,21 +138,12 @@ contains
   pure function local_node(nodes) result(place)
     integer, intent(in) :: nodes
     real(wp) :: place(2, nodes)
-    real(wp), parameter :: corner(2, 3) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 3])
-    real(wp), parameter :: none(2, 3) = 0.0_wp
-    real(wp), parameter :: square(2, 4) = &
-      reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [2, 4])
 
-    select case (nodes)
-    case (6)
-      place = with_middles(corner, none)
-    case (4)
-      place = square
-    case (8)
-      place = with_middles(square, spread([0.0_wp, 0.0_wp], 2, 4))
-    case default
-      place = corner
-    end select
+    if (modulo(nodes, 4) == 0) then
+      place = with_nodes(nodes, reshape([real(wp) :: -1, -1, 1, -1, 1, 1, -1, 1], [2, 4]))
+    else
+      place = with_nodes(nodes, reshape([real(wp) :: 0, 0, 1, 0, 0, 1], [2, 3]))
+    end if
   end function local_node
 
   !> The row of the table with so many nodes.
@@ -147,26 +159,31 @@ contains
   function shape_values(nodes, place) result(n)
     integer, intent(in) :: nodes
     real(wp), intent(in) :: place(2)
-    real(wp) :: n(nodes)
+    real(wp) :: n(nodes), slope(2, nodes)
+
+    call find_shape(nodes, place, n, slope)
+  end function shape_values
+
+  function slopes(nodes, place) result(slope)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: place(2)
+    real(wp) :: n(nodes), slope(2, nodes)
+
+    call find_shape(nodes, place, n, slope)
+  end function slopes
+
+  subroutine find_shape(nodes, place, n, slope)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: place(2)
+    real(wp), intent(out) :: n(nodes), slope(2, nodes)
     type(element_kind) :: kind
     real(wp) :: all_values(most_nodes), all_slopes(2, most_nodes)
 
     kind = kind_with(nodes)
     call kind%shape(place, all_values, all_slopes)
     n = all_values(:nodes)
-  end function shape_values
-
-  function slopes(nodes, place) result(slope)
-    integer, intent(in) :: nodes
-    real(wp), intent(in) :: place(2)
-    real(wp) :: slope(2, nodes)
-    type(element_kind) :: kind
-    real(wp) :: all_values(most_nodes), all_slopes(2, most_nodes)
-
-    kind = kind_with(nodes)
-    call kind%shape(place, all_values, all_slopes)
     slope = all_slopes(:, :nodes)
-  end function slopes
+  end subroutine find_shape
 
   !> The nodes at corners.
   pure function corners_of(x) result(corner)
@@ -358,22 +375,16 @@ contains
   pure function grid_element(nodes, n, i, j, half) result(x)
     integer, intent(in) :: nodes, n, i, j, half
     real(wp) :: x(2, nodes)
-    real(wp), parameter :: none(2, 3) = 0.0_wp
     real(wp) :: corner(2, 4), local(2, nodes)
     integer :: k
 
     corner(1, :) = (i - 1 + [0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp])/n
     corner(2, :) = (j - 1 + [0.0_wp, 0.0_wp, 1.0_wp, 1.0_wp])/n
-    select case (nodes)
-    case (6)
-      local = with_middles(corner(:, merge([1, 2, 3], [1, 3, 4], half == 1)), none)
-    case (4)
-      local = corner
-    case (8)
-      local = with_middles(corner, spread([0.0_wp, 0.0_wp], 2, 4))
-    case default
-      local = corner(:, merge([1, 2, 3], [1, 3, 4], half == 1))
-    end select
+    if (modulo(nodes, 4) == 0) then
+      local = with_nodes(nodes, corner)
+    else
+      local = with_nodes(nodes, corner(:, merge([1, 2, 3], [1, 3, 4], half == 1)))
+    end if
     do k = 1, nodes
       associate (s => local(1, k), t => local(2, k))
         x(:, k) = [1.0_wp + s + 0.1_wp*sin(3.0_wp*t), t + 0.2_wp*s*s + 0.1_wp*sin(4.0_wp*s*t)]

@@ -1,7 +1,7 @@
 !> What the program says of a deck that is written in a line, and makes of it.
 module deck_faults
-  use epcont_base_error, only: error_type
-  use epcont_deck_deck, only: deck_type, read_deck
+  use deck_texts, only: bars, read_lines, told
+  use epcont_deck_deck, only: deck_type
   use epcont_base_diagnostic, only: diagnostics
   use epcont_deck_render, only: render
   use epcont_build_build, only: build_model, tell
@@ -9,7 +9,7 @@ module deck_faults
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: faults_of, model_of
+  public :: faults_of, model_of, told
 
   !> A square of two triangles: nodes 1 to 4, elements 1 and 2; two of its nodes held.
   character(len=*), parameter, public :: square = &
@@ -24,8 +24,13 @@ module deck_faults
     'MAT1,1,1.0+5,,0.3|'
   character(len=*), parameter, public :: held = 'SPC1,1,12,1,2|'
 
-  character(len=*), parameter :: path = 'bad.dat'
-  character(len=1), parameter :: newline = new_line('a')
+  !> Two squares, one over the other, 0.1 apart, and what pairs between them need.
+  character(len=*), parameter, public :: squares = &
+    'PARAM,PLANE,STRAIN|PSHELL,1,1,1.0|MAT1,1,1.0+5,,0.3|SPC1,1,12,1,2,13,14|' // &
+    'GRID,1,,0.0,0.0|GRID,2,,1.0,0.0|GRID,3,,1.0,1.0|GRID,4,,0.0,1.0|' // &
+    'GRID,11,,0.0,1.1|GRID,12,,1.0,1.1|GRID,13,,1.0,2.1|GRID,14,,0.0,2.1|' // &
+    'CTRIA3,1,1,1,2,3|CTRIA3,2,1,1,3,4|CTRIA3,3,1,11,12,13|CTRIA3,4,1,11,13,14|'
+  character(len=*), parameter, public :: frame = 'CORD2R,1,,0.0,0.0,0.0,0.0,0.0,1.0|,0.0,1.0,0.0|PGAP,1,0.1|'
 
 contains
 
@@ -35,15 +40,13 @@ contains
     character(len=:), allocatable :: words
     type(deck_type) :: deck
     type(diagnostics) :: faults
-    type(error_type), allocatable :: error
     type(planned_scene) :: scene
 
-    call write_deck(cards)
-    call read_deck(path, deck, faults, error)
+    call read_lines(cards//'ENDDATA|', deck, faults)
     call build_model(deck, scene%model, faults)
     if (faults%errors == 0) call scene%find_motions(faults)
     call tell(deck, faults)
-    words = replaced(render(faults, deck%source), newline, '|')
+    words = bars(render(faults, deck%source))
   end function faults_of
 
   !> The scene of a deck that is sound, its lines ended by bars.
@@ -52,33 +55,9 @@ contains
     type(model_type) :: model
     type(deck_type) :: deck
     type(diagnostics) :: faults
-    type(error_type), allocatable :: error
 
-    call write_deck(cards)
-    call read_deck(path, deck, faults, error)
+    call read_lines(cards//'ENDDATA|', deck, faults)
     call build_model(deck, model, faults)
     if (faults%errors > 0) error stop 'deck_faults: the deck is not sound'
   end function model_of
-
-  subroutine write_deck(cards)
-    character(len=*), intent(in) :: cards
-    integer :: unit
-
-    open (newunit=unit, file=path, access='stream', form='unformatted', status='replace')
-    write (unit) replaced(cards//'ENDDATA|', '|', newline)
-    close (unit)
-  end subroutine write_deck
-
-  !> A text with one character for another.
-  pure function replaced(text, old, new) result(other)
-    character(len=*), intent(in) :: text
-    character(len=1), intent(in) :: old, new
-    character(len=len(text)) :: other
-    integer :: i
-
-    other = text
-    do i = 1, len(text)
-      if (text(i:i) == old) other(i:i) = new
-    end do
-  end function replaced
 end module deck_faults

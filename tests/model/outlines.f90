@@ -12,12 +12,13 @@ module outlines
 
 contains
 
-  !> Straight sides through points, walked with the body to the left.
-  function drawn(x, closed, angle, held) result(line)
+  !> Sides through points, straight unless they have middle nodes, walked with the body to the left.
+  function drawn(x, closed, angle, held, middle) result(line)
     real(wp), intent(in) :: x(:, :)                 !! [2, points]
     logical, intent(in), optional :: closed         !! the last point is followed by the first
     real(wp), intent(in), optional :: angle         !! of PARAM CORNER [degree]
     integer, intent(in), optional :: held(:, :)     !! directions in which ends of sides are held [2, sides]
+    real(wp), intent(in), optional :: middle(:, :)  !! of curved sides [2, sides]
     type(boundary_line) :: line
     real(wp) :: corner
     logical :: ring
@@ -39,6 +40,10 @@ contains
       line%x(:, :2, i) = x(:, line%segment(:2, i))
       line%neighbour(:, i) = [i - 1, mod(i + 1, n + 1)]
     end do
+    if (present(middle)) then
+      line%segment(3, :) = 100 + line%element
+      line%x(:, 3, :) = middle
+    end if
     if (ring) then
       line%neighbour(1, 1) = n
       line%neighbour(2, n) = 1

@@ -3,7 +3,10 @@ module two_blocks
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: blocks_type, write_blocks
+  public :: blocks_type, write_blocks, write_cell
+
+  !> Nodes of a cell, from its first one, in halves of columns and rows: corners, middles of the sides, centre.
+  integer, parameter, public :: across(9) = [0, 2, 2, 0, 1, 2, 1, 0, 1], up(9) = [0, 0, 2, 2, 0, 1, 2, 1, 1]
 
   type :: blocks_type
     integer :: columns(2) = [4, 4]         !! of the lower and the upper block
@@ -68,42 +71,46 @@ contains
     end do
     do j = 0, 2*rows - 2, 2
       do i = 0, 2*n - 2, 2
-        c = [node(which, i, j), node(which, i + 2, j), node(which, i + 2, j + 2), node(which, i, j + 2), &
-             node(which, i + 1, j), node(which, i + 2, j + 1), node(which, i + 1, j + 2), node(which, i, j + 1), &
-             node(which, i + 1, j + 1)]
-        select case (trim(blocks%element))
-        case ('CQUAD4')
-          call write_element([c(1), c(2), c(3), c(4)])
-        case ('CTRIA6')
-          call write_element([c(1), c(2), c(3), c(5), c(6), c(9)])
-          call write_element([c(1), c(3), c(4), c(9), c(7), c(8)])
-        case ('CTRAX6')
-          call write_element([c(1), c(5), c(2), c(6), c(3), c(9)])
-          call write_element([c(1), c(9), c(3), c(7), c(4), c(8)])
-        case default
-          call write_element([c(1), c(2), c(3)])
-          call write_element([c(1), c(3), c(4)])
-        end select
+        c = node(which, i + across, j + up)
+        call write_cell(unit, blocks%element, element + 1, which, c)
+        element = element + merge(1, 2, blocks%element == 'CQUAD4')
         if (which == 2 .and. j == 2*rows - 2) &
           write (unit, '(a, i0, a, f0.4, 2(a, i0))') 'PLOADX1,1,', element, ',', blocks%pressure, ',,', c(3), ',', c(4)
       end do
     end do
     if (which == 2) write (unit, '(a, i0, a)') 'SUPORT,', node(2, 0, 2*rows), ',2'
+  end subroutine write_block
+
+  !> The one or two elements of a cell.
+  subroutine write_cell(unit, name, first, property, c)
+    integer, intent(in) :: unit
+    character(len=6), intent(in) :: name
+    integer, intent(in) :: first      !! id
+    integer, intent(in) :: property
+    integer, intent(in) :: c(9)       !! ids of the nodes
+
+    select case (name)
+    case ('CQUAD4')
+      call write_element(first, c(:4))
+    case ('CTRIA6')
+      call write_element(first, c([1, 2, 3, 5, 6, 9]))
+      call write_element(first + 1, c([1, 3, 4, 9, 7, 8]))
+    case ('CTRAX6')
+      call write_element(first, c([1, 5, 2, 6, 3, 9]))
+      call write_element(first + 1, c([1, 9, 3, 7, 4, 8]))
+    case default
+      call write_element(first, c(:3))
+      call write_element(first + 1, c([1, 3, 4]))
+    end select
 
   contains
 
-    subroutine write_element(corner)
-      integer, intent(in) :: corner(:)
-      integer :: k
+    subroutine write_element(id, node)
+      integer, intent(in) :: id, node(:)
 
-      element = element + 1
-      write (unit, '(a, 2(i0, a))', advance='no') trim(blocks%element)//',', element, ',', which, ''
-      do k = 1, size(corner)
-        write (unit, '(a, i0)', advance='no') ',', corner(k)
-      end do
-      write (unit, '(a)') ''
+      write (unit, '(a, *(:, ",", i0))') name, id, property, node
     end subroutine write_element
-  end subroutine write_block
+  end subroutine write_cell
 
   subroutine write_contact(unit, blocks)
     integer, intent(in) :: unit
@@ -131,7 +138,7 @@ contains
   end function is_six
 
   !> Id of a node by half column and half row.
-  pure integer function node(which, i, j)
+  elemental integer function node(which, i, j)
     integer, intent(in) :: which, i, j
 
     node = 10000*which + 1000*j + i + 1
