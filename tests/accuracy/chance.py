@@ -161,11 +161,11 @@ def body(scene, which, mesh, xs, element):
         rows.append(row)
     found = join([rows if which == 0 else rows[::-1]], element.replace("trax", "tria"))
     if mesh.jitter:
-        straighten(found, {place for place in rows[0]})
+        straighten(found, set(rows[0]))
     return found
 
 
-def straighten(mesh, surface):
+def straighten(mesh, surface=()):
     """Put middles of sides between their corners, but for those of the surface."""
     for nodes in mesh.element:
         for k, middle in enumerate(nodes[3:] if len(nodes) == 6 else ()):
@@ -188,7 +188,7 @@ def profile(scene, which, x):
     return 0.0
 
 
-def columns(scene, which, mesh, ends=()):
+def columns(scene, which, mesh):
     """Places along the surface."""
     step = scene.width / mesh.pairs * (1.0 if which == 0 or not scene.lines else 1.0 / mesh.finer)
     end = scene.wide[which]
