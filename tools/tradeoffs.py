@@ -44,12 +44,8 @@ def cylinders_pressed(element, across, yields):
     return cases.cylinders_pressed(B / across, element=element, plastic=yields)
 
 
-def meshes(**sizes):
-    return [(element, size) for element, of in sizes.items() for size in of]
-
-
 def scenes():
-    discs = meshes(ctria3=(5, 10, 20, 32), cquad4=(4, 8, 16, 32), ctria6=(2, 4, 8, 12))
+    meshes, discs = cases.meshes, cases.meshes(ctria3=(5, 10, 20, 32), cquad4=(4, 8, 16, 32), ctria6=(2, 4, 8, 12))
     return [
         Scene("two cylinders, elastic", {**cases.hertz(), "q1": cases.HERTZ}, lambda e, n: cylinders_pressed(e, n, False), discs, False, True),
         Scene("two cylinders, yielding", cases.PLASTIC, lambda e, n: cylinders_pressed(e, n, True),

@@ -50,8 +50,7 @@ def press_fit(element, hole, pin, layers=3, ratio=1.0, inside=0.5, exchanged=Fal
     bodies = [whole_ring(1.0, 3.0, hole, layers, element, straight_sides), whole_ring(inside, 1.0, pin, layers, element, straight_sides)]
     first = [1, 100001]
     for k, (mesh, circle) in enumerate(bodies):
-        deck.nodes(mesh, first[k])
-        deck.elements(mesh, k + 1, first[k], first[k])
+        deck.body(mesh, k + 1, first[k])
         deck.material(k + 1, YOUNG * (ratio if k == 0 else 1.0), NU)
         if stress:
             deck.yields(k + 1, stress, hardening * YOUNG)
@@ -59,7 +58,7 @@ def press_fit(element, hole, pin, layers=3, ratio=1.0, inside=0.5, exchanged=Fal
     deck.hold(12, rim, first[0])
     deck.hold(2, [bore[0], bore[len(bore) // 2]], first[1])
     deck.hold(1, [min(bore, key=lambda n: abs(inner.point[n][0]) - 1e-9 * inner.point[n][1])], first[1])
-    deck.press(inner, bore + bore[:1], pressure, first[1], first[1])
+    deck.press(inner, bore + bore[:1], pressure, first[1])
     deck.segments(1, pin_circle + pin_circle[:1], first[1])
     deck.segments(2, hole_circle[:1] + hole_circle[::-1], first[0])   # the body is outside of it
     deck.touches(1, *((2, 1) if exchanged else (1, 2)))
@@ -126,8 +125,7 @@ class Cylinder:
                     mesh.point[n] = x, RADIUS - math.sqrt(RADIUS ** 2 - x * x)
             if kind != "ctria6":
                 surface = surface[::2]
-            deck.nodes(mesh, first[k])
-            deck.elements(mesh, k + 1, first[k], first[k])
+            deck.body(mesh, k + 1, first[k])
             deck.material(k + 1, YOUNG * (self.ratio if k == 0 else 1.0), NU)
             if self.stress:
                 deck.yields(k + 1, self.stress, self.hardening * YOUNG)
