@@ -20,6 +20,9 @@ class Refused(Exception):
 
 
 class Parser(argparse.ArgumentParser):
+    def __init__(self, words=None, **more):
+        super().__init__(description=words, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
+
     def error(self, message):   # argparse's own exit status would be 2
         raise Refused(f"{message}; --help says more")
 
