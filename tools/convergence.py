@@ -9,7 +9,6 @@ integration along the radius. The decks are those of tools/scenes, run in a temp
 three whole runs (one, where it takes a second), reading and writing included, and differ from machine to machine and run to run; all else does not.
 Unknowns: equations of the bodies, as `epcont --plan` counts them.
 """
-import argparse
 import math
 import os
 import pathlib
@@ -21,6 +20,7 @@ import time
 
 import tables
 from scenes import cylinders, plastic
+from wording import parser_of
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 EPCONT = TOP / "build/release/epcont"
@@ -117,7 +117,7 @@ def check_folder(parser, output):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="tools/convergence", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, "tools/convergence")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of a picture, without .png and .svg")
     options = parser.parse_args()
     check_folder(parser, options.output)

@@ -14,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 
+from wording import parser_of
+
 TOP = pathlib.Path(__file__).resolve().parent.parent
 
 
@@ -36,7 +38,7 @@ def near(text):
 
 
 def read_arguments():
-    parser = argparse.ArgumentParser(prog="tools/paraview", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, "tools/paraview")
     parser.add_argument("deck", metavar="DECK", type=pathlib.Path)
     parser.add_argument("-o", "--output", metavar="NAME.png", type=pathlib.Path, help="name of the picture")
     parser.add_argument("--scale", type=scale, default=1.0, help="of the displacements, where the whole is drawn (1)")

@@ -20,6 +20,7 @@ import sys
 
 from drawing import figure, kept, paper, style
 from drawing.run import Refused, Run
+from wording import parser_of
 
 
 def paper_figure(arguments):
@@ -37,7 +38,7 @@ def paper_figure(arguments):
 
 
 def one_figure(arguments):
-    parser = argparse.ArgumentParser(prog="tools/plot", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, "tools/plot")
     parser.add_argument("deck", type=pathlib.Path, nargs="?")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of the picture, with .png")
     parser.add_argument("--only", choices=figure.KINDS, help="panels of this kind only")

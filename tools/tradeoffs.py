@@ -9,7 +9,6 @@ it takes a second). Memory: its peak. True error: against the closed form, or wh
 to (tests/accuracy/cases.py); the worse of the largest pressures and of the approaches. Errors are the same on every run; times
 are not, and runs whose times are within a few per cent of each other may change places.
 """
-import argparse
 import collections
 import itertools
 import pathlib
@@ -27,6 +26,7 @@ from process import peak, timed  # noqa: E402
 from report import short, table  # noqa: E402
 from scenes import lines, plastic, quads  # noqa: E402
 from score import figures_of  # noqa: E402
+from wording import parser_of  # noqa: E402
 
 METHODS, TOLERANCES = ("NEWTON", "SECANT", "MODSEC", "INISTR"), ("1.E-2", "1.E-4", "1.E-8")
 PRECISIONS, RULES = ("DOUBLE", "MIXED", "SINGLE"), ("CONRY", "BLOCK")
@@ -44,12 +44,8 @@ def cylinders_pressed(element, across, yields):
     return cases.cylinders_pressed(B / across, element=element, plastic=yields)
 
 
-def meshes(**sizes):
-    return [(element, size) for element, of in sizes.items() for size in of]
-
-
 def scenes():
-    discs = meshes(ctria3=(5, 10, 20, 32), cquad4=(4, 8, 16, 32), ctria6=(2, 4, 8, 12))
+    meshes, discs = cases.meshes, cases.meshes(ctria3=(5, 10, 20, 32), cquad4=(4, 8, 16, 32), ctria6=(2, 4, 8, 12))
     return [
         Scene("two cylinders, elastic", {**cases.hertz(), "q1": cases.HERTZ}, lambda e, n: cylinders_pressed(e, n, False), discs, False, True),
         Scene("two cylinders, yielding", cases.PLASTIC, lambda e, n: cylinders_pressed(e, n, True),
@@ -250,7 +246,7 @@ def page(found, quick, spent, picture):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="tools/tradeoff", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, "tools/tradeoff")
     parser.add_argument("--quick", action="store_true", help="two meshes of each element, one choice at a time: a minute")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of page and picture, without .md and .png; tools/tradeoff if not given")
     options = parser.parse_args()

@@ -1,4 +1,10 @@
-"""Words of messages."""
+"""Words of messages, and of what a tool says to --help."""
+import argparse
+
+
+def parser_of(words, prog=None):
+    """Of the options of a tool, of which these words stand as they are."""
+    return argparse.ArgumentParser(prog=prog, description=words, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
 def counted(number, word):

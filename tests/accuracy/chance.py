@@ -161,11 +161,11 @@ def body(scene, which, mesh, xs, element):
         rows.append(row)
     found = join([rows if which == 0 else rows[::-1]], element.replace("trax", "tria"))
     if mesh.jitter:
-        straighten(found, {place for place in rows[0]})
+        straighten(found, set(rows[0]))
     return found
 
 
-def straighten(mesh, surface):
+def straighten(mesh, surface=()):
     """Put middles of sides between their corners, but for those of the surface."""
     for nodes in mesh.element:
         for k, middle in enumerate(nodes[3:] if len(nodes) == 6 else ()):
@@ -188,7 +188,7 @@ def profile(scene, which, x):
     return 0.0
 
 
-def columns(scene, which, mesh, ends=()):
+def columns(scene, which, mesh):
     """Places along the surface."""
     step = scene.width / mesh.pairs * (1.0 if which == 0 or not scene.lines else 1.0 / mesh.finer)
     end = scene.wide[which]
@@ -232,13 +232,11 @@ def make(scene, element, mesh):
     lower = None if scene.rigid else body(scene, 1, mesh, other, element)
     free = first_free(*(m for m in (upper, lower) if m))
     one, two = 1, free + 1
-    deck.nodes(upper, one)
-    deck.elements(upper, 1, one, one)
+    deck.body(upper, 1, one)
     material(deck, 1, scene)
     surface = on_surface(scene, upper, 0, reach)
     if not scene.rigid:
-        deck.nodes(lower, two)
-        deck.elements(lower, 2, two, two)
+        deck.body(lower, 2, two)
         material(deck, 2, scene)
         bottom = [n for n, (x, y) in enumerate(lower.point) if abs(y + scene.deep[1]) < 1e-9]
         deck.hold(12 if scene.whole else 2, bottom, two)
@@ -293,7 +291,7 @@ def load(deck, scene, upper, top, one, free):
     if scene.family == "layer":
         pressed = [n for n in top if upper.point[n][0] <= scene.flat + 1e-9]
         area = math.pi * scene.flat ** 2 if scene.rings else scene.flat
-        deck.press(upper, pressed, scene.load / area, one, one)
+        deck.press(upper, pressed, scene.load / area, one)
         deck.card("SUPORT", one + top[0], 2)
     elif scene.family in ("tilted", "stack"):
         corners = {n for nodes in upper.element for n in (nodes[:3] if len(nodes) == 6 else nodes)}

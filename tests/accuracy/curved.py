@@ -7,8 +7,9 @@ import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from chance import straighten, with_halves  # noqa: E402
 from scenes.deck import Deck  # noqa: E402
-from scenes.patches import arc, boundary, even, halves, join, patch, straight  # noqa: E402
+from scenes.patches import arc, even, join, patch, straight  # noqa: E402
 
 YOUNG, NU = 1.0e5, 0.3
 #: Of the cylinder and the ball.
@@ -27,18 +28,10 @@ def lame(pressure=100.0, inside=0.5, outside=3.0, middle=1.0, ratio=1.0, nu=NU, 
     return (a * pressure + overlap) / (b + c)
 
 
-def chords(mesh, kept=()):
-    """Put the middle of each side between its corners."""
-    for nodes in mesh.element:
-        for k, middle in enumerate(nodes[3:] if len(nodes) == 6 else ()):
-            a, b = mesh.point[nodes[k]], mesh.point[nodes[(k + 1) % 3]]
-            mesh.point[middle] = (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
-
-
 def whole_ring(inside, outside, around, layers, element, straight_sides):
     """A ring of elements all around, in two halves that share their ends, with the nodes of its inner and outer circle."""
     def half(begin):
-        e = [p for p in even(around // 2)]
+        e = even(around // 2)
         ends = [tuple(r * f(math.radians(begin)) for f in (math.cos, math.sin)) for r in (inside, outside)]
         other = [tuple(-x for x in place) for place in ends]
         return patch(arc((0, 0), inside, begin, begin + 180, e), arc((0, 0), outside, begin, begin + 180, e),
@@ -47,13 +40,8 @@ def whole_ring(inside, outside, around, layers, element, straight_sides):
     circle = [sorted((n for n, p in enumerate(mesh.point) if abs(math.hypot(*p) - r) < 1e-6), key=lambda n: math.atan2(*mesh.point[n][::-1]) % (2 * math.pi - 1e-9))
               for r in (inside, outside)]
     if straight_sides:
-        chords(mesh)
+        straighten(mesh)
     return mesh, circle
-
-
-def closed(deck, number, nodes, first, way=1):
-    """A whole circle as a boundary line; `way` -1: the body is outside of it."""
-    deck.segments(number, (nodes + nodes[:1])[::way], first)
 
 
 def press_fit(element, hole, pin, layers=3, ratio=1.0, inside=0.5, exchanged=False, straight_sides=False, pressure=100.0, stress=0.0, hardening=0.0, sheet=False):
@@ -62,19 +50,17 @@ def press_fit(element, hole, pin, layers=3, ratio=1.0, inside=0.5, exchanged=Fal
     bodies = [whole_ring(1.0, 3.0, hole, layers, element, straight_sides), whole_ring(inside, 1.0, pin, layers, element, straight_sides)]
     first = [1, 100001]
     for k, (mesh, circle) in enumerate(bodies):
-        deck.nodes(mesh, first[k])
-        deck.elements(mesh, k + 1, first[k], first[k])
+        deck.body(mesh, k + 1, first[k])
         deck.material(k + 1, YOUNG * (ratio if k == 0 else 1.0), NU)
         if stress:
             deck.yields(k + 1, stress, hardening * YOUNG)
     (outer, (hole_circle, rim)), (inner, (bore, pin_circle)) = bodies
     deck.hold(12, rim, first[0])
-    half = len(bore) // 2
-    deck.hold(2, [bore[0], bore[half]], first[1])
+    deck.hold(2, [bore[0], bore[len(bore) // 2]], first[1])
     deck.hold(1, [min(bore, key=lambda n: abs(inner.point[n][0]) - 1e-9 * inner.point[n][1])], first[1])
-    deck.press(inner, bore + bore[:1], pressure, first[1], first[1])
-    closed(deck, 1, pin_circle, first[1])
-    closed(deck, 2, hole_circle, first[0], -1)
+    deck.press(inner, bore + bore[:1], pressure, first[1])
+    deck.segments(1, pin_circle + pin_circle[:1], first[1])
+    deck.segments(2, hole_circle[:1] + hole_circle[::-1], first[0])   # the body is outside of it
     deck.touches(1, *((2, 1) if exchanged else (1, 2)))
     return deck
 
@@ -121,8 +107,8 @@ class Cylinder:
             at = [2.0 * i / count - 1.0 for i in range(count + 1)]
             if self.rings:
                 at = [i / count for i in range(count + 1)]
-            xs = halves_of([math.copysign(wide * abs(t) ** self.power, t) for t in at])
-            depth = halves_of([DEEP * (j / self.layers) ** self.deep for j in range(self.layers + 1)])
+            xs = with_halves([math.copysign(wide * abs(t) ** self.power, t) for t in at])
+            depth = with_halves([DEEP * (j / self.layers) ** self.deep for j in range(self.layers + 1)])
             rows = []
             for d in depth if k == 1 else depth[::-1]:
                 rows.append([])
@@ -132,15 +118,14 @@ class Cylinder:
             mesh = join([rows], kind)
             surface = [min(range(len(mesh.point)), key=lambda n, p=p: math.dist(mesh.point[n], p)) for p in rows[0 if k == 1 else -1]]
             far = [n for n, p in enumerate(mesh.point) if abs(abs(p[1]) - DEEP) < 1e-9]
-            chords(mesh)
+            straighten(mesh)
             if not self.straight_sides and len(mesh.element[0]) == 6 and k == 1:
                 for n in surface:
                     x = mesh.point[n][0]
                     mesh.point[n] = x, RADIUS - math.sqrt(RADIUS ** 2 - x * x)
             if kind != "ctria6":
                 surface = surface[::2]
-            deck.nodes(mesh, first[k])
-            deck.elements(mesh, k + 1, first[k], first[k])
+            deck.body(mesh, k + 1, first[k])
             deck.material(k + 1, YOUNG * (self.ratio if k == 0 else 1.0), NU)
             if self.stress:
                 deck.yields(k + 1, self.stress, self.hardening * YOUNG)
@@ -159,10 +144,6 @@ class Cylinder:
             deck.segments(k + 1, surface if k == 1 else surface[::-1], first[k])
         deck.touches(1, *((1, 2) if self.exchanged else (2, 1)))
         return deck
-
-
-def halves_of(places):
-    return [places[0]] + [p for a, b in zip(places, places[1:]) for p in ((a + b) / 2, b)]
 
 
 #: What fine meshes of six-node sides on the curve converge to (112 across, 36 layers): approaches of the cylinder, by load and ratio of

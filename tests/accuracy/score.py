@@ -10,6 +10,7 @@ seldom within a factor of 3 of the true error. Of a part of a set so much less w
 standard deviation. Only half-widths may be left out, some of them: no end is found where a zone has too few pairs.
 """
 import argparse
+import contextlib
 import csv
 import math
 import pathlib
@@ -32,23 +33,37 @@ SMALL = 5.0e-3
 KINDS = {"p": "largest pressure", "b": "half-width", "q": "approach"}
 
 
-def solve(program, deck):
-    """(value, estimate or None) of each figure."""
+class Failed(Exception):
+    """The program gives no answer."""
+
+
+@contextlib.contextmanager
+def run(program, deck):
+    """The path of a deck that has run."""
     with tempfile.TemporaryDirectory() as place:
         path = pathlib.Path(place) / "scene.dat"
         path.write_text(deck.text(), encoding="ascii")
-        run = subprocess.run([program, path, "-o", place], capture_output=True, text=True, check=False)
-        if run.returncode:
-            sys.exit(f"{deck.title}: exit status {run.returncode}\n{run.stdout}{run.stderr}")
+        ended = subprocess.run([program, path, "-o", place], capture_output=True, text=True, check=False, timeout=120)
+        if ended.returncode:
+            raise Failed(f"{deck.title}: exit status {ended.returncode}: {ended.stdout}{ended.stderr[:300]}")
+        yield path
+
+
+def tables(path):
+    """Summary and zones of a run of this deck."""
+    summary, zones = (list(csv.DictReader(path.with_suffix(f".{name}.csv").read_text(encoding="ascii").splitlines())) for name in ("summary", "zones"))
+    return {row["key"]: row["value"] for row in summary}, zones
+
+
+def solve(program, deck):
+    """(value, estimate or None) of each figure."""
+    with run(program, deck) as path:
         return figures_of(path)
 
 
 def figures_of(path):
     """The same, from the tables of a run of this deck."""
-    with open(path.with_suffix(".summary.csv"), newline="", encoding="ascii") as file:
-        summary = {row["key"]: row["value"] for row in csv.DictReader(file)}
-    with open(path.with_suffix(".zones.csv"), newline="", encoding="ascii") as file:
-        zones = list(csv.DictReader(file))
+    summary, zones = tables(path)
     figures = {}
     for zone in zones:
         k = zone["zone"]

@@ -11,7 +11,6 @@ many errors are within what is said of them, how many within a factor of 3 of it
 exit status 1 below 90 %. --known keeps the true figures in a file, for the next time; --figures writes each figure.
 """
 import argparse
-import csv
 import dataclasses
 import json
 import pathlib
@@ -19,9 +18,9 @@ import random
 import statistics
 import subprocess
 import sys
-import tempfile
 
 import chance
+from score import Failed, run, tables
 
 #: Least part of the figures of a kind that estimates must cover.
 COVERED = 0.90
@@ -36,24 +35,10 @@ TINY = 1.0e-4
 FIGURES = {"p": "largest pressure", "b": "half-width", "q": "approach"}
 
 
-class Failed(Exception):
-    """The program gives no answer."""
-
-
 def solve(program, deck):
     """The tables of the summary and of the zones, and the listing."""
-    with tempfile.TemporaryDirectory() as place:
-        path = pathlib.Path(place) / "scene.dat"
-        path.write_text(deck.text(), encoding="ascii")
-        run = subprocess.run([program, path, "-o", place], capture_output=True, text=True, check=False, timeout=120)
-        if run.returncode:
-            raise Failed(f"exit status {run.returncode}: {run.stdout}{run.stderr[:300]}")
-        with open(path.with_suffix(".summary.csv"), newline="", encoding="ascii") as file:
-            summary = {row["key"]: row["value"] for row in csv.DictReader(file)}
-        with open(path.with_suffix(".zones.csv"), newline="", encoding="ascii") as file:
-            zones = list(csv.DictReader(file))
-        listing = next(p for p in pathlib.Path(place).iterdir() if p.suffix not in (".dat", ".csv")).read_text(encoding="ascii")
-        return summary, zones, listing
+    with run(program, deck) as path:
+        return *tables(path), path.with_suffix(".lst").read_text(encoding="ascii")
 
 
 def figures_of(summary, zones, listing):

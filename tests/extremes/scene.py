@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
-PLANE_STRAIN, PLANE_STRESS = -1, None
+PLANE_STRAIN, PLANE_STRESS, RINGS = -1, None, "rings"
 STEEL = (2.1e5, 0.3)
 
 
@@ -25,9 +25,9 @@ def written(value):
 
 
 class Deck:
-    """Cards in the order of their making."""
+    """Cards in the order of their making; with material 1, if its figures are given."""
 
-    def __init__(self, plane=PLANE_STRAIN):
+    def __init__(self, *material, plane=PLANE_STRAIN):
         self.cards = []
         self.x = {}                     # of each GRID
         self.plane = plane
@@ -35,6 +35,8 @@ class Deck:
         self.axes = {}                  # CORD2R of each normal
         if plane is PLANE_STRESS:
             self.card("PARAM", "PLANE", "STRESS")
+        if material:
+            self.material(1, *material)
 
     def card(self, *fields):
         self.cards.append(fields)
@@ -48,8 +50,11 @@ class Deck:
         return number
 
     def material(self, number, young, poisson, thickness=1.0):
-        """PSHELL and MAT1 of one number."""
-        self.card("PSHELL", number, number, thickness, *([self.plane] if self.plane else []))
+        """PSHELL or PSOLID and MAT1 of one number."""
+        if self.plane is RINGS:
+            self.card("PSOLID", number, number)
+        else:
+            self.card("PSHELL", number, number, thickness, *([self.plane] if self.plane else []))
         self.card("MAT1", number, young, None, poisson)
 
     def curve(self, number, points):
@@ -60,20 +65,44 @@ class Deck:
 
     def element(self, material, *nodes, kind=None):
         self.elements += 1
-        self.card(kind or {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6"}[len(nodes)], self.elements, material, *nodes)
+        if kind == "CTRAX6":
+            nodes = [nodes[k] for k in (0, 3, 1, 4, 2, 5)]
+        triangle = "CTRAX3" if self.plane is RINGS else "CTRIA3"
+        self.card(kind or {3: triangle, 4: "CQUAD4", 6: "CTRIA6"}[len(nodes)], self.elements, material, *nodes)
         return self.elements
 
     def block(self, material, xs, ys, first=1, triangles=False):
-        """Nodes and elements of a grid of lines; returns its nodes, row by row upwards."""
+        """Nodes and elements of a grid of lines, of a material or of that of (column, row); returns its nodes, row by row upwards."""
+        of = material if callable(material) else lambda i, j: material
         nodes = [[self.grid(first + j*len(xs) + i, x, y) for i, x in enumerate(xs)] for j, y in enumerate(ys)]
-        for lower, upper in zip(nodes, nodes[1:]):
-            for a, b, c, d in zip(lower, lower[1:], upper[1:], upper):
-                if triangles:
-                    self.element(material, a, b, c)
-                    self.element(material, a, c, d)
-                else:
-                    self.element(material, a, b, c, d)
+        for j, (lower, upper) in enumerate(zip(nodes, nodes[1:])):
+            for i, (a, b, c, d) in enumerate(zip(lower, lower[1:], upper[1:], upper)):
+                for corners in ((a, b, c), (a, c, d)) if triangles else ((a, b, c, d),):
+                    self.element(of(i, j), *corners)
         return nodes
+
+    def stand(self, nodes, load, gaps=None, first=70001):
+        """Press a block by its upper row on a floor that lets it spread; its left end is held, the approach that of the upper corners."""
+        self.floor(nodes[0], gaps, first)
+        self.hold(1, nodes[0][0])
+        self.press(nodes[-1], load)
+        self.support(2, nodes[-1][0], nodes[-1][-1])
+
+    def stack(self, blocks, step):
+        """Blocks (xs, ys) one upon the other, their ids so far apart, with pairs between them; the lowest is held, the others are
+        free to move up and to turn. Returns the upper row of each."""
+        tops = []
+        for k, (xs, ys) in enumerate(blocks):
+            nodes = self.block(1, xs, ys, step*(k + 1))
+            if tops:
+                for i, (below, above) in enumerate(zip(tops[-1], nodes[0])):
+                    self.pair(9_000_000 + 1000*k + i, below, above)
+                self.hold(1, nodes[0][0])
+                self.support(2, nodes[-1][0], nodes[-1][-1])
+            else:
+                self.hold(12, *nodes[0])
+            tops.append(nodes[-1])
+        return tops
 
     def hold(self, directions, *nodes):
         for node in nodes:
@@ -82,8 +111,9 @@ class Deck:
     def displace(self, node, direction, value):
         self.card("SPC", 1, node, direction, value)
 
-    def support(self, node, direction):
-        self.card("SUPORT", node, direction)
+    def support(self, direction, *nodes):
+        for node in nodes:
+            self.card("SUPORT", node, direction)
 
     def force(self, node, x, y):
         """The vector is written as it is, of length 1.0."""
@@ -106,8 +136,14 @@ class Deck:
         self.card("CGAP", number, 90000000 + number, a, b, None, None, None, self.axis(normal))
         self.card("PGAP", 90000000 + number, gap)
 
+    def lines(self, one, other, slave=1):
+        """Lines 1 and 2 along these nodes, and contact between them."""
+        self.card("BLSEG", 1, *one)
+        self.card("BLSEG", 2, *other)
+        self.card("BCONP", 1, slave, 3 - slave)
+
     def floor(self, nodes, gaps=None, first=70001, normal=(0.0, 1.0)):
-        """A held node under each of these, and a pair of its number."""
+        """A held node under each of these, which it pushes along the normal, and a pair of its number."""
         for k, node in enumerate(nodes):
             ground = self.grid(first + k, *self.x[node])
             self.hold(12, ground)

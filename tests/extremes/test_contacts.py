@@ -8,31 +8,30 @@ from test_scales import punch
 def bar(gap=0.0, load=1.0, pairs=1):
     """One square of stiffness 1, held below, pushed up against a ceiling: it gives load until the gap is closed. So many
     equal pairs at each of its two upper nodes."""
-    deck = Deck()
-    deck.material(1, 1.0, 0.0)
-    nodes = deck.block(1, [0.0, 1.0], [0.0, 1.0])
-    deck.hold(12, *nodes[0])
-    deck.hold(1, *nodes[1])
-    deck.press(nodes[1], load, (0.0, 1.0))
-    for k in range(pairs):
-        for i, node in enumerate(nodes[1]):
-            wall = deck.grid(1001 + 2*k + i, *deck.x[node])
-            deck.hold(12, wall)
-            deck.pair(wall, node, wall, gap)
-    deck.nodes = nodes
+    deck = Deck(1.0, 0.0)
+    deck.nodes = bottom, top = deck.block(1, [0.0, 1.0], [0.0, 1.0])
+    deck.hold(12, *bottom)
+    deck.hold(1, *top)
+    deck.press(top, load, (0.0, 1.0))
+    deck.floor(top*pairs, [gap]*2*pairs, 1001, (0.0, -1.0))
+    return deck
+
+
+def held_pair(gap):
+    """A bar, and a pair of two nodes that are held."""
+    deck = bar(0.25)
+    for node in (3001, 3002):
+        deck.grid(node, 5.0, 5.0)
+        deck.hold(12, node)
+    deck.pair(3001, 3001, 3002, gap)
     return deck
 
 
 def row(count, gap=lambda k: 0.0, load=1.0, rule=None):
     """A block of so many cells, a third as high as it is long, pressed on a floor."""
-    deck = Deck()
-    deck.material(1, 1000.0, 0.0)
+    deck = Deck(1000.0, 0.0)
     nodes = deck.block(1, [float(k) for k in range(count + 1)], [0.0, count/3.0])
-    deck.floor(nodes[0], [gap(k) for k in range(count + 1)], first=5_000_001)
-    deck.hold(1, nodes[0][0])
-    deck.support(nodes[1][0], 2)
-    deck.support(nodes[1][-1], 2)
-    deck.press(nodes[1], load)
+    deck.stand(nodes, load, [gap(k) for k in range(count + 1)], 5_000_001)
     if rule:
         deck.parameter("RULE", rule)
     return deck
@@ -120,8 +119,7 @@ class Many(Extremes):
     def test_three_thousand_pairs(self):
         """Uniform load, uniform forces: a strip lifted against a ceiling, and the block that is free to move, whose condition
         leaves fewer digits."""
-        deck = Deck()
-        deck.material(1, 1.0, 0.0)
+        deck = Deck(1.0, 0.0)
         nodes = deck.block(1, [float(k) for k in range(3000)], [0.0, 1.0])
         deck.hold(12, *nodes[0])
         deck.hold(1, *nodes[1])
@@ -137,15 +135,10 @@ class Many(Extremes):
         """Rounding leaves forces 2.7e-9 out of balance, with factors in double too: a step of refinement takes it down to 1e-13."""
         approach = {}
         for precision in ("DOUBLE", "MIXED"):
-            deck = Deck()
+            deck = Deck(1.0, 0.3)
             deck.parameter("PRECIS", precision)
-            deck.material(1, 1.0, 0.3)
             nodes = deck.block(1, [9.0*k/6000 for k in range(6001)], [0.0, 0.5, 1.0])
-            deck.hold(1, nodes[0][0])
-            deck.support(nodes[2][0], 2)
-            deck.support(nodes[2][-1], 2)
-            deck.press(nodes[2], 1.0)
-            deck.floor(nodes[0][::40], first=5_000_001)
+            deck.stand([nodes[0][::40], nodes[2]], 1.0, first=5_000_001)
             result = self.valid(deck)
             self.assertLess(result.summary["equilibrium_residual"], 1e-12)
             self.near([sum(result.force)], [1.0])
@@ -194,34 +187,20 @@ class Many(Extremes):
 class Walls(Extremes):
     def test_pair_between_held_nodes(self):
         """It can neither open nor close, and says so; closed by its supports it carries nothing."""
-        deck = bar(0.25)
         for gap in (0.0, 0.5, 1e-60):
-            deck = bar(0.25)
-            for node in (3001, 3002):
-                deck.grid(node, 5.0, 5.0)
-                deck.hold(12, node)
-            deck.pair(3001, 3001, 3002, gap)
-            result = self.valid(deck)
+            result = self.valid(held_pair(gap))
             self.assertIn("can neither open nor close", result.message)
             self.near(result.force, [0.375, 0.375, 0.0], scale=1.0)
 
     def test_rigid_on_rigid_overlap(self):
         for gap in (-1e-3, -1e-9, -1e9):
-            deck = bar(0.25)
-            for node in (3001, 3002):
-                deck.grid(node, 5.0, 5.0)
-                deck.hold(12, node)
-            deck.pair(3001, 3001, 3002, gap)
-            self.refused(deck, 1, "pairs overlap and nothing can give way: CGAP 3001")
+            self.refused(held_pair(gap), 1, "pairs overlap and nothing can give way: CGAP 3001")
 
     def test_tongue_between_two_walls(self):
         """A bar with walls above and below it, loaded either way, or wedged in by an overlap."""
         for load, above, below in ((1.0, 0.25, 0.1), (-1.0, 0.25, 0.1), (0.0, 0.25, 0.1), (0.0, -0.5, 0.6)):
             deck = bar(above, load)
-            for k, node in enumerate(deck.nodes[1]):
-                wall = deck.grid(4001 + k, *deck.x[node])
-                deck.hold(12, wall)
-                deck.pair(wall, wall, node, below)
+            deck.floor(deck.nodes[1], [below]*2, 4001)
             result = self.valid(deck)
             give = min(max(load, -below), above)
             upper, lower = max(0.0, load - give), max(0.0, give - load)
@@ -230,10 +209,7 @@ class Walls(Extremes):
     def test_tongue_too_thick(self):
         """Walls nearer to each other than the tongue is thick cannot both hold the same nodes."""
         deck = bar(-0.5, 0.0)
-        for k, node in enumerate(deck.nodes[1]):
-            wall = deck.grid(4001 + k, *deck.x[node])
-            deck.hold(12, wall)
-            deck.pair(wall, wall, node, 0.25)
+        deck.floor(deck.nodes[1], [0.25]*2, 4001)
         self.refused(deck, 1, "pairs overlap and nothing can give way: CGAP 100[12] 400[12]")
 
 

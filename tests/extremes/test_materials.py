@@ -6,46 +6,37 @@ from scene import PLANE_STRESS, Deck, Extremes
 from test_scales import column, column_answer
 
 
-def tower(stiff, soft, load=10.0, stiff_above=True, poisson=0.0, bonded=False):
+def tower(stiff, soft, stiff_above, bonded=False):
     """Two blocks of different moduli, one upon the other, with pairs between them or (bonded) one mesh; the lower one is
     held below, the upper one is free to travel. Without Poisson's ratio all is uniaxial."""
     deck = Deck()
     upper, lower = (stiff, soft) if stiff_above else (soft, stiff)
-    deck.material(1, lower, poisson)
-    deck.material(2, upper, poisson)
+    deck.material(1, lower, 0.0)
+    deck.material(2, upper, 0.0)
     xs = [0.0, 1.0, 2.0]
+    nodes = deck.block(1, xs, [0.0, 1.0])
     if bonded:
-        nodes = deck.block(1, xs, [0.0, 1.0], first=1)
         above = [[deck.grid(101 + k, x, 2.0) for k, x in enumerate(xs)]]
         for k in range(2):
             deck.element(2, nodes[1][k], nodes[1][k + 1], above[0][k + 1], above[0][k])
-        deck.top = above[0]
     else:
-        nodes = deck.block(1, xs, [0.0, 1.0], first=1)
         above = deck.block(2, xs, [1.0, 2.0], first=101)
         for k in range(3):
             deck.pair(501 + k, nodes[1][k], above[0][k])
         deck.hold(1, above[0][0])
-        deck.support(above[1][0], 2)
-        deck.support(above[1][2], 2)
-        deck.top = above[1]
+        deck.support(2, above[1][0], above[1][2])
     deck.hold(2, *nodes[0])
     deck.hold(1, nodes[0][0])
-    deck.press(deck.top, load)
+    deck.press(above[-1], 10.0)
     return deck
 
 
 def inclusion(ratio, cells=6):
     """A quarter of a square that is pulled at both sides, so many times stiffer in its middle."""
-    deck = Deck()
-    deck.material(1, 1.0, 0.3)
+    deck = Deck(1.0, 0.3)
     deck.material(2, ratio, 0.3)
     ticks = [k/cells for k in range(cells + 1)]
-    nodes = [[deck.grid(1 + j*(cells + 1) + i, x, y) for i, x in enumerate(ticks)] for j, y in enumerate(ticks)]
-    for j in range(cells):
-        for i in range(cells):
-            inside = max(i, j) < cells//2
-            deck.element(2 if inside else 1, nodes[j][i], nodes[j][i + 1], nodes[j + 1][i + 1], nodes[j + 1][i])
+    nodes = deck.block(lambda i, j: 2 if max(i, j) < cells//2 else 1, ticks, ticks)
     deck.hold(2, *nodes[0])
     deck.hold(1, *[row[0] for row in nodes])
     deck.press([row[-1] for row in nodes], 1.0, (1.0, 0.0))
@@ -54,13 +45,9 @@ def inclusion(ratio, cells=6):
 
 def floating(ratio, loads, cells=12):
     """A layer of two cells on a base of four, so many times softer, that is held below; loads on the upper side, by place."""
-    deck = Deck()
-    deck.material(1, 1.0, 0.3)
+    deck = Deck(1.0, 0.3)
     deck.material(2, ratio, 0.3)
-    nodes = [[deck.grid(1 + 100*j + i, float(i), float(j)) for i in range(cells + 1)] for j in range(7)]
-    for j in range(6):
-        for i in range(cells):
-            deck.element(2 if j >= 4 else 1, nodes[j][i], nodes[j][i + 1], nodes[j + 1][i + 1], nodes[j + 1][i])
+    nodes = deck.block(lambda i, j: 2 if j >= 4 else 1, [float(i) for i in range(cells + 1)], [float(j) for j in range(7)])
     deck.hold(12, *nodes[0])
     for place, load in loads:
         deck.force(nodes[6][place], 0.0, load)
@@ -103,7 +90,7 @@ class Contrast(Extremes):
         for exponent in self.exponents:
             for stiff_above in (True, False):
                 with self.subTest(contrast=f"1e{exponent}", stiff_above=stiff_above):
-                    result = self.valid(tower(10.0**exponent, 1.0, stiff_above=stiff_above))
+                    result = self.valid(tower(10.0**exponent, 1.0, stiff_above))
                     self.near(result.force, [2.5, 5.0, 2.5])
                     give = -5.0*(1.0 + 10.0**-exponent)
                     self.near(result.approach, [give]*2)
@@ -113,7 +100,7 @@ class Contrast(Extremes):
         for exponent in self.exponents:
             for stiff_above in (True, False):
                 with self.subTest(contrast=f"1e{exponent}", stiff_above=stiff_above):
-                    result = self.right_or_refused(tower(10.0**exponent, 1.0, stiff_above=stiff_above, bonded=True), LOST)
+                    result = self.right_or_refused(tower(10.0**exponent, 1.0, stiff_above, bonded=True), LOST)
                     self.assertTrue(result or stiff_above == (exponent > 0) and abs(exponent) > 6)
                     if result:
                         lift = [result.nodes[k]["uy"] for k in (101, 102, 103)]
@@ -149,19 +136,13 @@ class Contrast(Extremes):
                         self.near(values, reference, 1e-5)
 
 
-def yielding(points, pressure, plane=PLANE_STRESS, method=None, young=1000.0):
+def yielding(points, pressure, method=None):
     """A column in plane stress under a pressure: uniaxial, so that its stress is on the curve as written."""
-    deck = Deck(plane)
-    deck.material(1, young, 0.3)
+    deck = Deck(1000.0, 0.3, plane=PLANE_STRESS)
     deck.curve(1, points)
     if method:
         deck.parameter("METHOD", method)
-    deck.nodes = deck.block(1, [0.0, 1.0, 2.0], [0.0, 1.0])
-    deck.floor(deck.nodes[0])
-    deck.hold(1, deck.nodes[0][0])
-    deck.press(deck.nodes[-1], 2.0*pressure)
-    deck.support(deck.nodes[-1][0], 2)
-    deck.support(deck.nodes[-1][-1], 2)
+    deck.stand(deck.block(1, [0.0, 1.0, 2.0], [0.0, 1.0]), 2.0*pressure)
     return deck
 
 

@@ -16,8 +16,7 @@ WAVERS = 3.0
 
 def blocks_in_a_row(count, parts):
     """Each held at its bottom, and against the one before; the first is pushed."""
-    deck = Deck()
-    deck.material(1, 1000.0, 0.3)
+    deck = Deck(1000.0, 0.3)
     before = None
     for k in range(count):
         nodes = deck.block(1, [float(k*parts + i) for i in range(parts + 1)], [float(j) for j in range(parts + 1)],
@@ -34,35 +33,18 @@ def blocks_in_a_row(count, parts):
 
 def stack(count, parts):
     """Blocks one upon the other, each free to move up and to turn."""
-    deck = Deck()
-    deck.material(1, 1000.0, 0.0)
-    below = None
-    for k in range(count):
-        nodes = deck.block(1, [float(i) for i in range(parts + 1)], [float(k*parts + j) for j in range(parts + 1)],
-                           first=1 + k*(parts + 1)**2)
-        if below:
-            deck.hold(1, nodes[0][0])
-            for i in range(parts + 1):
-                deck.pair(5_000_000 + k*(parts + 1) + i, below[i], nodes[0][i])
-            deck.support(nodes[-1][0], 2)
-            deck.support(nodes[-1][-1], 2)
-        else:
-            deck.hold(12, *nodes[0])
-        below = nodes[-1]
-    deck.press(below, 10.0)
+    deck = Deck(1000.0, 0.0)
+    ticks = [float(i) for i in range(parts + 1)]
+    tops = deck.stack([(ticks, [k*parts + y for y in ticks]) for k in range(count)], (parts + 1)**2)
+    deck.press(tops[-1], 10.0)
     return deck
 
 
 def strip(pairs, rows, length, height=1.0):
     """On a floor, pressed from above: all pairs touch."""
-    deck = Deck()
-    deck.material(1, 1.0, 0.3)
+    deck = Deck(1.0, 0.3)
     nodes = deck.block(1, [length*k/(pairs - 1) for k in range(pairs)], [height*j/(rows - 1) for j in range(rows)])
-    deck.hold(1, nodes[0][0])
-    deck.support(nodes[-1][0], 2)
-    deck.support(nodes[-1][-1], 2)
-    deck.press(nodes[-1], 1.0)
-    deck.floor(nodes[0], first=5_000_001)
+    deck.stand(nodes, 1.0, first=5_000_001)
     return deck
 
 

@@ -8,14 +8,8 @@ from test_scales import punch
 
 def flat(aspect, size=1.0, triangles=False):
     """A column of 2 x 3 cells whose cells are so many times wider than high."""
-    deck = Deck()
-    deck.material(1, *STEEL)
-    deck.nodes = deck.block(1, [size*k for k in range(3)], [size/aspect*k for k in range(4)], triangles=triangles)
-    deck.floor(deck.nodes[0])
-    deck.hold(1, deck.nodes[0][0])
-    deck.press(deck.nodes[-1], 10.0)
-    deck.support(deck.nodes[-1][0], 2)
-    deck.support(deck.nodes[-1][-1], 2)
+    deck = Deck(*STEEL)
+    deck.stand(deck.block(1, [size*k for k in range(3)], [size/aspect*k for k in range(4)], triangles=triangles), 10.0)
     return deck
 
 
@@ -36,14 +30,12 @@ class Shapes(Extremes):
         for height in (1e-2, 1e-4, 1e-6, 1e-8):
             for triangles in (False, True):
                 with self.subTest(height=height, triangles=triangles):
-                    deck = Deck()
-                    deck.material(1, *STEEL)
+                    deck = Deck(*STEEL)
                     nodes = deck.block(1, [0.0, 1.0, 2.0], [0.0, 1.0, 1.0 + height, 2.0], triangles=triangles)
                     deck.floor(nodes[0])
                     deck.hold(1, nodes[0][0])
                     deck.press(nodes[-1], 10.0)
-                    deck.support(nodes[1][0], 2)
-                    deck.support(nodes[1][-1], 2)
+                    deck.support(2, nodes[1][0], nodes[1][-1])
                     result = self.right_or_refused(deck, "elements differ too much in size|too small or too stiff")
                     self.assertTrue(result or height < 1e-7)
                     if result:
@@ -60,8 +52,7 @@ class Shapes(Extremes):
     def test_no_area(self):
         """Elements on one line, or a billionth of a billionth from it."""
         for height in (0.0, 1e-18, 1e-13):
-            deck = Deck()
-            deck.material(1, *STEEL)
+            deck = Deck(*STEEL)
             for node, (x, y) in enumerate(((0.0, 0.0), (1.0, 0.0), (0.5, height)), 1):
                 deck.grid(node, x, y)
                 deck.hold(12, node)
@@ -86,8 +77,7 @@ class Shapes(Extremes):
 
     def nested(self, halvings, at):
         """Squares about one corner, its pressed sides, and the approach at the corner (0) or at the top (2)."""
-        deck = Deck()
-        deck.material(1, 1000.0, 0.3)
+        deck = Deck(1000.0, 0.3)
         sizes = [2.0**-k for k in range(halvings + 1)]
         deck.grid(9000, 0.0, 0.0)
         rings = [[deck.grid(10*k + 1, s, 0.0), deck.grid(10*k + 2, s, s), deck.grid(10*k + 3, 0.0, s)]
@@ -99,7 +89,7 @@ class Shapes(Extremes):
         deck.floor([9000] + [ring[0] for ring in reversed(rings)])
         deck.hold(1, 9000, *[ring[2] for ring in rings])
         deck.press(rings[0][1:], 10.0)
-        deck.support(rings[0][2] if at == 2 else 9000, 2)
+        deck.support(2, rings[0][2] if at == 2 else 9000)
         return deck, sizes[::-1]
 
 

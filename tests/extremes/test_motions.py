@@ -2,19 +2,16 @@
 import math
 import unittest
 
-from scene import STEEL, Deck, Extremes
+from scene import RINGS, STEEL, Deck, Extremes
 
 
-def plate(load=(0.0, -1.0), at=None, feet=(0.0, 2.0), gaps=(0.0, 0.0)):
+def plate(load=(0.0, -1.0), at=None, feet=(0.0, 2.0), gaps=(0.0, 0.0), measured=(1, 9)):
     """A block of 2 x 1 on feet at these places of its lower side (nodes 1 to 9), free to move; all of the load at one upper
-    node (or a third at each end and the middle)."""
-    deck = Deck()
-    deck.material(1, *STEEL)
+    node (or a third at each end and the middle); the approach of these nodes."""
+    deck = Deck(*STEEL)
     deck.nodes = deck.block(1, [k/4.0 for k in range(9)], [0.0, 0.5, 1.0])
-    for k, (foot, gap) in enumerate(zip(feet, gaps)):
-        ground = deck.grid(70001 + k, foot, 0.0)
-        deck.hold(12, ground)
-        deck.pair(ground, ground, 1 + round(4.0*foot), gap)
+    deck.floor([1 + round(4.0*foot) for foot in feet], gaps)
+    deck.support(2, *measured)
     deck.hold(1, deck.nodes[0][4])
     top = deck.nodes[-1]
     for node in [top[at]] if at is not None else [top[0], top[4], top[8]]:
@@ -26,10 +23,7 @@ def plate(load=(0.0, -1.0), at=None, feet=(0.0, 2.0), gaps=(0.0, 0.0)):
 class Supports(Extremes):
     def test_support_on_a_contact_node(self):
         """The node that measures the approach touches: its approach is none."""
-        deck = plate()
-        deck.support(1, 2)
-        deck.support(9, 2)
-        result = self.valid(deck)
+        result = self.valid(plate())
         self.near(result.force, [0.5, 0.5])
         self.near(result.approach, [0.0, 0.0], scale=1e-10)
 
@@ -37,10 +31,7 @@ class Supports(Extremes):
         """Which freedoms measure the motion changes no force, gap or displacement."""
         reference = None
         for measured in ((1, 9), (1, 2), (5, 9), (19, 27), (10, 27), (4, 6)):
-            deck = plate(at=3, gaps=(0.0, 0.01))
-            for node in measured:
-                deck.support(node, 2)
-            result = self.valid(deck)
+            result = self.valid(plate(at=3, gaps=(0.0, 0.01), measured=measured))
             reference = reference or result
             self.near(result.force, [0.625, 0.375])
             self.near(result.column("nodes", "uy"), reference.column("nodes", "uy"))
@@ -57,59 +48,44 @@ class Supports(Extremes):
                     self.near(result.column("nodes", "uy"), far.column("nodes", "uy"), 1e-6)
 
     def supported(self, apart, *places):
-        deck = Deck()
-        deck.material(1, *STEEL)
+        deck = Deck(*STEEL)
         nodes = deck.block(1, [0.0, 0.5, 0.5 + apart, 1.0], [0.0, 1.0])
         deck.floor(nodes[0])
         deck.hold(1, nodes[0][0])
-        for place in places:
-            deck.support(nodes[1][place], 2)
-        deck.force(nodes[1][0], 0.0, -0.5)
-        deck.force(nodes[1][3], 0.0, -0.5)
+        deck.support(2, *[nodes[1][place] for place in places])
+        for end in (0, 3):
+            deck.force(nodes[1][end], 0.0, -0.5)
         return deck
 
     def test_no_load(self):
         """A free body without load rests where it is; without SUPORT it is refused with the card to paste."""
         for at in (0, None):
-            deck = plate(load=(0.0, 0.0), at=at)
-            deck.support(1, 2)
-            deck.support(9, 2)
-            result = self.valid(deck)
+            result = self.valid(plate(load=(0.0, 0.0), at=at))
             self.near(result.force + result.approach, [0.0]*4, scale=1e-300)
-            self.assertIn("WARNINGS AND NOTES  (0 warnings, 2 notes)\n"
-                          "  approach of GRID 1 direction 2: nothing resists or drives this motion: its value is a choice\n"
-                          "  approach of GRID 9 direction 2: nothing resists or drives this motion: its value is a choice\n\n", result.listing)
+            self.assertIn("WARNINGS AND NOTES  (0 warnings, 2 notes)\n" +
+                          "".join(f"  approach of GRID {node} direction 2: nothing resists or drives this motion: its value is a choice\n"
+                                  for node in (1, 9)) + "\n", result.listing)
             self.assertEqual((result.summary["warnings"], result.summary["notes"], result.message), (0.0, 2.0, ""))
-        self.refused(plate(), 2, "SUPORT")
+        self.refused(plate(measured=()), 2, "SUPORT")
 
     def test_no_card_of_load(self):
         deck = plate()
         deck.cards = [card for card in deck.cards if card[0] != "FORCE"]
-        deck.support(1, 2)
-        deck.support(9, 2)
         result = self.valid(deck)
         self.near(result.force + result.column("nodes", "uy"), [0.0]*(2 + len(result.nodes)), scale=1e-300)
 
     def test_touching_at_one_point(self):
         """In balance on one foot under the load; half a rounding beside it falls over."""
-        deck = plate(at=4, feet=(1.0,), gaps=(0.0,))
-        deck.support(1, 2)
-        deck.support(9, 2)
-        result = self.valid(deck)
+        result = self.valid(plate(at=4, feet=(1.0,)))
         self.near(result.force, [1.0])
         self.assertIn("nothing resists or drives this motion", result.listing)
         for at in (3, 5):
-            deck = plate(at=at, feet=(1.0,), gaps=(0.0,))
-            deck.support(1, 2)
-            deck.support(9, 2)
-            self.refused(deck, 1, "moves off and no contact holds it")
+            self.refused(plate(at=at, feet=(1.0,)), 1, "moves off and no contact holds it")
 
     def test_at_the_edge_of_equilibrium(self):
         """The load above the last foot: that foot has it all; a little beyond it the body turns over."""
         for beyond, falls in ((-1e-3, False), (-1e-9, False), (0.0, False), (1e-9, True), (1e-3, True)):
-            deck = plate(load=(0.0, 0.0), at=0, feet=(0.25, 1.75), gaps=(0.0, 0.0))
-            deck.support(1, 2)
-            deck.support(9, 2)
+            deck = plate(load=(0.0, 0.0), at=0, feet=(0.25, 1.75))
             deck.force(19 + 1, 0.0, -1.0 - beyond)     # above the first foot, and a lever that turns beyond it
             deck.force(19 + 0, 0.0, -beyond*5.0)
             deck.force(19 + 8, 0.0, beyond*5.0)
@@ -122,26 +98,17 @@ class Supports(Extremes):
                     self.near(result.force, [1.0 + beyond - turning, turning], scale=1.0)
 
     def test_pulled_off(self):
-        deck = plate(load=(0.0, 1e-12))
-        deck.support(1, 2)
-        deck.support(9, 2)
-        self.refused(deck, 1, "moves off and no contact holds it")
+        self.refused(plate(load=(0.0, 1e-12)), 1, "moves off and no contact holds it")
 
     def test_turning_nearly_free(self):
         """Feet 1e-6 of the size apart: forces are 1e6 of the load, and exact."""
         for apart in (1e-2, 1e-4, 1e-6):
-            deck = Deck()
-            deck.material(1, *STEEL)
+            deck = Deck(*STEEL)
             nodes = deck.block(1, [0.0, 1.0 - apart, 1.0, 2.0], [0.0, 1.0])
             deck.hold(1, nodes[0][0])
-            for k, node in enumerate(nodes[0][1:3]):
-                for side, direction in ((70001, 1), (80001, -1)):
-                    ground = deck.grid(side + k, *deck.x[node])
-                    deck.hold(12, ground)
-                    a, b = (ground, node) if direction == 1 else (node, ground)
-                    deck.pair(ground, a, b, 0.0)
-            deck.support(nodes[1][0], 2)
-            deck.support(nodes[1][3], 2)
+            deck.floor(nodes[0][1:3])
+            deck.floor(nodes[0][1:3], first=80001, normal=(0.0, -1.0))
+            deck.support(2, nodes[1][0], nodes[1][3])
             deck.force(nodes[1][3], 0.0, -1.0)
             with self.subTest(apart=apart):
                 result = self.right_or_refused(deck, "rounding|condition")
@@ -152,15 +119,12 @@ class Supports(Extremes):
 class Ties(Extremes):
     def two_blocks(self, upper_load):
         """Two blocks that share one node, a hinge; the lower is held, the upper leans on a wall that faces -x."""
-        deck = Deck()
-        deck.material(1, *STEEL)
+        deck = Deck(*STEEL)
         lower = deck.block(1, [0.0, 1.0], [0.0, 1.0])
         deck.hold(12, *lower[0])
         a, b, c = deck.grid(11, 2.0, 1.0), deck.grid(12, 2.0, 2.0), deck.grid(13, 1.0, 2.0)
         deck.element(1, 4, a, b, c)
-        wall = deck.grid(21, 2.0, 2.0)
-        deck.hold(12, wall)
-        deck.pair(31, b, wall, 0.0, (1.0, 0.0))
+        deck.floor([b], normal=(-1.0, 0.0))
         deck.force(b, 0.0, upper_load)
         return deck
 
@@ -168,11 +132,11 @@ class Ties(Extremes):
         """Node 4 of the block below carries the next one, which turns about it against the wall."""
         deck = self.two_blocks(-1.0)
         self.refused(deck, 2, "SUPORT")
-        deck.support(12, 1)
+        deck.support(1, 12)
         result = self.valid(deck)
         self.near(result.force, [1.0])     # lever arms of load and wall about the hinge: both 1.0
         deck = self.two_blocks(1.0)
-        deck.support(12, 1)
+        deck.support(1, 12)
         self.refused(deck, 1, "moves off and no contact holds it")
 
     def test_chain_of_hinges(self):
@@ -183,8 +147,7 @@ class Ties(Extremes):
         self.refused(self.chain(alternate=False), 1, "moves off and no contact holds it")
 
     def chain(self, alternate):
-        deck = Deck()
-        deck.material(1, *STEEL)
+        deck = Deck(*STEEL)
         deck.grid(1, 0.0, 0.0)
         deck.hold(12, 1)
         count = 40
@@ -196,26 +159,22 @@ class Ties(Extremes):
             deck.element(1, low, low + 1, low + 3)
             deck.element(1, low, low + 3, low + 2)
             left = not alternate or (count - k) % 2 == 1
-            leaning = low + 1 if left else low + 2
-            wall = deck.grid(1001 + k, *deck.x[leaning])
-            deck.hold(12, wall)
-            deck.pair(2001 + k, wall, leaning, 0.0, (1.0 if left else -1.0, 0.0))
-            deck.support(low + 3, 1)
+            deck.floor([low + 1 if left else low + 2], first=1001 + k, normal=(1.0 if left else -1.0, 0.0))
+            deck.support(1, low + 3)
             deck.force(low + 3, -1.0 if k == count - 1 else 0.0, 0.0)
         return deck
 
     def test_platen_that_slides(self):
         """The upper side follows one node, up and down, as a rigid platen; it is the approach."""
         for leader_at in (0, 2):
-            deck = Deck()
-            deck.material(1, *STEEL)
+            deck = Deck(*STEEL)
             nodes = deck.block(1, [0.0, 1.0, 2.0], [0.0, 1.0])
             deck.floor(nodes[0])
             deck.hold(1, nodes[0][0])
             leader = nodes[1][leader_at]
             deck.card("RBE2", 801, leader, 2, *[node for node in nodes[1] if node != leader])
             deck.force(nodes[1][1], 0.0, -10.0)
-            deck.support(leader, 2)
+            deck.support(2, leader)
             result = self.valid(deck)
             self.near(result.force, [2.5, 5.0, 2.5])
             self.near(result.approach, [-5.0*(1.0 - STEEL[1]**2)/STEEL[0]])
@@ -226,8 +185,7 @@ class Ties(Extremes):
         as they are rounded."""
         turned = {}
         for side in (1e-2, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-14):
-            deck = Deck()
-            deck.material(1, 1000.0, 0.3)
+            deck = Deck(1000.0, 0.3)
             places = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0 - side), (1.0, 1.0), (0.0, 1.0), (2.0, 1.0), (2.0, 2.0)]
             for node, (x, y) in enumerate(places, 1):
                 deck.grid(node, x, y)
@@ -248,8 +206,7 @@ class Ties(Extremes):
     def test_travel_prescribed(self):
         """Supports may move far more than the body gives way: their common motion takes no digits of its strains."""
         for travel in (0.0, 1.0, 1e3, 1e6, 1e9, 1e12):
-            deck = Deck()
-            deck.material(1, 1000.0, 0.3)
+            deck = Deck(1000.0, 0.3)
             nodes = deck.block(1, [0.0, 1.0, 2.0], [0.0, 1.0, 2.0])
             for node in nodes[0]:
                 deck.displace(node, 2, travel)
@@ -263,17 +220,10 @@ class Ties(Extremes):
     def test_slender_ring(self):
         """So far from its axis that hardly anything resists its spreading; pressed on a floor evenly."""
         for radius in (1e1, 1e2, 1e3, 1e4, 1e6, 1e9):
-            deck = Deck(plane=None)
-            deck.cards.clear()
-            deck.card("PSOLID", 1, 1)
-            deck.card("MAT1", 1, 1000.0, None, 0.0)
-            nodes = [[deck.grid(1 + 4*j + i, radius + i, float(j)) for i in range(4)] for j in range(3)]
-            for lower, upper in zip(nodes, nodes[1:]):
-                for a, b, c, d in zip(lower, lower[1:], upper[1:], upper):
-                    deck.element(1, a, b, c, kind="CTRAX3")
-                    deck.element(1, a, c, d, kind="CTRAX3")
+            deck = Deck(1000.0, 0.0, plane=RINGS)
+            nodes = deck.block(1, [radius + i for i in range(4)], [0.0, 1.0, 2.0], triangles=True)
             deck.floor(nodes[0])
-            deck.support(nodes[2][0], 2)
+            deck.support(2, nodes[2][0])
             # A pressure of 1.0 as nodal forces of whole rings, exact for sides with linear displacement.
             forces = [ring_force(radius, i, sides) for i, sides in enumerate(((1,), (-1, 1), (-1, 1), (-1,)))]
             for node, force in zip(nodes[2], forces):
@@ -294,35 +244,19 @@ def ring_force(radius, place, sides):
 class Bodies(Extremes):
     def test_stack_of_two_hundred(self):
         """200 blocks, one upon the other: each pair of neighbours carries the load from the top, each give adds up."""
-        deck = Deck()
-        deck.material(1, 1000.0, 0.0)
-        count, below = 200, None
-        for k in range(count):
-            nodes = deck.block(1, [0.0, 1.0], [float(k), k + 1.0], first=10*k + 1)
-            if below:
-                deck.hold(1, nodes[0][0])
-                for i in range(2):
-                    deck.pair(5001 + 2*k + i, below[i], nodes[0][i])
-                deck.support(nodes[1][0], 2)
-                deck.support(nodes[1][1], 2)
-            else:
-                deck.hold(12, *nodes[0])
-            below = nodes[1]
-        deck.press(below, 10.0)
+        deck = Deck(1000.0, 0.0)
+        count = 200
+        tops = deck.stack([([0.0, 1.0], [float(k), k + 1.0]) for k in range(count)], 10)
+        deck.press(tops[-1], 10.0)
         result = self.valid(deck)
         self.near(result.force, [5.0]*2*(count - 1))
-        self.near([result.nodes[10*k + 3]["uy"] for k in range(count)], [-0.01*(k + 1) for k in range(count)])
+        self.near([result.nodes[top[0]]["uy"] for top in tops], [-0.01*(k + 1) for k in range(count)])
 
     def test_two_hundred_that_do_not_touch_each_other(self):
-        deck = Deck()
-        deck.material(1, 1000.0, 0.0)
+        deck = Deck(1000.0, 0.0)
         for k in range(200):
             nodes = deck.block(1, [2.0*k, 2.0*k + 1.0], [0.0, 1.0], first=10*k + 1)
-            deck.floor(nodes[0], first=50001 + 10*k)
-            deck.hold(1, nodes[0][0])
-            deck.support(nodes[1][0], 2)
-            deck.support(nodes[1][1], 2)
-            deck.press(nodes[1], 10.0**(k % 25 - 12))
+            deck.stand(nodes, 10.0**(k % 25 - 12), first=50001 + 10*k)
         result = self.valid(deck)
         for k in range(200):
             self.near([result.pairs[50001 + 10*k + i]["force"] for i in range(2)], [0.5*10.0**(k % 25 - 12)]*2, scale=1e12)

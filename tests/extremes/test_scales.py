@@ -9,16 +9,11 @@ def column(load=10.0, size=1.0, young=STEEL[0], poisson=STEEL[1], place=(0.0, 0.
            triangles=False, thickness=1.0):
     """A block of 2 x 3 sizes, pressed on a floor that lets it spread: uniform stress, known exactly. One body-free motion
     along x is held, the other two are the approach."""
-    deck = Deck()
-    deck.material(1, young, poisson, thickness)
+    deck = Deck(young, poisson, thickness)
     xs = [place[0] + 2.0*size*k/cells[0] for k in range(cells[0] + 1)]
     ys = [place[1] + 3.0*size*k/cells[1] for k in range(cells[1] + 1)]
     deck.nodes = deck.block(1, xs, ys, first, triangles)
-    deck.floor(deck.nodes[0])
-    deck.hold(1, deck.nodes[0][0])
-    deck.press(deck.nodes[-1], load)
-    deck.support(deck.nodes[-1][0], 2)
-    deck.support(deck.nodes[-1][-1], 2)
+    deck.stand(deck.nodes, load)
     return deck
 
 
@@ -30,45 +25,41 @@ def column_answer(load=10.0, size=1.0, young=STEEL[0], poisson=STEEL[1], cells=2
 
 def punch(force=1.0, length=1.0, load=40.0, place=(0.0, 0.0)):
     """A block with a rounded lower side: part of it touches. In units that are so many times smaller."""
-    deck = Deck()
-    deck.material(1, 1000.0*force/length/length, 0.3, thickness=length)
+    deck = Deck(1000.0*force/length/length, 0.3, length)
     xs = [place[0] + length*k for k in range(-4, 5)]
     deck.nodes = deck.block(1, xs, [place[1] + length*k for k in range(5)])
     deck.floor(deck.nodes[0], [length*(k - 4)**2/256.0 for k in range(9)])
     deck.hold(1, deck.nodes[0][4])
     deck.press(deck.nodes[-1], load*force)
-    deck.support(deck.nodes[-1][0], 2)
-    deck.support(deck.nodes[-1][-1], 2)
+    deck.support(2, deck.nodes[-1][0], deck.nodes[-1][-1])
     return deck
 
 
 class Scales(Extremes):
-    def column_is_right(self, relative=1e-10, **scale):
-        result = self.valid(column(**scale))
-        forces, approach = column_answer(**{key: value for key, value in scale.items() if key != "place"})
-        self.near(result.force, forces, relative)
-        self.near(result.approach, [approach]*2, relative)
+    def column_is_right(self, **scale):
+        with self.subTest(**scale):
+            result = self.valid(column(**scale))
+            forces, approach = column_answer(**scale)
+            self.near(result.force, forces)
+            self.near(result.approach, [approach]*2)
 
     def test_loads(self):
-        for exponent in (-59, -29, -12, -6, 0, 6, 12, 29):
-            with self.subTest(load=f"1e{exponent}"):
-                self.column_is_right(load=float(f"1e{exponent}"))
+        for load in (1e-59, 1e-29, 1e-12, 1e-6, 1.0, 1e6, 1e12, 1e29):
+            self.column_is_right(load=load)
 
     def test_lengths(self):
-        for exponent in (-29, -9, -6, -3, 0, 3, 6, 9, 29):
-            with self.subTest(length=f"1e{exponent}"):
-                self.column_is_right(size=float(f"1e{exponent}"))
+        for size in (1e-29, 1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9, 1e29):
+            self.column_is_right(size=size)
 
     def test_moduli(self):
-        for exponent in (-30, -12, 0, 12, 30):
-            with self.subTest(young=f"1e{exponent}"):
-                self.column_is_right(young=float(f"1e{exponent}"))
+        for young in (1e-30, 1e-12, 1.0, 1e12, 1e30):
+            self.column_is_right(young=young)
 
     def test_single_precision_in_any_unit(self):
         """Stiffnesses far beyond the numbers that it has."""
         for exponent in (-25, -12, 0, 12, 25):
-            with self.subTest(young=f"1e{exponent}", thickness=f"1e{exponent}"):
-                scale = {"young": 10.0**exponent, "thickness": 10.0**exponent}
+            scale = {"young": 10.0**exponent, "thickness": 10.0**exponent}
+            with self.subTest(**scale):
                 deck = column(**scale)
                 deck.parameter("PRECIS", "SINGLE")
                 result = self.valid(deck)
@@ -78,16 +69,11 @@ class Scales(Extremes):
                 self.near(result.approach, [approach]*2, 1e-4)
 
     def test_any_unit(self):
+        """Powers of two, of ten, and old ones."""
         base = self.valid(punch())
         self.assertTrue(0 < sum(base.touching) < 9)
-        for force, length in ((2.0**40, 1.0), (2.0**-40, 1.0), (1.0, 2.0**30), (1.0, 2.0**-30), (2.0**55, 2.0**-15),
-                              (2.0**-55, 2.0**15), (1024.0, 0.125)):
-            with self.subTest(force=force, length=length):
-                self.twins(base, self.valid(punch(force, length)), force, length)
-
-    def test_units_of_ten(self):
-        base = self.valid(punch())
-        for force, length in ((1e12, 1.0), (1e-12, 1.0), (1.0, 1e9), (1.0, 1e-9), (9.80665, 25.4)):
+        for force, length in ((2.0**40, 1.0), (2.0**-40, 1.0), (1.0, 2.0**30), (1.0, 2.0**-30), (2.0**55, 2.0**-15), (2.0**-55, 2.0**15),
+                              (1024.0, 0.125), (1e12, 1.0), (1e-12, 1.0), (1.0, 1e9), (1.0, 1e-9), (9.80665, 25.4)):
             with self.subTest(force=force, length=length):
                 self.twins(base, self.valid(punch(force, length)), force, length)
 
@@ -125,8 +111,7 @@ class Scales(Extremes):
     def test_all_ranges_at_their_ends(self):
         """No product of loads, lengths, moduli and thicknesses leaves the range of numbers where these are within theirs."""
         for load, size, young, thickness in itertools.product((1e-59, 1e29), (1e-29, 1e29), (1e-30, 1e30), (1e-30, 1e30)):
-            with self.subTest(load=load, size=size, young=young, thickness=thickness):
-                self.column_is_right(load=load, size=size, young=young, thickness=thickness)
+            self.column_is_right(load=load, size=size, young=young, thickness=thickness)
 
     def test_causes_too_small(self):
         """The squares of a load, over stiffness, would be no numbers: work would vanish, and equilibrium be a toss-up."""

@@ -9,11 +9,10 @@ YOUNG = 2.1e5
 
 def strip(length, solver, order):
     """A bar of height 1 clamped at its left end, its elements of 3, 4 or 6 nodes; no contraction, so the clamp holds nothing back."""
-    deck = Deck(PLANE_STRESS)
+    deck = Deck(YOUNG, 0.0, plane=PLANE_STRESS)
     deck.parameter("SOLVER", solver)
-    deck.material(1, YOUNG, 0.0)
     if order == 6:
-        deck.columns = six_node_block(deck, length)
+        deck.columns = six_node_block(deck, length, 1, 0.0)
     else:
         xs = [0.5*k for k in range(2*length + 1)]
         rows = deck.block(1, xs, [0.0, 0.5, 1.0], triangles=order == 3)
@@ -22,9 +21,9 @@ def strip(length, solver, order):
     return deck
 
 
-def six_node_block(deck, length):
+def six_node_block(deck, length, first, bottom):
     """One row of squares, each of two triangles; the columns of nodes, those of the middles of sides between them."""
-    columns = [[deck.grid(1 + 3*i + j, 0.5*i, 0.5*j) for j in range(3)] for i in range(2*length + 1)]
+    columns = [[deck.grid(first + 3*i + j, 0.5*i, bottom + 0.5*j) for j in range(3)] for i in range(2*length + 1)]
     for left, middle, right in zip(columns[::2], columns[1::2], columns[2::2]):
         deck.element(1, left[0], right[0], right[2], middle[0], right[1], middle[1])
         deck.element(1, left[0], right[2], left[2], middle[1], middle[2], left[1])
@@ -66,11 +65,7 @@ class Slender(Extremes):
             with self.subTest(length=length):
                 deck = strip(length, "BAND", 6)
                 lower = deck.columns
-                count = 3*len(lower)
-                upper = [[deck.grid(count + node, deck.x[node][0], deck.x[node][1] + 1.0) for node in column] for column in lower]
-                for left, middle, right in zip(upper[::2], upper[1::2], upper[2::2]):
-                    deck.element(1, left[0], right[0], right[2], middle[0], right[1], middle[1])
-                    deck.element(1, left[0], right[2], left[2], middle[1], middle[2], left[1])
+                upper = six_node_block(deck, length, 1 + 3*len(lower), 1.0)
                 deck.hold(12, *upper[0])
                 deck.pair(70001, lower[-1][2], upper[-1][0])
                 deck.force(upper[-1][2], 0.0, -1.0)

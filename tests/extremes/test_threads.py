@@ -17,27 +17,16 @@ COUNTS = (1, 2, 3, 8)
 
 def stack(bodies=4, across=28, young=STEEL[0], parameters=(), stress=None):
     """Blocks one upon the other, each higher than the one below, the load on the left half; `stress`: where they yield."""
-    deck = Deck()
+    deck = Deck(young, STEEL[1])
     for name, value in parameters:
         deck.parameter(name, value)
-    deck.material(1, young, STEEL[1])
     if stress:
         deck.curve(1, [(stress/young, stress), (0.2, 3.0*stress)])
-    top, begin = None, 0.0
+    xs, blocks, begin = [i/across for i in range(across + 1)], [], 0.0
     for k in range(bodies):
-        xs = [i/across for i in range(across + 1)]
-        ys = [begin + j/across for j in range(across + 6*k + 1)]
-        nodes = deck.block(1, xs, ys, first=100000*(k + 1))
-        if top:
-            for i, (below, above) in enumerate(zip(top, nodes[0])):
-                deck.pair(9000000 + 1000*k + i, below, above)
-            deck.hold(1, nodes[0][0])
-            deck.support(nodes[-1][0], 2)
-            deck.support(nodes[-1][-1], 2)
-        else:
-            deck.hold(12, *nodes[0])
-        top, begin = nodes[-1], ys[-1]
-    deck.press(top[:across//2 + 1], 100.0)
+        blocks.append((xs, [begin + j/across for j in range(across + 6*k + 1)]))
+        begin = blocks[-1][1][-1]
+    deck.press(deck.stack(blocks, 100000)[-1][:across//2 + 1], 100.0)
     return deck
 
 

@@ -6,7 +6,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "extremes"))
-from scene import Deck  # noqa: E402
+from scene import PLANE_STRAIN, RINGS, Deck  # noqa: E402
 
 FIRST_OF_PUNCH, LEADER = 5001, 9999
 
@@ -29,6 +29,20 @@ def grid(first, x0, y0, width, height, across, up, kind):
             else:
                 ab, bc, cd, da, m = rows[j][i + 1], rows[j + 1][i + 2], rows[j + 2][i + 1], rows[j + 1][i], rows[j + 1][i + 1]
                 elements += [(a, b, d, ab, m, da), (b, c, d, bc, cd, m)] if left else [(a, b, c, ab, bc, m), (a, c, d, m, cd, da)]
+    return place, elements, rows
+
+
+def new_deck(kind, young=1000.0):
+    return Deck(young, 0.3, plane=RINGS if kind.startswith("CTRAX") else PLANE_STRAIN)
+
+
+def block(deck, first, x0, y0, width, height, across, up, kind):
+    """Such a grid, in a deck."""
+    place, elements, rows = grid(first, x0, y0, width, height, across, up, kind)
+    for n, at in place.items():
+        deck.grid(n, *at)
+    for nodes in elements:
+        deck.element(1, *nodes, kind=kind)
     return place, elements, rows
 
 
@@ -66,20 +80,13 @@ class Punch:
         image = image or (lambda v: v)
         (ax, ay), (bx, by) = image((1.0, 0.0)), image((0.0, 1.0))
         turned_over = ax * by - ay * bx < 0.0
-        deck = Deck(None if self.rings else -1)
-        for number, young in ((1, 1000.0), (2, 5000.0)):
-            if self.rings:
-                deck.card("PSOLID", number, number)
-                deck.card("MAT1", number, young, None, 0.3)
-            else:
-                deck.material(number, young, 0.3)
+        deck = new_deck(self.kind)
+        deck.material(2, 5000.0, 0.3)
         for n, at in self.place.items():
             deck.grid(rename(n), *image(at))
         for material, nodes in self.elements:
             if turned_over:
                 nodes = nodes[:1] + nodes[:0:-1] if len(nodes) < 6 else (nodes[0], nodes[2], nodes[1], nodes[5], nodes[4], nodes[3])
-            if self.kind == "CTRAX6":
-                nodes = [nodes[i] for i in (0, 3, 1, 4, 2, 5)]
             deck.element(material, *map(rename, nodes), kind=self.kind)
         for (n, c), value in self.held.items():
             along, size = self.turned(image, c)
@@ -87,7 +94,7 @@ class Punch:
         if self.tied:
             leader, directions, nodes = self.tied
             deck.card("RBE2", 99999, rename(leader), "".join(sorted(str(self.turned(image, c)[0]) for c in directions)), *map(rename, nodes))
-            deck.support(rename(leader), self.turned(image, 2)[0])
+            deck.support(self.turned(image, 2)[0], rename(leader))
             deck.force(rename(leader), *image((0.0, self.driven[1])))
         self.contact(deck, image, backwards, rename)
         return deck
@@ -99,13 +106,11 @@ class Punch:
         return (1, x) if x else (2, y)
 
     def contact(self, deck, image, backwards, rename):
-        step = 2 if self.kind.endswith("6") else 1
         if self.pairs:
             deck.parameter("GAPGEOM", "YES")
             at = {round(self.place[n][0], 9): n for n in self.lower}
             for k, n in enumerate(reversed(self.upper) if backwards else self.upper):
                 deck.pair(80001 + k, rename(at[round(self.place[n][0], 9)]), rename(n), normal=image((0.0, 1.0)))
             return
-        for number, line in ((1, self.upper[::step]), (2, self.lower[::step])):
-            deck.card("BLSEG", number, *map(rename, reversed(line) if backwards else line))
-        deck.card("BCONP", 1, *((1, 2) if self.slave == "punch" else (2, 1)))
+        way = (2 if self.kind.endswith("6") else 1) * (-1 if backwards else 1)
+        deck.lines(*(map(rename, line[::way]) for line in (self.upper, self.lower)), 1 if self.slave == "punch" else 2)

@@ -1,51 +1,38 @@
 #!/usr/bin/env python3
 """Bodies that supports move as a whole, and bodies that do not touch: a right answer, without stress."""
 import itertools
-import pathlib
-import sys
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "extremes"))
-import scene  # noqa: E402
-from scenes import grid  # noqa: E402
+from scenes import block, new_deck
+
+import scene
 
 KINDS = ("CTRIA3", "CTRIA6", "CQUAD4", "CTRAX3", "CTRAX6")
 
 
-class Rest(unittest.TestCase):
+class Rest(scene.Extremes):
 
     def deck(self, kind, young=1000.0, yields=False, bodies=1):
         """Blocks of 1 by 1, 0.1 above each other, on x from 0.3 on; the rows of ids of each."""
-        rings = kind.startswith("CTRAX")
-        deck = scene.Deck(None if rings else -1)
-        if rings:
-            deck.card("PSOLID", 1, 1)
-            deck.card("MAT1", 1, young, None, 0.3)
-        else:
-            deck.material(1, young, 0.3)
+        deck = new_deck(kind, young)
         if yields:
             deck.card("MATS1", 1, None, "PLASTIC", young / 10, 1, 1, young / 1000)
-        rows = []
-        for body in range(bodies):
-            place, elements, of_body = grid(1 + 1000 * body, 0.3, 1.1 * body, 1.0, 1.0, 3, 3, kind)
-            for n, at in place.items():
-                deck.grid(n, *at)
-            for nodes in elements:
-                deck.element(1, *([nodes[i] for i in (0, 3, 1, 4, 2, 5)] if kind == "CTRAX6" else nodes), kind=kind)
-            rows.append(of_body)
-        return deck, rows
+        return deck, [block(deck, 1 + 1000 * body, 0.3, 1.1 * body, 1.0, 1.0, 3, 3, kind)[2] for body in range(bodies)]
+
+    def two(self, kind, motion):
+        """Two of them, with lines between; the lower one's bottom moves, the upper one's top is held."""
+        deck, (lower, upper) = self.deck(kind, yields=True, bodies=2)
+        self.prescribe(deck, lower[0], lambda x, y: motion)
+        self.prescribe(deck, upper[-1], lambda x, y: (0.0, 0.0))
+        step = 2 if kind.endswith("6") else 1
+        deck.lines(lower[-1][::step], upper[0][::step], 2)
+        return deck, lower
 
     def prescribe(self, deck, nodes, motion):
         for n in nodes:
             for c, value in enumerate(motion(*deck.x[n]), 1):
                 if value is not None:
                     deck.displace(n, c, value)
-
-    def at_rest(self, deck):
-        result = scene.solve(deck)
-        self.assertEqual(result.status, 0, result.message + result.listing[-1500:])
-        self.assertEqual(result.summary["status"], "valid")
-        return result
 
     def test_shifts(self):
         """No stress at all, whatever the size of the motion, the material and the precision of the factors."""
@@ -57,7 +44,7 @@ class Rest(unittest.TestCase):
             shift = (None if kind.startswith("CTRAX") else 0.7 * size, -0.3 * size)
             self.prescribe(deck, nodes, lambda x, y: shift)
             with self.subTest(kind=kind, who=who, size=size, young=young, yields=yields, precision=precision):
-                result = self.at_rest(deck)
+                result = self.valid(deck)
                 self.assertEqual(result.summary["max_equivalent_stress"], 0.0)
                 self.assertEqual({row["uy"] for row in result.nodes.values()}, {shift[1]})
 
@@ -68,26 +55,19 @@ class Rest(unittest.TestCase):
                 deck, (rows,) = self.deck(kind)
                 self.prescribe(deck, rows[0], lambda x, y: (size * (0.1 - y), size * x))
                 with self.subTest(kind=kind, size=size):
-                    self.assertLess(self.at_rest(deck).summary["max_equivalent_stress"], 1e-12 * size * 1000.0)
+                    self.assertLess(self.valid(deck).summary["max_equivalent_stress"], 1e-12 * size * 1000.0)
                 deck, (rows,) = self.deck(kind)
                 self.prescribe(deck, rows[0], lambda x, y: (float(f"{size * (0.1 - y):.5e}"), float(f"{size * x:.5e}")))
                 with self.subTest(kind=kind, size=size, digits=6):
-                    self.assertLess(self.at_rest(deck).summary["max_equivalent_stress"], 1e-4 * size * 1000.0)
+                    self.assertLess(self.valid(deck).summary["max_equivalent_stress"], 1e-4 * size * 1000.0)
 
     def test_apart(self):
         """Two bodies with lines between them that a support has moved apart, or that were never loaded."""
         for kind in KINDS:
             for away in (0.0, 0.2, 1e5):
-                deck, (lower, upper) = self.deck(kind, yields=True, bodies=2)
-                shift = 0.0 if kind.startswith("CTRAX") else 0.01
-                self.prescribe(deck, lower[0], lambda x, y: (shift, -away))
-                self.prescribe(deck, upper[-1], lambda x, y: (0.0, 0.0))
-                step = 2 if kind.endswith("6") else 1
-                deck.card("BLSEG", 1, *lower[-1][::step])
-                deck.card("BLSEG", 2, *upper[0][::step])
-                deck.card("BCONP", 1, 2, 1)
+                deck, lower = self.two(kind, (0.0 if kind.startswith("CTRAX") else 0.01, -away))
                 with self.subTest(kind=kind, away=away):
-                    result = self.at_rest(deck)
+                    result = self.valid(deck)
                     self.assertEqual((result.summary["max_equivalent_stress"], result.summary["pairs_in_contact"]), (0.0, 0.0))
                     self.assertEqual(result.summary["max_pressure"], 0.0)
                     self.assertAlmostEqual(min(result.gap), away + 0.1, delta=1e-12 * (away + 1.0))
@@ -100,44 +80,31 @@ class Rest(unittest.TestCase):
         for kind in KINDS:
             answers = []
             for start in (0.0, 50.0):
-                deck, (lower, upper) = self.deck(kind, yields=True, bodies=2)
+                deck, lower = self.two(kind, (0.0, start + 0.101))
                 for n in sum(lower, []):
                     deck.x[n] = (deck.x[n][0], deck.x[n][1] - start)
                 deck.cards = [card if card[0] != "GRID" else ("GRID", card[1], None, *deck.x[card[1]], 0.0) for card in deck.cards]
                 deck.parameter("SEARCH", 100.0)
-                self.prescribe(deck, lower[0], lambda x, y: (0.0, start + 0.101))
-                self.prescribe(deck, upper[-1], lambda x, y: (0.0, 0.0))
-                step = 2 if kind.endswith("6") else 1
-                deck.card("BLSEG", 1, *lower[-1][::step])
-                deck.card("BLSEG", 2, *upper[0][::step])
-                deck.card("BCONP", 1, 2, 1)
-                answers.append(self.at_rest(deck))
+                answers.append(self.valid(deck))
             with self.subTest(kind=kind):
                 one, other = (answer.column("elements", "sy") for answer in answers)
                 self.assertGreater(max(map(abs, one)), 0.1)
-                for a, b in zip(one, other):
-                    self.assertAlmostEqual(a, b, delta=1e-7 * max(map(abs, one)))
+                self.near(other, one, 1e-7)
 
 
-class LargestStress(unittest.TestCase):
+class LargestStress(scene.Extremes):
     """An element has yielded where it has at any integration point: so says the largest stress, with its place."""
 
     def test_bent_beam(self):
         """A cantilever of six-node and of four-node elements under a force at its end; yield stress 14."""
         for kind in ("CTRIA3", "CTRIA6", "CQUAD4"):
-            deck = scene.Deck()
-            deck.material(1, 1000.0, 0.3)
+            deck = new_deck(kind)
             deck.card("MATS1", 1, None, "PLASTIC", 100.0, 1, 1, 14.0)
-            place, elements, rows = grid(1, 0.0, 0.0, 6.0, 1.0, 9, 2, kind)
-            for n, at in place.items():
-                deck.grid(n, *at)
-            for nodes in elements:
-                deck.element(1, *nodes, kind=kind)
+            place, elements, rows = block(deck, 1, 0.0, 0.0, 6.0, 1.0, 9, 2, kind)
             deck.hold(12, *(row[0] for row in rows))
             deck.force(rows[0][-1], 0.0, 1.0)
-            result = scene.solve(deck)
             with self.subTest(kind=kind):
-                self.assertEqual(result.status, 0, result.message)
+                result = self.valid(deck)
                 for row in result.elements.values():
                     self.assertEqual(row["state"] == "plastic", row["max_equivalent_stress"] > 14.0)
                     self.assertGreaterEqual(row["max_equivalent_stress"], row["equivalent_stress"] * (1 - 1e-12))

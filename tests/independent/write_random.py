@@ -116,8 +116,8 @@ class Scene:
         return "\n".join(["BEGIN BULK"] + self.lines + ["ENDDATA", ""])
 
 
-def places(rng, low, high, parts):
-    steps = [rng.uniform(0.6, 1.4) for _ in range(parts)]
+def places(rng, low, high, parts, uneven=0.4):
+    steps = [rng.uniform(1.0 - uneven, 1.0 + uneven) for _ in range(parts)]
     found = [low]
     for step in steps:
         found.append(found[-1] + (high - low) * step / sum(steps))

@@ -64,8 +64,8 @@ def block(n=1, kind="CQUAD4", gap=0.0):
     """Two blocks of 2 x 1 on each other; the upper is moved down by .01 and the gap."""
     scene = Scene(n, 1.0)
     bodies = [scene.body(kind), scene.body(kind)]
-    cells(bodies[0], [-1.0, 1.0], [-1.0, 0.0], 0.5, 0.5)
-    cells(bodies[1], [-1.0, 1.0], [gap, gap + 1.0], 0.5, 0.5)
+    cells(bodies[0], [-1.0, 1.0], [-1.0, 0.0], 0.5)
+    cells(bodies[1], [-1.0, 1.0], [gap, gap + 1.0], 0.5)
     scene.hold(bodies[0].line((-1.0, -1.0), (1.0, -1.0)))
     scene.hold(bodies[1].line((1.0, gap + 1.0), (-1.0, gap + 1.0)), "12", (0.0, -gap - 0.01))
     scene.contact(bodies[1].line((-1.0, gap), (1.0, gap)), bodies[0].line((1.0, 0.0), (-1.0, 0.0)))
@@ -129,7 +129,7 @@ class Scenes(Case):
         for kind in RINGS:
             scene = Scene(1, 1.0)
             body = scene.body(kind)
-            cells(body, [1.0, 2.0], [0.0, 1.0], 0.5, 0.5)
+            cells(body, [1.0, 2.0], [0.0, 1.0], 0.5)
             self.assertAlmostEqual(area(scene, body), 1.0)
 
     def test_a_line_is_split_at_a_node(self):

@@ -1,4 +1,5 @@
 """The decks of a batch: where they stand, where their results go, what they are made of."""
+import argparse
 import csv
 import hashlib
 import io
@@ -16,6 +17,14 @@ NO_NAME = ("-", "=", "+", "@")   # the program would take it for an option, a sp
 
 class Refused(Exception):
     """A fault of the call or of a list: nothing is run."""
+
+
+class Parser(argparse.ArgumentParser):
+    def __init__(self, words=None, **more):
+        super().__init__(description=words, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
+
+    def error(self, message):   # argparse's own exit status would be 2
+        raise Refused(f"{message}; --help says more")
 
 
 @dataclass

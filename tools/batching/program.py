@@ -1,10 +1,13 @@
 """The program that decks are run by."""
 import hashlib
 import os
+import pathlib
 import shutil
 import subprocess
 
 from .decks import Refused
+
+USUAL = str(pathlib.Path(__file__).resolve().parents[2] / "build" / "release" / "epcont")
 
 
 def found(program):

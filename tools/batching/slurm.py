@@ -28,6 +28,10 @@ def shares(decks, chunk):
     return [[deck.place for deck in decks[k::tasks]] for k in range(tasks)]
 
 
+def ask(*command, **more):
+    return subprocess.run(command, capture_output=True, text=True, check=False, **more)
+
+
 def submit(book, plan, tasks, script):
     """One array job of these tasks."""
     for task in tasks:   # there from the beginning, so that no node's memory of the folder hides it
@@ -39,7 +43,7 @@ def submit(book, plan, tasks, script):
     text = f"#!/bin/sh\nexec {shlex.quote(script)} --task {shlex.quote(os.path.abspath(book.directory))} " \
            f"\"$SLURM_ARRAY_TASK_ID\" {plan['id']}\n"
     try:
-        done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+        done = ask(*command, input=text)
     except OSError as error:
         raise Refused(f"sbatch cannot be started: {error.strerror}; without Slurm leave --slurm out") from None
     if done.returncode:
@@ -52,9 +56,8 @@ def submit(book, plan, tasks, script):
 
 def queued():
     """(job, task) of all that wait or run, or nothing where Slurm does not answer."""
-    command = ["squeue", "--noheader", "--array", f"--user={os.getuid()}", "--format=%F %K"]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        done = ask("squeue", "--noheader", "--array", f"--user={os.getuid()}", "--format=%F %K")
     except OSError:
         return None
     if done.returncode:
@@ -64,9 +67,8 @@ def queued():
 
 def reason(job, task):
     """Why a task has ended, as long as Slurm knows."""
-    command = ["scontrol", "--oneliner", "show", "job", f"{job}_{task}"]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        done = ask("scontrol", "--oneliner", "show", "job", f"{job}_{task}")
     except OSError:
         return "unknown to Slurm"
     state = re.search(r"\bJobState=(\S+)", done.stdout)

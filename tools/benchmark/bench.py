@@ -11,7 +11,6 @@ numbering to displacements, stage by stage beside the best libraries bare. Every
 What a part measured is kept in build/benchmark/part*.json. Once all four are there, their tables go to
 tools/benchmark/results.md and with a picture to results.png, each with its own command and load; to standard output in any case.
 """
-import argparse
 import json
 import os
 import pathlib
@@ -30,6 +29,7 @@ import cylinders  # noqa: E402
 import report  # noqa: E402
 import solve_part  # noqa: E402
 from process import ONE_THREAD  # noqa: E402
+from wording import parser_of  # noqa: E402
 
 NODES, UNKNOWNS = (330, 1000, 3000, 11000, 42000), (50, 100, 200, 500, 1000, 2000)
 #: Of part 4 and of growth: nodes of meshes with twice as many unknowns.
@@ -105,7 +105,7 @@ def machine():
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="tools/bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, "tools/bench")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--part", type=int, choices=(1, 2, 3, 4))
     parser.add_argument("--turns", type=int)

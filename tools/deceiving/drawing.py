@@ -36,8 +36,19 @@ class Draw:
     def master(self):
         return self.scene.body(self.kinds[1], self.young, self.poisson)
 
-    def press(self, body, nodes, travel, width):
-        """A line of the body moves down by a travel (and aside), or under a force that gives strains as drawn."""
+    def block(self, left, right, low, high):
+        """A slave."""
+        body = self.slave()
+        cells(body, [left, right], [low, high], self.h_slave)
+        return body
+
+    def hold(self, body, a, b, *how):
+        """The line of a body from a to b."""
+        self.scene.hold(body.line(a, b), *how)
+
+    def press(self, body, right, left, top, travel, width):
+        """The upper side of the body moves down by a travel (and aside), or under a force that gives strains as drawn."""
+        nodes = body.line((right, top), (left, top))
         if self.force:
             self.scene.platen(nodes, self.strain * min(body.young, self.young) * width)
         else:
@@ -50,9 +61,9 @@ class Draw:
         self.scene.contact(slave, master)
 
 
-def base(draw, left, right, depth=1.0, hy=None, y=0.0):
-    """A block below y, held at its lower side; its upper side as a line."""
+def base(draw, left, right, depth=1.0):
+    """A block below y = 0, held at its lower side."""
     body = draw.master()
-    cells(body, [left, right], [y - depth, y], draw.h_master, hy or max(draw.h_master, depth / 5))
-    draw.scene.hold(body.line((left, y - depth), (right, y - depth)))
+    cells(body, [left, right], [-depth, 0.0], draw.h_master, up=max(draw.h_master, depth / 5))
+    draw.hold(body, (left, -depth), (right, -depth))
     return body

@@ -6,24 +6,24 @@ def number_of(length, h):
     return max(1, round(length / h))
 
 
-def cells(body, xs, ys, hx, hy, full=lambda i, j: True, shape=lambda x, y: (x, y)):
-    """Blocks between lines x and y, where full; each as many elements as its length over hx, hy; places moved by shape."""
+def cells(body, xs, ys, h, full=lambda i, j: True, shape=lambda x, y: (x, y), up=None):
+    """Blocks between lines x and y, where full; each as many elements as its length over h, its height over `up`; places moved by shape."""
     for i, (x0, x1) in enumerate(zip(xs, xs[1:])):
         for j, (y0, y1) in enumerate(zip(ys, ys[1:])):
             if full(i, j):
-                body.patch(lambda s, t: shape(x0 + (x1 - x0) * s, y0 + (y1 - y0) * t), number_of(x1 - x0, hx), number_of(y1 - y0, hy))
+                body.patch(lambda s, t: shape(x0 + (x1 - x0) * s, y0 + (y1 - y0) * t), number_of(x1 - x0, h), number_of(y1 - y0, up or h))
 
 
-def profiled(body, xs, top, profile, hx, hy):
+def profiled(body, xs, top, profile, h, up=None):
     """A block below y = top whose lower side is y = profile(x), with corners at xs."""
     depth = top - min(profile(x) for x in xs)
-    cells(body, xs, [0.0, 1.0], hx, hy / depth, shape=lambda x, t: (x, profile(x) + (top - profile(x)) * t))
+    cells(body, xs, [0.0, 1.0], h, up=(up or h) / depth, shape=lambda x, t: (x, profile(x) + (top - profile(x)) * t))
 
 
 def profiled_up(body, xs, low, profile, h):
     """A block above y = low whose upper side is y = profile(x)."""
     height = max(map(profile, xs)) - low
-    cells(body, xs, [0.0, 1.0], h, max(h, 0.2) / height, shape=lambda x, t: (x, low + (profile(x) - low) * t))
+    cells(body, xs, [0.0, 1.0], h, up=max(h, 0.2) / height, shape=lambda x, t: (x, low + (profile(x) - low) * t))
 
 
 def nose(radius, middle=0.0):

@@ -15,9 +15,9 @@ def cylinder_on_block(pick, n):
     turned = pick.random() < 0.3
     floor = base(d, -1.6, 1.7)
     body = d.slave()
-    profiled(body, [shift - half, shift, shift + half], 1.0, lambda x: gap + nose(radius, shift)(x), d.h_slave, d.h_slave)
+    profiled(body, [shift - half, shift, shift + half], 1.0, lambda x: gap + nose(radius, shift)(x), d.h_slave)
     a, b = (shift - half, gap + nose(radius)(half)), (shift + half, gap + nose(radius)(half))
-    d.press(body, body.line((shift + half, 1.0), (shift - half, 1.0)), gap + 0.02, half)
+    d.press(body, shift + half, shift - half, 1.0, gap + 0.02, half)
     d.either(body.line(a, b), floor.line((1.7, 0.0), (-1.6, 0.0)), 0.8 if turned else 0.2)
     return d.scene
 
@@ -33,7 +33,7 @@ def pin_in_hole(pick, n):
     plate = d.master()
     plate_with_hole(plate, (0.0, -clearance), 1.0 + clearance, 3.0, d.h_master, 0.5)
     low = -clearance - 3.0
-    d.scene.hold(plate.line((-3.0, low), (3.0, low)))
+    d.hold(plate, (-3.0, low), (3.0, low))
     x = d.scene.nodes
     inside = [k for k in body.at.values() if max(map(abs, x[k])) <= c + 1e-9]
     if d.force:
@@ -65,11 +65,11 @@ def far_travel(pick, n):
         return gap + (slope * abs(x) if kind == "slope" else nose(1.05)(x))
     xs = [-half, 0.0, half]
     top = profile(half) + 0.5
-    profiled(body, xs, top, profile, d.h_slave, d.h_slave)
+    profiled(body, xs, top, profile, d.h_slave)
     if soft:
         body.young = d.young * 1e-2
     d.force, d.sway = False, 0.0   # a slide by more than a side is beyond linear kinematics
-    d.press(body, body.line((half, top), (-half, top)), gap + pick.choice([0.05, 0.3]), half)
+    d.press(body, half, -half, top, gap + pick.choice([0.05, 0.3]), half)
     d.either(body.line((-half, profile(half)), (half, profile(half))), floor.line((1.7, 0.0), (-1.6, 0.0)), 0.3)
     return d.scene
 
@@ -84,7 +84,7 @@ def nose_in_groove(pick, n):
     deep = min(0.8 * v, 1.2)
     half = deep / v
     profiled_up(groove, [-1.4, -half, 0.0, half, 1.4], -0.8, lambda x: min(0.0, -deep + v * abs(x)) + deep, d.h_master)
-    d.scene.hold(groove.line((-1.4, -0.8), (1.4, -0.8)))
+    d.hold(groove, (-1.4, -0.8), (1.4, -0.8))
     body = d.slave()
     w = 0.6 * half
     slope = v if kind == "same" else v * pick.choice([0.8, 1.25])
@@ -98,7 +98,7 @@ def nose_in_groove(pick, n):
     # A curve whose sides turn by over 35 degrees is one with corners, as drawn: three times finer it would be another scene.
     profiled(body, xs, top, profile, min(d.h_slave, w / 3 / n) if kind == "round" else d.h_slave, d.h_slave)
     d.sway = pick.choice([0.0, 0.0, 0.3])
-    d.press(body, body.line((w, top), (-w, top)), 0.02, w)
+    d.press(body, w, -w, top, 0.02, w)
     d.either(body.line((-w, profile(w)), (w, profile(w))), groove.line((1.4, deep), (-1.4, deep)), 0.4)
     return d.scene
 
@@ -112,8 +112,8 @@ def roller(pick, n):
     body.young = d.young * pick.choice([1.0, 3.0, 0.2])
     c = disc(body, (0.0, 1.0), 1.0, d.h_slave)
     lid = d.master()
-    cells(lid, [-1.3, 1.4], [2.0, 2.8], d.h_master, max(0.2, d.h_master))
-    d.scene.hold(lid.line((1.4, 2.8), (-1.3, 2.8)), "12", (0.0, -0.04))
+    cells(lid, [-1.3, 1.4], [2.0, 2.8], d.h_master, up=max(0.2, d.h_master))
+    d.hold(lid, (1.4, 2.8), (-1.3, 2.8), "12", (0.0, -0.04))
     x = d.scene.nodes
     inside = [k for k in body.at.values() if max(abs(x[k][0]), abs(x[k][1] - 1.0)) <= c + 1e-9]
     d.scene.hold(inside, "12", (0.0, -0.02))
@@ -135,17 +135,17 @@ def rings(pick, n):
         inner, outer = d.slave(), d.master()
         over, gap = pick.choice([0.0, 0.01]), pick.choice([0.0, 0.003])
         low, high = pick.uniform(-0.3, 0.3), pick.uniform(0.7, 1.3)
-        cells(inner, [1.0, 1.5], [0.0, 1.0], d.h_slave, d.h_slave)
-        cells(outer, [1.5 + gap, 2.2], [low, high], d.h_master, d.h_master)
-        d.scene.hold(inner.line((1.0, 0.0), (1.5, 0.0)), "2")
-        d.scene.hold(outer.line((1.5 + gap, low), (2.2, low)), "2")
-        d.scene.hold(inner.line((1.0, 1.0), (1.0, 0.0)), "1", (gap + 0.01, 0.0))
+        cells(inner, [1.0, 1.5], [0.0, 1.0], d.h_slave)
+        cells(outer, [1.5 + gap, 2.2], [low, high], d.h_master)
+        d.hold(inner, (1.0, 0.0), (1.5, 0.0), "2")
+        d.hold(outer, (1.5 + gap, low), (2.2, low), "2")
+        d.hold(inner, (1.0, 1.0), (1.0, 0.0), "1", (gap + 0.01, 0.0))
         d.either(inner.line((1.5, 0.0), (1.5, 1.0)), outer.line((1.5 + gap, high), (1.5 + gap, low)))
         return d.scene
     floor = d.master()
-    cells(floor, [0.0, 2.0], [-1.0, 0.0], d.h_master, max(d.h_master, 0.2))
-    d.scene.hold(floor.line((0.0, -1.0), (2.0, -1.0)), "12")
-    d.scene.hold(floor.line((0.0, 0.0), (0.0, -1.0)), "1")
+    cells(floor, [0.0, 2.0], [-1.0, 0.0], d.h_master, up=max(d.h_master, 0.2))
+    d.hold(floor, (0.0, -1.0), (2.0, -1.0), "12")
+    d.hold(floor, (0.0, 0.0), (0.0, -1.0), "1")
     body = d.slave()
     left = 0.0 if kind == "punch" else pick.uniform(0.3, 0.8)
     right = left + pick.uniform(0.5, 1.0)
@@ -156,10 +156,10 @@ def rings(pick, n):
     def profile(x):
         return gap + (nose(radius, middle)(x) if radius else 0.0)
     xs = [left, right] if kind == "punch" else [left, middle, right]
-    profiled(body, xs, 1.0, profile, d.h_slave, d.h_slave)
+    profiled(body, xs, 1.0, profile, d.h_slave)
     if kind == "punch":
-        d.scene.hold(body.line((0.0, 1.0), (0.0, gap)), "1")
-    d.press(body, body.line((right, 1.0), (left, 1.0)), gap + 0.02, right - left)
+        d.hold(body, (0.0, 1.0), (0.0, gap), "1")
+    d.press(body, right, left, 1.0, gap + 0.02, right - left)
     d.either(body.line((left, profile(left)), (right, profile(right))), floor.line((2.0, 0.0), (0.0, 0.0)))
     return d.scene
 
@@ -180,7 +180,7 @@ def shrink_fit(pick, n):
         ring.patch(lambda s, t: ((1 - over + (outer - 1 + over) * s) * math.cos(math.pi * (k + t) / 2),
                                  (1 - over + (outer - 1 + over) * s) * math.sin(math.pi * (k + t) / 2)),
                    number_of(outer - 1, max(d.h_master, 0.25)), turns)
-    d.scene.hold(ring.line((outer * math.sqrt(0.5), -outer * math.sqrt(0.5)), (outer, 0.0)))
+    d.hold(ring, (outer * math.sqrt(0.5), -outer * math.sqrt(0.5)), (outer, 0.0))
     d.either(body.line((math.sqrt(0.5), math.sqrt(0.5))), ring.line((1.0 - over, 0.0)), 0.4)
     return d.scene
 
@@ -199,9 +199,9 @@ def half_of_it(pick, n):
     def profile(x):
         return gap + {"flat": 0.0, "round": nose(1.5)(x), "tip": slope * x, "hollow": 0.1 * slope * (half - x)}[kind]
     top = max(profile(0.0), profile(half)) + 0.6
-    profiled(body, [0.0, half], top, profile, d.h_slave, d.h_slave)
+    profiled(body, [0.0, half], top, profile, d.h_slave)
     d.scene.hold(body.line((0.0, top), (0.0, profile(0.0)))[1:], "1")
     d.sway = 0.0
-    d.press(body, body.line((half, top), (0.0, top)), gap + 0.02, half)
+    d.press(body, half, 0.0, top, gap + 0.02, half)
     d.either(body.line((0.0, profile(0.0)), (half, profile(half))), floor.line((1.7, 0.0), (0.0, 0.0)), 0.4)
     return d.scene

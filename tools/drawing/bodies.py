@@ -52,7 +52,7 @@ def yielded_window(run):
     return (low + high) / 2, 0.65 * (high - low).max()
 
 
-def frame(run, place, window):
+def frame(place, window):
     """Limits of x and y: the window as far as there is something in it."""
     low, high = place.min(axis=0), place.max(axis=0)
     margin = 0.02 * (high - low).max()
@@ -65,7 +65,7 @@ def frame(run, place, window):
 
 def proportion(run, window=None):
     """Width over height of what a panel shows."""
-    wide, high = np.ptp(frame(run, run.x + run.u, window), axis=1)
+    wide, high = np.ptp(frame(run.x + run.u, window), axis=1)
     return wide / high
 
 
@@ -73,7 +73,7 @@ def draw(figure, run, heading, scale=1, window=None, yielded=False):
     """Equivalent stress on the bodies, displaced; the yielded elements enclosed; undeformed outlines if enlarged."""
     axes = figure.subplots()
     place = run.x + scale * run.u
-    limits = frame(run, place if window else np.concatenate([place, run.x]), window)
+    limits = frame(place if window else np.concatenate([place, run.x]), window)
     shapes = [place[nodes] for nodes in run.around]
     seen = np.array([bool((shape.max(axis=0) > limits[:, 0]).all() and (shape.min(axis=0) < limits[:, 1]).all()) for shape in shapes])
     stress = run.stress["equivalent_stress"]

@@ -8,11 +8,12 @@ scene; input/from_gmsh has some.
 
 Exit status: 0 written; 2 the scene is rejected, or epcont rejects the deck; 3 usage or files.
 """
-import argparse
 import pathlib
 import re
 import subprocess
 import sys
+
+from wording import parser_of
 
 from .faults import Faults, Rejected
 from .scene import read_scene
@@ -73,7 +74,7 @@ def check(path, maker):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="tools/deck", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, "tools/deck")
     parser.add_argument("scene", type=pathlib.Path, metavar="SCENE.toml")
     parser.add_argument("-o", dest="deck", type=pathlib.Path, metavar="NAME.dat")
     try:

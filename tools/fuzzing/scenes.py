@@ -1,7 +1,12 @@
 """Random small scenes, as a grammar of cards: most are right, some have a fault or a choice too many."""
 import math
+import pathlib
+import sys
 
 from fuzzing.cards import Card, Deck
+
+sys.path.insert(1, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "independent"))
+from write_random import places  # noqa: E402
 
 
 def number(value):
@@ -84,14 +89,6 @@ class Scene:
         return young
 
 
-def places(pick, low, high, parts):
-    steps = [pick.uniform(0.7, 1.3) for _ in range(parts)]
-    found = [low]
-    for step in steps:
-        found.append(found[-1] + (high - low) * step / sum(steps))
-    return found[:-1] + [high]
-
-
 def small_scene(pick):
     """One to three blocks upon each other, by pairs, by lines, or not touching; pressed, pulled, pushed or moved."""
     scene = Scene(pick)
@@ -115,9 +112,9 @@ def small_scene(pick):
     for body in range(1, pick.choice([1, 2, 2, 2, 3]) + 1):
         own = columns if not by_lines else pick.randint(1, 4)
         rows = pick.randint(1, 3)
-        xs = places(pick, left * size, (left + 2.0) * size, own)
+        xs = places(pick, left * size, (left + 2.0) * size, own, 0.3)
         young = scene.section(body)
-        at = scene.block(xs, places(pick, y, y + size, rows), body)
+        at = scene.block(xs, places(pick, y, y + size, rows, 0.3), body)
         held = pick.choice(["12", "12", "12", "12", "123456", "2", "1"]) if body == 1 else "1"
         line = [at[i, 0] for i in range(own + 1)]
         if body == 1 or pick.random() < 0.93:

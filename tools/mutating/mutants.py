@@ -63,8 +63,8 @@ def real_text(text, factor):
     return mantissa + (f"e{int(exponent)}" if exponent else "")
 
 
-def replacements(kind, old, before, after, named):
-    """What a token may become; `named`: in a statement that gives a parameter or a component its value."""
+def replacements(kind, old, before, after):
+    """What a token may become."""
     if kind == "real":
         small = 0.0 < float(old.lower().replace("d", "e")) < 1e-5
         return [real_text(old, factor) for factor in ((1e-3, 1e3, 1e6) if small else (1e-3, 1e3))]
@@ -85,17 +85,15 @@ def replacements(kind, old, before, after, named):
 
 def mutants_of(path, source):
     """All mutants of a source, in the order of its text."""
-    found, barren, declared = [], False, False
-    going_on = False
+    found, barren, going_on = [], False, False
     seen = collections.Counter()
     for number, text in enumerate(source.split("\n"), 1):
         if not going_on:
-            barren, declared = bool(BARREN.match(text)), False
+            barren = bool(BARREN.match(text))
         code = "".join(m.group() for m in TOKEN.finditer(text) if m.lastgroup != "quiet").rstrip()
         start = 0
         if not going_on and "::" in code:
             # Of a declaration only values count: behind the first = on the right of ::, not shapes.
-            declared = True
             head = text.index("::") + 2
             value = re.search(r"(?<![=<>/])=(?![=>])", text[head:])
             barren = value is None
@@ -106,7 +104,7 @@ def mutants_of(path, source):
                 if kind in ("quiet", "other") or match.start() < start:
                     continue
                 old, column = match.group(kind), match.start(kind)
-                for new in replacements(kind, old, text[:column], text[column + len(old):], declared):
+                for new in replacements(kind, old, text[:column], text[column + len(old):]):
                     found.append(Mutant(path, number, column, old, new, text, seen[text.strip()]))
         seen[text.strip()] += 1
         going_on = code.endswith("&") or (going_on and not code.strip())

@@ -66,15 +66,13 @@ def hertz(mesh, plastic=False, b=0.0239):
     deck = Deck(f"TWO EQUAL STEEL CYLINDERS, {len(mesh.point)} NODES, {element}{kind}", words, units="KGF-MM")
     touch = touching(mesh, (1.9 if plastic else 1.5) * b)
     first = first_free(mesh)
-    deck.nodes(mesh)
-    deck.elements(mesh, 1)
+    deck.body(mesh, 1)
     deck.material(1, 20400.0, 0.29)
     if plastic:
         deck.follows(1, STEEL)
     deck.hold(1, mesh.line["axis"])
     deck.platen(10 * first, 2, mesh.line["top"])
-    deck.card("SUPORT", mesh.line["top"][0] + 1, 2)
-    deck.card("FORCE", 1, mesh.line["top"][0] + 1, 0, 5.0, 0.0, -1.0, 0.0)
+    deck.push(mesh.line["top"][0] + 1, 5.0)
     deck.remark("Plane between the cylinders, and the pairs")
     deck.ground([(mesh.point[node][0], 0.0) for node in touch], first + 1)
     deck.upward()
@@ -103,8 +101,7 @@ def ball(element="ctrax6", n=4, rigid=False, far=0.6, part=0.02):
         f"Known answer (Hertz): contact radius {a:g}, p_max {3 * load / (2 * math.pi * a * a):.2f}, approach "
         f"{a * a / radius:g} between far points: how far away they are here, and how held, shifts it."], rings=True)
     free = first_free(disc)
-    deck.nodes(disc)
-    deck.elements(disc, 1)
+    deck.body(disc, 1)
     deck.material(1, young, nu)
     deck.hold(1, disc.line["axis"])
     if not rigid:
@@ -114,8 +111,7 @@ def ball(element="ctrax6", n=4, rigid=False, far=0.6, part=0.02):
         first = free = first_free(disc, base)
         first += 1
         deck.remark("Flat")
-        deck.nodes(base, first)
-        deck.elements(base, 1, first=first, first_node=first)
+        deck.body(base, 1, first)
         deck.hold(1, [node for node in base.line["axis"] if node not in base.line["outer"]], first)
         deck.hold(12, base.line["outer"], first)
         facing = [first + node for node in base.line["surface"][:len(touch)]]
@@ -124,8 +120,7 @@ def ball(element="ctrax6", n=4, rigid=False, far=0.6, part=0.02):
         deck.ground([(disc.point[node][0], 0.0) for node in touch], free + 1)
         facing = range(free + 1, free + 1 + len(touch))
     deck.platen(10 * free, 2, disc.line["top"])
-    deck.card("SUPORT", disc.line["top"][0] + 1, 2)
-    deck.card("FORCE", 1, disc.line["top"][0] + 1, 0, load, 0.0, -1.0, 0.0)
+    deck.push(disc.line["top"][0] + 1, load)
     deck.upward()
     deck.pairs(10 * free + 1, [(there, node + 1) for there, node in zip(facing, touch)], 21)
     return deck

@@ -3,7 +3,10 @@ import textwrap
 
 from cards import written
 
-from .mesh import corners_of
+from .mesh import corners_of, first_free
+
+#: Young's modulus, N/mm2.
+STEEL = 210000.0
 
 
 def long(value):
@@ -45,13 +48,20 @@ class Deck:
         self.lines.append("GRID*".ljust(8) + str(node).ljust(32) + long(x).ljust(16) + long(y))
         self.lines.append("*".ljust(8) + "0.0")
 
-    def nodes(self, mesh, first=1):
+    def bodies(self, *named):
+        """Each (name, mesh); gives the number of the first node of each."""
+        free = first_free(*(mesh for _, mesh in named))
+        for k, (name, mesh) in enumerate(named):
+            self.remark(name)
+            self.body(mesh, k + 1, k * free + 1)
+        return [k * free + 1 for k in range(len(named))]
+
+    def body(self, mesh, prop, first=1):
+        """Nodes and elements, their numbers from the first one on."""
         for i, (x, y) in enumerate(mesh.point):
             self.grid(first + i, x, y)
-
-    def elements(self, mesh, prop, first=1, first_node=1):
         for k, nodes in enumerate(mesh.element):
-            nodes = [first_node + n for n in nodes]
+            nodes = [first + n for n in nodes]
             if self.rings and len(nodes) == 6:  # CTRAX6 goes round its sides
                 nodes = [nodes[i] for i in (0, 3, 1, 4, 2, 5)]
             name = {3: "CTRAX3", 6: "CTRAX6"} if self.rings else {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6", 8: "CQUAD8"}
@@ -63,6 +73,18 @@ class Deck:
         else:
             self.card("PSHELL", number, number, thickness)
         self.card("MAT1", number, young, "", nu)
+
+    def steel(self, count):
+        """So many bodies of it."""
+        for number in range(1, count + 1):
+            self.material(number, STEEL, 0.3)
+
+    def contacts(self, *lines):
+        """Boundary lines, each (nodes, number of the first): a slave, its master, the next slave, ..."""
+        for number, line in enumerate(lines, 1):
+            self.segments(number, *line)
+        for k in range(len(lines) // 2):
+            self.touches(k + 1, 2 * k + 1, 2 * k + 2)
 
     def segments(self, number, nodes, first=1):
         """A boundary line, from end to end."""
@@ -82,13 +104,18 @@ class Deck:
         numbers = [written(value, 8) for point in curve for value in point] + ["ENDT"]
         self.card("TABLES1", number, *[""] * 7, *numbers)
 
-    def press(self, mesh, line, value, first=1, first_node=1, theta=0.0):
+    def push(self, node, load, way=-1.0):
+        """A force along y, and the approach in its direction."""
+        self.card("SUPORT", node, 2)
+        self.card("FORCE", 1, node, 0, load, 0.0, way, 0.0)
+
+    def press(self, mesh, line, value, first=1, theta=0.0):
         """Pressure on the sides between the corners of a line."""
         corners = {n for nodes in mesh.element for n in nodes[:corners_of(nodes)]}
         line = [n for n in line if n in corners]
         for a, b in zip(line, line[1:]):
             element = mesh.side(a, b)
-            self.card("PLOADX1", 1, first + element, value, value, first_node + a, first_node + b, *([theta] if theta else []))
+            self.card("PLOADX1", 1, first + element, value, value, first + a, first + b, *([theta] if theta else []))
 
     def hold(self, digits, nodes, first=1):
         nodes = sorted(first + n for n in nodes)

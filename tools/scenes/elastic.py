@@ -19,22 +19,15 @@ def cylinder_on_block(n=6.0):
         "A steel cylinder, R = 50 mm, on an aluminium block, 200 x 200 mm; 35 kN a mm of length (NAFEMS R0094 no. 1). Half of "
         "the scene, x >= 0, upper half of the cylinder left out: the plane through its axis is a platen. Both bodies deform.",
         "Known answer (Hertz): p_max 3585.36 MPa, b 6.21463 mm."])
-    free = first_free(disc, base)
-    first = free + 1
-    deck.remark("Cylinder")
-    deck.nodes(disc)
-    deck.elements(disc, 1)
-    deck.remark("Block")
-    deck.nodes(base, first)
-    deck.elements(base, 2, first=first, first_node=first)
+    _, first = deck.bodies(("Cylinder", disc), ("Block", base))
+    free = first - 1
     deck.material(1, 210000.0, 0.3)
     deck.material(2, 70000.0, 0.3)
     deck.hold(1, disc.line["axis"])
     deck.hold(1, base.on(0, 0.0), first)
     deck.hold(2, base.line["bottom"], first)
     deck.platen(10 * free, 2, disc.line["top"])
-    deck.card("SUPORT", disc.line["top"][0] + 1, 2)
-    deck.card("FORCE", 1, disc.line["top"][0] + 1, 0, 17500.0, 0.0, -1.0, 0.0)
+    deck.push(disc.line["top"][0] + 1, 17500.0)
     deck.upward()
     deck.pairs(10 * free + 1, [(first + base.line["top"][i], node + 1) for i, node in enumerate(touch)], 21)
     return deck
@@ -56,8 +49,7 @@ def flat_punch(n=12, size=12.0, young=1000.0, element="ctria3", growth=(1.4, 1.2
         "motion is the SUPORT. Half of P = 200 on it.",
         f"Known answer (half space): p = P/(pi sqrt(a^2 - x^2)), 63.66 at the middle; grows without bound at the edge. The "
         f"block is {size:g} a wide and deep."])
-    deck.nodes(mesh)
-    deck.elements(mesh, 1)
+    deck.body(mesh, 1)
     deck.material(1, young, 0.3)
     deck.hold(1, mesh.on(0, 0.0))
     deck.hold(2, mesh.line["bottom"])
@@ -68,8 +60,7 @@ def flat_punch(n=12, size=12.0, young=1000.0, element="ctria3", growth=(1.4, 1.2
         deck.grid(first + i, mesh.point[node][0], 0.0)
     deck.card("SPC1", 1, 1, first, "THRU", first + len(surface) - 1)
     deck.platen(10 * free, 2, range(len(surface)), first)
-    deck.card("SUPORT", first, 2)
-    deck.card("FORCE", 1, first, 0, 100.0, 0.0, -1.0, 0.0)
+    deck.push(first, 100.0)
     deck.upward()
     deck.pairs(10 * free + 1, [(node + 1, first + i) for i, node in enumerate(surface)], 21)
     return deck
@@ -84,20 +75,14 @@ def off_centre(n=10, size=10.0, shift=0.25):
     beyond = [1.0 + x for x in graded(1.0 - inside[-2], 1.5, size - 1.0)[1:]]
     base = block([-x for x in reversed(beyond)] + inside + beyond, [-y for y in reversed(graded(0.5 / n, 1.3, size))])
     punch = block(inside, graded(0.1, 1.3, 1.0))
-    free = first_free(base, punch)
-    first = free + 1
     deck = Deck("STIFF PUNCH LOADED OFF CENTRE", [
         f"A nearly rigid punch (an elastic body 10000 times stiffer than the block), half width a = 1, loaded by P = 100 at e = "
         f"{shift:.6f} off its middle: two free motions, sinking and tilting, as two SUPORT freedoms at its upper corners. All "
         "gaps are zero at first.",
         f"Known answer (half space): p = P/(pi sqrt(a^2 - x^2)) (1 + 2 e x/a^2), 31.83 at the middle, slope there "
         f"{31.830989 * 2 * shift:.4f}. All pairs touch, since e < a/2."])
-    deck.remark("Block")
-    deck.nodes(base)
-    deck.elements(base, 1)
-    deck.remark("Punch")
-    deck.nodes(punch, first)
-    deck.elements(punch, 2, first=first, first_node=first)
+    _, first = deck.bodies(("Block", base), ("Punch", punch))
+    free = first - 1
     deck.material(1, 1000.0, 0.3)
     deck.material(2, 1.0e7, 0.3)
     deck.hold(12, base.line["bottom"])
@@ -111,12 +96,16 @@ def off_centre(n=10, size=10.0, shift=0.25):
     return deck
 
 
-def layer(n=20):
-    """Layer on a rigid base without friction, point load: receding contact."""
+def along_layer(n):
+    """Places along a layer of height 1, even where it touches: n of them in half of the contact."""
     step = 0.85699 / (n - 0.5)
     xs = [step * i for i in range(int(1.6 / step) + 1)]
-    xs += [xs[-1] + x for x in graded(step * 1.2, 1.3, 6.0 - xs[-1])[1:]]
-    half = 16
+    return xs + [xs[-1] + x for x in graded(step * 1.2, 1.3, 6.0 - xs[-1])[1:]]
+
+
+def layer(n=20):
+    """Layer on a rigid base without friction, point load: receding contact."""
+    xs, half = along_layer(n), 16
     ys = [0.5 * (1 - math.cos(math.pi * j / half)) for j in range(half + 1)]
     mesh = block(xs, ys)
     touch = [node for node in mesh.line["bottom"] if mesh.point[node][0] < 1.5]
@@ -124,13 +113,11 @@ def layer(n=20):
         "An elastic layer of height h = 1 lies on a rigid frictionless base; P = 100 on a point of its surface. It lifts off "
         "at the sides: receding contact, whose width does not depend on P. Half of the scene, x >= 0; half of P.",
         "Known answer: half contact a = 0.85699 h, pressure under the load p(0) = 0.96033 P/h = 96.033."])
-    deck.nodes(mesh)
-    deck.elements(mesh, 1)
+    deck.body(mesh, 1)
     deck.material(1, 1000.0, 0.3)
     deck.hold(1, mesh.on(0, 0.0))
     load = mesh.line["top"][0] + 1
-    deck.card("SUPORT", load, 2)
-    deck.card("FORCE", 1, load, 0, 50.0, 0.0, -1.0, 0.0)
+    deck.push(load, 50.0)
     free = first_free(mesh)
     first = free + 1
     deck.ground([mesh.point[node] for node in touch], first)
@@ -155,12 +142,10 @@ def shrink(around=16):
     free = first_free(inner, outer)
     first = free + 1
     for mesh, start, prop in ((inner, 1, 1), (outer, first, 2)):
-        deck.nodes(mesh, start)
-        deck.elements(mesh, prop, first=start, first_node=start)
+        deck.body(mesh, prop, start)
         deck.hold(1, mesh.on(0, 0.0), start)
         deck.hold(2, mesh.on(1, 0.0), start)
-    deck.material(1, young, nu)
-    deck.material(2, young, nu)
+    deck.steel(2)
     for i, (p, q) in enumerate(zip(inner.line["outer"], outer.line["inner"])):
         x, y = outer.point[q]
         frame, edge = 1 + i, [f if abs(f) > 1e-12 else 0.0 for f in (x / c, y / c)]
@@ -182,23 +167,15 @@ def pin(around=60):
         "the axis of the pin. Conforming contact: the normals go round, each from the plate's node to the pin's (no CORD2R). "
         "The two are concentric at first and touch nowhere. Half of the scene, x >= 0; half of P.",
         f"Known answer (Persson): touching up to 45 degrees, largest pressure 0.88211 P/R = {0.88211 * load:.4f}."])
-    free = first_free(disc, plate)
-    first = free + 1
-    deck.remark("Pin")
-    deck.nodes(disc)
-    deck.elements(disc, 1)
-    deck.remark("Plate")
-    deck.nodes(plate, first)
-    deck.elements(plate, 2, first=first, first_node=first)
-    deck.material(1, young, nu)
-    deck.material(2, young, nu)
+    _, first = deck.bodies(("Pin", disc), ("Plate", plate))
+    free = first - 1
+    deck.steel(2)
     deck.hold(1, disc.on(0, 0.0))
     inner = plate.on(0, 0.0)
     outer = plate.line["outer"]
     deck.hold(1, [node for node in inner if node not in outer], first)
     deck.hold(12, outer, first)
-    deck.card("SUPORT", 1, 2)
-    deck.card("FORCE", 1, 1, 0, load / 2, 0.0, -1.0, 0.0)
+    deck.push(1, load / 2)
     count = round(around * 75 / 180)
     for i in range(count + 1):
         deck.card("CGAP", 10 * free + 1 + i, 21, first + plate.line["inner"][i], 1 + disc.line["edge"][i], 1.0, 0.0, 0.0)
@@ -226,10 +203,8 @@ def patch(force_up=False, support=True):
             "-q (1 - nu^2) (H1/E1 + H2/E2) = -10 (0.84 x 2/1000 + 0.91 x 2/3000) = -0.0228666667 of the upper face."]
     deck = Deck(title, words)
     first = 101
-    deck.nodes(lower)
-    deck.elements(lower, 1)
-    deck.nodes(upper, first)
-    deck.elements(upper, 2, first=first, first_node=first)
+    deck.body(lower, 1)
+    deck.body(upper, 2, first)
     deck.material(1, 1000.0, 0.4, 2.0)
     deck.material(2, 3000.0, 0.3, 2.0)
     deck.hold(1, lower.on(0, 0.0))

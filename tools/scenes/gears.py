@@ -3,7 +3,7 @@ import math
 
 from .deck import Deck
 from .fill import arc, fill, finest, segment
-from .lines import bodies, nearest
+from .lines import nearest
 
 
 def hertz(load, curvature, young=210000.0, nu=0.3):
@@ -82,18 +82,14 @@ def gears(module=4.0, z1=20, z2=40, load=600.0, across=3.5, finer=1.3, growth=0.
         "unlike meshes on the two flanks, from fillet to tip.",
         f"Known answer (Hertz, the involutes' radii of curvature there, {radius[0]:.4f} and {radius[1]:.4f}): p_max {p0:.2f}, half-width {b:.5f}."],
         from_geometry=False)
-    one, two = bodies(deck, (f"Tooth of {z1}", one_mesh), (f"Tooth of {z2}", two_mesh))
-    deck.material(1, 210000.0, 0.3)
-    deck.material(2, 210000.0, 0.3)
+    one, two = deck.bodies((f"Tooth of {z1}", one_mesh), (f"Tooth of {z2}", two_mesh))
+    deck.steel(2)
     rim = one_mesh.line["rim"]
     deck.hold(1, rim, one)
     deck.hold(12, two_mesh.line["rim"], two)
     deck.platen(10 * two, 2, rim, one)
-    deck.card("SUPORT", one + rim[0], 2)
-    deck.card("FORCE", 1, one + rim[0], 0, load, 0.0, 1.0, 0.0)
-    deck.segments(1, one_mesh.line["flank"], one)
-    deck.segments(2, two_mesh.line["flank"], two)
-    deck.touches(1, 1, 2)
+    deck.push(one + rim[0], load, 1.0)
+    deck.contacts((one_mesh.line["flank"], one), (two_mesh.line["flank"], two))
     return deck
 
 
@@ -121,9 +117,8 @@ def roller(radius=5.0, inner=20.0, load=1000.0, across=3.0, finer=1.3, growth=0.
         f"strain, half of it, x >= 0. The bore of the inner race moves up as one with half of {load:g} a mm; the outside of the outer race "
         "is held. The roller and the inner race are free in y: two SUPORT freedoms.",
         f"Known answer (Hertz): inner contact p_max {p1:.2f}, half-width {b1:.5f}; outer contact {p2:.2f}, {b2:.5f}."], from_geometry=False)
-    one, two, three = bodies(deck, ("Roller", body), ("Inner race", inside), ("Outer race", outside))
-    for number in (1, 2, 3):
-        deck.material(number, 210000.0, 0.3)
+    one, two, three = deck.bodies(("Roller", body), ("Inner race", inside), ("Outer race", outside))
+    deck.steel(3)
     for mesh, first in ((body, one), (inside, two), (outside, three)):
         deck.hold(1, mesh.line["axis"], first)
     deck.hold(12, [n for n in outside.line["outside"] if n not in outside.line["axis"]], three)
@@ -132,10 +127,5 @@ def roller(radius=5.0, inner=20.0, load=1000.0, across=3.0, finer=1.3, growth=0.
     deck.platen(10 * three, 2, bore, two)
     deck.card("SUPORT", one + nearest(body, middle), 2, two + bore[0], 2)
     deck.card("FORCE", 1, two + bore[0], 0, load / 2, 0.0, 1.0, 0.0)
-    deck.segments(1, body.line["below"], one)
-    deck.segments(2, inside.line["outside"], two)
-    deck.segments(3, body.line["above"], one)
-    deck.segments(4, outside.line["inside"], three)
-    deck.touches(1, 1, 2)
-    deck.touches(2, 3, 4)
+    deck.contacts((body.line["below"], one), (inside.line["outside"], two), (body.line["above"], one), (outside.line["inside"], three))
     return deck

@@ -3,17 +3,6 @@ import math
 
 from .deck import Deck
 from .fill import arc, fill, finest, segment
-from .mesh import first_free
-
-
-def bodies(deck, *named):
-    """Nodes and elements of the bodies, each (name, mesh); gives the number of the first node of each."""
-    free = first_free(*(mesh for _, mesh in named))
-    for k, (name, mesh) in enumerate(named):
-        deck.remark(name)
-        deck.nodes(mesh, k * free + 1)
-        deck.elements(mesh, k + 1, k * free + 1, k * free + 1)
-    return [k * free + 1 for k in range(len(named))]
 
 
 def nearest(mesh, place, nodes=None):
@@ -53,7 +42,7 @@ def joint_lines(load=110.0, pull=400.0, clearance=0.01, radius=30.0, edge=4.0, f
         f"and above at its inner end, the resultants differ by the load; with the two at the ends of the straight parts, {lever:g} and "
         f"{apart:g} apart: {load * (1 + lever / apart):.1f} and {load * lever / apart:.1f}."],
         from_geometry=False)
-    one, two = bodies(deck, ("Tongue", tongue), ("Socket", socket))
+    one, two = deck.bodies(("Tongue", tongue), ("Socket", socket))
     for number in (1, 2):
         deck.material(number, 210000.0, 0.3)
         if not elastic:
@@ -62,15 +51,10 @@ def joint_lines(load=110.0, pull=400.0, clearance=0.01, radius=30.0, edge=4.0, f
     tied, end = nearest(tongue, (-28.0, 0.0)), nearest(tongue, (30.0, 0.0), tongue.line["end"])
     deck.hold(1, [tied])
     deck.card("SUPORT", one + tied, 2, one + end, 2)
-    deck.press(tongue, tongue.line["end"], load / 8.0, one, one, 90.0)
-    deck.press(tongue, tongue.line["end"], -pull / 8.0, one, one)
-    deck.press(tongue, tongue.line["face"], -pull / (8.0 - 2 * fall), one, one)
-    deck.segments(1, socket.line["below"], two)
-    deck.segments(2, tongue.line["below"])
-    deck.segments(3, tongue.line["above"])
-    deck.segments(4, socket.line["above"], two)
-    deck.touches(1, 1, 2)
-    deck.touches(2, 3, 4)
+    deck.press(tongue, tongue.line["end"], load / 8.0, one, 90.0)
+    deck.press(tongue, tongue.line["end"], -pull / 8.0, one)
+    deck.press(tongue, tongue.line["face"], -pull / (8.0 - 2 * fall), one)
+    deck.contacts((socket.line["below"], two), (tongue.line["below"], 1), (tongue.line["above"], 1), (socket.line["above"], two))
     return deck
 
 
@@ -105,20 +89,14 @@ def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, radius=30
         "the ring). Two contacts: the spigot's nose, rounded, on the shoulder, its outside in the socket. Its way down is the SUPORT.",
         f"Known: the shoulder carries {press:g}; there, by Hertz, p_max {press / (math.pi * middle) / (math.pi * b):.2f}, half-width {b:.5f}; far "
         f"from the joint the pipe's outside grows by {grows:.7f} (Lame)."], from_geometry=False, rings=True)
-    one, two = bodies(deck, ("Spigot", spigot), ("Socket", socket))
-    deck.material(1, 210000.0, 0.3)
-    deck.material(2, 210000.0, 0.3)
+    one, two = deck.bodies(("Spigot", spigot), ("Socket", socket))
+    deck.steel(2)
     deck.hold(2, socket.line["end"], two)
     deck.card("SUPORT", one + spigot.line["end"][0], 2)
-    deck.press(spigot, spigot.line["end"], press / area, one, one)
-    deck.press(spigot, spigot.line["bore"], inside, one, one)
-    deck.press(socket, socket.line["bore"], inside, two, two)
-    deck.segments(1, spigot.line["nose"], one)
-    deck.segments(2, socket.line["shoulder"], two)
-    deck.segments(3, socket.line["inner"], two)
-    deck.segments(4, spigot.line["outer"], one)
-    deck.touches(1, 1, 2)
-    deck.touches(2, 3, 4)
+    deck.press(spigot, spigot.line["end"], press / area, one)
+    deck.press(spigot, spigot.line["bore"], inside, one)
+    deck.press(socket, socket.line["bore"], inside, two)
+    deck.contacts((spigot.line["nose"], one), (socket.line["shoulder"], two), (socket.line["inner"], two), (spigot.line["outer"], one))
     return deck
 
 
@@ -147,17 +125,14 @@ def flange(bolt=960.0, pull=400.0, radius=100.0, edge=10.0, fine=0.5, growth=0.5
         f"38) and pulled apart by {pull:g} at the webs. All gaps are zero at first; the joint opens at the web and is pressed at its outer "
         f"edge (prying). There the faces fall off with R = {radius:g} over the last {edge:g}, so that pressures converge.",
         f"Known: the contact force is bolt less pull, {bolt - pull:g}."], from_geometry=False)
-    one, two = bodies(deck, ("Upper flange", upper), ("Lower flange", lower))
-    deck.material(1, 210000.0, 0.3)
-    deck.material(2, 210000.0, 0.3)
+    one, two = deck.bodies(("Upper flange", upper), ("Lower flange", lower))
+    deck.steel(2)
     deck.hold(1, upper.line["axis"], one)
     deck.hold(1, lower.line["axis"], two)
     deck.hold(2, lower.line["end"], two)
     deck.card("SUPORT", one + upper.line["end"][0], 2)
     for mesh, first in ((upper, one), (lower, two)):
-        deck.press(mesh, mesh.line["head"], bolt / 12.0, first, first)
-    deck.press(upper, upper.line["end"], -pull / 5.0, one, one)
-    deck.segments(1, upper.line["joint"], one)
-    deck.segments(2, lower.line["joint"], two)
-    deck.touches(1, 1, 2)
+        deck.press(mesh, mesh.line["head"], bolt / 12.0, first)
+    deck.press(upper, upper.line["end"], -pull / 5.0, one)
+    deck.contacts((upper.line["joint"], one), (lower.line["joint"], two))
     return deck

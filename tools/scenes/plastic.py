@@ -1,7 +1,7 @@
 """Scenes that yield."""
 from .deck import Deck
 from .elastic import flat_punch
-from .mesh import Mesh, block, cells, first_free, graded, rings, round_origin, squared, without_unused
+from .mesh import Mesh, block, cells, graded, rings, round_origin, squared, without_unused
 
 
 def grid(xs, ys):
@@ -26,8 +26,7 @@ def tube(title, known, pressure, young, stress, hardening, nu=0.3, inner=100.0, 
     deck = Deck(title, [
         f"A thick tube, radii {inner:g} and {outer:g}, inner pressure {pressure:g}, plane strain, total theory; one quarter, "
         f"{parts} x {around} {squares}. Nothing touches: no flexibility, no simplex.", known], from_geometry=False)
-    deck.nodes(mesh)
-    deck.elements(mesh, 1)
+    deck.body(mesh, 1)
     deck.material(1, young, nu)
     deck.yields(1, stress, hardening)
     deck.hold(1, mesh.on(0, 0.0))
@@ -60,8 +59,7 @@ def bar():
         "Known answer: stress 330 everywhere; strain 0.01 + (330 - 320)/(380 - 320) 0.04 = 0.0166667, of which the curve's "
         "points are (0.01, 320) and (0.05, 380); end displacement 0.0666667; Poisson's ratio of the secant body 0.5 - (0.5 - "
         "0.3) E'/E = 0.4802, E' = 19800: sideways strain -0.00800333."], strain=False, from_geometry=False)
-    deck.nodes(mesh)
-    deck.elements(mesh, 1)
+    deck.body(mesh, 1)
     deck.material(1, 200000.0, 0.3)
     deck.follows(1, [(0.0, 0.0), (0.00125, 250.0), (0.004, 290.0), (0.01, 320.0), (0.05, 380.0)])
     deck.hold(1, mesh.on(0, 0.0))
@@ -85,13 +83,12 @@ def one_element():
         first = 10 * k + 1
         shifted = Mesh([(x + 2.0 * k, y) for x, y in square.point], [(0, 1, 2), (0, 2, 3)], {})
         shifted.point = [shifted.point[i] for i in (0, 1, 3, 2)]
-        deck.nodes(shifted, first)
-        deck.elements(shifted, k + 1, first=first, first_node=first)
+        deck.body(shifted, k + 1, first)
         deck.material(k + 1, 210000.0, 0.3)
         deck.yields(k + 1, 240.0, hardening)
         deck.hold(1, [0, 3], first)
         deck.hold(2, [0, 1], first)
-        deck.press(shifted, [1, 2], -pull, first, first)
+        deck.press(shifted, [1, 2], -pull, first)
     return deck
 
 
@@ -108,8 +105,7 @@ def cook(n=24, stress=None):
         words.append("Known answer (converged, elastic): 23.964 up at the middle of the end, 25.165 at its upper corner. Linear "
                      "triangles come near it slowly.")
     deck = Deck("COOK'S MEMBRANE" + (", YIELDING" if stress else ""), words, strain=False, from_geometry=False)
-    deck.nodes(mesh)
-    deck.elements(mesh, 1)
+    deck.body(mesh, 1)
     deck.material(1, 1.0, 1.0 / 3.0)
     if stress:
         deck.yields(1, stress, 0.05)
@@ -149,7 +145,7 @@ def insert_joint(clearance=0.01, load=110.0, finest=0.25):
     """The paper's second scene: a tongue in a socket, bent by a load at its end. The walls are thick, so that they stay elastic."""
     half = graded(finest, 1.3, 14.0)
     overlap = [-28.0 + x for x in half] + [-x for x in reversed(half[:-1])]
-    outside = [x for x in graded(finest, 1.3, 30.0)[1:]]
+    outside = graded(finest, 1.3, 30.0)[1:]
     across = [-4.0, -3.7, -3.2, -2.0, 0.0, 2.0, 3.2, 3.7, 4.0]
     tongue = block(overlap + outside, across)
     wall = graded(0.3, 1.6, 16.0)
@@ -166,14 +162,8 @@ def insert_joint(clearance=0.01, load=110.0, finest=0.25):
         "Bilinear, E = 210000, yield stress 240, H = 4000. It touches below at the mouth and above at its inner end. Known by "
         "statics: the two resultants differ by the load, and their lever is that of the load over the socket. Yielding is local: "
         "the tongue's skins and the socket's edge at the mouth. Both edges are sharp: pressures there grow with the mesh."], from_geometry=True)
-    free = first_free(tongue, socket)
-    first = free + 1
-    deck.remark("Tongue")
-    deck.nodes(tongue)
-    deck.elements(tongue, 1)
-    deck.remark("Socket")
-    deck.nodes(socket, first)
-    deck.elements(socket, 2, first=first, first_node=first)
+    _, first = deck.bodies(("Tongue", tongue), ("Socket", socket))
+    free = first - 1
     for number in (1, 2):
         deck.material(number, 210000.0, 0.3)
         deck.yields(number, 240.0, 4000.0)

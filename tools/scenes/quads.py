@@ -2,12 +2,12 @@
 other way round pressures ripple."""
 import math
 
-from .deck import Deck
-from .lines import bodies, nearest
+from .deck import STEEL, Deck
+from .elastic import along_layer
+from .lines import nearest
 from .mesh import graded
 from .patches import arc, even, halves, join, patch, straight, walk
 
-STEEL = 210000.0
 #: Elements with nodes between the corners.
 QUADRATIC = ("ctria6", "cquad8")
 
@@ -58,19 +58,15 @@ def pin_in_lug(half=45.0, around=24, finer=1.4, size=30.0, element="ctria6"):
         f"edge; {load:g} a mm at the axis of the pin. Unlike meshes. Half of the scene, x >= 0; half of the load. The two are concentric "
         "at first and touch nowhere.",
         f"Known answer (Persson): touching up to {half:g} degrees, largest pressure {top * load / radius:.4f}."], from_geometry=False)
-    one, two = bodies(deck, ("Pin", pin), ("Lug", lug))
-    deck.material(1, STEEL, 0.3)
-    deck.material(2, STEEL, 0.3)
+    one, two = deck.bodies(("Pin", pin), ("Lug", lug))
+    deck.steel(2)
     deck.hold(1, pin.on(0, 0.0), one)
     outside = walk(lug, (0.0, -size * radius), (0.0, size * radius))
     deck.hold(1, [n for n in lug.on(0, 0.0) if n not in outside], two)
     deck.hold(12, outside, two)
     centre = one + nearest(pin, (0.0, 0.0))
-    deck.card("SUPORT", centre, 2)
-    deck.card("FORCE", 1, centre, 0, load / 2, 0.0, -1.0, 0.0)
-    deck.segments(1, walk(pin, (0.0, -radius), (radius, 0.0)), one)
-    deck.segments(2, walk(lug, (hole, 0.0), (0.0, -hole)), two)
-    deck.touches(1, 1, 2)
+    deck.push(centre, load / 2)
+    deck.contacts((walk(pin, (0.0, -radius), (radius, 0.0)), one), (walk(lug, (hole, 0.0), (0.0, -hole)), two))
     return deck
 
 
@@ -103,7 +99,7 @@ def nafems(across=5.0, finer=1.4, element="ctria6"):
         "A steel cylinder, R = 50 mm, on an aluminium block, 200 x 200 mm; 35 kN a mm of length (NAFEMS R0094 no. 1). Half of "
         "the scene, x >= 0, upper half of the cylinder left out: the plane through its axis is a platen. Unlike meshes.",
         "Known answer (Hertz): p_max 3585.36 MPa, b 6.21463 mm."], from_geometry=False)
-    one, two = bodies(deck, ("Cylinder", disc), ("Block", below))
+    one, two = deck.bodies(("Cylinder", disc), ("Block", below))
     deck.material(1, STEEL, 0.3)
     deck.material(2, 70000.0, 0.3)
     deck.hold(1, disc.on(0, 0.0), one)
@@ -111,38 +107,31 @@ def nafems(across=5.0, finer=1.4, element="ctria6"):
     deck.hold(2, below.on(1, -200.0), two)
     top = disc.on(1, radius)
     deck.platen(10 * two, 2, top, one)
-    deck.card("SUPORT", one + top[0], 2)
-    deck.card("FORCE", 1, one + top[0], 0, 17500.0, 0.0, -1.0, 0.0)
-    deck.segments(1, walk(disc, (0.0, 0.0), (radius * math.sin(0.5), radius * (1 - math.cos(0.5)))), one)
-    deck.segments(2, walk(below, (40.0, 0.0), (0.0, 0.0)), two)
-    deck.touches(1, 1, 2)
+    deck.push(one + top[0], 17500.0)
+    deck.contacts((walk(disc, (0.0, 0.0), (radius * math.sin(0.5), radius * (1 - math.cos(0.5)))), one),
+                  (walk(below, (40.0, 0.0), (0.0, 0.0)), two))
     return deck
 
 
 def layer_lines(n=20, element="ctria6"):
     """Layer on a rigid base without friction, point load: receding contact of lines."""
-    step = 0.85699 / (n - 0.5)
-    xs = [step * i for i in range(int(1.6 / step) + 1)]
-    xs += [xs[-1] + x for x in graded(step * 1.2, 1.3, 6.0 - xs[-1])[1:]]
+    xs = along_layer(n)
     rows = 10 if element in QUADRATIC else 16
     layer = grid(xs, [0.5 * (1 - math.cos(math.pi * j / rows)) for j in range(rows + 1)], element)
-    parts = round(1.3 * 1.6 / step)
+    parts = round(1.3 * 1.6 / xs[1])
     base = grid([1.6 * i / parts for i in range(parts + 1)], [-0.1, 0.0], "ctria3" if element == "ctria6" else element)
     deck = Deck("LAYER ON A RIGID BASE, CONTACT BETWEEN LINES", [
         "An elastic layer of height h = 1 lies on a rigid frictionless base (elements whose nodes are all held); P = 100 on a point of "
         "its surface. It lifts off at the sides: receding contact, whose width does not depend on P. Half of the scene, x >= 0; half of P.",
         "Known answer: half contact a = 0.85699 h, pressure under the load p(0) = 0.96033 P/h = 96.033."], from_geometry=False)
-    one, two = bodies(deck, ("Layer", layer), ("Base", base))
+    one, two = deck.bodies(("Layer", layer), ("Base", base))
     deck.material(1, 1000.0, 0.3)
     deck.material(2, 1000.0, 0.3)
     deck.hold(1, layer.on(0, 0.0), one)
     deck.hold(12, range(len(base.point)), two)
     load = one + nearest(layer, (0.0, 1.0))
-    deck.card("SUPORT", load, 2)
-    deck.card("FORCE", 1, load, 0, 50.0, 0.0, -1.0, 0.0)
-    deck.segments(1, walk(layer, (0.0, 0.0), (1.5, 0.0)), one)
-    deck.segments(2, walk(base, (1.6, 0.0), (0.0, 0.0)), two)
-    deck.touches(1, 1, 2)
+    deck.push(load, 50.0)
+    deck.contacts((walk(layer, (0.0, 0.0), (1.5, 0.0)), one), (walk(base, (1.6, 0.0), (0.0, 0.0)), two))
     return deck
 
 
@@ -154,7 +143,7 @@ def flat_match(lines=True, element="cquad4"):
         "A block on a larger one, meshes that match at the flat contact; pressure 10 on the left half of the upper face, 4 on the right: it "
         "tilts, two free motions. One scene in two decks: flat_pairs.dat by CGAP, flat_lines.dat by BLSEG and BCONP.",
         "Known: both give the same answer, to rounding; 28 in all."], from_geometry=False)
-    one, two = bodies(deck, ("Upper block", upper), ("Lower block", lower))
+    one, two = deck.bodies(("Upper block", upper), ("Lower block", lower))
     deck.material(1, 3000.0, 0.3)
     deck.material(2, 1000.0, 0.3)
     deck.hold(12, lower.on(1, -3.0), two)
@@ -162,13 +151,11 @@ def flat_match(lines=True, element="cquad4"):
     deck.card("SUPORT", one + nearest(upper, (0.0, 2.5)), 2, one + nearest(upper, (4.0, 2.5)), 2)
     top = walk(upper, (4.0, 2.5), (0.0, 2.5))
     half = top.index(nearest(upper, (2.0, 2.5)))
-    deck.press(upper, top[:half + 1], 4.0, one, one)
-    deck.press(upper, top[half:], 10.0, one, one)
+    deck.press(upper, top[:half + 1], 4.0, one)
+    deck.press(upper, top[half:], 10.0, one)
     touching, facing = walk(upper, (0.0, 0.0), (4.0, 0.0)), walk(lower, (4.0, 0.0), (0.0, 0.0))
     if lines:
-        deck.segments(1, touching, one)
-        deck.segments(2, facing, two)
-        deck.touches(1, 1, 2)
+        deck.contacts((touching, one), (facing, two))
     else:
         deck.upward()
         deck.pairs(100 * two, [(two + a, one + b) for a, b in zip(reversed(facing), touching)], 21)

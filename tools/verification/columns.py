@@ -80,36 +80,40 @@ def check_nodes(report, scene, tables, found):
 def check_elements(report, scene, tables, found, tolerance):
     told = float(tables.summary.get("stress_off_curve") or 0.0)
     columns = {name: [] for name in ("x", "y", "sx", "sy", "sz", "txy", "equivalent_stress", "equivalent_strain", "secant_modulus", "state")}
+
+    def put(name, ours, allowed):
+        columns.setdefault(name, []).append((element, ours, row[name], allowed))
+
     for element, own in found.elements.items():
         row, section = tables.elements[element], scene.element[element][2]
         places = [scene.x[node] for node in scene.element[element][1]]
         for c, name in enumerate("xy"):
-            columns[name].append((element, math.fsum(p[c] for p in places) / len(places), row[name], report.rounding * max(abs(p[c]) for p in places)))
+            put(name, math.fsum(p[c] for p in places) / len(places), report.rounding * max(abs(p[c]) for p in places))
         stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
         noise = own.noise * stiffness + report.rounding * own.largest
         # A stress beyond yield, or before it in the last solve, is off its curve by what the iteration leaves.
         loose = (told + report.rounding) * (own.scale(found.stress) + found.stress) if own.plastic or own.edge < 10 * told else 0.0
         for k, name in enumerate(("sx", "sy", "sz", "txy")):
-            columns[name].append((element, own.stress[k], row[name], loose + noise + tolerance * abs(own.stress[k])))
+            put(name, own.stress[k], loose + noise + tolerance * abs(own.stress[k]))
         mean = [float(row[name]) for name in ("sx", "sy", "sz", "txy")]
         ours, allowed = (von_mises(mean), report.rounding * own.largest) if own.points == 1 else (own.equivalent, loose + noise)
-        columns["equivalent_stress"].append((element, ours, row["equivalent_stress"], allowed + tolerance * ours))
+        put("equivalent_stress", ours, allowed + tolerance * ours)
         if "max_equivalent_stress" in row:
             peak = ours if own.points == 1 else own.peak
-            columns.setdefault("max_equivalent_stress", []).append((element, peak, row["max_equivalent_stress"], allowed + tolerance * peak))
+            put("max_equivalent_stress", peak, allowed + tolerance * peak)
         if "max_x" in row:
             # Of points that are as high, but for what is known of their stresses, either.
             highest = [place for place, value in own.at if value >= own.peak - 2 * (allowed + tolerance * own.peak)]
             place = min(highest, key=lambda place: math.dist(place, (float(row["max_x"]), float(row["max_y"]))))
             for c, name in enumerate(("max_x", "max_y")):
-                columns.setdefault(name, []).append((element, place[c], row[name], report.rounding * max(abs(p[c]) for p in places)))
-        columns["equivalent_strain"].append((element, own.total, row["equivalent_strain"], own.noise + tolerance * own.total))
+                put(name, place[c], report.rounding * max(abs(p[c]) for p in places))
+        put("equivalent_strain", own.total, own.noise + tolerance * own.total)
         part = own.noise / own.total if own.total else 0.0
-        columns["secant_modulus"].append((element, own.secant, row["secant_modulus"], own.secant * (tolerance + part * (own.plastic or own.edge < part))))
+        put("secant_modulus", own.secant, own.secant * (tolerance + part * (own.plastic or own.edge < part)))
         state = "plastic" if own.plastic else "elastic"
         if own.edge < tolerance + part and row["state"] in ("plastic", "elastic"):
             state = row["state"]   # at the yield point, but for rounding
-        columns["state"].append((element, state, row["state"], 0.0))
+        put("state", state, 0.0)
     for name, cells in columns.items():
         report.column(f"elements {name}", cells)
 
@@ -117,18 +121,23 @@ def check_elements(report, scene, tables, found, tolerance):
 def check_contact(report, scene, tables, found, tolerance):
     rows = tables.contact
     size = max(abs(v) for place in scene.x.values() for v in place)
-    for c, name in enumerate(("x", "y")):
-        report.column(f"contact {name}", ((pair, scene.x[own.ends[1]][c], rows[pair][name], 0.0) for pair, own in scene.pair.items()))
-    report.column("contact gb", ((pair, own.ends[1], rows[pair]["gb"], 0.0) for pair, own in scene.pair.items()))
-    report.column("contact ga", ((pair, int(rows[pair]["ga"]) if near(own, rows[pair]["ga"]) else own.ends[0], rows[pair]["ga"], 0.0)
-                                 for pair, own in scene.pair.items()))
-    for c, name in enumerate(("nx", "ny")):
-        report.column(f"contact {name}", ((pair, float(own.normal[c]), rows[pair][name], tolerance * abs(own.normal[c]) + report.rounding)
-                                          for pair, own in scene.pair.items()))
-    report.column("contact initial_gap", ((pair, own.initial, rows[pair]["initial_gap"], tolerance * abs(own.initial) + report.rounding * size)
-                                          for pair, own in scene.pair.items()))
-    report.column("contact gap", ((pair, gap, rows[pair]["gap"], tolerance * abs(gap) + report.rounding * (found.length + size))
-                                  for pair, gap in found.gaps.items()))
+
+    def column(name, value, small=None):
+        """`value`: of a pair and what is told of it; `small`: what rounding makes it the sum of, None where it is exact."""
+        cells = []
+        for pair, own in scene.pair.items():
+            ours, told = value(pair, own), rows[pair][name]
+            cells.append((pair, ours, told, 0.0 if small is None else tolerance * abs(ours) + report.rounding * small))
+        report.column(f"contact {name}", cells)
+
+    column("x", lambda _, own: scene.x[own.ends[1]][0])
+    column("y", lambda _, own: scene.x[own.ends[1]][1])
+    column("gb", lambda _, own: own.ends[1])
+    column("ga", lambda pair, own: int(rows[pair]["ga"]) if near(own, rows[pair]["ga"]) else own.ends[0])
+    column("nx", lambda _, own: float(own.normal[0]), 1.0)
+    column("ny", lambda _, own: float(own.normal[1]), 1.0)
+    column("initial_gap", lambda _, own: own.initial, size)
+    column("gap", lambda pair, _: found.gaps[pair], found.length + size)
     states = []
     for pair, row in rows.items():
         word, force, gap = row["status"], float(row["force"]), float(row["gap"])
