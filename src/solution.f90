@@ -41,7 +41,8 @@ module epcont_solution
   integer, parameter :: more_steps = 5
 
   !> A scene with its answer, and what that is worth. Where a body's stiffness could not be factored
-  !! (`answer%singular`), or without contact equilibrium (`answer%contact%state`), there are no displacements.
+  !! (`answer%failed_body`), or without contact equilibrium (`answer%contact%state`), there are no
+  !! displacements.
   type, extends(planned_scene) :: solution_type
     type(answer_type) :: answer
     type(certificate_type) :: certificate
@@ -70,7 +71,7 @@ contains
       self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
       call watch%expect(self%iteration, self%model%controls%most_iterations, self%expected%operations)
       call analyse(self%planned_scene, self%answer, self%certificate, self%accuracy, watch)
-      if (self%answer%singular > 0 .or. count == most_solves) exit
+      if (self%answer%failed_body > 0 .or. count == most_solves) exit
       call enter_nodes_that_came_near(self%model, self%answer%displacement, &
                                       self%answer%contact%touching, entered)
       if (.not. entered) exit
@@ -92,7 +93,7 @@ contains
     integer :: step
 
     call solve_in_precision(scene, linear, answer, watch)
-    if (answer%singular > 0 .or. allocated(answer%against_double)) return
+    if (answer%failed_body > 0 .or. allocated(answer%against_double)) return
     if (answer%contact%state /= contact_solved) return
 
     line = find_contact_line(scene%model)

@@ -60,17 +60,17 @@ contains
 
   !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far
   !! as the law of their elements has changed.
-  subroutine set_stiffness(self, scene, singular, watch)
+  subroutine set_stiffness(self, scene, failed_body, watch)
     class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene    !! that it was made for
-    integer, intent(out) :: singular            !! first body that could not be factored; 0: all could
+    integer, intent(out) :: failed_body            !! first body that could not be factored; 0: all could
     class(stopwatch), intent(inout) :: watch    !! takes the time
 
     associate (yields => scene%numbering%body%can_yield, first => .not. allocated(self%problem%flexibility))
       call factor_bodies(yields .or. first)
       self%law%changed = .false.
       call watch%lap(stage_factor)
-      if (singular > 0) return
+      if (failed_body > 0) return
       call self%settle(scene)
       call watch%lap(stage_displacements)
       if (first) then
@@ -106,7 +106,8 @@ contains
         !$omp end parallel do
         self%factorizations = self%factorizations + count(chosen .and. numbered%equations > 0)
       end associate
-      singular = findloc([(chosen(i) .and. .not. self%body(i)%is_sound(), i=1, size(chosen))], .true., dim=1)
+      failed_body = findloc([(chosen(i) .and. .not. self%body(i)%is_sound(), i=1, size(chosen))], &
+                            .true., dim=1)
     end subroutine factor_bodies
 
     !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings

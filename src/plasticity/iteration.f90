@@ -43,7 +43,7 @@ module epcont_plasticity_iteration
     real(wp) :: load_factor = 0.0_wp       !! part of the loads for which the state is
     logical :: converged = .false.         !! all loads, to the tolerance of the iteration
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
-    integer :: singular = 0                !! body that could not be factored
+    integer :: failed_body = 0             !! body that could not be factored
     logical :: lacks_memory = .false.      !! that was for want of memory
     integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of the stiffness, estimated in the 1-norm
@@ -89,7 +89,7 @@ contains
       call iterate()
       answer%factorizations = linear%factorizations
       answer%lacks_memory = any(linear%body%lacks_memory)
-      if (answer%singular > 0) return
+      if (answer%failed_body > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call answer%take(state)
       if (answer%contact%state /= contact_solved) return
@@ -143,8 +143,8 @@ contains
       force_gain = [real(wp) ::]
       doubt = 1.0_wp
       do iteration = 1, scene%model%controls%most_iterations
-        call set_law(method, answer%singular)
-        if (answer%singular > 0) return
+        call set_law(method, answer%failed_body)
+        if (answer%failed_body > 0) return
         call linear%solve(scene, part, touching, found, watch)
         if (found%contact%state /= contact_solved) then
           ! Not found about a later state, such as one beyond the limit load: what was found before is not
@@ -175,24 +175,24 @@ contains
       end do
     end subroutine iterate
 
-    !> The law about the last state, and the stiffness for it. `singular` is a body without any that can be
+    !> The law about the last state, and the stiffness for it. `failed_body` is a body without any that can be
     !! factored.
-    subroutine set_law(method, singular)
+    subroutine set_law(method, failed_body)
       class(secant_method), intent(inout) :: method
-      integer, intent(out) :: singular
+      integer, intent(out) :: failed_body
       logical :: may_stay, possible
 
-      singular = 0
+      failed_body = 0
       method%blend = 0.0_wp
       do
         if (linear%materials%yields) call method%linearise(about, linear)
         call watch%lap(stage_yielding)
         may_stay = plan%method == method_inistr .or. elastic .and. yielded == 0
-        if (singular == 0 .and. stiff .and. may_stay) return
+        if (failed_body == 0 .and. stiff .and. may_stay) return
         elastic = yielded == 0
-        call linear%set_stiffness(scene, singular, watch)
+        call linear%set_stiffness(scene, failed_body, watch)
         stiff = .true.
-        if (singular == 0 .or. any(linear%body%lacks_memory)) return
+        if (failed_body == 0 .or. any(linear%body%lacks_memory)) return
         call method%stiffen(possible)
         if (.not. possible) return
       end do
@@ -315,7 +315,7 @@ contains
       type(scene_state), allocatable :: next
       type(scene_state) :: before
       type(iteration_record) :: last
-      integer :: singular
+      integer :: failed_body
 
       converged = .false.
       if (now%iteration == scene%model%controls%most_iterations) return
@@ -328,8 +328,8 @@ contains
       now%change = huge(1.0_wp)
       allocate (next)
       stiff = .false.   ! by no tangent, before and after
-      call set_law(tangent, singular)
-      if (singular == 0 .and. tangent%blend < too_stiff) then
+      call set_law(tangent, failed_body)
+      if (failed_body == 0 .and. tangent%blend < too_stiff) then
         call linear%solve(scene, part, found%contact%touching, next, watch)
         if (next%contact%state == contact_solved) call measure(next)
       end if

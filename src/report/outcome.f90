@@ -60,10 +60,10 @@ contains
                     ') give no answer to be trusted, and in double '//run%answer%against_double)
     else if (run%answer%lacks_memory) then
       call conclude(status_usage, memory, &
-                    'there is not enough memory to factor '//body_name(run%answer%singular))
-    else if (run%answer%singular > 0) then
+                    'there is not enough memory to factor '//body_name(run%answer%failed_body))
+    else if (run%answer%failed_body > 0) then
       call conclude(status_numerical, 'singular stiffness', 'the stiffness of '// &
-                    body_name(run%answer%singular)//' cannot be factored: '//reason// &
+                    body_name(run%answer%failed_body)//' cannot be factored: '//reason// &
                     when(run%model%has_flat_curve(), '; or a flat curve carries no more (limit load)'))
     else if (run%answer%contact%state == contact_no_equilibrium) then
       call conclude(status_no_answer, 'no equilibrium', escaping())

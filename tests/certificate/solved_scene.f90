@@ -7,16 +7,13 @@ module solved_scene
   use epcont_build_build, only: build_model
   use epcont_model_finding, only: findings
   use epcont_plasticity_observer, only: observer
-  use epcont_solution, only: solution_type
+  use epcont_solution, only: scene => solution_type
   implicit none
   private
   public :: scene, solve, solve_file
 
   character(len=*), parameter :: path = 'scene.dat'
 
-  type, extends(solution_type) :: scene
-    integer :: singular = 0
-  end type scene
 
 contains
 
@@ -54,6 +51,5 @@ contains
     if (loose%errors > 0) error stop 'solved_scene: a body is loose'
     call solved%make_plan(watch)
     call solved%solve(huge(1.0_wp), watch, error)
-    solved%singular = solved%answer%singular
   end subroutine solve_file
 end module solved_scene
