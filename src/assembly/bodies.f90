@@ -68,16 +68,16 @@ contains
   end subroutine settle
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.
-  pure subroutine prescribe(scene, part, displacement)
+  pure subroutine prescribe(scene, load_factor, displacement)
     type(planned_scene), intent(in) :: scene        !! that has them
-    real(wp), intent(in) :: part                    !! of the prescribed displacements
+    real(wp), intent(in) :: load_factor             !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
     integer :: c, node
 
     do node = 1, scene%model%nodes
       do c = 1, directions
         associate (model => scene%model, leader => scene%model%leader(c, node))
-          if (model%held(c, leader)) displacement(c, node) = part*model%beyond_travel(c, leader)
+          if (model%held(c, leader)) displacement(c, node) = load_factor*model%beyond_travel(c, leader)
         end associate
       end do
     end do
@@ -109,24 +109,24 @@ contains
 
   !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero
   !! [directions, nodes].
-  pure function displacements(self, scene, force, part) result(u)
+  pure function displacements(self, scene, force, load_factor) result(u)
     class(factored_bodies), intent(in) :: self
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
     real(wp), intent(in) :: force(:, :)  !! [directions, nodes]
-    real(wp), intent(in) :: part         !! of the prescribed displacements
+    real(wp), intent(in) :: load_factor  !! of the prescribed displacements
     real(wp), allocatable :: u(:, :)
     type(half_solved_body), allocatable :: half(:)
 
-    call self%add_forces(scene, force, part, half)
-    u = self%finish(scene, half, part, .false.)
+    call self%add_forces(scene, force, load_factor, half)
+    u = self%finish(scene, half, load_factor, .false.)
   end function displacements
 
   !> Put forces on the bodies: the half of the solve that can be done before all of them are known.
-  pure subroutine add_forces(self, scene, force, part, half)
+  pure subroutine add_forces(self, scene, force, load_factor, half)
     class(factored_bodies), intent(in) :: self
     type(planned_scene), intent(in) :: scene     !! with the numbers of its equations
     real(wp), intent(in) :: force(:, :)          !! [directions, nodes]
-    real(wp), intent(in) :: part                 !! of the prescribed displacements, with their forces
+    real(wp), intent(in) :: load_factor          !! of the prescribed displacements, with their forces
     !> What has been put on before; not allocated: nothing [bodies]
     type(half_solved_body), allocatable, intent(inout) :: half(:)
     integer :: b
@@ -151,7 +151,7 @@ contains
         do i = 1, size(body%node)
           do c = 1, directions
             associate (number => scene%numbering%equation(c, body%node(i)))
-              own = force(c, body%node(i)) + part*self%settlement(c, body%node(i))
+              own = force(c, body%node(i)) + load_factor*self%settlement(c, body%node(i))
               if (number > 0) inner(number, 1) = inner(number, 1) + own
               if (number < 0) border(-number, 1) = border(-number, 1) + own
             end associate
@@ -173,18 +173,18 @@ contains
 
   !> The other half: displacements under all that has been put on, SUPORT freedoms at zero
   !! [directions, nodes].
-  pure function finish(self, scene, half, part, at_contact) result(u)
+  pure function finish(self, scene, half, load_factor, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
     type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
     type(half_solved_body), intent(in) :: half(:)  !! all that has been put on [bodies]
-    real(wp), intent(in) :: part         !! of the prescribed displacements
+    real(wp), intent(in) :: load_factor  !! of the prescribed displacements
     logical, intent(in) :: at_contact    !! only nodes of pairs are wanted
     real(wp), allocatable :: u(:, :)
     real(wp), allocatable :: border(:, :), inner(:, :)
     integer :: b, c, i
 
     allocate (u(directions, scene%model%nodes), source=0.0_wp)
-    call prescribe(scene, part, u)
+    call prescribe(scene, load_factor, u)
     do b = 1, size(half)
       associate (body => scene%numbering%body(b))
         inner = half(b)%inner

@@ -131,10 +131,10 @@ contains
 
   !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without
   !! contact equilibrium (`state%contact%state`) there are no displacements.
-  subroutine solve(self, scene, part, start, state, watch)
+  subroutine solve(self, scene, load_factor, start, state, watch)
     class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene       !! that it was made for
-    real(wp), intent(in) :: part                   !! of the loads
+    real(wp), intent(in) :: load_factor            !! of the loads
     logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
     type(scene_state), intent(inout) :: state      !! what is found
     class(stopwatch), intent(inout) :: watch       !! takes the time
@@ -145,7 +145,7 @@ contains
       call solve_once()
     end if
     if (state%contact%state /= contact_solved) return
-    call complete(self, scene, part, state)
+    call complete(self, scene, load_factor, state)
     call watch%lap(stage_displacements)
 
   contains
@@ -155,20 +155,20 @@ contains
       real(wp), allocatable :: force(:, :)
       type(half_solved_body), allocatable :: half(:)
 
-      force = part*scene%model%load
+      force = load_factor*scene%model%load
       if (any(self%law%initial_stress /= 0.0_wp)) &
         force = force - self%operator%nodal_forces(scene%model, self%law%initial_stress)
-      call self%add_forces(scene, force, part, half)
-      self%problem%load_gap = gap_opening(scene%model, self%finish(scene, half, part, .true.)) + &
-                              part*self%travel_gap
-      self%problem%resultant = part*self%resultant
+      call self%add_forces(scene, force, load_factor, half)
+      self%problem%load_gap = gap_opening(scene%model, self%finish(scene, half, load_factor, .true.)) + &
+                              load_factor*self%travel_gap
+      self%problem%resultant = load_factor*self%resultant
       call watch%lap(stage_displacements)
       call solve_contact(self%problem, state%contact, start, self%plan%by_blocks)
       call watch%lap(stage_contact)
       if (state%contact%state /= contact_solved) return
       call self%add_forces(scene, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
       ! Strains are of the deformation: added to a long travel it would lose their digits.
-      state%deformation = self%finish(scene, half, part, .false.)
+      state%deformation = self%finish(scene, half, load_factor, .false.)
       state%strain = self%operator%strains(scene%model, state%deformation)
     end subroutine solve_once
 
@@ -185,14 +185,14 @@ contains
         allocate (state%deformation(directions, scene%model%nodes), state%contact%force(scene%model%pairs), &
                   source=0.0_wp)
       end if
-      call prescribe(scene, part, state%deformation)
+      call prescribe(scene, load_factor, state%deformation)
       state%strain = self%operator%strains(scene%model, state%deformation)
       if (allocated(start)) touching = start
       before = 0.0_wp
       step = 0
       do
         step = step + 1
-        call correct(self, scene, part, state, change)
+        call correct(self, scene, load_factor, state, change)
         call watch%lap(stage_displacements)
         if (step > 1 .and. change <= negligible) exit
         ! Steps come in pairs: what one has refined moves the contact forces, and those the next; the first
@@ -203,7 +203,7 @@ contains
           return
         end if
         before = [before(2), change]
-        call correct_contact(self, scene, part, touching, state)
+        call correct_contact(self, scene, load_factor, touching, state)
         call watch%lap(stage_contact)
         if (state%contact%state /= contact_solved) return
         touching = state%contact%touching
@@ -215,10 +215,10 @@ contains
   !> One step of refinement of what `solve` has found: where a body is long and its elements fine, rounding
   !! leaves forces out of balance though the factors are in double. The contact follows the deformation, and
   !! that the contact.
-  subroutine sharpen(self, scene, part, state, change, watch)
+  subroutine sharpen(self, scene, load_factor, state, change, watch)
     class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene    !! that it was made for
-    real(wp), intent(in) :: part                !! of the loads
+    real(wp), intent(in) :: load_factor         !! of the loads
     type(scene_state), intent(inout) :: state   !! as it was where the contact is not found again
     real(wp), intent(out) :: change             !! of displacements and contact forces, of the largest of each
     class(stopwatch), intent(inout) :: watch    !! takes the time
@@ -229,13 +229,13 @@ contains
     change = huge(1.0_wp)
     refined = state
     touching = state%contact%touching
-    call correct(self, scene, part, refined, strained)
+    call correct(self, scene, load_factor, refined, strained)
     call watch%lap(stage_displacements)
-    call correct_contact(self, scene, part, touching, refined)
+    call correct_contact(self, scene, load_factor, touching, refined)
     call watch%lap(stage_contact)
     if (refined%contact%state /= contact_solved) return
-    call correct(self, scene, part, refined, strained)
-    call complete(self, scene, part, refined)
+    call correct(self, scene, load_factor, refined, strained)
+    call complete(self, scene, load_factor, refined)
     change = max(relative_change(state%displacement, refined%displacement, of=refined%displacement), &
                  force_change(state%contact, refined%contact, of=refined%contact))
     if (allocated(refined%point)) deallocate (refined%point)   ! those of the strain before
@@ -246,10 +246,10 @@ contains
   !> What single precision has left: the change of displacements, strains and contact forces, of the largest
   !! of each, by two steps of refinement, of which the second must change less: else the factors do not tell
   !! the error either, and it is 1.
-  subroutine rounding_error(self, scene, part, state, error)
+  subroutine rounding_error(self, scene, load_factor, state, error)
     class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene    !! that it was made for
-    real(wp), intent(in) :: part                !! of the loads
+    real(wp), intent(in) :: load_factor         !! of the loads
     type(scene_state), intent(in) :: state      !! what `solve` has found
     real(wp), intent(out) :: error              !! relative
     type(scene_state) :: refined
@@ -257,10 +257,10 @@ contains
     real(wp) :: second
 
     refined = state
-    call correct(self, scene, part, refined, error)
-    call correct(self, scene, part, refined, second)
+    call correct(self, scene, load_factor, refined, error)
+    call correct(self, scene, load_factor, refined, second)
     touching = state%contact%touching
-    call correct_contact(self, scene, part, touching, refined)
+    call correct_contact(self, scene, load_factor, touching, refined)
     if (second > max(slowest_rate*error, solved_to)) error = 1.0_wp
     if (refined%contact%state /= contact_solved) error = 1.0_wp
     error = max(error, relative_change(state%deformation, refined%deformation, of=state%deformation), &
@@ -283,15 +283,15 @@ contains
   end function force_change
 
   !> One step of refinement: the deformation under the forces that are out of balance is added.
-  pure subroutine correct(self, scene, part, state, change)
+  pure subroutine correct(self, scene, load_factor, state, change)
     type(linear_problem), intent(in) :: self
     type(planned_scene), intent(in) :: scene
-    real(wp), intent(in) :: part
+    real(wp), intent(in) :: load_factor
     type(scene_state), intent(inout) :: state   !! deformation, strain, contact forces
     real(wp), intent(out) :: change             !! largest of a strain / largest strain
     real(wp), allocatable :: force(:, :), step(:, :), strain(:, :)
 
-    force = part*scene%model%load + pair_forces(scene%model, state%contact%force) &
+    force = load_factor*scene%model%load + pair_forces(scene%model, state%contact%force) &
             - self%operator%nodal_forces(scene%model, self%law%stress(state%strain))
     step = self%displacements(scene, force, 0.0_wp)
     strain = self%operator%strains(scene%model, step)
@@ -301,23 +301,23 @@ contains
   end subroutine correct
 
   !> The contact with the gaps of a deformation, of which the contact forces' part goes by the flexibility.
-  subroutine correct_contact(self, scene, part, touching, state)
+  subroutine correct_contact(self, scene, load_factor, touching, state)
     type(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
-    real(wp), intent(in) :: part
+    real(wp), intent(in) :: load_factor
     logical, allocatable, intent(in) :: touching(:)   !! guess of the pairs in contact, if allocated [pairs]
     type(scene_state), intent(inout) :: state
 
-    self%problem%load_gap = gap_opening(scene%model, state%deformation) + part*self%travel_gap - &
+    self%problem%load_gap = gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap - &
                             matmul(self%problem%flexibility, state%contact%force)
-    self%problem%resultant = part*self%resultant
+    self%problem%resultant = load_factor*self%resultant
     call solve_contact(self%problem, state%contact, touching, self%plan%by_blocks)
   end subroutine correct_contact
   !> What follows from deformation, strains and contact: stresses, displacements and gaps.
-  pure subroutine complete(self, scene, part, state)
+  pure subroutine complete(self, scene, load_factor, state)
     type(linear_problem), intent(in) :: self
     type(planned_scene), intent(in) :: scene
-    real(wp), intent(in) :: part
+    real(wp), intent(in) :: load_factor
     type(scene_state), intent(inout) :: state
     real(wp), allocatable :: opening(:), travel(:)   ! of gaps by deformation, by what supports travel
     real(wp), allocatable :: moved(:)                ! closing of a gap by each free motion [length]
@@ -325,7 +325,7 @@ contains
     integer :: i, k, node
 
     state%point_stress = self%law%stress(state%strain)
-    state%displacement = state%deformation + part*scene%model%travel
+    state%displacement = state%deformation + load_factor*scene%model%travel
     do k = 1, scene%motions%count
       do node = 1, scene%model%nodes
         state%displacement(:, node) = state%displacement(:, node) &
@@ -333,7 +333,7 @@ contains
       end do
     end do
     opening = gap_opening(scene%model, state%deformation)
-    travel = part*self%travel_gap
+    travel = load_factor*self%travel_gap
     associate (contact => state%contact, model => scene%model, problem => self%problem)
       do k = 1, model%pairs
         if (contact%force(k) > 0.0_wp) cycle

@@ -74,7 +74,7 @@ contains
     ! this load, the contact forces' [force/length].
     real(wp), allocatable :: displacement(:, :), rest(:, :), gain(:), force_gain(:)
     real(wp), allocatable :: strained(:)      ! e of points that yielded in the last load step, else 0
-    real(wp) :: part                          ! of the loads
+    real(wp) :: load_factor                   ! of the loads
     real(wp) :: doubt                         ! times what was estimated is what a tangent step has shown
     integer :: yielded                        ! elements that yield in the state that the law is about
     logical :: stiff                          ! the scene has been factored
@@ -85,7 +85,7 @@ contains
     call begin()
     call watch%lap(stage_stiffness)
     do step = 1, plan%load_steps
-      part = real(step, wp)/plan%load_steps
+      load_factor = real(step, wp)/plan%load_steps
       call iterate()
       answer%factorizations = linear%factorizations
       answer%lacks_memory = any(linear%body%lacks_memory)
@@ -145,7 +145,7 @@ contains
       do iteration = 1, scene%model%controls%most_iterations
         call set_law(method, answer%failed_body)
         if (answer%failed_body > 0) return
-        call linear%solve(scene, part, touching, found, watch)
+        call linear%solve(scene, load_factor, touching, found, watch)
         if (found%contact%state /= contact_solved) then
           ! Not found about a later state, such as one beyond the limit load: what was found before is not
           ! converged.
@@ -162,8 +162,8 @@ contains
         force = found%contact%force
         yielded = now%yielded
         ! Behind the last load step nothing is linearised any more.
-        if (linear%materials%yields .and. .not. (converged .and. part >= 1.0_wp)) &
-          call method%advance(scene%model, linear, part, found, about)
+        if (linear%materials%yields .and. .not. (converged .and. load_factor >= 1.0_wp)) &
+          call method%advance(scene%model, linear, load_factor, found, about)
         call watch%lap(stage_yielding)
         call watch%solved(now, converged)
         if (.not. converged .and. now%residual > least_residual) cycle
@@ -224,7 +224,7 @@ contains
       logical, allocatable :: yields(:)
       integer :: p
 
-      now%load_factor = part
+      now%load_factor = load_factor
       now%change = ratio(maxval(abs(found%displacement - about%displacement)), &
                          maxval(abs(found%displacement)))
       now%force_change = ratio(maxval(abs(found%contact%force - force)), maxval(found%contact%force))
@@ -330,7 +330,7 @@ contains
       stiff = .false.   ! by no tangent, before and after
       call set_law(tangent, failed_body)
       if (failed_body == 0 .and. tangent%blend < too_stiff) then
-        call linear%solve(scene, part, found%contact%touching, next, watch)
+        call linear%solve(scene, load_factor, found%contact%touching, next, watch)
         if (next%contact%state == contact_solved) call measure(next)
       end if
       converged = now%change <= plan%tolerance .and. now%residual <= plan%off_curve
@@ -351,11 +351,11 @@ contains
 
     !> What rounding may have done to the answer.
     subroutine estimate_rounding()
-      answer%load_factor = part
+      answer%load_factor = load_factor
       call linear%estimate_condition(scene, answer%condition)
       answer%weakest = linear%weakest()
       if (plan%precision == precision_single) &
-        call linear%rounding_error(scene, part, answer%scene_state, answer%rounding_error)
+        call linear%rounding_error(scene, load_factor, answer%scene_state, answer%rounding_error)
       call watch%lap(stage_accuracy)
     end subroutine estimate_rounding
 

@@ -78,11 +78,11 @@ contains
   end subroutine stiffen
 
   !> Go along the step as far as the energy falls.
-  subroutine advance(self, model, linear, part, found, about)
+  subroutine advance(self, model, linear, load_factor, found, about)
     class(newton_method), intent(inout) :: self
     type(model_type), intent(in) :: model            !! the scene
     type(linear_problem), intent(in) :: linear       !! that was solved
-    real(wp), intent(in) :: part                     !! of the loads
+    real(wp), intent(in) :: load_factor              !! of the loads
     type(scene_state), intent(in) :: found           !! with its points
     type(scene_state), intent(inout) :: about        !! displacement, strain and points
     type(point_state), allocatable :: point(:)
@@ -99,7 +99,7 @@ contains
       about%strain = about%strain + length*along
       call move_alloc(point, about%point)
     else
-      call self%secant_method%advance(model, linear, part, found, about)
+      call self%secant_method%advance(model, linear, load_factor, found, about)
     end if
 
   contains
@@ -138,8 +138,8 @@ contains
       real(wp) :: term
       integer :: p
 
-      slope = -part*sum(model%load*travel)
-      terms = part*sum(abs(model%load*travel))
+      slope = -load_factor*sum(model%load*travel)
+      terms = load_factor*sum(abs(model%load*travel))
       do p = 1, size(state)
         term = linear%operator%volume(p)*dot_product(state(p)%stress, along(:, p))
         slope = slope + term

@@ -57,11 +57,11 @@ contains
   end subroutine stiffen
 
   !> The state to linearise about next, when the law about `about` has led to `found`.
-  subroutine advance(self, model, linear, part, found, about)
+  subroutine advance(self, model, linear, load_factor, found, about)
     class(secant_method), intent(inout) :: self
     type(model_type), intent(in) :: model            !! the scene
     type(linear_problem), intent(in) :: linear       !! that was solved
-    real(wp), intent(in) :: part                     !! of the loads
+    real(wp), intent(in) :: load_factor              !! of the loads
     type(scene_state), intent(in) :: found           !! with its points
     type(scene_state), intent(inout) :: about        !! displacement, strain and points
 
