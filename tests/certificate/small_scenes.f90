@@ -8,7 +8,7 @@ module small_scenes
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: allowance_of, moved
+  public :: allowance_of, moved, seen
 
   character(len=*), parameter, public :: section = 'PARAM,PLANE,STRAIN|PSHELL,1,1,1.0|MAT1,1,1.0+5,,0.3|SPC1,1,12,1,2|'
   !> A unit square, and a narrower one that rests on it.
@@ -41,6 +41,15 @@ contains
     end do
     scene = look_through(model, u, spread(1.0_wp, 1, model%pairs))
   end function moved
+
+  !> The scene displaced, where nothing presses.
+  function seen(model, u) result(scene)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: u(:, :)   !! displacements
+    type(scene_type) :: scene
+
+    scene = look_through(model, u, [real(wp) ::])
+  end function seen
 
   !> What the sides of a scene allow.
   function allowance_of(model, u) result(allowance)

@@ -2,6 +2,7 @@
 
 It trusts the deck: whatever it does not understand raises DeckError, without place or remedy.
 """
+import math
 import pathlib
 import re
 from dataclasses import dataclass, field
@@ -24,6 +25,44 @@ class Deck:
 
     def of(self, name):
         return [card for card in self.cards if card[0] == name]
+
+    def moduli(self):
+        """(E, nu) by MAT1."""
+        found = {}
+        for card in self.of("MAT1"):
+            e, g, nu = (real(text, None) for text in card[2:5])
+            e = 2 * g * (1 + nu) if e is None else e
+            found[int(card[1])] = (e, e / (2 * g) - 1 if nu is None else nu)
+        return found
+
+    def curves(self, moduli):
+        """Points (strain, stress) of the uniaxial curves, by MAT1; a table's yield strain is its yield stress over E."""
+        tables = {int(card[1]): [real(text) for text in card[9:card.index("ENDT")]] for card in self.of("TABLES1")}
+        found = {}
+        for card in self.of("MATS1"):
+            young = moduli[int(card[1])][0]
+            if at(card, 2):
+                numbers = tables[int(card[2])]
+                points = list(zip(numbers[0::2], numbers[1::2]))
+                points[1] = (points[1][1] / young, points[1][1])
+            else:
+                limit, slope = real(card[7]), real(at(card, 4))
+                points = [(0.0, 0.0), (limit / young, limit), (2 * limit / young, limit + limit * slope / (young + slope))]
+            found[int(card[1])] = points
+        return found
+
+    def held(self, chosen):
+        """(node, digits, value) of GRID and of the SPC1 and SPC of the set."""
+        found = [(int(card[1]), at(card, 8), 0.0) for card in self.of("GRID")]
+        for card in self.of("SPC1") + self.of("SPC"):
+            if int(card[1]) == chosen:
+                found += ([(node, card[2], 0.0) for node in ids(card[3:])] if card[0] == "SPC1"
+                          else [(int(card[i]), card[i + 1], real(at(card, i + 2))) for i in (2, 5) if at(card, i)])
+        return found
+
+    def frames(self):
+        """x-axes in the plane, by CORD2R; that of the basic system is 0."""
+        return {0: (1.0, 0.0), **{int(card[1]): x_axis([real(at(card, i)) for i in range(3, 12)]) for card in self.of("CORD2R")}}
 
 
 def lines_of(path, depth=0):
@@ -88,6 +127,18 @@ def real(text, default=0.0):
     if not match:
         raise DeckError(f"not a real: {text}")
     return float(match[1] + "e" + (match[2] or "0"))
+
+
+def x_axis(p):
+    """Of a frame with origin A, z-axis towards B and C in the xz plane, from their nine coordinates."""
+    z = [p[3 + i] - p[i] for i in range(3)]
+    length = math.hypot(*z)
+    z = [v / length for v in z]
+    c = [p[6 + i] - p[i] for i in range(3)]
+    along = sum(c[i] * z[i] for i in range(3))
+    x = [c[i] - along * z[i] for i in range(3)]
+    length = math.hypot(*x)
+    return x[0] / length, x[1] / length
 
 
 def integer(text, default=0):

@@ -7,7 +7,7 @@ from deck import DeckError, at, ids, real
 from kinds import KINDS
 from lines import pairs_of_lines
 from shapes import folded, strain_matrices
-from yielding import Law, bilinear
+from yielding import Law
 
 
 class Model:
@@ -28,40 +28,17 @@ class Model:
 
     def materials(self):
         self.parameter = {card[1]: card[2] for card in self.deck.of("PARAM")}
-        matrices = {}
-        for card in self.deck.of("MAT1"):
-            e, g, nu = (real(text, None) for text in card[2:5])
-            e = 2 * g * (1 + nu) if e is None else e
-            nu = e / (2 * g) - 1 if nu is None else nu
-            matrices[int(card[1])] = (e, nu)
-        curves = self.curves(matrices)
+        moduli = self.deck.moduli()
+        curves = {name: np.array(points).T for name, points in self.deck.curves(moduli).items()}
         paper = self.parameter.get("MUP") == "PAPER" or self.parameter.get("ORIGINAL") == "YES"
         self.section = {}
         for card in self.deck.of("PSHELL"):
             strain = at(card, 4) == "-1" or self.parameter.get("PLANE") == "STRAIN"
             if not strain and self.parameter.get("PLANE") != "STRESS":
                 raise DeckError("neither plane strain nor plane stress")
-            e, nu = matrices[int(card[2])]
-            self.section[int(card[1])] = (real(card[3]), Law(e, nu, not strain, curves.get(int(card[2])), paper))
+            self.section[int(card[1])] = (real(card[3]), Law(*moduli[int(card[2])], not strain, curves.get(int(card[2])), paper))
         for card in self.deck.of("PSOLID"):
-            self.section[int(card[1])] = (None, Law(*matrices[int(card[2])], False, curves.get(int(card[2]))))
-
-    def curves(self, matrices):
-        """Uniaxial curves by the ids of their MAT1; a table's yield strain is its yield stress over E."""
-        tables = {}
-        for card in self.deck.of("TABLES1"):
-            numbers = [real(text) for text in card[9:card.index("ENDT")]]
-            tables[int(card[1])] = np.array(numbers[0::2]), np.array(numbers[1::2])
-        curves = {}
-        for card in self.deck.of("MATS1"):
-            young = matrices[int(card[1])][0]
-            if at(card, 2):
-                strain, stress = tables[int(card[2])]
-                strain[1] = stress[1] / young
-                curves[int(card[1])] = strain.copy(), stress
-            else:
-                curves[int(card[1])] = bilinear(young, real(card[7]), real(at(card, 4)))
-        return curves
+            self.section[int(card[1])] = (None, Law(*moduli[int(card[2])], False, curves.get(int(card[2]))))
 
     def elements(self):
         """Elements card by card; `parts` has the integration points of each kind: (which, freedoms, strain matrices), `boundary`
@@ -156,28 +133,13 @@ class Model:
         n = 2 * len(self.node)
         held = np.full(n, np.nan)
         master = np.arange(n)
-        for card in self.deck.of("GRID"):
-            for digit in at(card, 8):
-                if digit in "12":
-                    held[2 * self.row[int(card[1])] + int(digit) - 1] = 0.0
-        cards = self.deck.of("SPC") + self.deck.of("SPC1")
-        chosen = self.chosen("SPC", cards)
-        for card in cards:
-            if int(card[1]) != chosen:
-                continue
-            if card[0] == "SPC1":
-                triples = [(g, card[2], 0.0) for g in ids(card[3:])]
-            else:
-                triples = [(int(card[i]), card[i + 1], real(card[i + 2])) for i in (2, 5) if at(card, i)]
-            for g, digits, value in triples:
-                for digit in digits:
-                    if digit in "12":
-                        held[2 * self.row[g] + int(digit) - 1] = value
+        for g, digits, value in self.deck.held(self.chosen("SPC", self.deck.of("SPC") + self.deck.of("SPC1"))):
+            for digit in set(digits) & {"1", "2"}:
+                held[2 * self.row[g] + int(digit) - 1] = value
         for card in self.deck.of("RBE2"):
             for g in ids(card[4:]):
-                for digit in card[3]:
-                    if digit in "12":
-                        master[2 * self.row[g] + int(digit) - 1] = 2 * self.row[int(card[2])] + int(digit) - 1
+                for digit in set(card[3]) & {"1", "2"}:
+                    master[2 * self.row[g] + int(digit) - 1] = 2 * self.row[int(card[2])] + int(digit) - 1
         for _ in range(50):
             master = master[master]
         self.leader = {(f // 2, f % 2): (int(m) // 2, int(m) % 2) for f, m in enumerate(master) if m != f}
@@ -195,13 +157,13 @@ class Model:
 
     def pairs(self):
         """Of each pair: id, the two nodes that tables name, normal, gap, and its row of the gap matrix."""
-        frames = {int(card[1]): first_axis([real(at(card, i)) for i in range(3, 12)]) for card in self.deck.of("CORD2R")}
+        frames = self.deck.frames()
         given = {int(card[1]): real(at(card, 2)) for card in self.deck.of("PGAP")}
         found = []
         for card in self.deck.of("CGAP"):
             a, b = self.row[int(card[3])], self.row[int(card[4])]
             along = self.x[b] - self.x[a]
-            n = frames[int(card[8])] if at(card, 8) else along / np.linalg.norm(along)
+            n = np.array(frames[int(card[8])]) if at(card, 8) else along / np.linalg.norm(along)
             gap = given[int(card[2] or card[1])] + (along @ n if self.parameter.get("GAPGEOM") == "YES" else 0.0)
             found.append((int(card[1]), (a, b), n, gap, {a: -1.0, b: 1.0}))
         self.contacts = [range(len(found))]
@@ -242,11 +204,3 @@ class Model:
                 side = self.boundary[frozenset(ends)]
                 for node, c, force in edge_forces(side, self.x, ends[0], (pa, real(card[4], pa)), real(at(card, 7))):
                     self.force[2 * node + c] += force
-
-
-def first_axis(numbers):
-    """x-axis of the frame with origin A, z-axis towards B and C in the xz plane."""
-    a, b, c = np.array(numbers).reshape(3, 3)
-    z = (b - a) / np.linalg.norm(b - a)
-    x = (c - a) - ((c - a) @ z) * z
-    return (x / np.linalg.norm(x))[:2]

@@ -4,7 +4,7 @@ that a point x faces are real roots of (x - p) x n. Above a straight side lies a
 where these are those of a circle, its arc. Standard library only.
 """
 from dataclasses import dataclass
-from math import atan2, copysign, degrees, hypot, pi
+from math import atan2, copysign, degrees, hypot
 
 from deck import DeckError
 from kinds import GAUSS, solved

@@ -91,9 +91,3 @@ class Law:
         if self.plane_stress:
             d[:, 2] = d[:, :, 2] = 0.0
         return d
-
-
-def bilinear(young, stress, hardening):
-    slope = young * hardening / (young + hardening)
-    strain = stress / young
-    return np.array([0.0, strain, 2 * strain]), np.array([0.0, stress, stress + slope * strain])

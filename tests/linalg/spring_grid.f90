@@ -1,11 +1,37 @@
-!> A plane grid of springs, as elements of four points: a stiffness matrix whose order of elimination can be chosen.
+!> A plane grid of springs, as elements of four points: a stiffness matrix whose order of elimination can be chosen; and columns
+!> of unequal heights.
 module spring_grid
   use epcont_base_kinds, only: wp
+  use epcont_linalg_assembled, only: assembled_matrix
   implicit none
   private
-  public :: grid
+  public :: add_columns, grid, heights
 
 contains
+
+  !> Heights that rise and fall along the diagonal: the last row of each column.
+  pure function heights(n, w) result(reach)
+    integer, intent(in) :: n, w
+    integer :: reach(n)
+    integer :: j
+
+    reach = [(min(n, j + nint(0.5_wp*w*(1.0_wp + sin(0.07_wp*j)))), j=1, n)]
+  end function heights
+
+  !> Add a full matrix column by column.
+  subroutine add_columns(full, reach, matrix)
+    real(wp), intent(in) :: full(:, :)
+    integer, intent(in) :: reach(:)
+    class(assembled_matrix), intent(inout) :: matrix
+    integer :: i, j
+
+    do j = 1, size(reach)
+      call matrix%add(1, [j], full(j:j, j:j))
+      do i = j + 1, reach(j)
+        call matrix%add(2, [i, j], reshape([0.0_wp, full(i, j), full(i, j), 0.0_wp], [2, 2]))
+      end do
+    end do
+  end subroutine add_columns
 
   !> Springs in the plane between the points of a grid, along its sides and across, held at the first row; `weight`
   !! varies their stiffness. Equations run along the rows, so that the last row comes last.

@@ -11,7 +11,7 @@ program bench_contact
   use epcont_contact_problem, only: contact_problem, contact_solution
   use epcont_contact_solver, only: solve_contact
   use epcont_linalg_dense, only: add_product
-  use statistics, only: median
+  use statistics, only: argument, median
   implicit none
   type(contact_problem) :: problem
   type(contact_solution) :: solution
@@ -46,16 +46,6 @@ program bench_contact
     solution%state, merge(1, 0, solution%by_blocks)
 
 contains
-
-  function argument(k) result(text)
-    integer, intent(in) :: k
-    character(:), allocatable :: text
-    integer :: length
-
-    call get_command_argument(k, length=length)
-    allocate (character(length) :: text)
-    call get_command_argument(k, text)
-  end function argument
 
   integer function number(text)
     character(*), intent(in) :: text

@@ -107,75 +107,73 @@ class Epcont:
         return solve
 
 
-def scaled(flexibility, gap, load):
-    """Forces in units of the mean one, so that the packages' tolerances mean something."""
-    unit = load / len(gap)
-    top = abs(flexibility).max() * unit
-    return unit, flexibility * (unit / top), gap / top, len(gap)
+def scaled(package):
+    """What a package solves with forces in units of the mean one, so that its tolerances mean something: their sum is their number."""
+    def prepare(flexibility, gap, load):
+        unit = load / len(gap)
+        top = abs(flexibility).max() * unit
+        solve = package(flexibility * (unit / top), gap / top)
+        return lambda: unit * solve()
+    return prepare
 
 
-def by_quadprog(flexibility, gap, load):
-    unit, f, g, total = scaled(flexibility, gap, load)
+def by_quadprog(f, g):
     n = len(g)
-    c, b = np.hstack([np.ones((n, 1)), np.eye(n)]), np.append(float(total), np.zeros(n))
-    return lambda: unit * quadprog.solve_qp(f, -g, c, b, 1)[0]
+    c, b = np.hstack([np.ones((n, 1)), np.eye(n)]), np.append(float(n), np.zeros(n))
+    return lambda: quadprog.solve_qp(f, -g, c, b, 1)[0]
 
 
-def by_daqp(flexibility, gap, load):
-    unit, f, g, total = scaled(flexibility, gap, load)
+def by_daqp(f, g):
     n = len(g)
     a = np.ones((1, n))
-    upper, lower = np.append(np.full(n, 1e30), float(total)), np.append(np.zeros(n), float(total))
+    upper, lower = np.append(np.full(n, 1e30), float(n)), np.append(np.zeros(n), float(n))
     sense = np.append(np.zeros(n), 5).astype(np.int32)
 
     def solve():
         x, _, flag, _ = daqp.solve(f, g, a, upper, lower, sense, primal_tol=TOLERANCE)
         if flag < 1:
             raise RuntimeError(f"flag {flag}")
-        return unit * x
+        return x
     return solve
 
 
-def by_piqp(flexibility, gap, load):
-    unit, f, g, total = scaled(flexibility, gap, load)
+def by_piqp(f, g):
     n = len(g)
     f, a = np.asfortranarray(f), np.asfortranarray(np.ones((1, n)))
 
     def solve():
         solver = piqp.DenseSolver()
         solver.settings.eps_abs = solver.settings.eps_rel = TOLERANCE
-        solver.setup(f, g, a, np.array([float(total)]), x_l=np.zeros(n))
+        solver.setup(f, g, a, np.array([float(n)]), x_l=np.zeros(n))
         if solver.solve() != piqp.PIQP_SOLVED:
             raise RuntimeError(str(solver.result.info.status))
-        return unit * np.array(solver.result.x)
+        return np.array(solver.result.x)
     return solve
 
 
-def by_osqp(flexibility, gap, load):
-    unit, f, g, total = scaled(flexibility, gap, load)
+def by_osqp(f, g):
     n = len(g)
     f = sparse.csc_matrix(np.triu(f))
     a = sparse.vstack([sparse.csc_matrix(np.ones((1, n))), sparse.eye(n)], format="csc")
-    lower, upper = np.append(float(total), np.zeros(n)), np.append(float(total), np.full(n, np.inf))
+    lower, upper = np.append(float(n), np.zeros(n)), np.append(float(n), np.full(n, np.inf))
 
     def solve():
         solver = osqp.OSQP()
         solver.setup(f, g, a, lower, upper, verbose=False, eps_abs=TOLERANCE, eps_rel=TOLERANCE, max_iter=20000, polishing=True,
                      time_limit=float(sys.argv[4]))
         found = solver.solve(raise_error=False)
-        return unit * found.x
+        return found.x
     return solve
 
 
-def by_highs(flexibility, gap, load):
-    unit, f, g, total = scaled(flexibility, gap, load)
+def by_highs(f, g):
     n = len(g)
     lower = sparse.csc_matrix(np.tril(f))
     model = highspy.HighsModel()
     lp = model.lp_
     lp.num_col_, lp.num_row_ = n, 1
     lp.col_cost_, lp.col_lower_, lp.col_upper_ = g, np.zeros(n), np.full(n, highspy.kHighsInf)
-    lp.row_lower_ = lp.row_upper_ = np.array([float(total)])
+    lp.row_lower_ = lp.row_upper_ = np.array([float(n)])
     lp.a_matrix_.format_ = highspy.MatrixFormat.kColwise
     lp.a_matrix_.start_, lp.a_matrix_.index_, lp.a_matrix_.value_ = np.arange(n + 1), np.zeros(n, int), np.ones(n)
     model.hessian_.dim_, model.hessian_.format_ = n, highspy.HessianFormat.kTriangular
@@ -190,7 +188,7 @@ def by_highs(flexibility, gap, load):
         solver.run()
         if solver.getModelStatus() != highspy.HighsModelStatus.kOptimal:
             raise RuntimeError(str(solver.getModelStatus()))
-        return unit * np.array(solver.getSolution().col_value)
+        return np.array(solver.getSolution().col_value)
     return solve
 
 
@@ -198,7 +196,8 @@ def main():
     place = pathlib.Path(sys.argv[2])
     ours = {"epcont": None, "epcont CONRY": "CONRY", "epcont WARM": "WARM", "dgemm": "DGEMM"}
     programs = {name: Epcont(sys.argv[1], place, rule).prepare for name, rule in ours.items()}
-    programs |= {"quadprog": by_quadprog, "HiGHS": by_highs, "DAQP": by_daqp, "PIQP": by_piqp, "OSQP": by_osqp}
+    packages = {"quadprog": by_quadprog, "HiGHS": by_highs, "DAQP": by_daqp, "PIQP": by_piqp, "OSQP": by_osqp}
+    programs |= {name: scaled(package) for name, package in packages.items()}
     repeats, limit, sizes = int(sys.argv[3]), float(sys.argv[4]), [int(n) for n in sys.argv[5:]]
     for kind in KINDS:
         tried = list(programs)

@@ -29,7 +29,7 @@ program bench_ours
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_plan_planned_scene, only: planned_scene
-  use statistics, only: median
+  use statistics, only: argument, median
   implicit none
 
   integer, parameter :: ordering = 1, factor = 2, flexibility = 3, load_gap = 4, contact = 5, displacing = 6
@@ -67,16 +67,6 @@ program bench_ours
   if (command_argument_count() > 1) call write_system(argument(2))
 
 contains
-
-  function argument(k) result(text)
-    integer, intent(in) :: k
-    character(:), allocatable :: text
-    integer :: length
-
-    call get_command_argument(k, length=length)
-    allocate (character(length) :: text)
-    call get_command_argument(k, text)
-  end function argument
 
   subroutine read_scene(path)
     character(*), intent(in) :: path

@@ -1,11 +1,21 @@
-!> What the benchmark programs make of repeated times.
+!> What the benchmark programs share: their arguments, and what they make of repeated times.
 module statistics
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: median
+  public :: argument, median
 
 contains
+
+  function argument(k) result(text)
+    integer, intent(in) :: k
+    character(:), allocatable :: text
+    integer :: length
+
+    call get_command_argument(k, length=length)
+    allocate (character(length) :: text)
+    call get_command_argument(k, text)
+  end function argument
 
   !> The middle one, or the lower of the two.
   pure real(wp) function median(values)

@@ -5,7 +5,6 @@ rounding makes it the sum of, so that a small one that is wrong is found, too.
 """
 import math
 
-from deck import integer
 from verification.material import von_mises
 from verification.run import number
 from verification.scene import node_of

@@ -1,25 +1,6 @@
 """Stresses at strains: total theory on the uniaxial curve."""
 import math
 
-from deck import at, real
-
-
-def curves(deck, material):
-    """Points (strain, stress) of the uniaxial curves, by MAT1."""
-    tables = {int(c[1]): [real(text) for text in c[9:c.index("ENDT")]] for c in deck.of("TABLES1")}
-    found = {}
-    for c in deck.of("MATS1"):
-        young = material[int(c[1])][0]
-        if at(c, 2):
-            numbers = tables[int(c[2])]
-            points = list(zip(numbers[0::2], numbers[1::2]))
-            points[1] = (points[1][1] / young, points[1][1])
-        else:
-            limit, slope = real(c[7]), real(at(c, 4))
-            points = [(0.0, 0.0), (limit / young, limit), (2 * limit / young, limit + limit * slope / (young + slope))]
-        found[int(c[1])] = points
-    return found
-
 
 def on_curve(points, total):
     """Stress at a total strain; the last slope goes on."""

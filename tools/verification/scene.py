@@ -5,7 +5,6 @@ from boundary import boundary, edge_forces
 from deck import DeckError, at, ids, real
 from kinds import KINDS
 from lines import pairs_of_lines
-from verification.material import curves
 
 
 class Section:
@@ -49,12 +48,8 @@ class Scene:
         self.has_rings = any(section.thickness is None for section in self.section.values())
 
     def sections(self):
-        material = {}
-        for c in self.deck.of("MAT1"):
-            e, g, nu = (real(text, None) for text in c[2:5])
-            e = 2 * g * (1 + nu) if e is None else e
-            material[int(c[1])] = (e, e / (2 * g) - 1 if nu is None else nu)
-        curve = curves(self.deck, material)
+        material = self.deck.moduli()
+        curve = self.deck.curves(material)
         self.section = {}
         for c in self.deck.of("PSHELL"):
             strain = at(c, 4) == "-1" or self.parameter.get("PLANE") == "STRAIN"
@@ -66,12 +61,7 @@ class Scene:
         """Held directions with their displacements, and the leaders of tied ones."""
         cards = self.deck.of("SPC1") + self.deck.of("SPC")
         chosen = self.deck.case.get("SPC", next((int(c[1]) for c in cards), 0))
-        named = [(int(c[1]), at(c, 8), 0.0) for c in self.deck.of("GRID")]
-        for c in cards:
-            if int(c[1]) == chosen:
-                named += ([(g, c[2], 0.0) for g in ids(c[3:])] if c[0] == "SPC1"
-                          else [(int(c[i]), c[i + 1], real(at(c, i + 2))) for i in (2, 5) if at(c, i)])
-        self.given = {(node, int(digit) - 1): value for node, digits, value in named for digit in set(digits) & {"1", "2"}}
+        self.given = {(node, int(digit) - 1): value for node, digits, value in self.deck.held(chosen) for digit in set(digits) & {"1", "2"}}
         self.held = set(self.given)
         self.leader = {}
         for c in self.deck.of("RBE2"):
@@ -80,8 +70,7 @@ class Scene:
                     self.leader[node, int(digit) - 1] = (int(c[2]), int(digit) - 1)
 
     def pairs(self, told):
-        frame = {0: (1.0, 0.0)}   # the basic system
-        frame.update({int(c[1]): x_axis([real(at(c, i)) for i in range(3, 12)]) for c in self.deck.of("CORD2R")})
+        frame = self.deck.frames()
         given = {int(c[1]): real(at(c, 2)) for c in self.deck.of("PGAP")}
         within = {node for _, nodes, _ in self.element.values() for node in nodes}
         self.pair, self.contacts = {}, []
@@ -160,15 +149,3 @@ class Scene:
 def node_of(name):
     """Of the name of a pair of lines."""
     return name[0] if isinstance(name, tuple) else name
-
-
-def x_axis(p):
-    """x-axis of a CORD2R in the plane, from the nine coordinates of A, B, C."""
-    z = [p[3 + i] - p[i] for i in range(3)]
-    length = math.hypot(*z)
-    z = [v / length for v in z]
-    c = [p[6 + i] - p[i] for i in range(3)]
-    along = sum(c[i] * z[i] for i in range(3))
-    x = [c[i] - along * z[i] for i in range(3)]
-    length = math.hypot(*x)
-    return x[0] / length, x[1] / length
