@@ -168,7 +168,7 @@ class Wholesale(Case):
         status, text = self.spoilt(HERTZ, "summary", [*rows, ["remarks", "BCONP 1: a word", ""], ["penetration", "1.0E-3", "length"]])
         self.assertEqual(0, status, text)
         self.assertRegex(text, "(?m)^not read: summary.csv .*factorizations, .*condition, .*, weak_pairs, remarks, penetration$")
-        self.assertRegex(text, "(?m)^not read: hertz44.lst$")
+        self.assertRegex(text, "(?m)^not read: hertz44.lst, hertz44.pivots.csv$")
 
     def test_quiet(self):
         self.assertEqual((0, ""), self.told(HERTZ, "--quiet"))
