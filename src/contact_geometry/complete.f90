@@ -16,14 +16,14 @@ module epcont_contact_geometry_complete
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
   use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
-  use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_section
+  use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_scene, of_section
   use epcont_model_freedoms, only: find_travels, follow_to_the_end, set_reference, tie
   use epcont_model_given, only: check_given
   use epcont_model_model, only: model_type
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
   private
-  public :: complete_model, raise_first, check_controls, finish_model
+  public :: complete_model, is_complete, raise_first, check_controls, finish_model
 
 contains
 
@@ -34,7 +34,9 @@ contains
     !> The first thing that is wrong: the model does not serve
     type(error_type), allocatable, intent(out) :: error
 
-    call check_given(model, found)
+    if (is_complete(model)) &
+      call found%add_error(of_scene, 0, 0, 'the scene is complete', 'complete_model once, on a new scene')
+    if (found%errors == 0) call check_given(model, found)
     if (found%errors == 0) then
       call complete_elements(model, found)
       call complete_freedoms()
@@ -67,6 +69,13 @@ contains
       end do
     end subroutine complete_freedoms
   end subroutine complete_model
+
+  !> Has `complete_model` made all of the scene?
+  pure logical function is_complete(model)
+    type(model_type), intent(in) :: model   !! the scene
+
+    is_complete = allocated(model%travel)
+  end function is_complete
 
   !> The first error of what was found, as a sentence: `CTRIA3 5: its corners 1, 2 and 3 lie on one line
   !! (wanted: corners that span an area)`.

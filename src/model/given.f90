@@ -2,6 +2,7 @@
 module epcont_model_given
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
+  use epcont_base_tolerances, only: same_place
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, plane_strain
   use epcont_model_finding, only: findings, of_couple, of_element, of_line, of_node, of_pair, of_scene, &
@@ -62,14 +63,16 @@ contains
     integer :: e, kind
 
     if (size(section) == 0) return
-    kind = findloc(model%kinds%plane_card == name .or. model%kinds%ring_card == name, .true., dim=1)
+    kind = findloc(name /= '' .and. (model%kinds%plane_card == name .or. model%kinds%ring_card == name), &
+                   .true., dim=1)
+    if (kind > 0) kind = merge(kind, 0, all(shape(node) == [model%kinds(max(1, kind))%nodes, size(section)]))
     model%kind = [model%kind, spread(kind, 1, size(section))]
     model%section = [model%section, section]
     model%element_id = [model%element_id, (e, e=model%elements + 1, size(model%section))]
     call move_alloc(model%connectivity, before)
     allocate (model%connectivity(max(size(before, 1), size(node, 1)), size(model%section)), source=0)
     model%connectivity(:size(before, 1), :model%elements) = before
-    model%connectivity(:size(node, 1), model%elements + 1:) = node
+    if (kind > 0) model%connectivity(:size(node, 1), model%elements + 1:) = node
     model%elements = size(model%section)
   end subroutine add_elements
 
@@ -97,15 +100,35 @@ contains
 
     sections = size(model%young)
     call need(model%elements > 0, of_scene, 0, 'the scene has no elements', 'some of them')
-    call need(all(model%kind > 0), of_scene, 0, 'elements are of a kind that there is not', 'CTRIA3, say')
+    call need(all(model%kind > 0), of_scene, 0, 'elements are of a kind that there is not, or have'// &
+              ' arrays that do not go together', 'CTRIA3, say, with nodes [3, elements], sections [elements]')
     call need(all([size(model%kinematics), size(model%poisson), size(model%thickness)] == sections), &
               of_scene, 0, 'the sections have arrays of different lengths', 'one number for each section')
-    call need(all([size(model%pair_node, 2), size(model%normal, 2)] == model%pairs), of_scene, 0, &
-              'the pairs have arrays of different lengths', 'one column for each pair')
+    call need(all([shape(model%pair_node), shape(model%normal)] == [2, model%pairs, 2, model%pairs]), &
+              of_scene, 0, 'the pairs have arrays of different lengths', 'one column for each pair')
+    call need(all([shape(model%held), shape(model%prescribed), shape(model%reference), &
+                   shape(model%leader), shape(model%load)] == [([2, model%nodes], i=1, 5)]), of_scene, 0, &
+              'supports, ties and loads have arrays of different lengths', 'one column for each node')
+    call need(size(model%curve) == sections, of_scene, 0, 'the sections have arrays of different lengths', &
+              'one curve for each section')
+    associate (controls => model%controls)
+      call need(all([controls%tolerance, controls%accuracy] >= 0.0_wp .and. &
+                    [controls%tolerance, controls%accuracy] < 1.0_wp), of_scene, 0, &
+                'a tolerance or accuracy is out of range', '0 or more, and less than 1')
+      call need(controls%load_steps > 0 .and. controls%most_iterations > 0, of_scene, 0, &
+                'there are no load steps or iterations', '1 or more')
+      call need(all([controls%search, controls%corner] >= 0.0_wp .and. &
+                    [controls%search, controls%corner] <= [huge(1.0_wp), 180.0_wp]), of_scene, 0, &
+                'a search or corner is out of range', '0, or a length; degrees')
+    end associate
     if (found%errors > 0) return
     do i = 1, model%nodes
       call need(all(abs(model%x(:, i)) <= huge(1.0_wp)), of_node, i, ': its coordinates are no numbers', &
                 'finite ones')
+      call need(all(abs([model%load(:, i), model%prescribed(:, i)]) <= huge(1.0_wp)), of_node, i, &
+                ': its load or prescribed displacement is no number', 'finite ones')
+      call need(.not. any(model%prescribed(:, i) /= 0.0_wp .and. .not. model%held(:, i)), of_node, i, &
+                ': has a prescribed displacement where it is not held', 'held there, too')
       call check_numbers(model%leader(:, i), model%nodes, of_node, i, 'node')
     end do
     do i = 1, model%elements
@@ -115,6 +138,10 @@ contains
     end do
     do i = 1, model%pairs
       call check_numbers(model%pair_node(:, i), model%nodes, of_pair, i, 'node')
+      call need(abs(model%initial_gap(i)) <= huge(1.0_wp), of_pair, i, ': its gap is no number', 'a length')
+      call need(all(model%normal(:, i) == 0.0_wp) .or. &
+                abs(norm2(model%normal(:, i)) - 1.0_wp) <= same_place, of_pair, i, &
+                ': its normal is no unit vector', 'one of length 1, or zero: from A to B')
     end do
     do i = 1, size(model%line)
       call check_numbers(model%line(i)%node, model%nodes, of_line, i, 'node')
