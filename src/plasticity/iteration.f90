@@ -3,7 +3,7 @@ module epcont_plasticity_iteration
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: solved_to
-  use epcont_contact_problem, only: contact_solved, contact_stalled
+  use epcont_contact_problem, only: contact_solved, contact_stalled, pivot_record
   use epcont_element_kinematics, only: components, directions
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
   use epcont_linear_scene_state, only: scene_state
@@ -51,6 +51,7 @@ module epcont_plasticity_iteration
     !> Of displacements, strains and forces, relative: what single precision left
     real(wp) :: rounding_error = 0.0_wp
     type(iteration_record), allocatable :: history(:)   !! every solve
+    type(pivot_record), allocatable :: pivot(:)         !! those that are kept of each, one after the other
     integer :: unloaded = 0                !! elements whose strain fell, after yielding, as the load grew
     integer :: first_unloaded = 0          !! one of them
   end type followed_loads
@@ -121,7 +122,7 @@ contains
         allocate (force(model%pairs), strained(model%points), source=0.0_wp)
       end associate
       if (linear%materials%yields) about%point = linear%materials%states(about%strain)
-      allocate (answer%history(0))
+      allocate (answer%history(0), answer%pivot(0))
       yielded = 0
       stiff = .false.
       elastic = .false.
@@ -212,10 +213,18 @@ contains
         now%error = merge(now%change, 0.0_wp, iteration > 1)
         now%force_error = merge(now%force_change, 0.0_wp, iteration > 1)
       end if
-      answer%history = [answer%history, now]
+      call keep(found)
       converged = is_over()
       if (converged .and. wants_test()) call step_by_tangent(found)
     end subroutine judge
+
+    !> Put a solve into the history. Its pivots stand by themselves: a list of lists would be copied slowly.
+    subroutine keep(found)
+      type(scene_state), intent(in) :: found
+
+      answer%history = [answer%history, now]
+      if (now%kept > 0) answer%pivot = [answer%pivot, found%contact%history]
+    end subroutine keep
 
     !> How far the state found is from the last, and its stresses from the curve. Equilibrium and contact are
     !! exact in each solve: that distance is all that is left of the scene's equations.
@@ -230,7 +239,7 @@ contains
       now%force_change = ratio(maxval(abs(found%contact%force - force)), maxval(found%contact%force))
       now%touching = count(found%contact%touching)
       now%pivots = found%contact%pivots
-      now%pivot = found%contact%history
+      now%kept = size(found%contact%history)
       if (.not. linear%materials%yields) return
       found%point = linear%materials%states(found%strain)
       now%residual = 0.0_wp
@@ -338,7 +347,7 @@ contains
         now%error = now%change
         now%force_error = now%force_change
         now%by_tangent = .true.
-        answer%history = [answer%history, now]
+        call keep(next)
         call move_alloc(next, found)
       else
         doubt = max(2.0_wp*doubt, min(now%change/last%error, most_doubt))

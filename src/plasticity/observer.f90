@@ -2,7 +2,6 @@
 !> changes nothing.
 module epcont_plasticity_observer
   use epcont_base_kinds, only: wp
-  use epcont_contact_problem, only: pivot_record
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_system_stopwatch, only: stopwatch
   implicit none
@@ -23,7 +22,7 @@ module epcont_plasticity_observer
     integer :: touching = 0            !! pairs
     integer :: yielded = 0             !! elements
     integer :: pivots = 0
-    type(pivot_record), allocatable :: pivot(:)   !! the first of them
+    integer :: kept = 0                !! of these, the first
   end type iteration_record
 
   !> One that says nothing.
