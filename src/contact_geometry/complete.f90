@@ -12,7 +12,7 @@ module epcont_contact_geometry_complete
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
   use epcont_contact_geometry_pair_checks, only: check_pairs
-  use epcont_element_kinematics, only: plane_strain
+  use epcont_element_kinematics, only: components, directions, plane_strain
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
   use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
@@ -52,18 +52,18 @@ contains
 
     !> Ties and reference freedoms, one by one: each is checked against those before it.
     subroutine complete_freedoms()
-      integer :: c, i, leader(2, model%nodes)
+      integer :: c, i, leader(directions, model%nodes)
 
       leader = model%leader
-      model%leader = spread([(i, i=1, model%nodes)], 1, 2)
+      model%leader = spread([(i, i=1, model%nodes)], 1, directions)
       do i = 1, model%nodes
-        do c = 1, 2
+        do c = 1, directions
           if (leader(c, i) /= i) call tie(model, c, i, leader(c, i), [of_node, i, 0], found)
         end do
       end do
       call follow_to_the_end(model%leader)
       do i = 1, model%nodes
-        do c = 1, 2
+        do c = 1, directions
           if (model%reference(c, i)) call set_reference(model, c, i, [of_node, i, 0], found)
         end do
       end do

@@ -4,6 +4,7 @@ module epcont_contact_geometry_pair_checks
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_base_tolerances, only: least_difference, no_effect, rounded_off
+  use epcont_element_kinematics, only: directions
   use epcont_geometry_boundary_line, only: unit
   use epcont_geometry_plane, only: cross_product
   use epcont_model_finding, only: and_more, findings, of_couple, of_element, of_node, of_pair
@@ -205,7 +206,7 @@ contains
       gap = model%initial_gap(pair)
       is_held = .false.
       do i = model%row_start(pair), model%row_start(pair + 1) - 1
-        do c = 1, 2
+        do c = 1, directions
           if (abs(model%normal(c, pair)) <= least_difference) cycle
           associate (leader => model%leader(c, model%row_node(i)))
             if (.not. model%held(c, leader)) return

@@ -7,6 +7,7 @@ module epcont_model_freedoms
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_text, only: text_of
   use epcont_base_tolerances, only: same_place, travel_rounding
+  use epcont_element_kinematics, only: directions
   use epcont_model_finding, only: findings, of_node
   use epcont_model_model, only: model_type
   implicit none
@@ -55,7 +56,7 @@ contains
     integer :: c, node
 
     do node = 1, size(leader, 2)
-      do c = 1, 2
+      do c = 1, directions
         do while (leader(c, leader(c, node)) /= leader(c, node))
           leader(c, node) = leader(c, leader(c, node))
         end do
@@ -108,7 +109,7 @@ contains
       end do
     end do
     do i = 1, merge(model%nodes, 0, by_ties)
-      do c = 1, 2
+      do c = 1, directions
         call joined%join(i, model%leader(c, i))
       end do
     end do
@@ -121,7 +122,7 @@ contains
     logical :: moved(model%bodies)
     integer :: b, i
 
-    allocate (model%travel(2, model%nodes), source=0.0_wp)
+    allocate (model%travel(directions, model%nodes), source=0.0_wp)
     model%beyond_travel = model%prescribed
     moved = .false.
     do i = 1, model%nodes
@@ -137,15 +138,15 @@ contains
   pure subroutine find_travel(model, node)
     type(model_type), intent(inout) :: model
     integer, intent(in) :: node(:)   !! of the body
-    real(wp), dimension(2, size(node)) :: arm, travel, u
+    real(wp), dimension(directions, size(node)) :: arm, travel, u
     !> What is prescribed, and the SUPORT freedoms: these move by the approach alone
-    logical :: known(2, size(node))
-    real(wp) :: shift(2), turn
+    logical :: known(directions, size(node))
+    real(wp) :: shift(directions), turn
     integer :: c
 
     known = model%held(:, node) .or. model%reference(:, node)
     u = model%prescribed(:, node)
-    do c = 1, 2
+    do c = 1, directions
       shift(c) = mean(u(c, :), known(c, :))
       arm(c, :) = (2*c - 3)*(model%x(3 - c, node) - mean(model%x(3 - c, node), known(c, :)))
     end do

@@ -4,7 +4,7 @@ module epcont_model_given
   use epcont_base_text, only: text_of
   use epcont_base_tolerances, only: same_place
   use epcont_element_element_kinds, only: element_kinds
-  use epcont_element_kinematics, only: axisymmetric, plane_strain
+  use epcont_element_kinematics, only: axisymmetric, directions, plane_strain
   use epcont_model_finding, only: findings, of_couple, of_element, of_line, of_node, of_pair, of_scene, &
                                   of_section
   use epcont_model_model, only: model_type
@@ -25,9 +25,9 @@ contains
     model%nodes = size(x, 2)
     model%node_id = [(i, i=1, model%nodes)]
     model%kinds = element_kinds()
-    model%leader = spread(model%node_id, 1, 2)
-    allocate (model%held(2, model%nodes), model%reference(2, model%nodes), source=.false.)
-    allocate (model%prescribed(2, model%nodes), model%load(2, model%nodes), source=0.0_wp)
+    model%leader = spread(model%node_id, 1, directions)
+    allocate (model%held(directions, model%nodes), model%reference(directions, model%nodes), source=.false.)
+    allocate (model%prescribed(directions, model%nodes), model%load(directions, model%nodes), source=0.0_wp)
     allocate (model%element_id(0), model%kind(0), model%section(0), model%connectivity(0, 0))
     allocate (model%line(0), model%couple(0))
     call set_sections(model, [real(wp) ::], [real(wp) ::], [integer ::])

@@ -7,7 +7,7 @@ module epcont_model_model
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_element_element_kind, only: element_kind
-  use epcont_element_kinematics, only: axisymmetric
+  use epcont_element_kinematics, only: axisymmetric, directions
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_outline, only: outline_type
   use epcont_model_controls, only: controls_type, uniaxial_curve
@@ -22,7 +22,7 @@ module epcont_model_model
     !> In their order along the boundary, in either sense; none: they were not sound
     integer, allocatable :: node(:)
     integer, allocatable :: side(:)      !! of the outline, with the body to the left
-    real(wp) :: box(2, 2) = 0.0_wp       !! least and largest coordinates of their ends [length] [2, 2]
+    real(wp) :: box(directions, 2) = 0.0_wp   !! least and largest coordinates of their ends [length]
   end type named_line
 
   !> Two lines that may touch (BCONP).
@@ -122,7 +122,7 @@ contains
   pure function coordinates(self, element) result(x)
     class(model_type), intent(in) :: self
     integer, intent(in) :: element   !! which element
-    real(wp) :: x(2, self%node_count(element))
+    real(wp) :: x(directions, self%node_count(element))
 
     x = self%x(:, self%connectivity(:self%node_count(element), element))
   end function coordinates
@@ -165,7 +165,7 @@ contains
   pure function edge_coordinates(self, edge) result(x)
     class(model_type), intent(in) :: self
     integer, intent(in) :: edge(3)   !! nodes of the side, see `edge`
-    real(wp) :: x(2, merge(3, 2, edge(3) > 0))
+    real(wp) :: x(directions, merge(3, 2, edge(3) > 0))
 
     x = self%x(:, edge(:size(x, 2)))
   end function edge_coordinates
@@ -213,7 +213,7 @@ contains
     integer :: c
 
     is_rigid = .true.
-    do c = 1, 2
+    do c = 1, directions
       associate (leader => self%leader(c, node))
         is_rigid = is_rigid .and. (all(leader == leader(1)) .or. all(self%held(c, leader)))
       end associate
@@ -248,7 +248,7 @@ contains
     class(model_type), intent(in) :: self
     integer, intent(in) :: pair   !! which pair
     real(wp), intent(in) :: displacement(:, :)  !! of the nodes of its row [2, entries of the row]
-    real(wp) :: opening, apart(2)
+    real(wp) :: opening, apart(directions)
     integer :: k
 
     ! Summed before it is seen along the normal: a travel that the nodes share drops out without rounding.

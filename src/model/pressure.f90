@@ -1,6 +1,7 @@
 !> Pressures along sides of elements.
 module epcont_model_pressure
   use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: directions
   use epcont_geometry_edge, only: edge_point, edge_point_count, edge_points
   use epcont_geometry_plane, only: turned
   use epcont_model_model, only: model_type
@@ -19,7 +20,7 @@ contains
     real(wp), intent(in) :: pressure(2)    !! at the two nodes [stress]
     real(wp), intent(in) :: theta          !! [degree]
     type(edge_point) :: point(edge_point_count)
-    real(wp) :: depth, direction(2), at_ends(2), value
+    real(wp) :: depth, direction(directions), at_ends(2), value
     integer :: ends(3), k, p
 
     ends = model%edge(element, side)

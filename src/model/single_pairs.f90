@@ -3,6 +3,7 @@ module epcont_model_single_pairs
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
   use epcont_base_tolerances, only: coincident
+  use epcont_element_kinematics, only: directions
   use epcont_model_finding, only: findings, of_pair
   use epcont_model_model, only: model_type
   implicit none
@@ -19,7 +20,7 @@ contains
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     real(wp), allocatable :: shortest(:)     ! edge at each node, found when a pair first needs it
     character(len=:), allocatable :: others
-    real(wp) :: between(2)
+    real(wp) :: between(directions)
     integer :: i, overlaps
 
     do i = 1, model%pairs

@@ -2,6 +2,7 @@
 module epcont_report_names
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
+  use epcont_element_kinematics, only: directions
   use epcont_model_finding, only: of_node
   use epcont_model_model, only: model_type
   use epcont_plan_planned_scene, only: planned_scene
@@ -32,7 +33,7 @@ contains
 
   !> `1.000 2.500`.
   pure function point_name(x) result(name)
-    real(wp), intent(in) :: x(2)              !! [length]
+    real(wp), intent(in) :: x(directions)              !! [length]
     character(len=:), allocatable :: name
 
     name = short_real(x(1))//' '//short_real(x(2))

@@ -5,6 +5,7 @@ module epcont_report_summary
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, text_of
   use epcont_certificate_scene, only: little, overlap_place
+  use epcont_element_kinematics, only: directions
   use epcont_report_columns, only: estimate, factor, force, full_numbers, known, length, listed_number, &
                                    number, part, percent, rounding, size_of, stress
   use epcont_report_names, only: motion_name, point_name, when
@@ -76,7 +77,7 @@ contains
     subroutine put_largest_stress(element)
       integer, intent(in) :: element
       character(len=:), allocatable :: id
-      real(wp) :: place(2)
+      real(wp) :: place(directions)
 
       id = text_of(run%model%element_id(element))
       place = place_of_point(run%model, run%answer%largest_at(element))

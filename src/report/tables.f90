@@ -4,6 +4,7 @@ module epcont_report_tables
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_contact_problem, only: pivot_record
+  use epcont_element_kinematics, only: directions
   use epcont_report_columns, only: column, columns_text, estimate, force, known, length, no_number, number, &
                                    off_curve, rounding, state, stress, table_type, whole, word
   use epcont_report_outcome, only: limit_of_pressure
@@ -213,8 +214,8 @@ contains
     !> Displacements and reactions: a row a node.
     subroutine put_nodes()
       call table%begin('DISPLACEMENTS AND REACTIONS', node_columns, &
-                       [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%displacement)), 1, 2), &
-                        spread(maxval(abs(run%answer%reaction)), 1, 2)])
+                       [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%displacement)), 1, directions), &
+                        spread(maxval(abs(run%answer%reaction)), 1, directions)])
       do k = 1, run%model%nodes
         call table%row([run%model%node_id(k)], &
                        [run%model%x(:, k), run%answer%displacement(:, k), run%answer%reaction(:, k)], &
@@ -285,7 +286,7 @@ contains
     pure function nearest_grid(point) result(id)
       integer, intent(in) :: point
       character(len=8) :: id
-      real(wp) :: x(2)
+      real(wp) :: x(directions)
 
       associate (model => run%model, e => run%model%point_element(point))
         id = '-'

@@ -9,6 +9,7 @@ module epcont_report_vtk
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: newline, text_of
+  use epcont_element_kinematics, only: components, directions
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_report_file, only: new_text_file, text_file
   use epcont_report_names, only: when
@@ -90,7 +91,7 @@ contains
       type(contact_line) :: line
       type(vtk_cells) :: cells
       integer, dimension(run%model%pairs) :: bconp, zone   ! 0: of a CGAP; none
-      real(wp) :: force(2, run%model%pairs)
+      real(wp) :: force(directions, run%model%pairs)
       integer :: k
 
       associate (model => run%model, answer => run%answer, contact => run%answer%contact)

@@ -2,6 +2,7 @@
 module epcont_result_body_force
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled
+  use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_model_model, only: model_type
   implicit none
@@ -13,7 +14,7 @@ module epcont_result_body_force
   type :: body_force
     integer :: body = 0                    !! number of the body
     integer :: node = 0                    !! its first
-    real(wp) :: resultant(2) = 0.0_wp      !! [force]
+    real(wp) :: resultant(directions) = 0.0_wp      !! [force]
   end type body_force
 
 contains
@@ -23,7 +24,7 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
     type(body_force), allocatable :: found(:)
-    real(wp) :: sums(2, model%bodies)
+    real(wp) :: sums(directions, model%bodies)
     logical :: has_elements(model%bodies)
     integer :: b, i
 
@@ -42,7 +43,7 @@ contains
   pure function resultants(model, force) result(sums)
     type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
-    real(wp) :: sums(2, model%bodies)
+    real(wp) :: sums(directions, model%bodies)
     integer :: i
 
     sums = 0.0_wp

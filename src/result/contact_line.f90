@@ -4,6 +4,7 @@ module epcont_result_contact_line
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_tolerances, only: no_area
+  use epcont_element_kinematics, only: directions
   use epcont_geometry_edge, only: edge_point, edge_point_count, edge_points
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: line_contact, model_type
@@ -205,7 +206,7 @@ contains
   pure logical function is_along(model, side, n)
     type(model_type), intent(in) :: model
     integer, intent(in) :: side(3)
-    real(wp), intent(in) :: n(2)   !! normal of the contact
+    real(wp), intent(in) :: n(directions)   !! normal of the contact
 
     associate (edge => model%x(:, side(2)) - model%x(:, side(1)))
       is_along = abs(dot_product(edge, n)) <= along_tangent*norm2(edge)
@@ -217,7 +218,7 @@ contains
   pure function shares_of_nodes(model, element, side, normal) result(share)
     type(model_type), intent(in) :: model          !! the scene
     integer, intent(in) :: element, side(3)        !! the side's, and its nodes
-    real(wp), intent(in), optional :: normal(2)    !! from where it is seen
+    real(wp), intent(in), optional :: normal(directions)    !! from where it is seen
     real(wp) :: share(3)
     type(edge_point) :: point(edge_point_count)
     real(wp) :: seen
@@ -275,7 +276,7 @@ contains
     !> Where a pair stands on the slave [length].
     pure function foot_of(pair) result(x)
       integer, intent(in) :: pair
-      real(wp) :: x(2)
+      real(wp) :: x(directions)
 
       x = model%x(:, line%node(pair))
       if (pair < contact%first_of_master) return

@@ -2,6 +2,7 @@
 module epcont_result_stresses
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
+  use epcont_element_kinematics, only: components, directions
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_material_material_law, only: point_state
   use epcont_model_model, only: model_type
@@ -25,7 +26,7 @@ contains
     integer :: e, p
 
     nothing = 0.0_wp
-    answer%stress = spread(nothing, 1, 4)
+    answer%stress = spread(nothing, 1, components)
     answer%equivalent_stress = nothing
     answer%equivalent_strain = nothing
     answer%secant_modulus = nothing
@@ -65,12 +66,12 @@ contains
     !> What the supports must hold [force] [2, nodes].
     pure function reactions(force) result(reaction)
       real(wp), intent(in) :: force(:, :)     !! that the elements need at the nodes [2, nodes]
-      real(wp) :: reaction(2, model%nodes)
+      real(wp) :: reaction(directions, model%nodes)
       integer :: c, node
 
       reaction = 0.0_wp
       do node = 1, model%nodes
-        do c = 1, 2
+        do c = 1, directions
           associate (leader => model%leader(c, node))
             if (model%held(c, leader)) &
               reaction(c, leader) = reaction(c, leader) + force(c, node) - applied(c, node)
@@ -91,7 +92,7 @@ contains
   pure function place_of_point(model, point) result(x)
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: point            !! by its number
-    real(wp) :: x(2)
+    real(wp) :: x(directions)
 
     associate (e => model%point_element(point), kind => model%kinds(model%kind(model%point_element(point))))
       x = matmul(model%coordinates(e), kind%values(:kind%nodes, point - model%first_point(e) + 1))
