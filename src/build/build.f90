@@ -54,7 +54,7 @@ contains
     where (abs(model%x) < least_cause) model%x = 0.0_wp
     call build_contacts(deck, nodes, model, faults)
     call find_contacts(model, faults)
-    call check_once(deck, faults)
+    call check_once(deck, model%controls%original, faults)
     call check_controls(model, faults)
     if (model%elements == 0 .and. faults%errors == 0) &
       call faults%add_error(of_scene, 0, 0, 'the deck has no elements', 'CTRIA3 cards')

@@ -4,13 +4,13 @@ module epcont_build_choices
   use epcont_deck_card_kinds, only: card_param
   use epcont_deck_deck, only: deck_type
   use epcont_model_controls, only: controls_type, method_name, original_controls, precision_name, &
-                                   rule_name, solver_name
+                                   precision_open, rule_name, solver_name
   use epcont_model_finding, only: findings
   implicit none
   private
   public :: read_controls, check_once
 
-  !> What PARAM ORIGINAL YES leaves no choice of.
+  !> What PARAM ORIGINAL YES leaves no choice of (`original_controls`).
   character(len=8), parameter :: chosen(*) = [character(len=8) :: &
     'SOLVER', 'FLEXIB', 'RULE', 'METHOD', 'TOL', 'MUP', 'PRECIS', 'ACCURACY', 'NLOAD']
 
@@ -21,45 +21,50 @@ contains
     type(deck_type), intent(in) :: deck   !! its cards
 
     if (deck%parameter_word('ORIGINAL', 'NO') == 'YES') controls = original_controls
-    controls%method = choice(deck, 'METHOD', method_name, controls%method, lbound(method_name, 1))
-    controls%rule = choice(deck, 'RULE', rule_name, controls%rule, lbound(rule_name, 1))
-    controls%solver = choice(deck, 'SOLVER', solver_name, controls%solver, lbound(solver_name, 1))
-    controls%precision = choice(deck, 'PRECIS', precision_name, controls%precision, lbound(precision_name, 1))
-    controls%accuracy = deck%parameter_value('ACCURACY', controls%accuracy)
-    controls%tolerance = deck%parameter_value('TOL', controls%tolerance)
     controls%most_iterations = nint(deck%parameter_value('MAXIT', real(controls%most_iterations, wp)))
-    controls%load_steps = nint(deck%parameter_value('NLOAD', real(controls%load_steps, wp)))
     controls%search = deck%parameter_value('SEARCH', controls%search)
     controls%corner = deck%parameter_value('CORNER', controls%corner)
-    if (deck%parameter_word('FLEXIB', 'AUTO') == 'INVERT') controls%by_inversion = .true.
-    if (deck%parameter_word('MUP', 'EXACT') == 'PAPER') controls%paper_ratio = .true.
+    if (controls%original) return
+    controls%method = choice(deck, 'METHOD', method_name, controls%method)
+    controls%rule = choice(deck, 'RULE', rule_name, controls%rule)
+    controls%solver = choice(deck, 'SOLVER', solver_name, controls%solver)
+    controls%precision = 1 + choice(deck, 'PRECIS', precision_name, precision_open - 1)
+    controls%accuracy = deck%parameter_value('ACCURACY', controls%accuracy)
+    controls%tolerance = deck%parameter_value('TOL', controls%tolerance)
+    controls%load_steps = nint(deck%parameter_value('NLOAD', real(controls%load_steps, wp)))
+    controls%by_inversion = deck%parameter_word('FLEXIB', 'AUTO') == 'INVERT'
+    controls%paper_ratio = deck%parameter_word('MUP', 'EXACT') == 'PAPER'
   end function read_controls
 
-  !> The number of the word that a PARAM says among the names of its choices; `default` where it says none of
-  !! these.
-  pure integer function choice(deck, parameter, names, default, first)
+  !> The place of the word that a PARAM says among the names of its choices, from 0 on; `default` where it
+  !! says none of these.
+  pure integer function choice(deck, parameter, names, default)
     type(deck_type), intent(in) :: deck
     character(len=*), intent(in) :: parameter, names(:)
     integer, intent(in) :: default
-    integer, intent(in) :: first     !! number of the first name
 
-    choice = findloc(names == deck%parameter_word(parameter, ''), .true., dim=1) + first - 1
-    if (choice < first) choice = default
+    choice = findloc(names == deck%parameter_word(parameter, ''), .true., dim=1) - 1
+    if (choice < 0) choice = default
   end function choice
 
   !> Each PARAM stands once, and none beside ORIGINAL YES that this chooses: of two, one would be ignored.
-  pure subroutine check_once(deck, found)
+  pure subroutine check_once(deck, original, found)
     type(deck_type), intent(in) :: deck   !! its cards
+    logical, intent(in) :: original       !! PARAM ORIGINAL YES
     type(findings), intent(inout) :: found   !! what is wrong with it is added
+    character(len=:), allocatable :: beside   ! ORIGINAL
     integer :: row
 
-    associate (param => deck%card(card_param))
-      do row = 1, param%count
-        if (any(param%word(1, :row - 1) == param%word(1, row)) .and. param%word(1, row) /= '') &
+    beside = ''
+    associate (name => deck%card(card_param)%word(1, :))
+      do row = 1, deck%card(card_param)%count
+        if (any(name(:row - 1) == name(row)) .and. name(row) /= '') &
           call found%add_error(card_param, row, 1, ' is there twice', 'one of the two')
-        if (any(param%word(1, row) == chosen) .and. deck%parameter_word('ORIGINAL', 'NO') == 'YES') &
-          call found%add_error(card_param, row, 1, ': PARAM ORIGINAL YES chooses that', 'one of the two')
+        if (any(name(row) == chosen)) beside = beside//', '//trim(name(row))
       end do
     end associate
+    if (original .and. beside /= '') call found%add_error( &
+      card_param, deck%parameter_row('ORIGINAL'), 2, &
+      ': YES chooses what other PARAMs say: '//beside(3:), 'these left out, or ORIGINAL')
   end subroutine check_once
 end module epcont_build_choices

@@ -2,7 +2,7 @@
 module epcont_build_conditions
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: new_id_index
-  use epcont_base_text, only: short_real
+  use epcont_base_text, only: short_real, text_of
   use epcont_build_reference, only: card_index, chosen_set, resolve, resolve_list
   use epcont_deck_card_kinds, only: card_force, card_grid, card_ploadx1, card_rbe2, card_spc, card_spc1, &
                                     card_suport
@@ -91,7 +91,7 @@ contains
         if (any(card(1) == [card_spc, card_spc1]) .and. nint(value(1)) /= support_set) return
         if (card(1) == card_spc) displacement = value(digits + 1)
         do c = 1, 2
-          if (.not. has_component(nint(value(digits)), c)) cycle
+          if (index(text_of(nint(value(digits))), text_of(c)) == 0) cycle
           select case (card(1))
           case (card_rbe2)
             if (leader(card(2)) > 0) call tie(model, c, node, leader(card(2)), card, found)
@@ -144,7 +144,7 @@ contains
       type(card_index) :: elements
       integer :: ga, i, side
 
-      elements = card_index(new_id_index(model%element_id), 'element')
+      elements = card_index(new_id_index(model%element_id), 'element', found%errors == 0)
       behind = 0
       associate (pressure => deck%card(card_ploadx1))
         ga = pressure%column('GA')
@@ -175,16 +175,4 @@ contains
                              'a side that one element alone has')
     end subroutine add_pressures
   end subroutine build_conditions
-
-  !> Whether the digits (12, 2, 123456) name component c.
-  pure logical function has_component(digits, c)
-    integer, intent(in) :: digits, c
-    integer :: rest
-
-    rest = digits
-    do while (rest > 0 .and. mod(rest, 10) /= c)
-      rest = rest/10
-    end do
-    has_component = rest > 0
-  end function has_component
 end module epcont_build_conditions

@@ -107,7 +107,8 @@ contains
         do k = first, last
           do id = blseg%list(k)%from, blseg%list(k)%to, blseg%list(k)%step
             if (nodes%find(id) > 0) cycle
-            call found%add_error(card_blseg, i, -k, ': there is no GRID '//text_of(id), 'the id of a GRID')
+            if (nodes%whole) &
+              call found%add_error(card_blseg, i, -k, ': there is no GRID '//text_of(id), 'the id of a GRID')
             sound = .false.
             exit   ! of a range the first one
           end do

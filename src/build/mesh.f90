@@ -75,8 +75,7 @@ contains
         call resolve(deck, card_mats1, mats1%column('TID'), index_of(deck, card_tables1), found, table)
         do i = 1, mats1%count
           if (m(i) == 0 .or. .not. mats1%sound(i)) cycle
-          if (.not. mat1%sound(m(i)) .or. material(m(i))%young <= 0.0_wp) cycle   ! a fault of its MAT1
-          call read_yielding(i, table(i), material(m(i)))
+          if (material(m(i))%young > 0.0_wp) call read_yielding(i, table(i), material(m(i)))
         end do
       end associate
     end subroutine read_materials
@@ -128,9 +127,7 @@ contains
           call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is blank', &
                       'the yield stress: the second stress of the table')
       end associate
-      if (table == 0) return
-      if (deck%card(card_tables1)%sound(table)) &
-        call read_table(i, table, material%young, material%curve)
+      if (table > 0) call read_table(i, table, material%young, material%curve)
     end subroutine read_yielding
 
     !> TABLES1. Its yield stress is kept and its yield strain replaced by that over E, so that the elastic

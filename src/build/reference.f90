@@ -4,6 +4,7 @@ module epcont_build_reference
   use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_sorting, only: id_index, new_id_index, sorted_order
   use epcont_base_text, only: text_of
+  use epcont_deck_card_kinds, only: card_blseg
   use epcont_deck_deck, only: deck_type
   use epcont_model_finding, only: findings, of_scene
   implicit none
@@ -13,17 +14,21 @@ module epcont_build_reference
   !> The ids that fields may name, and what they are of.
   type, extends(id_index) :: card_index
     character(len=8) :: noun = ''    !! GRID, or `element`
+    logical :: whole = .true.        !! what is not found is not there; else it may be what was not read
   end type card_index
 
 contains
 
-  !> The ids in the first fields of all cards of a table.
+  !> The ids in the first fields of all sound cards of a table; of all BLSEGs, which need not be whole.
   pure type(card_index) function index_of(deck, card) result(index)
     type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: card           !! which table
 
-    index%id_index = new_id_index(int(deck%card(card)%value(1, :)))
-    index%noun = deck%card(card)%entry%name
+    associate (table => deck%card(card))
+      index = card_index(new_id_index(merge(int(table%value(1, :)), -1, &
+                                            table%sound .or. card == card_blseg)), &
+                         table%entry%name, deck%whole .and. all(table%sound))
+    end associate
   end function index_of
 
   !> Each id stands once in the first fields of these tables, which share one id space.
@@ -48,7 +53,7 @@ contains
   end subroutine check_unique
 
   !> Positions of what a field of each card names; 0 where there is no such thing, or where nothing is named.
-  !! The former is a fault, but for the id 0, the basic system.
+  !! The former is a fault, but for the id 0, the basic system, and where others are at fault.
   pure subroutine resolve(deck, card, column, index, found, position)
     type(deck_type), intent(in) :: deck      !! its cards
     integer, intent(in) :: card              !! which table
@@ -64,7 +69,7 @@ contains
         if (.not. table%given(column, i)) cycle   ! the reader has said so where it must be
         id = int(table%value(column, i))
         position(i) = index%find(id)
-        if (position(i) > 0 .or. id == 0 .or. .not. table%sound(i)) cycle
+        if (position(i) > 0 .or. id == 0 .or. .not. (table%sound(i) .and. index%whole)) cycle
         call found%add_error(card, i, column, ': '//table%entry%field_text(column)//': there is no '// &
                              trim(noun)//' '//text_of(id), &
                              'the id of '//trim(merge('an', 'a ', noun == 'element'))//' '//trim(noun))
@@ -85,7 +90,7 @@ contains
 
     associate (from => deck%card(card)%list(item)%from, to => deck%card(card)%list(item)%to)
       position = nodes%within(from, to)
-      if (size(position) > 0) return
+      if (size(position) > 0 .or. .not. nodes%whole) return
       ids = text_of(from)
       if (to > from) ids = ids//' to '//text_of(to)
     end associate
@@ -104,10 +109,11 @@ contains
     integer :: c, i, id
 
     set = choice
-    used = .false.
+    used = .not. deck%whole
     do c = 1, size(cards)
       associate (table => deck%card(cards(c)))
         do i = 1, table%count
+          used = used .or. .not. table%given(1, i)
           if (.not. table%given(1, i)) cycle
           id = nint(table%value(1, i))
           if (set == 0) set = id

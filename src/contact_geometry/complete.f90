@@ -122,9 +122,9 @@ contains
     do s = 1, size(model%curve)
       if (model%kinematics(s) == plane_strain .or. .not. allocated(model%curve(s)%strain)) cycle
       call found%add_error(of_paper_ratio, 0, 2, &
-                           ':'//trim(merge(' its MUP', '        ', model%controls%original))// &
-                           ' PAPER is for plane strain, and '//model%name_of(of_section, s)//' is not', &
-                           trim(merge('no ORIGINAL', 'MUP EXACT  ', model%controls%original)))
+        ': formula (2-4) for Poisson''s ratio beyond yield (MUP PAPER) is of plane strain; '// &
+        model%name_of(of_section, s)//' can yield, and is not', &
+        'plane strain, or MUP EXACT (ORIGINAL takes PAPER)')
       return
     end do
   end subroutine check_controls

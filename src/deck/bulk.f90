@@ -5,6 +5,7 @@ module epcont_deck_bulk
   use epcont_deck_card, only: card_fields, continues, find_name, gather
   use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_card_reader, only: read_card
+  use epcont_deck_case_control, only: keyword
   use epcont_deck_catalogue, only: catalogue, parameters
   use epcont_deck_entry, only: card_entry, field_entry, kind_word
   use epcont_deck_field, only: scan_sound, scan_word
@@ -17,9 +18,6 @@ module epcont_deck_bulk
 
   !> Kinds of lines beside those of the cards that begin there.
   integer, parameter :: no_card = -1, unknown_card = 0
-  !> Words of case control, which without BEGIN BULK are taken for cards.
-  character(len=*), parameter :: control_words = &
-    ' SOL CEND TITLE SUBTITLE LABEL LOAD ECHO DISPLACEMENT STRESS SPCFORCES SUBCASE BEGIN '
 
 contains
 
@@ -117,10 +115,11 @@ contains
                               'the name of a card')
         return
       end if
-      word = name(:scan(name//' ', ' =(') - 1)
+      word = name(:scan(name//' ', ' =(;') - 1)
       remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
       if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6, CQUAD4 or CQUAD8'
-      if (index(control_words, ' '//word//' ') > 0 .and. len(word) > 0) &
+      if (any(names == word)) remedy = 'fields of 8 columns, or commas'
+      if (first == 1 .and. any(keyword == word) .or. word == 'BEGIN') &
         remedy = 'one line BEGIN BULK behind case control'
       call faults%add_error(card%place(0), 'unknown card '//name, remedy)
     end subroutine refuse_name

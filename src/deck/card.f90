@@ -54,6 +54,7 @@ contains
     integer :: comma               ! column of its first comma; 0: fields of fixed width
     integer :: first_slot, fields  ! slots on it, 8 or 4
     logical :: half_open           ! the last line was the first half of a large-field row
+    integer :: mark                ! in the text: behind the fields of the last line, where its `+A` has the A
 
     if (.not. allocated(card%slot)) then
       allocate (card%slot(64))
@@ -77,6 +78,7 @@ contains
     !> Add the fields of one line.
     subroutine add_line()
       logical :: large
+      character(len=width) :: own   ! mark, without its `+`
 
       associate (text => lines%line(at))
         before = before + length
@@ -92,7 +94,14 @@ contains
         card%name_place = place_type(line, card%name_first, max(card%name_first, card%name_last))
       else
         large = card%text(before + 1:before + 1) == '*'
+        if (mark <= before) then   ! decks may be sorted
+          own = card%text(before + 2:before + min(merge(comma - 1, width, comma > 0), length))
+          if (own /= '' .and. own /= card%text(mark:before)) &
+            call refuse(1, width, 'continues '//trim(own)//', not '//card%text(mark:before)// &
+                        ' of the line before', 'the lines of a card together')
+        end if
       end if
+      mark = before + merge(longest_fixed - width + 2, length + 1, comma == 0)
       if (.not. card%sound) return
       call open_slots(large)
       if (comma > 0) then
@@ -107,14 +116,15 @@ contains
       integer :: code, column, k, longest
 
       comma = 0
+      if (lines%line(at)%special <= lines%line(at)%last) &
+        comma = index(card%text(before + 1:before + length), ',')
       do k = lines%line(at)%special, lines%line(at)%last
         code = iachar(lines%text(k:k))
         column = k - lines%line(at)%first + 1
-        if (code == iachar(',')) then
-          if (comma == 0) comma = column
-        else if (code == 9) then
+        if (code == 9) then
+          if (comma > 0) cycle   ! as a blank: columns do not count
           call refuse(column, column, 'a tab in column '//text_of(column), &
-                      'blanks: a tab has no width in columns')
+                      'blanks: a tab has no width in columns; or commas')
           return
         else if (code < 32 .or. code > 126) then
           call refuse(column, column, 'a character that is not printable ASCII (code '//text_of(code)//')', &
@@ -204,7 +214,7 @@ contains
     continues = text(1:1) == '+' .or. text(1:1) == '*'
     if (continues) return
     do at = 1, min(width, len(text))
-      if (iachar(text(at:at)) /= iachar(' ')) exit
+      if (iachar(text(at:at)) > iachar(' ')) exit
     end do
     continues = at > width
     if (.not. continues) continues = text(at:at) == ','
@@ -228,19 +238,19 @@ contains
     call trim_blanks(text, first, last)
   end subroutine find_name
 
-  !> Move `from` and `to` inwards over blanks. These are compared by their codes: a character compared with a
-  !! blank becomes a call of len_trim, which for so few characters costs more than the loop.
+  !> Move `from` and `to` inwards over blanks and tabs. These are compared by their codes: a character
+  !! compared with a blank becomes a call of len_trim, which for so few characters costs more than the loop.
   pure subroutine trim_blanks(text, from, to)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to
 
     do while (to >= from)
-      if (iachar(text(to:to)) /= iachar(' ')) exit
+      if (iachar(text(to:to)) > iachar(' ')) exit
       to = to - 1
     end do
-    if (iachar(text(from:from)) /= iachar(' ')) return   ! mostly so
+    if (iachar(text(from:from)) > iachar(' ')) return   ! mostly so
     do while (from < to)
-      if (iachar(text(from:from)) /= iachar(' ')) exit
+      if (iachar(text(from:from)) > iachar(' ')) exit
       from = from + 1
     end do
   end subroutine trim_blanks

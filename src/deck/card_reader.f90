@@ -40,18 +40,17 @@ contains
     type(card_table), intent(inout) :: table     !! those of its kind
     type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     integer :: slot
-    logical :: blank
 
     do slot = 1, size(table%entry%field)
-      blank = slot > card%count
-      if (.not. blank) blank = card%slot(slot)%last < card%slot(slot)%first
-      if (blank) then
-        call take_blank(slot)
-      else if (table%entry%field(slot)%kind == kind_blank) then
-        call refuse_surplus(slot)
-      else
-        call take_value(slot)
-      end if
+      associate (at => card%slot(min(slot, card%count + 1)))   ! the one behind the last is blank
+        if (at%last < at%first) then
+          call take_blank(slot)
+        else if (table%entry%field(slot)%kind == kind_blank) then
+          call refuse_surplus(slot)
+        else
+          call take_value(slot)
+        end if
+      end associate
     end do
     if (table%entry%has_points) then
       call read_points()
@@ -221,6 +220,7 @@ contains
         call read_step(slot, item)
       else if (item%to < item%from) then
         call refuse(slot, 'is less than the id before THRU', 'an id of at least '//text_of(item%from))
+        return
       end if
       call table%add_item(item)
     end subroutine read_range

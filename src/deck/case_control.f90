@@ -14,16 +14,19 @@ module epcont_deck_case_control
   !> What the statements say.
   type :: case_control
     character(len=:), allocatable :: title, subtitle, label  !! empty where not given
-    integer :: solution = 0          !! SOL; 0: not given
     integer :: spc = 0, load = 0     !! the sets chosen; 0: no choice
     type(place_type) :: spc_place, load_place
-    character(len=6) :: echo = 'NONE'   !! the cards listed: UNSORT as they stand, SORT by their names, BOTH
+    logical :: echo_unsorted = .false., echo_sorted = .false.   !! cards listed as they stand, by their names
     logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
   end type case_control
 
-  character(len=*), parameter :: keyword(13) = [character(len=12) :: &
+  !> Their words.
+  character(len=*), parameter, public :: keyword(13) = [character(len=12) :: &
     'SOL', 'CEND', 'TITLE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'ECHO', 'DISPLACEMENT', 'STRESS', &
     'SPCFORCES', 'SUBCASE', 'NLPARM']
+  !> Those of SOL that are static, linear or not.
+  character(len=*), parameter :: static = &
+    '  1 24 66 101 106 400 401 402 600 601 SESTATIC NLSTATIC '
 
   !> One statement, cut into its parts. Columns count from the first of the line.
   type :: statement
@@ -64,6 +67,7 @@ contains
       integer :: k
 
       k = findloc(keyword == parts%word, .true., dim=1)
+      if (k == 0 .and. len(parts%word) > 3) k = findloc(index(keyword, parts%word) == 1, .true., dim=1)
       if (k == 0) then
         call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
           suggestion(parts%word, keyword, &
@@ -74,17 +78,20 @@ contains
         call faults%add_error(parts%word_place, parts%word//' is stated twice', &
                               'one '//parts%word//trim(merge(' a deck', '       ', parts%word == 'SUBCASE')))
       stated(k) = .true.
+      parts%word = trim(keyword(k))
       if (parts%option_place%line > 0) &
         call faults%add_note(parts%option_place, parts%word//': options have no effect')
     end subroutine check_word
 
     !> Take one statement.
     subroutine take_statement()
+      character(len=:), allocatable :: words
       integer :: unused
 
       select case (parts%word)
       case ('SOL')
-        call take_number(control%solution)
+        if (index(static, ' '//upper(parts%value(:scan(parts%value//' ', ' ,') - 1))//' ') == 0) &
+          call faults%add_note(parts%value_place, 'SOL: not static, as the loads here are')
       case ('CEND')
         if (len(parts%value) > 0) &
           call faults%add_error(parts%value_place, 'CEND takes no value', 'nothing here')
@@ -101,13 +108,18 @@ contains
         control%load_place = parts%value_place
         call take_number(control%load)
       case ('ECHO')
-        control%echo = choice('UNSORT, SORT, BOTH')
+        ! Words with commas between, some with options: `SORT(EXCEPT GRID), PUNCH`.
+        words = ' '//upper(parts%value)
+        control%echo_unsorted = index(words, 'UNSORT') + index(words, 'BOTH') > 0
+        control%echo_sorted = index(words, ' SORT') + index(words, ',SORT') + index(words, 'BOTH') > 0
+        if (all(words /= [' UNSORT', ' SORT  ', ' BOTH  ', ' NONE  '])) &
+          call faults%add_note(parts%value_place, 'ECHO: only UNSORT, SORT and BOTH have an effect')
       case ('DISPLACEMENT')
-        control%displacement = choice('ALL') == 'ALL'
+        control%displacement = says_all()
       case ('STRESS')
-        control%stress = choice('ALL') == 'ALL'
+        control%stress = says_all()
       case ('SPCFORCES')
-        control%spcforces = choice('ALL') == 'ALL'
+        control%spcforces = says_all()
       case ('SUBCASE')
         call take_number(unused)
       case ('NLPARM')
@@ -130,16 +142,12 @@ contains
       end if
     end subroutine take_number
 
-    !> The word of a statement that takes NONE or one of others; NONE where it is none of these.
-    function choice(others) result(word)
-      character(len=*), intent(in) :: others   !! with commas between
-      character(len=:), allocatable :: word
-
-      word = upper(parts%value)
-      if (scan(word, ', ') == 0 .and. index(', '//others//', NONE, ', ', '//word//', ') > 0) return
-      call refuse('a word', ' known here', others//' or NONE')
-      word = 'NONE'
-    end function choice
+    !> Does a statement say ALL? Else it must say NONE.
+    logical function says_all()
+      says_all = upper(parts%value) == 'ALL'
+      if (.not. says_all .and. upper(parts%value) /= 'NONE') &
+        call refuse('a word', ' known here', 'ALL or NONE')
+    end function says_all
 
     !> A value that is missing, or cannot be taken.
     subroutine refuse(needed, which, remedy)
@@ -182,25 +190,14 @@ contains
     last = first + scan(text(first:)//' ', ' =(') - 2
     parts%word = upper(text(first:last))
     parts%word_place = place_type(line, first, max(first, last))
-    at = behind_blanks(text, last + 1)
+    at = last + verify(text(last + 1:)//'.', ' ')
     if (text(at:min(at, len(text))) == '(') then
       last = at + index(text(at:)//')', ')') - 1
       parts%option_place = place_type(line, at, min(last, len(text)))
-      at = behind_blanks(text, last + 1)
+      at = last + verify(text(last + 1:)//'.', ' ')
     end if
-    if (text(at:min(at, len(text))) == '=') at = behind_blanks(text, at + 1)
+    if (text(at:min(at, len(text))) == '=') at = at + verify(text(at + 1:)//'.', ' ')
     parts%value = text(at:)
     parts%value_place = place_type(line, at, max(at, len(text)))
   end function cut
-
-  !> The first column from `from` on that is not blank.
-  pure integer function behind_blanks(text, from) result(at)
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: from
-
-    do at = from, len(text)
-      if (text(at:at) /= ' ') return
-    end do
-    at = len(text) + 1
-  end function behind_blanks
 end module epcont_deck_case_control

@@ -211,8 +211,8 @@ module epcont_deck_catalogue
     'MAXIT; whole from=1 to=100000; iterations of a load step; default 100', &
     'MUP; word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula (2-4);'// &
     ' default EXACT', &
-    'ORIGINAL; word NO YES; all as in about 1980: BAND, INVERT, CONRY, SECANT, TOL 0.01, MUP PAPER;'// &
-    ' default NO', &
+    'ORIGINAL; word NO YES; all as in about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &
+    ' SECANT, TOL 0.01, NLOAD 1, MUP PAPER, PRECIS DOUBLE, no ACCURACY; default NO', &
     'NLOAD; whole from=1 to=10000; load steps; default 1', &
     'SEARCH; real positive; how far BCONP looks for a segment; default twice the longest segment of'// &
     ' the two lines [length]', &

@@ -16,6 +16,7 @@ module epcont_deck_deck
   !> All that a deck says: titles, sets chosen and output wanted, as case control has it, and the cards.
   type, extends(case_control) :: deck_type
     type(source) :: source                         !! its text
+    logical :: whole = .true.                      !! all files were read, to the end
     type(card_table), allocatable :: card(:)  !! its cards, and what the catalogue says of them [card_kinds]
   contains
     procedure :: place
@@ -37,6 +38,7 @@ contains
 
     call read_source(path, deck%source, faults, error)
     if (allocated(error)) return
+    deck%whole = faults%errors == 0
     call read_case_control(deck%source, deck%case_control, bulk, faults)
     call read_bulk(deck%source, bulk, deck%card, faults)
   end subroutine read_deck
@@ -47,7 +49,7 @@ contains
     class(deck_type), intent(inout) :: self
     integer :: k
 
-    if (self%echo /= 'NONE') return
+    if (self%echo_unsorted .or. self%echo_sorted) return
     self%source = source()
     do k = 1, size(self%card)
       if (k /= card_param) self%card(k) = card_table(self%card(k)%entry, self%card(k)%count)
@@ -83,16 +85,7 @@ contains
     row = 0
   end function parameter_row
 
-  !> The same; 0 also where it does not say anything that can be taken.
-  pure integer function stated_row(self, name) result(row)
-    class(deck_type), intent(in) :: self
-    character(len=*), intent(in) :: name
-
-    row = self%parameter_row(name)
-    if (row > 0) row = merge(row, 0, self%card(card_param)%given(2, row))
-  end function stated_row
-
-  !> The word that a PARAM says; `default` where there is no such card.
+  !> The word that a PARAM says, blank if it is at fault; `default` where there is no such card.
   pure function parameter_word(self, name, default) result(word)
     class(deck_type), intent(in) :: self
     character(len=*), intent(in) :: name, default   !! of the parameter
@@ -100,11 +93,11 @@ contains
     integer :: row
 
     word = default
-    row = stated_row(self, name)
+    row = self%parameter_row(name)
     if (row > 0) word = self%card(card_param)%word(2, row)
   end function parameter_word
 
-  !> The number that a PARAM says; `default` where there is no such card.
+  !> The number that a PARAM says, 0 if it is at fault; `default` where there is no such card.
   pure real(wp) function parameter_value(self, name, default) result(value)
     class(deck_type), intent(in) :: self
     character(len=*), intent(in) :: name   !! of the parameter
@@ -112,7 +105,7 @@ contains
     integer :: row
 
     value = default
-    row = stated_row(self, name)
+    row = self%parameter_row(name)
     if (row > 0) value = self%card(card_param)%value(2, row)
   end function parameter_value
 end module epcont_deck_deck

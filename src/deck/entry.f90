@@ -142,15 +142,11 @@ contains
 
       equals = index(word//'=', '=')
       select case (word(:equals - 1))
-      case ('id')
+      case ('id', 'system')
         field%kind = kind_integer
-        field%lowest = 1.0_wp
+        field%lowest = merge(1.0_wp, 0.0_wp, word == 'id')
         field%highest = largest_id
-        may_be_blank = .false.
-      case ('system')
-        field%kind = kind_integer
-        field%lowest = 0.0_wp
-        field%highest = largest_id
+        may_be_blank = word /= 'id'
       case ('whole')
         field%kind = kind_integer
       case ('real')

@@ -17,8 +17,8 @@ module epcont_deck_source
   integer, parameter :: most_files = 10000
   !> Characters of a line, as they are mostly: that is the room for lines at first.
   integer, parameter :: usual_line = 32
-  !> What ends a line.
-  character(len=*), parameter :: newline = achar(10)
+  !> What ends a line: either of them, or a return with a newline behind it.
+  character(len=*), parameter :: newline = achar(10), return = achar(13)
 
   !> One file of the deck.
   type :: source_file
@@ -82,9 +82,8 @@ contains
       character(len=*), intent(in) :: path
       integer, intent(in) :: parent
       character(len=:), allocatable, intent(out) :: trouble
-      type(source_file), allocatable :: longer(:)
       integer(i8) :: bytes
-      integer :: last, status, unit
+      integer :: first, last, status, unit
       logical :: exists, is_directory
 
       inquire (file=path, exist=exists)
@@ -105,18 +104,19 @@ contains
       else if (lines%used + bytes >= huge(1) - 1) then   ! behind come a newline and the place of a next line
         trouble = 'the deck is larger than 2 GiB'
       else
+        first = lines%used + 1
         last = lines%used + int(bytes)
         call grow_text(last + 1)
-        read (unit, iostat=status) lines%text(lines%used + 1:max(last, lines%used + 1))
+        read (unit, iostat=status) lines%text(first:max(last, first))
         if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
         if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
+        ! The mark that editors put before UTF-8 says nothing.
+        if (lines%text(first:min(first + 2, last)) == achar(239)//achar(187)//achar(191)) first = first + 3
       end if
       close (unit, iostat=status)
       if (allocated(trouble)) return
-      allocate (longer(size(lines%files) + 1))
-      longer(:size(lines%files)) = lines%files
-      longer(size(longer)) = source_file(path, parent, lines%used + 1, last)
-      call move_alloc(longer, lines%files)
+      lines%files = [lines%files, source_file(parent=parent, first=first, last=last)]
+      lines%files(size(lines%files))%name = path
       lines%used = last + 1
       lines%text(lines%used:lines%used) = newline
     end subroutine load
@@ -218,7 +218,8 @@ contains
     end function files_above
   end subroutine read_source
 
-  !> The end of the line that begins at `first`: its last character that is neither comment nor blank, and
+  !> The end of the line that begins at `first`: its last character that is no comment and no blank (or
+  !! control character: tabs, page ends, the mark of DOS that ends a file), and
   !! the first character of the next line. On the way, its first comma or character that is not printable
   !! ASCII.
   pure subroutine find_end(text, first, last, special, next)
@@ -235,7 +236,7 @@ contains
     at = first
     do
       if (.not. plain(iachar(text(at:at)))) then
-        if (text(at:at) == newline) exit
+        if (text(at:at) == newline .or. text(at:at) == return) exit
         if (text(at:at) == '$') then
           comment = min(comment, at)
         else
@@ -245,13 +246,9 @@ contains
       at = at + 1
     end do
     next = at + 1
-    last = at - 1
-    if (last >= first) then
-      if (text(last:last) == achar(13)) last = last - 1
-    end if
-    last = min(last, comment - 1)
-    do last = last, first, -1   ! codes: a character compared with a blank becomes a call
-      if (iachar(text(last:last)) /= iachar(' ')) exit
+    if (text(at:at) == return) next = next + index(text(next:next), newline)
+    do last = min(at, comment) - 1, first, -1   ! codes: a character compared with a blank becomes a call
+      if (iachar(text(last:last)) > iachar(' ')) exit
     end do
   end subroutine find_end
 
@@ -297,13 +294,17 @@ contains
     if (line > 0) name = self%files(self%line(line)%file)%name
   end function file_name
 
-  !> A line as it is read, without comment.
+  !> A line as it is read, without comment, tabs as blanks.
   pure function text_of_line(self, line) result(text)
     class(source), intent(in) :: self
     integer, intent(in) :: line   !! in deck order
     character(len=:), allocatable :: text
+    integer :: at
 
     text = self%text(self%line(line)%first:self%line(line)%last)
+    do at = 1, len(text)
+      if (text(at:at) == achar(9)) text(at:at) = ' '
+    end do
   end function text_of_line
 
   !> A line as it stands in the file, comment and all, but no longer than `most` characters from `from` on.
@@ -316,12 +317,10 @@ contains
     integer :: first, last
 
     first = self%line(line)%first
-    last = min(first + from + most - 2, self%used)
-    last = first - 2 + index(self%text(first:last)//newline, newline)
-    text = self%text(first + from - 1:last)
-    if (len(text) == 0) return
-    if (text(len(text):) == achar(13)) text = text(:len(text) - 1)
-    text = trim(text)
+    do last = first, self%used
+      if (last - first - from + 1 == most .or. scan(self%text(last:last), newline//return) > 0) exit
+    end do
+    text = trim(self%text(first + from - 1:last - 1))
   end function whole_line
 
   !> Is there nothing to read in a line?

@@ -50,6 +50,7 @@ module epcont_plan_iteration_plan
     integer :: threads = 1                 !! that bodies may be worked on by, side by side
     logical :: by_blocks = .false.         !! contact by RULE BLOCK, else CONRY
     logical :: rule_chosen_here = .false.  !! the deck leaves that to us
+    logical :: from_first_pivot = .false.  !! each contact problem, not from the last set of contacts
     real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
   end type iteration_plan
 
@@ -64,6 +65,7 @@ contains
     associate (asked => model%controls)
       plan%rule_chosen_here = asked%rule == rule_auto
       plan%by_blocks = asked%rule == rule_block .or. (plan%rule_chosen_here .and. model%pairs >= many_pairs)
+      plan%from_first_pivot = asked%original
       do e = 1, model%elements
         plan%yields = plan%yields .or. model%can_yield(e)
       end do

@@ -159,7 +159,7 @@ contains
         ! A state far away is none to show: its numbers may be at the end of their range.
         answer%runs_away = .not. converged .and. scene%model%has_flat_curve() .and. travel > farthest
         if (answer%runs_away) return
-        if (.not. scene%model%controls%original) touching = found%contact%touching
+        if (.not. plan%from_first_pivot) touching = found%contact%touching
         force = found%contact%force
         yielded = now%yielded
         ! Behind the last load step nothing is linearised any more.

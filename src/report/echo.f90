@@ -16,20 +16,20 @@ module epcont_report_echo
 
 contains
 
-  !> The lines of the deck that say something, as they are read and by the names of their cards.
+  !> The lines of the deck that are not blank, as they stand, and its cards by their names, without comments.
   subroutine list_cards(file, deck)
     class(text_file), intent(inout) :: file   !! the listing
     type(deck_type), intent(in) :: deck       !! with its text
     integer, allocatable :: place(:)   ! of each kind of cards, by name
     integer :: k, line
 
-    if (deck%echo == 'UNSORT' .or. deck%echo == 'BOTH') then
+    if (deck%echo_unsorted) then
       call file%heading('LINES OF THE DECK')
       do line = 1, deck%source%count
-        call list_line(line)
+        call list_line(line, deck%source%whole_line(line, 1, huge(1)))
       end do
     end if
-    if (deck%echo /= 'SORT' .and. deck%echo /= 'BOTH') return
+    if (.not. deck%echo_sorted) return
     call file%heading('CARDS OF THE DECK, SORTED')
     place = [(count(lle(deck%card%entry%name, deck%card(k)%entry%name)), k=1, size(deck%card))]
     do k = 1, size(deck%card)
@@ -48,26 +48,27 @@ contains
         order = sorted_order(nint(cards%value(1, :cards%count)))
         do i = 1, cards%count
           line = cards%line(order(i))
-          call list_line(line)
+          call list_line(line, deck%source%text_of_line(line))
           do line = line + 1, deck%source%count
             if (deck%source%blank(line)) cycle
             if (.not. continues(deck%source%text_of_line(line))) exit
-            call list_line(line)
+            call list_line(line, deck%source%text_of_line(line))
           end do
         end do
       end associate
     end subroutine list_kind
 
     !> A line with its number in its file, unless it is blank.
-    subroutine list_line(line)
+    subroutine list_line(line, said)
       integer, intent(in) :: line
-      character(len=:), allocatable :: number, text
+      character(len=*), intent(in) :: said
+      character(len=:), allocatable :: text
       integer :: from
 
-      if (deck%source%blank(line)) return
-      number = included_file(deck%source, line)//text_of(deck%source%line(line)%number)
-      text = printable(deck%source%text_of_line(line))
-      call file%line(right(number, 9)//'  '//text(:min(width, len(text))))
+      if (said == '') return
+      text = printable(said)
+      call file%line(right(included_file(deck%source, line)//text_of(deck%source%line(line)%number), 9)// &
+                     '  '//text(:min(width, len(text))))
       do from = width + 1, len(text), width
         call file%line(repeat(' ', 11)//text(from:min(from + width - 1, len(text))))
       end do

@@ -11,6 +11,7 @@ module epcont_report_outcome
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_controls, only: precision_name
   use epcont_model_finding, only: of_node
+  use epcont_report_columns, only: percent
   use epcont_report_names, only: centre_name, first_grid, joined, motion_name, when
   use epcont_report_scene_text, only: scene_sentence, scene_warnings, side_changed, unsound
   use epcont_result_answer, only: answer_type
@@ -160,7 +161,8 @@ contains
                     'it is more than a material with a flat curve can carry (limit load)', &
                     'after '//plural(last%iteration, 'iteration')//' displacements still change by '// &
                     short_real(last%change)// &
-                    ' of the largest (PARAM MAXIT: more of them; METHOD: another way)')// &
+                    ' of the largest (PARAM MAXIT: more of them; '// &
+                    when(run%model%controls%original, 'no ORIGINAL', 'METHOD')//': another way)')// &
                when(run%answer%load_factor < last%load_factor, '; what follows is for load factor '// &
                     short_real(run%answer%load_factor)//', the largest that converged')
       end associate
@@ -264,6 +266,9 @@ contains
       if (any(run%answer%beyond)) &
         call warn(plural(count(run%answer%beyond), 'element')// &
                   ' strained beyond the last point of the table, whose last slope goes on')
+      if (run%answer%shortfall > 0.0_wp) &
+        call warn('formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to '// &
+                  percent(run%answer%shortfall, 1.0_wp)//' below the curve; the certificate does not see it')
       if (run%answer%unloaded > 0) &
         call warn(plural(run%answer%unloaded, 'element')//' unloaded after yielding: '// &
                   'the theory takes them back along the curve, not along the elastic line')

@@ -47,7 +47,7 @@ contains
     call plan%heading('PLAN')
     call say(plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
              plural(scene%model%pairs, 'pair')//'; bodies: '//text_of(scene%model%bodies))
-    if (scene%model%controls%original) &
+    if (scene%iteration%from_first_pivot) &
       call say('ORIGINAL: as the program of about 1980, each contact from its first pivot on')
     call say_iteration()
     call say_rule()
@@ -104,8 +104,8 @@ contains
                ' of the stress there; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
       if (scene%iteration%load_steps > 1) &
         call say(plural(scene%iteration%load_steps, 'load step')//'; elastic unloading is not modelled')
-      if (scene%model%controls%paper_ratio) &
-        call say('MUP PAPER: Poisson''s ratio in the equivalent strain by formula (2-4)')
+      if (scene%model%controls%paper_ratio) call say('MUP PAPER: Poisson''s ratio in the equivalent '// &
+        'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
     end subroutine say_iteration
 
     !> How the pairs in contact are found.

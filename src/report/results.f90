@@ -38,7 +38,7 @@ module epcont_report_results
     result_file('.zones.csv', 'runs of touching pairs'), &
     result_file('.bodies.csv', 'what contact exerts on each body'), &
     result_file('.history.csv', 'the iterations'), &
-    result_file('.pivots.csv', 'the pivots of each iteration''s simplex, with --tables all'), &
+    result_file('.pivots.csv', 'the pivots of each iteration by RULE CONRY, with --tables all'), &
     result_file('.nodes.csv', 'the nodes, where the deck or --tables all asks for it'), &
     result_file('.elements.csv', 'the elements, where the deck or --tables all asks for it'), &
     result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
@@ -69,7 +69,7 @@ contains
     call write_table('zones')
     if (run%model%pairs > 0) call write_table('bodies')
     call write_table('history')
-    if (all_tables .and. run%model%pairs > 0) call write_table('pivots')
+    if (all_tables .and. size(run%answer%pivot) > 0) call write_table('pivots')
     if (nodes) call write_table('nodes')
     if (elements) call write_table('elements')
     if (vtk .and. .not. allocated(error)) call write_vtk(run, stem, error)

@@ -34,6 +34,7 @@ module epcont_result_answer
     type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
     type(body_force), allocatable :: bodies(:)       !! what contact exerts on each that has elements
+    real(wp) :: shortfall = 0.0_wp                   !! of stresses from the curve by (2-4), at most, relative
     type(locking_type) :: locking                    !! of three-node elements
     type(gradient_type) :: gradient                  !! of displacements that are not small
     integer :: precision = precision_double          !! of the factors

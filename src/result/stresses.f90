@@ -3,6 +3,7 @@ module epcont_result_stresses
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
   use epcont_element_kinematics, only: components, directions
+  use epcont_material_curve, only: deviatoric_curve, new_curve
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_material_material_law, only: point_state
   use epcont_model_model, only: model_type
@@ -21,6 +22,7 @@ contains
     real(wp), intent(in) :: applied(:, :)        !! nodal forces of loads and pairs [force] [2, nodes]
     type(answer_type), intent(inout) :: answer   !! its state is given
     type(point_state) :: point
+    type(deviatoric_curve) :: curve   ! without (2-4)
     real(wp) :: mises(model%points), nothing(model%elements)
     real(wp) :: modulus, share, whole
     integer :: e, p
@@ -34,6 +36,7 @@ contains
     answer%largest_at = int(nothing)
     answer%plastic = nothing > 0.0_wp
     answer%beyond = answer%plastic
+    answer%shortfall = 0.0_wp
     mises = [(equivalent_stress(answer%point_stress(:, p)), p=1, model%points)]
     do e = 1, model%elements
       associate (law => linear%materials%section(model%section(e))%law, first => model%first_point(e), &
@@ -56,6 +59,11 @@ contains
           answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
           answer%plastic(e) = answer%plastic(e) .or. point%yielded
           answer%beyond(e) = answer%beyond(e) .or. point%beyond
+          if (.not. model%controls%paper_ratio) cycle
+          curve = new_curve(model%curve(model%section(e)), law%elasticity, .false.)
+          modulus = point%modulus
+          point%curve_value = curve%at_strain(point%deviatoric)
+          answer%shortfall = max(answer%shortfall, 1.0_wp - modulus/point%modulus)
         end do
       end associate
     end do

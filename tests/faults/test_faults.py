@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """test_faults.py PROGRAM: what can go wrong around a run. Files appear whole or not at all, and the exit status says so."""
+import csv
 import fcntl
 import os
 import pathlib
@@ -99,6 +100,36 @@ class Places(Case):
         (self.directory / "deck.contact.csv").write_text("old")
         self.check(self.run_it(deck, "-o", self.directory), 1)
         self.assertEqual({"deck.dat", "deck.lst", "deck.summary.csv"}, set(self.files(self.directory)))
+
+
+class Choices(Case):
+    def run_with(self, old, new):
+        deck = self.directory / "deck.dat"
+        deck.write_text((SMALL.parent / "hertz44_paper.dat").read_text().replace(old, new))
+        return self.run_it(deck, "-o", self.directory, *ALL)
+
+    def test_the_original_says_what_it_is_off_by(self):
+        self.check(self.run_with("", ""), 0, "formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to 10 % below")
+        files = self.files(self.directory)
+        c, young, limit, slope = (1 - 2 * .29) / 3, 20400, 85, 15 / (.12 - 85 / 20400)
+        shortfall = 0
+        for row in csv.DictReader(files["deck.elements.csv"].decode().splitlines()):
+            total, secant = float(row["equivalent_strain"]), float(row["secant_modulus"])
+            if row["state"] == "plastic":   # strain by (2-4), stress by (2-5); and the stress of the curve at that strain
+                strain = total * (1 - c * limit / (total * secant))
+                stress = strain * young / (young / secant - c)
+                exact = (strain - limit / young + limit / slope) / (1 / slope - c / young)
+                shortfall = max(shortfall, 1 - stress / exact)
+        told = float(re.search(rb"stress_below_curve,(.*),", files["deck.summary.csv"]).group(1))
+        self.assertAlmostEqual(shortfall, told, delta=1e-9)
+        self.check(self.run_with("PARAM,ORIGINAL,YES", "PARAM,ORIGINAL,YES\nPARAM,MAXIT,2"), 1,
+                   "(PARAM MAXIT: more of them; no ORIGINAL: another way)")
+
+    def test_no_table_of_nothing(self):
+        """Block pivoting has no pivots of a simplex."""
+        for rule in ("CONRY", "BLOCK"):
+            self.check(self.run_with("PARAM,ORIGINAL,YES", f"PARAM,RULE,{rule}"), 0)
+            self.assertEqual(rule == "CONRY", "deck.pivots.csv" in self.files(self.directory))
 
 
 class Disk(Case):
