@@ -60,14 +60,14 @@ contains
       do i = 1, size(scene%pressure)
         associate (given => scene%pressure(i))
           side = model%side_between(given%element, given%corner(1), given%corner(2))
-          if (side == 0) then
-            call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner: there is no side'// &
-                                 ' between these nodes', 'two neighbouring corners of the element')
-          else if (element_behind(model, given%element, side) > 0) then
-            call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner: inside a body', &
-                                 'a side that one element alone has')
-          else
+          if (side > 0) then
+            if (element_behind(model, given%element, side) > 0) side = 0
+          end if
+          if (side > 0) then
             call add_pressure(model, given%element, side, given%corner(1), given%pressure, given%theta)
+          else
+            call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner is of no side of the'// &
+                                 ' boundary', 'two neighbouring corners of a side that its element alone has')
           end if
         end associate
       end do

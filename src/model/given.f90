@@ -58,12 +58,8 @@ contains
               'normal(:, #) is no unit vector', 'one of length 1, or zero: from A to B')
     call need(has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size)
     call need(within(scene%pressure%element, elements), 'pressure(#)%element is no element', up_to(elements))
-    do i = 1, size(scene%pressure)
-      associate (given => scene%pressure(i))
-        call need([all(has_size([given%pressure, given%theta]))], &
-                  'pressure('//text_of(i)//') is no pressure', any_size)
-      end associate
-    end do
+    call need(has_size(scene%pressure%pressure(1)) .and. has_size(scene%pressure%pressure(2)) .and. &
+              has_size(scene%pressure%theta), 'pressure(#) is no pressure', any_size)
     do i = 1, size(scene%line)
       call need([allocated(scene%line(i)%node)], 'line('//text_of(i)//')%node is not allocated', 'nodes')
       if (allocated(scene%line(i)%node)) call need(within(scene%line(i)%node, nodes), &
@@ -160,31 +156,24 @@ contains
 
     !> The choices of `controls` are some of those that there are, its figures what they can be.
     subroutine check_choices()
+      character(len=*), parameter :: name(2, 10) = reshape([character(len=22) :: &
+        'method', 'method_auto, say', 'rule', 'rule_auto, say', 'solver', 'solver_auto, say', &
+        'precision', 'precision_open, say', 'most_iterations', '1 to 100000', 'load_steps', '1 to 10000', &
+        'tolerance', '0.0 to less than 1.0', 'accuracy', '0.0 to less than 1.0', &
+        'search', '0.0, or a length', 'corner', '0.0 to 180.0 degrees'], [2, 10])
+      logical :: fits(10)
+      integer :: k
+
       associate (is => scene%controls)
-        call choose(within(is%method + 1, 5), 'method', 'method_auto, say')
-        call choose(within(is%rule + 1, 3), 'rule', 'rule_auto, say')
-        call choose(within(is%solver + 1, 3), 'solver', 'solver_auto, say')
-        call choose(within(is%precision + 1, 4), 'precision', 'precision_open, say')
-        call choose(within(is%most_iterations, 100000), 'most_iterations', up_to(100000))
-        call choose(within(is%load_steps, 10000), 'load_steps', up_to(10000))
-        call choose(is%tolerance >= 0.0_wp .and. is%tolerance < 1.0_wp, 'tolerance', &
-                    '0.0, that of the method, or more; less than 1.0')
-        call choose(is%accuracy >= 0.0_wp .and. is%accuracy < 1.0_wp, 'accuracy', &
-                    '0.0, none, or more; less than 1.0')
-        call choose(is%search >= 0.0_wp .and. is%search <= farthest, 'search', &
-                    '0.0, by the sides, or a length')
-        call choose(is%corner >= 0.0_wp .and. is%corner <= 180.0_wp, 'corner', &
-                    '0.0, by the turns of boundaries, to 180.0 degrees')
+        fits = [within([is%method, is%rule, is%solver, is%precision] + 1, [5, 3, 3, 4]), &
+                within([is%most_iterations, is%load_steps], [100000, 10000]), &
+                [is%tolerance, is%accuracy, is%search, is%corner] >= 0.0_wp .and. &
+                [is%tolerance < 1.0_wp, is%accuracy < 1.0_wp, is%search <= farthest, is%corner <= 180.0_wp]]
       end associate
+      do k = 1, size(fits)
+        call need(fits(k:k), 'controls%'//trim(name(1, k))//' is out of range', trim(name(2, k)))
+      end do
     end subroutine check_choices
-
-    !> One of them.
-    subroutine choose(holds, name, remedy)
-      logical, intent(in) :: holds
-      character(len=*), intent(in) :: name, remedy
-
-      call need([holds], 'controls%'//name//' is out of range', remedy)
-    end subroutine choose
 
     !> It is an error where something does not hold: of many the first, by its number in place of `#`.
     subroutine need(holds, what, remedy)

@@ -11,7 +11,7 @@ module epcont_report_array_words
     'the id of a CORD2R whose x-axis is the normal', 'a normal', &
     'the x-axis of CID turned round', 'the normal turned round', &
     'by SPC1', '(held)', 'by SUPORT,', '(reference) at node,direction:', 'SUPORT', 'reference', &
-    'an RBE2', 'a leader', 'another RBE2', 'another leader', 'RBE2', 'leader', 'GN', 'the leader', &
+    'an RBE2', 'a leader', 'RBE2', 'leader', 'GN', 'the leader', &
     'GA and GB', 'nodes A and B', 'of GA', 'of node A', 'of GB', 'of node B', &
     'GRID', 'node', 'CGAPs', 'pairs', 'CGAP', 'pair', &
     'BLSEG lines', 'lines', 'BLSEG', 'line', 'BCONP', 'couple', 'SLAVE', 'slave', 'MASTER', 'master', &
