@@ -7,7 +7,7 @@ module epcont
                                status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_version, only: program_version
-  use epcont_contact_geometry_complete, only: complete_model, raise_first
+  use epcont_contact_geometry_complete, only: complete_model
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
   use epcont_model_controls, only: controls_type, method_auto, method_inistr, method_modsec, method_newton, &
                                    method_secant, precision_double, precision_mixed, precision_open, &
@@ -62,26 +62,27 @@ contains
     call use_threads(one_thread)
     call complete_model(scene, solution%model, found)
     if (found%errors == 0) call solution%find_motions(found)
-    call raise_first(solution%model, found, error)
-    if (.not. allocated(error)) then
+    outcome%status = status_deck
+    outcome%word = 'refused'
+    if (found%errors == 0) then
       call solution%make_plan(watch)
       call solution%solve(limit, watch, error)
+      if (allocated(error)) then
+        outcome%status = error%status
+        outcome%sentence = in_array_words(error%message)
+      else
+        solution%model%pair_id = [(k, k=1, solution%model%pairs)]   ! those of lines have numbers of nodes
+        outcome = judge(solution)
+        outcome%sentence = in_array_words(outcome%sentence)
+      end if
     end if
     call use_threads(before)
-    if (allocated(error)) then
-      outcome%status = error%status
-      outcome%word = 'refused'
-      outcome%sentence = error%message
-    else
-      solution%model%pair_id = [(k, k=1, solution%model%pairs)]   ! those of lines have numbers of nodes
-      outcome = judge(solution)
-    end if
-    outcome%sentence = in_array_words(outcome%sentence)
     call tell(solution, found, outcome)
     call ieee_set_status(traps)
   end subroutine solve_scene
 
-  !> What was found of a scene, before what was found of its answer, by the names that arrays have.
+  !> What was found of a scene, before what was found of its answer, by the names that arrays have; of a scene
+  !! that is refused its first error.
   subroutine tell(solution, found, outcome)
     type(solution_type), intent(in) :: solution
     type(findings), intent(inout) :: found
@@ -94,14 +95,14 @@ contains
     do i = 1, outcome%found%count
       call found%add(outcome%found%list(i))
     end do
-    outcome%found = found
-    if (found%count == 0) allocate (outcome%found%list(0))
-    outcome%found%list = outcome%found%list(:found%count)
+    if (found%count == 0) allocate (found%list(0))
+    found%list = found%list(:found%count)
     do i = 1, found%count
-      associate (one => outcome%found%list(i))
-        one%what = in_array_words(one%what)
-        one%remedy = in_array_words(one%remedy)
-      end associate
+      found%list(i)%what = in_array_words(found%list(i)%what)
+      found%list(i)%remedy = in_array_words(found%list(i)%remedy)
     end do
+    i = findloc(found%list%severity, severity_error, dim=1)
+    if (i > 0) outcome%sentence = found%list(i)%what//' (wanted: '//found%list(i)%remedy//')'
+    outcome%found = found
   end subroutine tell
 end module epcont

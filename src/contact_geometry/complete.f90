@@ -1,11 +1,7 @@
 !> The scene made complete: from what is given of it, by a deck or by arrays, to a model that is checked and
-!> can be solved.
-!>
-!> From arrays: a `scene_type` (epcont_model_arrays). `complete_model` checks all of it and finds the rest; the
-!> scene stays as it is. Nodes, elements and pairs are known by their columns.
+!> can be solved. From arrays (epcont_model_arrays) `complete_model` checks all and finds the rest; they stay
+!> as they are. Nodes, elements and pairs are known by their columns.
 module epcont_contact_geometry_complete
-  use epcont_base_diagnostic, only: severity_error
-  use epcont_base_error, only: error_type, raise, status_deck
   use epcont_base_text, only: text_of
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
@@ -23,7 +19,7 @@ module epcont_contact_geometry_complete
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
   private
-  public :: complete_model, raise_first, check_controls, finish_model
+  public :: complete_model, check_controls, finish_model
 
 contains
 
@@ -91,24 +87,6 @@ contains
       end do
     end subroutine complete_freedoms
   end subroutine complete_model
-
-  !> The first error of what was found, as a sentence: `CTRIA3 5: its corners 1, 2 and 3 lie on one line
-  !! (wanted: corners that span an area)`.
-  pure subroutine raise_first(model, found, error)
-    type(model_type), intent(in) :: model                 !! the scene
-    type(findings), intent(in) :: found                   !! what is wrong with it
-    type(error_type), allocatable, intent(out) :: error   !! there is one
-    integer :: i
-
-    do i = 1, found%count
-      associate (one => found%list(i))
-        if (one%severity /= severity_error) cycle
-        call raise(error, status_deck, model%name_of(one%of, one%which)//one%what// &
-                                       ' (wanted: '//one%remedy//')')
-        return
-      end associate
-    end do
-  end subroutine raise_first
 
   !> What a scene without errors must still be refused or warned of, and its travels.
   subroutine finish_model(model, found)

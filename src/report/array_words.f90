@@ -16,6 +16,7 @@ module epcont_report_array_words
     'GRID', 'node', 'CGAPs', 'pairs', 'CGAP', 'pair', &
     'BLSEG lines', 'lines', 'BLSEG', 'line', 'BCONP', 'couple', 'SLAVE', 'slave', 'MASTER', 'master', &
     'PSHELL', 'section', 'PSOLID', 'section', 'the MAT1', 'young', &
+    'PARAM MUP: PAPER', 'controls%paper_ratio', 'MUP EXACT', '.false.', &
     'PARAM MAXIT', 'controls%most_iterations', 'METHOD', 'controls%method', '--memory', 'memory', &
     '`force not unique` in CONTACT', 'answer%contact%indeterminate']
 
