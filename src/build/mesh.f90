@@ -38,7 +38,7 @@ contains
     type(model_type), intent(out) :: model    !! the scene
     type(findings), intent(inout) :: found    !! what is wrong with it is added
     type(material_card), allocatable :: material(:)   ! of each MAT1
-    integer, allocatable :: cards(:), id(:)            ! of elements
+    integer, allocatable :: cards(:)                  ! of elements
     integer :: i
 
     associate (grid => deck%card(card_grid))
@@ -54,10 +54,8 @@ contains
     call read_materials()
     call read_sections()
     cards = element_cards(deck)
-    id = [integer ::]
     do i = 1, size(cards)
       call read_elements(cards(i))
-      id = [id, int(deck%card(cards(i))%value(1, :))]
     end do
     call number_parts(model)
     call take_ids()
@@ -200,7 +198,7 @@ contains
     !> Those of the cards.
     subroutine take_ids()
       model%node_id = int(deck%card(card_grid)%value(1, :))
-      model%element_id = id
+      model%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
       associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
         model%property_id = nint([shell%value(1, :), solid%value(1, :)])
         model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])

@@ -30,12 +30,10 @@ contains
     call check_shapes()
     if (found%errors > 0) return
     nodes = size(scene%x, 2)
-    call need(scene%young >= least_divisor .and. scene%young <= farthest, 'young(#) is no stiffness', &
-              above_zero)
+    call need(is_positive(scene%young), 'young(#) is no stiffness', above_zero)
     call need(scene%poisson >= 0.0_wp .and. scene%poisson < 0.5_wp, 'poisson(#) is out of range', &
               '0.0 or more, and less than 0.5')
-    call need(scene%thickness >= least_divisor .and. scene%thickness <= farthest, &
-              'thickness(#) is no thickness', above_zero)
+    call need(is_positive(scene%thickness), 'thickness(#) is no thickness', above_zero)
     call need(within(scene%kinematics, axisymmetric), 'kinematics(#) is unknown', &
               'plane_strain, plane_stress or axisymmetric')
     do i = 1, size(scene%curve)
@@ -57,13 +55,18 @@ contains
               all(scene%normal == 0.0_wp, dim=1), &
               'normal(:, #) is no unit vector', 'one of length 1, or zero: from A to B')
     call need(has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size)
-    call need(within(scene%pressure%element, elements), 'pressure(#)%element is no element', up_to(elements))
+    if (elements > 0) &
+      call need(within(scene%pressure%element, elements), 'pressure(#)%element is no element', &
+                up_to(elements))
     call need(has_size(scene%pressure%pressure(1)) .and. has_size(scene%pressure%pressure(2)) .and. &
               has_size(scene%pressure%theta), 'pressure(#) is no pressure', any_size)
     do i = 1, size(scene%line)
-      call need([allocated(scene%line(i)%node)], 'line('//text_of(i)//')%node is not allocated', 'nodes')
-      if (allocated(scene%line(i)%node)) call need(within(scene%line(i)%node, nodes), &
-                                                   'line('//text_of(i)//')%node(#) is no node', up_to(nodes))
+      if (allocated(scene%line(i)%node)) then
+        call need(within(scene%line(i)%node, nodes), 'line('//text_of(i)//')%node(#) is no node', &
+                  up_to(nodes))
+      else
+        call need([.false.], 'line('//text_of(i)//')%node is not allocated', 'nodes')
+      end if
     end do
     call need(within(scene%couple%line(1), size(scene%line)) .and. &
               within(scene%couple%line(2), size(scene%line)), 'couple(#)%line is no line', &
@@ -198,6 +201,13 @@ contains
 
     has_size = cause == 0.0_wp .or. abs(cause) >= least_cause .and. abs(cause) <= farthest
   end function has_size
+
+  !> Is it a number to divide by?
+  elemental logical function is_positive(value)
+    real(wp), intent(in) :: value
+
+    is_positive = value >= least_divisor .and. value <= farthest
+  end function is_positive
 
   !> Is there a thing of a number?
   elemental logical function within(number, most)
