@@ -139,7 +139,7 @@ contains
       kinds = element_kinds()
       row = kind_of(kinds, block%name)
       call need([row > 0], name//'name is '''//trim(block%name)//'''', &
-                'CTRIA3, CTRIA6, CQUAD4, CQUAD8, CTRAX3 or CTRAX6')
+                'the card of a kind of elements: CTRIA3, say')
       if (row == 0) return
       kind = kinds(row)
       fits = allocated(block%node) .and. allocated(block%section)
@@ -154,7 +154,7 @@ contains
       if (found%errors > 0) return
       call need((scene%kinematics(block%section) == axisymmetric) .eqv. block%name == kind%ring_card, &
                 name//'section(#) is not of the kinematics of '//trim(block%name), &
-                'axisymmetric for CTRAX3 and CTRAX6, and for no others')
+                'axisymmetric for rings (CTRAX3), and for no others')
     end subroutine check_block
 
     !> The choices of `controls` are some of those that there are, its figures what they can be.

@@ -1,6 +1,5 @@
 !> Messages for programs that make their scenes from arrays: what is said of cards, in the words of arrays.
 module epcont_report_array_words
-  use epcont_base_text, only: upper
   implicit none
   private
   public :: in_array_words
@@ -26,31 +25,17 @@ contains
   pure function in_array_words(text) result(told)
     character(len=*), intent(in) :: text   !! as it is said of decks
     character(len=:), allocatable :: told
-    integer :: at, behind, from, k
+    integer :: at, from, k
 
     told = text
     do k = 1, size(word), 2
       from = 1
       do
-        at = index(told(from:), trim(word(k)))
-        if (at == 0) exit
-        at = from + at - 1
-        behind = at + len_trim(word(k))
-        from = at + 1
-        if (goes_on(at - 1) .or. goes_on(behind) .and. word(k)(behind - at:behind - at) /= ',') cycle
-        told = told(:at - 1)//trim(word(k + 1))//told(behind:)
+        at = index(told(from:), trim(word(k))) + from - 1
+        if (at < from) exit
+        told = told(:at - 1)//trim(word(k + 1))//told(at + len_trim(word(k)):)
         from = at + len_trim(word(k + 1))
       end do
     end do
-
-  contains
-
-    !> Is a character part of a word?
-    pure logical function goes_on(i)
-      integer, intent(in) :: i
-
-      goes_on = i >= 1 .and. i <= len(told)
-      if (goes_on) goes_on = scan(upper(told(i:i)), 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789') > 0
-    end function goes_on
   end function in_array_words
 end module epcont_report_array_words
