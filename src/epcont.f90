@@ -9,13 +9,13 @@ module epcont
   use epcont_base_version, only: program_version
   use epcont_contact_geometry_complete, only: complete_model
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
+  use epcont_model_arrays, only: add_elements, line_couple, named_line, new_scene, scene_type, set_pairs, &
+                                set_sections, side_pressure
   use epcont_model_controls, only: controls_type, method_auto, method_inistr, method_modsec, method_newton, &
                                    method_secant, precision_double, precision_mixed, precision_open, &
                                    precision_single, rule_auto, rule_block, rule_conry, solver_auto, &
                                    solver_band, solver_frontal, uniaxial_curve
   use epcont_model_finding, only: findings
-  use epcont_model_arrays, only: add_elements, line_couple, named_line, new_scene, scene_type, set_pairs, &
-                                set_sections, side_pressure
   use epcont_model_yield_curve, only: bilinear_curve
   use epcont_plasticity_observer, only: observer
   use epcont_report_array_words, only: in_array_words

@@ -6,9 +6,9 @@ module epcont_build_contacts
   use epcont_build_reference, only: card_index, index_of, resolve
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_pgap
   use epcont_deck_deck, only: deck_type
+  use epcont_model_arrays, only: set_pairs
   use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
-  use epcont_model_arrays, only: set_pairs
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
   private

@@ -7,12 +7,12 @@ module epcont_build_mesh
   use epcont_deck_deck, only: deck_type
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
+  use epcont_model_arrays, only: add_elements, new_scene, set_sections
   use epcont_model_controls, only: uniaxial_curve
   use epcont_model_element_shapes, only: complete_elements
   use epcont_model_finding, only: findings
   use epcont_model_given, only: number_parts
   use epcont_model_model, only: model_type
-  use epcont_model_arrays, only: add_elements, new_scene, set_sections
   use epcont_model_yield_curve, only: bilinear_curve, curve_fault, fault_of_curve
   implicit none
   private
@@ -195,7 +195,7 @@ contains
       end associate
     end subroutine read_sections
 
-    !> Those of the cards.
+    !> Ids are those of the cards.
     subroutine take_ids()
       model%node_id = int(deck%card(card_grid)%value(1, :))
       model%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]

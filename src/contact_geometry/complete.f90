@@ -8,6 +8,7 @@ module epcont_contact_geometry_complete
   use epcont_contact_geometry_pair_checks, only: check_pairs
   use epcont_element_kinematics, only: directions, plane_strain
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
+  use epcont_model_arrays, only: scene_type
   use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
   use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_scene, of_section
@@ -15,7 +16,6 @@ module epcont_contact_geometry_complete
   use epcont_model_given, only: check_given, number_parts
   use epcont_model_model, only: model_type
   use epcont_model_pressure, only: add_pressure, element_behind
-  use epcont_model_arrays, only: scene_type
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
   private

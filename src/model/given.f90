@@ -7,9 +7,9 @@ module epcont_model_given
   use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, directions
+  use epcont_model_arrays, only: element_block, scene_type
   use epcont_model_finding, only: findings, of_scene
   use epcont_model_model, only: model_type
-  use epcont_model_arrays, only: element_block, scene_type
   use epcont_model_yield_curve, only: curve_fault, fault_of_curve
   implicit none
   private
