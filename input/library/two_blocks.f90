@@ -3,11 +3,9 @@ program two_blocks
   use epcont
   implicit none
   integer, parameter :: n = 4   ! elements along the contact
-  type(model_type) :: model
-  type(findings) :: found
+  type(scene_type) :: scene
   type(solution_type) :: solution
   type(outcome_type) :: outcome
-  type(error_type), allocatable :: error
   real(wp) :: x(2, 4*(n + 1))
   integer :: element(4, 2*n), i, row
 
@@ -18,22 +16,21 @@ program two_blocks
     element(:, i) = [i, i + 1, i + n + 2, i + n + 1]
     element(:, n + i) = element(:, i) + 2*(n + 1)
   end do
-  model = new_scene(x)
-  call set_sections(model, young=[2.1e5_wp, 7.0e4_wp], poisson=[0.3_wp, 0.33_wp], &
+  scene = new_scene(x)
+  call set_sections(scene, young=[2.1e5_wp, 7.0e4_wp], poisson=[0.3_wp, 0.33_wp], &
                     kinematics=[plane_strain, plane_strain])
-  call add_elements(model, 'CQUAD4', element, section=[(1 + (i - 1)/n, i=1, 2*n)])
+  call add_elements(scene, 'CQUAD4', element, section=[(1 + (i - 1)/n, i=1, 2*n)])
   associate (below => [(n + 1 + i, i=1, n + 1)], above => [(2*(n + 1) + i, i=1, n + 1)])
-    call set_pairs(model, node=reshape([(below(i), above(i), i=1, n + 1)], [2, n + 1]), &
+    call set_pairs(scene, node=reshape([(below(i), above(i), i=1, n + 1)], [2, n + 1]), &
                    normal=spread([0.0_wp, 1.0_wp], 2, n + 1), gap=spread(0.0_wp, 1, n + 1))
   end associate
-  model%held(:, :n + 1) = .true.                    ! the lower block stands
-  model%held(:, 3*(n + 1) + 1:) = .true.            ! the top of the upper one goes down
-  model%prescribed(2, 3*(n + 1) + 1:) = -0.001_wp
-  call complete_model(model, found, error)
-  if (.not. allocated(error)) call solve_model(model, solution, outcome, error)
-  if (allocated(error)) error stop error%message
+  scene%held(:, :n + 1) = .true.                    ! the lower block stands
+  scene%held(:, 3*(n + 1) + 1:) = .true.            ! the top of the upper one goes down
+  scene%prescribed(2, 3*(n + 1) + 1:) = -0.001_wp
+  call solve_scene(scene, solution, outcome)
+  if (.not. outcome%has_answer) error stop outcome%sentence
   print '(2a)', 'answer: ', outcome%word
-  do i = 1, model%pairs
+  do i = 1, n + 1
     print '(a, i3, a, f10.4, a, es10.2)', 'pair', i, ': force', solution%answer%contact%force(i), &
       ', gap', solution%answer%contact%gap(i)
   end do

@@ -11,8 +11,7 @@ module epcont_app_driver
   use epcont_deck_render, only: render, render_notes
   use epcont_report_columns, only: known, listed_number, number, right
   use epcont_report_file, only: file_lock, lock_files, unlock_files
-  use epcont_report_outcome, only: judge, limit_of_pressure, reason_of, remark_answer, &
-                                   remarks_type
+  use epcont_report_outcome, only: judge, limit_of_pressure, reason_of, remark_lines
   use epcont_report_plan_text, only: plan_text
   use epcont_report_results, only: remove_results, write_results
   use epcont_report_run, only: run_results
@@ -77,15 +76,13 @@ contains
       end if
       call print_error(render(run%faults, run%deck%source))
       if (arguments%asks('--check') .or. arguments%asks('--plan')) return
-      run%remarks = remarks_type(run%faults%warnings, run%faults%notes, &
-                                 render_notes(run%faults, run%deck%source), '', '')
+      run%deck_notes = render_notes(run%faults, run%deck%source)
       call run%deck%forget_text()
       call run%solve(arguments%memory, watch, error)
       if (allocated(error)) error%message = path//': '//error%message
     end if
     if (.not. allocated(error)) then
       run%outcome = judge(run)
-      if (run%outcome%has_answer) call remark_answer(run%solution_type, run%remarks)
       status = run%outcome%status
       call write_results(run, output_stem(path, arguments), arguments%asks('--tables'), &
                          arguments%asks('--vtk'), error)
@@ -96,7 +93,7 @@ contains
     if (allocated(error)) then
       call refuse(error, status)
     else
-      call say_lines(shown(path)//': ', run%remarks%of_answer)
+      call say_lines(shown(path)//': ', remark_lines(run%outcome%found, .false.))
       if (len(run%outcome%sentence) > 0) call say_lines(shown(path)//': ', run%outcome%sentence//newline)
       call say(arguments, one_line(name, run), status)
     end if

@@ -12,14 +12,14 @@ program epcont_main
   use epcont_report_file, only: make_directory
   use epcont_system_large_pages, only: prepare_heap
   use epcont_system_memory, only: has_memory, memory_of_libraries
-  use epcont_system_threads, only: use_one_thread
+  use epcont_system_threads, only: one_thread, use_threads
   implicit none
   logical(c_bool), target :: ended = .false.
   integer :: status
 
   call watch_exit(ended)
   call prepare_heap()
-  call use_one_thread()
+  call use_threads(one_thread)
   call run(status)
   ended = .true.
   call c_exit(int(status, c_int))

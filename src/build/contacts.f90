@@ -6,8 +6,8 @@ module epcont_build_contacts
   use epcont_build_reference, only: card_index, index_of, resolve
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_pgap
   use epcont_deck_deck, only: deck_type
+  use epcont_model_arrays, only: set_pairs
   use epcont_model_finding, only: findings
-  use epcont_model_given, only: set_pairs
   use epcont_model_model, only: model_type
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
@@ -88,7 +88,8 @@ contains
           if (property(i) > 0) gap(i) = deck%card(card_pgap)%number('U0', property(i))
           if (cgap%has('CID', i)) normal(:, i) = axis(:, system(i))
         end do
-        call set_pairs(model, node, normal, gap)
+        call set_pairs(model%scene_type, node, normal, gap)
+        model%pairs = cgap%count
         model%pair_id = nint(cgap%value(1, :))
       end associate
       call complete_pairs(model, deck%parameter_word('GAPGEOM', 'NO') == 'YES', found)

@@ -7,10 +7,11 @@ module epcont_build_mesh
   use epcont_deck_deck, only: deck_type
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
+  use epcont_model_arrays, only: add_elements, new_scene, set_sections
   use epcont_model_controls, only: uniaxial_curve
   use epcont_model_element_shapes, only: complete_elements
   use epcont_model_finding, only: findings
-  use epcont_model_given, only: add_elements, new_scene, set_sections
+  use epcont_model_given, only: number_parts
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: bilinear_curve, curve_fault, fault_of_curve
   implicit none
@@ -37,12 +38,11 @@ contains
     type(model_type), intent(out) :: model    !! the scene
     type(findings), intent(inout) :: found    !! what is wrong with it is added
     type(material_card), allocatable :: material(:)   ! of each MAT1
-    integer, allocatable :: cards(:)
+    integer, allocatable :: cards(:)                  ! of elements
     integer :: i
 
     associate (grid => deck%card(card_grid))
-      model = new_scene(grid%value([grid%column('X1'), grid%column('X2')], :))
-      model%node_id = int(grid%value(1, :))
+      model%scene_type = new_scene(grid%value([grid%column('X1'), grid%column('X2')], :))
       associate (z => grid%value(grid%column('X3'), :))
         do i = 1, grid%count
           if (z(i) /= 0.0_wp) &
@@ -57,6 +57,8 @@ contains
     do i = 1, size(cards)
       call read_elements(cards(i))
     end do
+    call number_parts(model)
+    call take_ids()
     call complete_elements(model, found)
 
   contains
@@ -155,7 +157,6 @@ contains
                           'the same stress in both')
             curve%strain = [0.0_wp, stress(2)/young, strain(3:)]
             curve%stress = stress
-            curve%ends = .true.
           end associate
         end associate
       end associate
@@ -185,13 +186,21 @@ contains
           if (named(s) > 0) section(s) = material(named(s))
           if (s <= shell%count) call choose_kinematics(s, kinematics(s))
         end do
-        call set_sections(model, section%young, section%poisson, kinematics)
+        call set_sections(model%scene_type, section%young, section%poisson, kinematics)
         model%curve = section%curve
         model%thickness(:shell%count) = shell%value(shell%column('T'), :)
+      end associate
+    end subroutine read_sections
+
+    !> Ids are those of the cards.
+    subroutine take_ids()
+      model%node_id = int(deck%card(card_grid)%value(1, :))
+      model%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
+      associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
         model%property_id = nint([shell%value(1, :), solid%value(1, :)])
         model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])
       end associate
-    end subroutine read_sections
+    end subroutine take_ids
 
     !> Plane strain or plane stress of a PSHELL: it says so, or PARAM PLANE.
     subroutine choose_kinematics(i, kinematics)
@@ -218,8 +227,8 @@ contains
       integer, allocatable :: node(:, :), section(:)
       logical :: ring
 
-      associate (table => deck%card(card))
-        ring = any(model%kinds%ring_card == table%entry%name)
+      associate (table => deck%card(card), kinds => element_kinds())
+        ring = any(kinds%ring_card == table%entry%name)
         n = size(table%entry%field) - 2   ! without id and section
         allocate (node(n, table%count), section(table%count))
         call resolve(deck, card, 2, index_of(deck, merge(card_psolid, card_pshell, ring)), found, section)
@@ -229,8 +238,7 @@ contains
         end do
         ! In their order along the boundary
         if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)
-        call add_elements(model, table%entry%name, node, section)
-        model%element_id(model%elements - table%count + 1:) = int(table%value(1, :))
+        call add_elements(model%scene_type, table%entry%name, node, section)
       end associate
     end subroutine read_elements
   end subroutine build_mesh

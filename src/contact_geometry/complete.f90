@@ -1,64 +1,82 @@
 !> The scene made complete: from what is given of it, by a deck or by arrays, to a model that is checked and
-!> can be solved.
-!>
-!> From arrays: `new_scene` of the nodes, `set_sections`, `add_elements`, `set_pairs` (epcont_model_given); in
-!> the components of the model, where there are any, supports (held, prescribed), ties (leader), reference
-!> freedoms, loads, curves, lines of nodes (line) and which of these may touch (couple), and what a deck says
-!> by PARAM (controls). Nodes are known by their columns. `complete_model` checks it all and finds the rest.
-!> Pressures come last (add_pressure).
+!> can be solved. From arrays (epcont_model_arrays) `complete_model` checks all and finds the rest; they stay
+!> as they are. Nodes, elements and pairs are known by their columns.
 module epcont_contact_geometry_complete
-  use epcont_base_diagnostic, only: severity_error
-  use epcont_base_error, only: error_type, raise, status_deck
+  use epcont_base_text, only: text_of
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
   use epcont_contact_geometry_pair_checks, only: check_pairs
-  use epcont_element_kinematics, only: components, directions, plane_strain
+  use epcont_element_kinematics, only: directions, plane_strain
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
+  use epcont_model_arrays, only: scene_type
   use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
   use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_scene, of_section
   use epcont_model_freedoms, only: find_travels, follow_to_the_end, set_reference, tie
-  use epcont_model_given, only: check_given
+  use epcont_model_given, only: check_given, number_parts
   use epcont_model_model, only: model_type
+  use epcont_model_pressure, only: add_pressure, element_behind
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
   private
-  public :: complete_model, is_complete, raise_first, check_controls, finish_model
+  public :: complete_model, check_controls, finish_model
 
 contains
 
-  !> A model made from arrays, checked and made complete.
-  subroutine complete_model(model, found, error)
-    type(model_type), intent(inout) :: model   !! what is given; read-only from then on
+  !> A model made from arrays, checked and made complete; it serves only without errors.
+  subroutine complete_model(scene, model, found)
+    type(scene_type), intent(in) :: scene      !! what is given
+    type(model_type), intent(out) :: model     !! what comes of it
     type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
-    !> The first thing that is wrong: the model does not serve
-    type(error_type), allocatable, intent(out) :: error
+    integer :: s
 
-    if (is_complete(model)) &
-      call found%add_error(of_scene, 0, 0, 'the scene is complete', 'complete_model once, on a new scene')
-    if (found%errors == 0) call check_given(model, found)
-    if (found%errors == 0) then
-      call complete_elements(model, found)
-      call complete_freedoms()
-      call check_axis(model, found)
-      call complete_pairs(model, .false., found)
-      call find_contacts(model, found)
-      call check_controls(model, found)
-    end if
+    call check_given(scene, found)
+    if (found%errors > 0) return
+    model%scene_type = scene
+    do s = 1, size(model%curve)   ! the elastic part is that of E
+      if (allocated(model%curve(s)%strain)) &
+        model%curve(s)%strain(2) = model%curve(s)%stress(2)/model%young(s)
+    end do
+    call number_parts(model)
+    call complete_elements(model, found)
+    if (found%errors == 0) call load_sides()
+    call complete_freedoms()
+    call check_axis(model, found)
+    call complete_pairs(model, .false., found)
+    call find_contacts(model, found)
+    call check_controls(model, found)
     if (found%errors == 0) call finish_model(model, found)
-    call raise_first(model, found, error)
 
   contains
 
+    !> Pressures are loads of the nodes beside them.
+    subroutine load_sides()
+      integer :: i, side
+
+      do i = 1, size(scene%pressure)
+        associate (given => scene%pressure(i))
+          side = model%side_between(given%element, given%corner(1), given%corner(2))
+          if (side > 0) then
+            if (element_behind(model, given%element, side) > 0) side = 0
+          end if
+          if (side > 0) then
+            call add_pressure(model, given%element, side, given%corner(1), given%pressure, given%theta)
+          else
+            call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner is of no side of the'// &
+                                 ' boundary', 'two neighbouring corners of a side that its element alone has')
+          end if
+        end associate
+      end do
+    end subroutine load_sides
+
     !> Ties and reference freedoms, one by one: each is checked against those before it.
     subroutine complete_freedoms()
-      integer :: c, i, leader(directions, model%nodes)
+      integer :: c, i
 
-      leader = model%leader
       model%leader = spread([(i, i=1, model%nodes)], 1, directions)
       do i = 1, model%nodes
         do c = 1, directions
-          if (leader(c, i) /= i) call tie(model, c, i, leader(c, i), [of_node, i, 0], found)
+          if (scene%leader(c, i) /= i) call tie(model, c, i, scene%leader(c, i), [of_node, i, 0], found)
         end do
       end do
       call follow_to_the_end(model%leader)
@@ -69,31 +87,6 @@ contains
       end do
     end subroutine complete_freedoms
   end subroutine complete_model
-
-  !> Has `complete_model` made all of the scene?
-  pure logical function is_complete(model)
-    type(model_type), intent(in) :: model   !! the scene
-
-    is_complete = allocated(model%travel)
-  end function is_complete
-
-  !> The first error of what was found, as a sentence: `CTRIA3 5: its corners 1, 2 and 3 lie on one line
-  !! (wanted: corners that span an area)`.
-  pure subroutine raise_first(model, found, error)
-    type(model_type), intent(in) :: model                 !! the scene
-    type(findings), intent(in) :: found                   !! what is wrong with it
-    type(error_type), allocatable, intent(out) :: error   !! there is one
-    integer :: i
-
-    do i = 1, found%count
-      associate (one => found%list(i))
-        if (one%severity /= severity_error) cycle
-        call raise(error, status_deck, model%name_of(one%of, one%which)//one%what// &
-                                       ' (wanted: '//one%remedy//')')
-        return
-      end associate
-    end do
-  end subroutine raise_first
 
   !> What a scene without errors must still be refused or warned of, and its travels.
   subroutine finish_model(model, found)

@@ -54,8 +54,8 @@ contains
       deepest = contact%first - 1 + minloc(model%initial_gap(contact%first:contact%last), dim=1)
       others = ''
       if (overlaps > 1) others = '; '//text_of(overlaps)//' nodes overlap'
-      call found%add_warning(of_couple, contact%couple(1), 1, ': the initial gap at GRID '// &
-                             text_of(model%pair_id(deepest))//' is '// &
+      call found%add_warning(of_couple, contact%couple(1), 1, ': the initial gap at '// &
+                             model%name_of(of_node, model%pair_node(2, deepest))//' is '// &
                              short_real(model%initial_gap(deepest))//others, &
                              'gaps of 0.0 or more, unless a fit is meant')
     end subroutine warn_of_overlap

@@ -191,7 +191,7 @@ contains
       held = pack([(k, k=first, last)], [(is_held(k), k=first, last)])
       if (size(held) == 0) return
       which = and_more(size(held), ', and ', ' more')
-      if (couple > 0) which = ': GRID '//text_of(model%pair_id(held(1)))//which
+      if (couple > 0) which = ': '//model%name_of(of_node, model%pair_node(2, held(1)))//which
       call found%add_warning(merge(of_couple, of_pair, couple > 0), merge(couple, held(1), couple > 0), 1, &
                              which//': can neither open nor close: the nodes on both sides are held '// &
                              'along the normal', 'a free node on one side, or no pair')

@@ -55,6 +55,6 @@ module epcont_model_controls
   type :: uniaxial_curve
     real(wp), allocatable :: strain(:)   !! [points]
     real(wp), allocatable :: stress(:)   !! [stress] [points]
-    logical :: ends = .false.            !! the last point is the end of a table, not of a line without end
+    logical :: ends = .true.             !! the last point is the end of a table, not of a line without end
   end type uniaxial_curve
 end module epcont_model_controls

@@ -1,199 +1,264 @@
 !> What a scene is given by, where it comes from arrays and not from a deck: nobody has looked at it before.
 module epcont_model_given
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: short_real, text_of
   use epcont_base_tolerances, only: same_place
+  use epcont_deck_entry, only: farthest, least_cause, least_divisor
+  use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
-  use epcont_element_kinematics, only: axisymmetric, directions, plane_strain
-  use epcont_model_finding, only: findings, of_couple, of_element, of_line, of_node, of_pair, of_scene, &
-                                  of_section
+  use epcont_element_kinematics, only: axisymmetric, directions
+  use epcont_model_arrays, only: element_block, scene_type
+  use epcont_model_finding, only: findings, of_scene
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: curve_fault, fault_of_curve
   implicit none
   private
-  public :: new_scene, set_sections, add_elements, set_pairs, check_given
+  public :: check_given, number_parts
 
 contains
 
-  !> A scene of nodes alone: no elements, supports, ties, loads, pairs and lines.
-  function new_scene(x) result(model)
-    real(wp), intent(in) :: x(:, :)            !! their coordinates [length] [2, nodes]
-    type(model_type) :: model
-    integer :: i
+  !> Arrays that are there and go together, numbers in their ranges; of each array the first fault. What a
+  !! deck's reader has looked at by itself is not looked at again.
+  subroutine check_given(scene, found)
+    type(scene_type), intent(in) :: scene      !! that is given
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    character(len=:), allocatable :: above_zero, any_size
+    integer :: elements, i, nodes
 
-    model%x = x
-    model%nodes = size(x, 2)
-    model%node_id = [(i, i=1, model%nodes)]
-    model%kinds = element_kinds()
-    model%leader = spread(model%node_id, 1, directions)
-    allocate (model%held(directions, model%nodes), model%reference(directions, model%nodes), source=.false.)
-    allocate (model%prescribed(directions, model%nodes), model%load(directions, model%nodes), source=0.0_wp)
-    allocate (model%element_id(0), model%kind(0), model%section(0), model%connectivity(0, 0))
-    allocate (model%line(0), model%couple(0))
-    call set_sections(model, [real(wp) ::], [real(wp) ::], [integer ::])
-    call set_pairs(model, reshape([integer ::], [2, 0]), reshape([real(wp) ::], [2, 0]), [real(wp) ::])
-  end function new_scene
-
-  !> What elements are made of; of thickness 1, and nothing yields: that may be changed.
-  pure subroutine set_sections(model, young, poisson, kinematics)
-    type(model_type), intent(inout) :: model   !! the scene
-    real(wp), intent(in) :: young(:)          !! [stress] [sections]
-    real(wp), intent(in) :: poisson(:)        !! [sections]
-    integer, intent(in) :: kinematics(:)      !! plane_strain, plane_stress or axisymmetric [sections]
-    integer :: s
-
-    model%young = young
-    model%poisson = poisson
-    model%kinematics = kinematics
-    model%thickness = spread(1.0_wp, 1, size(young))
-    model%property_id = [(s, s=1, size(young))]
-    model%material_id = model%property_id
-    if (allocated(model%curve)) deallocate (model%curve)
-    allocate (model%curve(size(young)))
-  end subroutine set_sections
-
-  !> Elements of one kind, behind those that the model has; their ids go on.
-  pure subroutine add_elements(model, name, node, section)
-    type(model_type), intent(inout) :: model   !! the scene
-    character(len=*), intent(in) :: name       !! of their card: CTRIA3, CTRIA6, CQUAD4, CTRAX3, CTRAX6
-    !> Corners in either turning sense, then middles of sides [nodes, elements]
-    integer, intent(in) :: node(:, :)
-    integer, intent(in) :: section(:)          !! of each [elements]
-    integer, allocatable :: before(:, :)
-    integer :: e, kind
-
-    if (size(section) == 0) return
-    kind = findloc(name /= '' .and. (model%kinds%plane_card == name .or. model%kinds%ring_card == name), &
-                   .true., dim=1)
-    if (kind > 0) kind = merge(kind, 0, all(shape(node) == [model%kinds(max(1, kind))%nodes, size(section)]))
-    model%kind = [model%kind, spread(kind, 1, size(section))]
-    model%section = [model%section, section]
-    model%element_id = [model%element_id, (e, e=model%elements + 1, size(model%section))]
-    call move_alloc(model%connectivity, before)
-    allocate (model%connectivity(max(size(before, 1), size(node, 1)), size(model%section)), source=0)
-    model%connectivity(:size(before, 1), :model%elements) = before
-    if (kind > 0) model%connectivity(:size(node, 1), model%elements + 1:) = node
-    model%elements = size(model%section)
-  end subroutine add_elements
-
-  !> Pairs of nodes that may touch, numbered from 1 on.
-  pure subroutine set_pairs(model, node, normal, gap)
-    type(model_type), intent(inout) :: model   !! the scene
-    integer, intent(in) :: node(:, :)         !! A and B [2, pairs]
-    real(wp), intent(in) :: normal(:, :)      !! unit, along which B is pushed; zero: from A to B [2, pairs]
-    real(wp), intent(in) :: gap(:)            !! initial [length] [pairs]
-    integer :: k
-
-    model%pairs = size(gap)
-    model%pair_id = [(k, k=1, model%pairs)]
-    model%pair_node = node
-    model%normal = normal
-    model%initial_gap = gap
-  end subroutine set_pairs
-
-  !> Sizes, sections, numbers of nodes, sections and lines. What a deck's reader has looked at by itself is
-  !! not looked at again.
-  subroutine check_given(model, found)
-    type(model_type), intent(in) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer :: i, sections
-
-    sections = size(model%young)
-    call need(model%elements > 0, of_scene, 0, 'the scene has no elements', 'some of them')
-    call need(all(model%kind > 0), of_scene, 0, 'elements are of a kind that there is not, or have'// &
-              ' arrays that do not go together', 'CTRIA3, say, with nodes [3, elements], sections [elements]')
-    call need(all([size(model%kinematics), size(model%poisson), size(model%thickness)] == sections), &
-              of_scene, 0, 'the sections have arrays of different lengths', 'one number for each section')
-    call need(all([shape(model%pair_node), shape(model%normal)] == [2, model%pairs, 2, model%pairs]), &
-              of_scene, 0, 'the pairs have arrays of different lengths', 'one column for each pair')
-    call need(all([shape(model%held), shape(model%prescribed), shape(model%reference), &
-                   shape(model%leader), shape(model%load)] == [([2, model%nodes], i=1, 5)]), of_scene, 0, &
-              'supports, ties and loads have arrays of different lengths', 'one column for each node')
-    call need(size(model%curve) == sections, of_scene, 0, 'the sections have arrays of different lengths', &
-              'one curve for each section')
-    associate (controls => model%controls)
-      call need(all([controls%tolerance, controls%accuracy] >= 0.0_wp .and. &
-                    [controls%tolerance, controls%accuracy] < 1.0_wp), of_scene, 0, &
-                'a tolerance or accuracy is out of range', '0 or more, and less than 1')
-      call need(controls%load_steps > 0 .and. controls%most_iterations > 0, of_scene, 0, &
-                'there are no load steps or iterations', '1 or more')
-      call need(all([controls%search, controls%corner] >= 0.0_wp .and. &
-                    [controls%search, controls%corner] <= [huge(1.0_wp), 180.0_wp]), of_scene, 0, &
-                'a search or corner is out of range', '0, or a length; degrees')
-    end associate
+    any_size = '0.0, or a size of '//short_real(least_cause)//' to '//short_real(farthest)
+    above_zero = short_real(least_divisor)//' to '//short_real(farthest)
+    call check_shapes()
     if (found%errors > 0) return
-    do i = 1, model%nodes
-      call need(all(abs(model%x(:, i)) <= huge(1.0_wp)), of_node, i, ': its coordinates are no numbers', &
-                'finite ones')
-      call need(all(abs([model%load(:, i), model%prescribed(:, i)]) <= huge(1.0_wp)), of_node, i, &
-                ': its load or prescribed displacement is no number', 'finite ones')
-      call need(.not. any(model%prescribed(:, i) /= 0.0_wp .and. .not. model%held(:, i)), of_node, i, &
-                ': has a prescribed displacement where it is not held', 'held there, too')
-      call check_numbers(model%leader(:, i), model%nodes, of_node, i, 'node')
+    nodes = size(scene%x, 2)
+    call need(is_positive(scene%young), 'young(#) is no stiffness', above_zero)
+    call need(scene%poisson >= 0.0_wp .and. scene%poisson < 0.5_wp, 'poisson(#) is out of range', &
+              '0.0 or more, and less than 0.5')
+    call need(is_positive(scene%thickness), 'thickness(#) is no thickness', above_zero)
+    call need(within(scene%kinematics, axisymmetric), 'kinematics(#) is unknown', &
+              'plane_strain, plane_stress or axisymmetric')
+    do i = 1, size(scene%curve)
+      if (found%errors == 0) call check_curve('curve('//text_of(i)//')', i)
     end do
-    do i = 1, model%elements
-      call check_numbers(model%connectivity(:model%kinds(model%kind(i))%nodes, i), model%nodes, of_element, &
-                         i, 'node')
-      call check_numbers([model%section(i)], sections, of_element, i, 'section')
+    elements = 0
+    do i = 1, size(scene%block)
+      if (found%errors == 0) call check_block('block('//text_of(i)//')%', scene%block(i))
     end do
-    do i = 1, model%pairs
-      call check_numbers(model%pair_node(:, i), model%nodes, of_pair, i, 'node')
-      call need(abs(model%initial_gap(i)) <= huge(1.0_wp), of_pair, i, ': its gap is no number', 'a length')
-      call need(all(model%normal(:, i) == 0.0_wp) .or. &
-                abs(norm2(model%normal(:, i)) - 1.0_wp) <= same_place, of_pair, i, &
-                ': its normal is no unit vector', 'one of length 1, or zero: from A to B')
+    if (found%errors == 0) call need([elements > 0], 'there are no elements', 'add_elements')
+    call need(all(abs(scene%x) <= farthest, dim=1), 'x(:, #) is no place', any_size)
+    call need(all(has_size(scene%load), dim=1), 'load(:, #) is no force', any_size)
+    call need(all(has_size(scene%prescribed), dim=1), 'prescribed(:, #) is no displacement', any_size)
+    call need(all(scene%held .or. scene%prescribed == 0.0_wp, dim=1), &
+              'prescribed(:, #) is not 0.0 where held is false', '0.0, or held')
+    call need(all(within(scene%leader, nodes), dim=1), 'leader(:, #) is no node', up_to(nodes))
+    call need(all(within(scene%pair_node, nodes), dim=1), 'pair_node(:, #) is no node', up_to(nodes))
+    call need(abs(norm2(scene%normal, dim=1) - 1.0_wp) <= same_place .or. &
+              all(scene%normal == 0.0_wp, dim=1), &
+              'normal(:, #) is no unit vector', 'one of length 1, or zero: from A to B')
+    call need(has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size)
+    if (elements > 0) &
+      call need(within(scene%pressure%element, elements), 'pressure(#)%element is no element', &
+                up_to(elements))
+    call need(has_size(scene%pressure%pressure(1)) .and. has_size(scene%pressure%pressure(2)) .and. &
+              has_size(scene%pressure%theta), 'pressure(#) is no pressure', any_size)
+    do i = 1, size(scene%line)
+      if (allocated(scene%line(i)%node)) then
+        call need(within(scene%line(i)%node, nodes), 'line('//text_of(i)//')%node(#) is no node', &
+                  up_to(nodes))
+      else
+        call need([.false.], 'line('//text_of(i)//')%node is not allocated', 'nodes')
+      end if
     end do
-    do i = 1, size(model%line)
-      call check_numbers(model%line(i)%node, model%nodes, of_line, i, 'node')
-    end do
-    do i = 1, size(model%couple)
-      call check_numbers(model%couple(i)%line, size(model%line), of_couple, i, 'line')
-    end do
-    do i = 1, sections
-      call check_section(i)
-    end do
+    call need(within(scene%couple%line(1), size(scene%line)) .and. &
+              within(scene%couple%line(2), size(scene%line)), 'couple(#)%line is no line', &
+              up_to(size(scene%line)))
+    call check_choices()
 
   contains
 
-    !> Numbers of things lie within how many of these there are.
-    subroutine check_numbers(number, most, of, which, noun)
-      integer, intent(in) :: number(:), most
-      integer, intent(in) :: of, which             !! what has these numbers
-      character(len=*), intent(in) :: noun
-      integer :: k
+    !> Arrays are allocated, with one column for each node, section or pair.
+    subroutine check_shapes()
+      character(len=*), parameter :: name(*) = [character(len=20) :: &
+        'x(2, nodes)', 'held(2, nodes)', 'prescribed(2, nodes)', 'reference(2, nodes)', 'leader(2, nodes)', &
+        'load(2, nodes)', 'young(sections)', 'poisson(sections)', 'kinematics(sections)', &
+        'thickness(sections)', 'curve(sections)', 'pair_node(2, pairs)', 'normal(2, pairs)', &
+        'initial_gap(pairs)', 'block(:)', 'pressure(:)', 'line(:)', 'couple(:)']
+      logical :: fits(size(name))
+      integer :: k, of_nodes(2), of_pairs(2)
 
-      do k = 1, size(number)
-        if (number(k) < 1 .or. number(k) > most) &
-          call found%add_error(of, which, 0, ': there is no '//noun//' '//text_of(number(k)), &
-                               'numbers from 1 to '//text_of(most))
+      fits = [allocated(scene%x), allocated(scene%held), allocated(scene%prescribed), &
+              allocated(scene%reference), allocated(scene%leader), allocated(scene%load), &
+              allocated(scene%young), allocated(scene%poisson), allocated(scene%kinematics), &
+              allocated(scene%thickness), allocated(scene%curve), allocated(scene%pair_node), &
+              allocated(scene%normal), allocated(scene%initial_gap), allocated(scene%block), &
+              allocated(scene%pressure), allocated(scene%line), allocated(scene%couple)]
+      if (all(fits)) then
+        of_nodes = [directions, size(scene%x, 2)]
+        of_pairs = [2, size(scene%initial_gap)]
+        fits(:13) = [all(shape(scene%x) == of_nodes), all(shape(scene%held) == of_nodes), &
+                     all(shape(scene%prescribed) == of_nodes), all(shape(scene%reference) == of_nodes), &
+                     all(shape(scene%leader) == of_nodes), all(shape(scene%load) == of_nodes), .true., &
+                     [size(scene%poisson), size(scene%kinematics), size(scene%thickness), &
+                      size(scene%curve)] == size(scene%young), &
+                     all(shape(scene%pair_node) == of_pairs), all(shape(scene%normal) == of_pairs)]
+      end if
+      do k = 1, size(name)
+        call need(fits(k:k), trim(name(k))//' is not allocated, or of another shape', &
+                  'nodes as of x, sections as of young, pairs as of initial_gap')
       end do
-    end subroutine check_numbers
+    end subroutine check_shapes
 
-    !> Stiffnesses above zero; and a curve that can be.
-    subroutine check_section(s)
+    !> A curve that can be.
+    subroutine check_curve(name, s)
+      character(len=*), intent(in) :: name
       integer, intent(in) :: s
       type(curve_fault) :: fault
+      logical :: fits
 
-      call need(model%young(s) > 0.0_wp .and. model%young(s) <= huge(1.0_wp), of_section, s, &
-                ': Young''s modulus is not above zero', 'a stiffness')
-      call need(model%poisson(s) >= 0.0_wp .and. model%poisson(s) < 0.5_wp, of_section, s, &
-                ': Poisson''s ratio is out of range', '0 or more, and less than 0.5')
-      call need(model%thickness(s) > 0.0_wp .and. model%thickness(s) <= huge(1.0_wp), of_section, s, &
-                ': the thickness is not above zero', 'a length')
-      call need(model%kinematics(s) >= plane_strain .and. model%kinematics(s) <= axisymmetric, of_section, &
-                s, ': of no known kinematics', 'plane_strain, plane_stress or axisymmetric')
-      if (found%errors > 0 .or. .not. allocated(model%curve(s)%strain)) return
-      fault = fault_of_curve(model%curve(s)%strain, model%curve(s)%stress, model%young(s))
-      if (fault%point > 0) call found%add_error(of_section, s, 0, ': '//fault%what, fault%remedy)
-    end subroutine check_section
+      associate (curve => scene%curve(s))
+        fits = allocated(curve%strain) .eqv. allocated(curve%stress)
+        if (fits .and. .not. allocated(curve%strain)) return
+        if (fits) fits = size(curve%strain) == size(curve%stress)
+        if (fits) fits = all(abs([curve%strain, curve%stress]) <= farthest)
+        call need([fits], name//' has strain or stress alone, or points that are none', &
+                  'a number of both for each point')
+        if (.not. fits) return
+        fault = fault_of_curve(curve%strain, curve%stress, scene%young(s))
+        if (fault%point > 0) call need([.false.], name//': '//fault%what, fault%remedy)
+      end associate
+    end subroutine check_curve
 
-    !> It is an error where something does not hold.
-    subroutine need(holds, of, which, what, remedy)
-      logical, intent(in) :: holds
-      integer, intent(in) :: of, which
+    !> Elements of one kind: its name, its nodes and their sections, which are rings where it is.
+    subroutine check_block(name, block)
+      character(len=*), intent(in) :: name
+      type(element_block), intent(in) :: block
+      type(element_kind) :: kind
+      type(element_kind), allocatable :: kinds(:)
+      integer :: row
+      logical :: fits
+
+      kinds = element_kinds()
+      row = kind_of(kinds, block%name)
+      call need([row > 0], name//'name is '''//trim(block%name)//'''', &
+                'the card of a kind of elements: CTRIA3, say')
+      if (row == 0) return
+      kind = kinds(row)
+      fits = allocated(block%node) .and. allocated(block%section)
+      if (fits) fits = all(shape(block%node) == [kind%nodes, size(block%section)])
+      call need([fits], name//'node and section are not allocated, or of other shapes', &
+                '('//text_of(kind%nodes)//', elements) and (elements)')
+      if (.not. fits) return
+      elements = elements + size(block%section)
+      call need(all(within(block%node, nodes), dim=1), name//'node(:, #) is no node', up_to(nodes))
+      call need(within(block%section, size(scene%young)), name//'section(#) is no section', &
+                up_to(size(scene%young)))
+      if (found%errors > 0) return
+      call need((scene%kinematics(block%section) == axisymmetric) .eqv. block%name == kind%ring_card, &
+                name//'section(#) is not of the kinematics of '//trim(block%name), &
+                'axisymmetric for rings (CTRAX3), and for no others')
+    end subroutine check_block
+
+    !> The choices of `controls` are some of those that there are, its figures what they can be.
+    subroutine check_choices()
+      character(len=*), parameter :: name(2, 10) = reshape([character(len=22) :: &
+        'method', 'method_auto, say', 'rule', 'rule_auto, say', 'solver', 'solver_auto, say', &
+        'precision', 'precision_open, say', 'most_iterations', '1 to 100000', 'load_steps', '1 to 10000', &
+        'tolerance', '0.0 to less than 1.0', 'accuracy', '0.0 to less than 1.0', &
+        'search', '0.0, or a length', 'corner', '0.0 to 180.0 degrees'], [2, 10])
+      logical :: fits(10)
+      integer :: k
+
+      associate (is => scene%controls)
+        fits = [within([is%method, is%rule, is%solver, is%precision] + 1, [5, 3, 3, 4]), &
+                within([is%most_iterations, is%load_steps], [100000, 10000]), &
+                [is%tolerance, is%accuracy, is%search, is%corner] >= 0.0_wp .and. &
+                [is%tolerance < 1.0_wp, is%accuracy < 1.0_wp, is%search <= farthest, is%corner <= 180.0_wp]]
+      end associate
+      do k = 1, size(fits)
+        call need(fits(k:k), 'controls%'//trim(name(1, k))//' is out of range', trim(name(2, k)))
+      end do
+    end subroutine check_choices
+
+    !> It is an error where something does not hold: of many the first, by its number in place of `#`.
+    subroutine need(holds, what, remedy)
+      logical, intent(in) :: holds(:)
       character(len=*), intent(in) :: what, remedy
+      integer :: at
 
-      if (.not. holds) call found%add_error(of, which, 0, what, remedy)
+      if (all(holds)) return
+      at = index(what, '#')
+      if (at == 0) then
+        call found%add_error(of_scene, 0, 0, what, remedy)
+      else
+        call found%add_error(of_scene, 0, 0, what(:at - 1)//text_of(findloc(holds, .false., dim=1))// &
+                             what(at + 1:), remedy)
+      end if
     end subroutine need
   end subroutine check_given
+
+  !> Is what loads a scene none, or of a size?
+  elemental logical function has_size(cause)
+    real(wp), intent(in) :: cause
+
+    has_size = cause == 0.0_wp .or. abs(cause) >= least_cause .and. abs(cause) <= farthest
+  end function has_size
+
+  !> Is it a number to divide by?
+  elemental logical function is_positive(value)
+    real(wp), intent(in) :: value
+
+    is_positive = value >= least_divisor .and. value <= farthest
+  end function is_positive
+
+  !> Is there a thing of a number?
+  elemental logical function within(number, most)
+    integer, intent(in) :: number, most   !! the last one
+
+    within = number >= 1 .and. number <= most
+  end function within
+
+  !> What would be right of a number.
+  pure function up_to(most) result(text)
+    integer, intent(in) :: most
+    character(len=:), allocatable :: text
+
+    text = '1 to '//text_of(most)
+  end function up_to
+
+  !> The row of the table of elements that has a card; 0: none.
+  pure integer function kind_of(kinds, card)
+    type(element_kind), intent(in) :: kinds(:)
+    character(len=*), intent(in) :: card
+
+    kind_of = findloc(card /= '' .and. (kinds%plane_card == card .or. kinds%ring_card == card), .true., dim=1)
+  end function kind_of
+
+  !> All elements in one list, and numbers for all parts of the scene.
+  pure subroutine number_parts(model)
+    type(model_type), intent(inout) :: model   !! with what is given; its blocks become the list
+    integer :: b, first, i, last
+
+    model%kinds = element_kinds()
+    model%nodes = size(model%x, 2)
+    model%pairs = size(model%initial_gap)
+    model%elements = sum([(size(model%block(b)%section), b=1, size(model%block))])
+    allocate (model%kind(model%elements), model%section(model%elements))
+    allocate (model%connectivity(maxval([0, (size(model%block(b)%node, 1), b=1, size(model%block))]), &
+                                 model%elements), source=0)
+    last = 0
+    do b = 1, size(model%block)
+      first = last + 1
+      last = last + size(model%block(b)%section)
+      model%kind(first:last) = kind_of(model%kinds, model%block(b)%name)
+      model%section(first:last) = model%block(b)%section
+      model%connectivity(:size(model%block(b)%node, 1), first:last) = model%block(b)%node
+    end do
+    deallocate (model%block)
+    model%node_id = [(i, i=1, model%nodes)]
+    model%element_id = [(i, i=1, model%elements)]
+    model%property_id = [(i, i=1, size(model%young))]
+    model%material_id = model%property_id
+    model%pair_id = [(i, i=1, model%pairs)]
+    model%line%id = [(i, i=1, size(model%line))]
+    model%couple%id = [(i, i=1, size(model%couple))]
+  end subroutine number_parts
 end module epcont_model_given

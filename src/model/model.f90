@@ -1,4 +1,4 @@
-!> The scene: what the deck describes, checked once and read-only from then on.
+!> The scene as it is solved: what the deck or arrays describe, checked once and read-only from then on.
 !>
 !> Components come first in all arrays. Nodes, elements and pairs are known by their position; their ids
 !> of the deck serve for output alone.
@@ -10,26 +10,11 @@ module epcont_model_model
   use epcont_element_kinematics, only: axisymmetric, directions
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_outline, only: outline_type
-  use epcont_model_controls, only: controls_type, uniaxial_curve
+  use epcont_model_arrays, only: scene_type
   use epcont_model_finding, only: of_couple, of_element, of_line, of_node, of_pair, of_paper_ratio, of_section
   implicit none
   private
-  public :: line_contact, line_couple, model_type, named_line
-
-  !> A boundary line (BLSEG).
-  type :: named_line
-    integer :: id = 0
-    !> In their order along the boundary, in either sense; none: they were not sound
-    integer, allocatable :: node(:)
-    integer, allocatable :: side(:)      !! of the outline, with the body to the left
-    real(wp) :: box(directions, 2) = 0.0_wp   !! least and largest coordinates of their ends [length]
-  end type named_line
-
-  !> Two lines that may touch (BCONP).
-  type :: line_couple
-    integer :: id = 0
-    integer :: line(2) = 0               !! slave and master, by their positions
-  end type line_couple
+  public :: line_contact, model_type
 
   !> Contact of boundary lines, and the pairs that came of it. Lines that go on in each other, of one BCONP or
   !! of several, are one contact: all their sides on the one hand are slaves, on the other masters.
@@ -49,10 +34,11 @@ module epcont_model_model
     logical :: is_wider = .false.             !! `search` has grown since nodes came near
   end type line_contact
 
-  type :: model_type
+  !> What is given of the scene, its loads with the pressures and its pairs with those of lines, and all that
+  !! follows from it.
+  type, extends(scene_type) :: model_type
     integer :: nodes = 0, elements = 0, pairs = 0, bodies = 0
     integer, allocatable :: node_id(:)          !! [nodes]
-    real(wp), allocatable :: x(:, :)            !! coordinates [length] [2, nodes]
     integer, allocatable :: element_id(:)       !! [elements]
     type(element_kind), allocatable :: kinds(:) !! the table of elements [any]
     integer, allocatable :: kind(:)             !! of each element: its row there [elements]
@@ -68,33 +54,16 @@ module epcont_model_model
     integer, allocatable :: section(:)          !! section of each element [elements]
     integer, allocatable :: property_id(:)      !! PSHELL or PSOLID [sections]
     integer, allocatable :: material_id(:)      !! MAT1 [sections]
-    real(wp), allocatable :: thickness(:)       !! [length] [sections]
-    integer, allocatable :: kinematics(:)       !! plane_strain, plane_stress or axisymmetric [sections]
-    real(wp), allocatable :: young(:)           !! [stress] [sections]
-    real(wp), allocatable :: poisson(:)         !! [sections]
-    type(uniaxial_curve), allocatable :: curve(:)  !! how each section yields, if it does [sections]
-    type(controls_type) :: controls             !! of the plastic iteration
-    logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
-    real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
     !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it
     !! [length] [2, nodes].
     real(wp), allocatable :: travel(:, :), beyond_travel(:, :)
-    !> Node whose displacement the freedom shares: itself if not tied [2, nodes]
-    integer, allocatable :: leader(:, :)
-    logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
-    real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]
     integer, allocatable :: pair_id(:)          !! [pairs]
-    integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
-    real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
     !> Row k of N: along its normal the nodes row_node(row_start(k):row_start(k+1)-1) open the gap by
     !! row_weight. The weights of a row sum to 0. [pairs + 1], [entries], [entries]
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
-    real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
     !> Sides of the bodies' outlines, by the same numbers, with normals; where lines are
     type(boundary_line) :: boundary
-    type(named_line), allocatable :: line(:)
-    type(line_couple), allocatable :: couple(:)
     type(line_contact), allocatable :: line_contact(:)
     integer, allocatable :: body(:)             !! of each node [nodes]
     type(outline_type) :: body_outline          !! of all bodies

@@ -29,6 +29,7 @@ contains
     yield_strain = yield_stress/young
     curve%strain = [0.0_wp, yield_strain, 2.0_wp*yield_strain]
     curve%stress = [0.0_wp, yield_stress, yield_stress + slope*yield_strain]
+    curve%ends = .false.
   end function bilinear_curve
 
   !> The first point of a curve that cannot be, if there is one.

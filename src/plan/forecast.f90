@@ -47,7 +47,7 @@ contains
     real(wp), intent(in) :: limit         !! [GB]
     type(error_type), allocatable, intent(out) :: error   !! not enough of it
 
-    if (real(bytes, wp)/giga > limit) then
+    if (.not. real(bytes, wp)/giga <= limit) then
       call raise(error, status_usage, &
                  'the scene needs about '//gigabytes(real(bytes, wp))//' of memory, and --memory allows '// &
                  gigabytes(giga*limit))

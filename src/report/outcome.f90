@@ -3,6 +3,7 @@
 !> and what of the answer is not as it should be. They stand in the listing, are counted in the summary, and
 !> warnings go to standard error too.
 module epcont_report_outcome
+  use epcont_base_diagnostic, only: place_type, severity_warning
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, plural, short_real, text_of
@@ -10,7 +11,7 @@ module epcont_report_outcome
   use epcont_certificate_certificate, only: figure_name
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_controls, only: precision_name
-  use epcont_model_finding, only: of_node
+  use epcont_model_finding, only: findings, of_node, of_scene
   use epcont_report_columns, only: percent
   use epcont_report_names, only: centre_name, first_grid, joined, motion_name, when
   use epcont_report_scene_text, only: scene_sentence, scene_warnings, side_changed, unsound
@@ -20,7 +21,7 @@ module epcont_report_outcome
   implicit none
   private
   public :: outcome_type, judge, limit_of_pressure, reason_of
-  public :: remarks_type, remark_answer, poisson_text
+  public :: remark_lines, poisson_text
 
   character(len=*), parameter, public :: unbounded = 'unbounded'
   character(len=*), parameter :: not_resolved = 'not resolved'
@@ -31,15 +32,8 @@ module epcont_report_outcome
     character(len=:), allocatable :: word       !! valid, no equilibrium, ...
     character(len=:), allocatable :: sentence   !! empty where the answer is valid
     logical :: has_answer = .false.             !! displacements and forces were found
+    type(findings) :: found                     !! warnings and notes of the answer
   end type outcome_type
-
-  !> Warnings and notes.
-  type :: remarks_type
-    integer :: warnings = 0, notes = 0
-    character(len=:), allocatable :: of_deck     !! in lines; of warnings the place is followed by `warning: `
-    character(len=:), allocatable :: of_answer   !! in lines, each a warning
-    character(len=:), allocatable :: noted       !! notes of the answer, in lines
-  end type remarks_type
 
   !> Pairs that are named.
   integer, parameter, public :: most_pairs = 8
@@ -77,6 +71,7 @@ contains
     else
       call judge_answer()
       outcome%has_answer = .true.
+      call remark_answer(run, outcome%found)
     end if
 
   contains
@@ -205,9 +200,9 @@ contains
   end function reason_of
 
   !> Add warnings and notes of an answer: where its equations, solved as they are, are not those of the scene.
-  subroutine remark_answer(run, remarks)
-    class(solution_type), intent(in) :: run         !! a scene with its answer
-    type(remarks_type), intent(inout) :: remarks    !! are added to
+  subroutine remark_answer(run, found)
+    class(solution_type), intent(in) :: run      !! a scene with its answer
+    type(findings), intent(inout) :: found       !! warnings and notes are added
     integer :: k
 
     call warn_of_contact()
@@ -228,9 +223,8 @@ contains
     end associate
     do k = 1, run%motions%count
       if (.not. run%answer%contact%motion_free(k)) cycle
-      remarks%notes = remarks%notes + 1
-      remarks%noted = remarks%noted//'approach of '//motion_name(run, k)// &
-                          ': nothing resists or drives this motion: its value is a choice'//newline
+      call found%add_note(place_type(), 'approach of '//motion_name(run, k)// &
+                          ': nothing resists or drives this motion: its value is a choice')
     end do
 
   contains
@@ -239,9 +233,7 @@ contains
     subroutine warn(text)
       character(len=*), intent(in) :: text
 
-      if (len(text) == 0) return
-      remarks%warnings = remarks%warnings + 1
-      remarks%of_answer = remarks%of_answer//'warning: '//text//newline
+      if (len(text) > 0) call found%add_warning(of_scene, 0, 0, text, '')
     end subroutine warn
 
     !> No pair closes.
@@ -274,6 +266,23 @@ contains
                   'the theory takes them back along the curve, not along the elastic line')
     end subroutine warn_of_material
   end subroutine remark_answer
+
+  !> Warnings of an answer in lines, and its notes if these are wanted.
+  pure function remark_lines(found, with_notes) result(text)
+    type(findings), intent(in) :: found     !! of the answer
+    logical, intent(in) :: with_notes       !! are they?
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, found%count
+      if (found%list(i)%severity == severity_warning) then
+        text = text//'warning: '//found%list(i)%what//newline
+      else if (with_notes) then
+        text = text//found%list(i)%what//newline
+      end if
+    end do
+  end function remark_lines
 
   !> From which Poisson's ratio on three-node elements lock, and why they have it.
   pure function poisson_text(answer) result(text)

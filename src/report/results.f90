@@ -13,7 +13,7 @@ module epcont_report_results
   use epcont_report_echo, only: list_cards
   use epcont_report_file, only: new_text_file, remove_file
   use epcont_report_names, only: centre_name, joined, point_name, when
-  use epcont_report_outcome, only: most_pairs, poisson_text
+  use epcont_report_outcome, only: most_pairs, poisson_text, remark_lines
   use epcont_report_plan_text, only: plan_text
   use epcont_report_run, only: run_results
   use epcont_report_scene_text, only: deeper
@@ -201,10 +201,12 @@ contains
       character(len=:), allocatable :: text
       integer :: from, to
 
-      if (run%remarks%warnings + run%remarks%notes == 0) return
-      call listing%heading('WARNINGS AND NOTES  ('//plural(run%remarks%warnings, 'warning')//', '// &
-                           plural(run%remarks%notes, 'note')//')')
-      text = run%remarks%of_deck//run%remarks%of_answer//run%remarks%noted
+      text = run%deck_notes//remark_lines(run%outcome%found, .true.)
+      if (len(text) == 0) return
+      associate (deck => run%faults, answer => run%outcome%found)
+        call listing%heading('WARNINGS AND NOTES  ('//plural(deck%warnings + answer%warnings, 'warning')// &
+                             ', '//plural(deck%notes + answer%notes, 'note')//')')
+      end associate
       from = 1
       do while (from <= len(text))
         to = from + index(text(from:), newline) - 1

@@ -2,7 +2,7 @@
 module epcont_report_run
   use epcont_base_diagnostic, only: diagnostics
   use epcont_deck_deck, only: deck_type
-  use epcont_report_outcome, only: outcome_type, remarks_type
+  use epcont_report_outcome, only: outcome_type
   use epcont_solution, only: solution_type
   implicit none
   private
@@ -12,7 +12,7 @@ module epcont_report_run
   type, extends(solution_type) :: run_results
     type(deck_type) :: deck
     type(diagnostics) :: faults
-    type(remarks_type) :: remarks
+    character(len=:), allocatable :: deck_notes   !! its warnings and notes, in lines
     type(outcome_type) :: outcome
   end type run_results
 end module epcont_report_run

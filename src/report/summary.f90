@@ -37,8 +37,8 @@ contains
 
     allocate (figures(0))
     call put_word('status', run%outcome%word, 'status')
-    call put_word('warnings', text_of(run%remarks%warnings), '')
-    call put_word('notes', text_of(run%remarks%notes), '')
+    call put_word('warnings', text_of(run%faults%warnings + run%outcome%found%warnings), '')
+    call put_word('notes', text_of(run%faults%notes + run%outcome%found%notes), '')
     if (.not. run%outcome%has_answer) return
     call put_answer()
     call put_certificate()

@@ -3,9 +3,13 @@
 module epcont_system_threads
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, &
                                          c_null_char, c_null_ptr, c_ptr
+  !$ use omp_lib, only: omp_get_max_threads, omp_set_num_threads
   implicit none
   private
-  public :: granted_threads, stated_threads, use_one_thread
+  public :: granted_threads, stated_threads, threads_now, use_threads
+
+  !> For the BLAS; as many as there are for OpenMP.
+  integer, parameter, public :: one_thread(2) = [1, 0]
 
   abstract interface
     subroutine set_threads(count) bind(c)
@@ -13,9 +17,9 @@ module epcont_system_threads
       integer(c_int), value :: count
     end subroutine set_threads
 
-    integer(c_int) function get_parallel() bind(c)
+    integer(c_int) function get_number() bind(c)
       import :: c_int
-    end function get_parallel
+    end function get_number
   end interface
 
   interface
@@ -52,27 +56,44 @@ contains
     end do
   end function stated_threads
 
-  !> Tell OpenBLAS; another BLAS has no such procedure.
-  subroutine use_one_thread()
+  !> How many threads there are for the BLAS, and by OpenMP for whoever calls; 0: not known.
+  function threads_now() result(threads)
+    integer :: threads(2)
+
+    threads = [blas_number('openblas_get_num_threads'), 0]
+    !$ threads(2) = omp_get_max_threads()
+  end function threads_now
+
+  !> Tell OpenBLAS; another BLAS has no such procedure. One that uses OpenMP tells that, so it comes last.
+  subroutine use_threads(threads)
+    integer, intent(in) :: threads(2)   !! as `threads_now` has them
     procedure(set_threads), pointer :: set
     type(c_funptr) :: address
 
     address = c_dlsym(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
+    if (c_associated(address)) then
+      call c_f_procpointer(address, set)
+      call set(int(threads(1), c_int))
+    end if
+    !$ if (threads(2) > 0) call omp_set_num_threads(threads(2))
+  end subroutine use_threads
+
+  !> What OpenBLAS says; 0: it is another BLAS.
+  integer function blas_number(name)
+    character(len=*), intent(in) :: name   !! of the procedure that says it
+    procedure(get_number), pointer :: get
+    type(c_funptr) :: address
+
+    blas_number = 0
+    address = c_dlsym(c_null_ptr, name//c_null_char)
     if (.not. c_associated(address)) return
-    call c_f_procpointer(address, set)
-    call set(1_c_int)
-  end subroutine use_one_thread
+    call c_f_procpointer(address, get)
+    blas_number = int(get())
+  end function blas_number
 
   !> Whether threads may call the BLAS at the same time: an OpenBLAS that is built for threads locks its
   !! buffers, one that is not shares them, and of another nothing is known.
   logical function blas_may_be_shared()
-    procedure(get_parallel), pointer :: parallel
-    type(c_funptr) :: address
-
-    blas_may_be_shared = .false.
-    address = c_dlsym(c_null_ptr, 'openblas_get_parallel'//c_null_char)
-    if (.not. c_associated(address)) return
-    call c_f_procpointer(address, parallel)
-    blas_may_be_shared = parallel() /= 0   ! 0 sequential, 1 threads, 2 OpenMP
+    blas_may_be_shared = blas_number('openblas_get_parallel') /= 0   ! 0 sequential, 1 threads, 2 OpenMP
   end function blas_may_be_shared
 end module epcont_system_threads

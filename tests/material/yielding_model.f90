@@ -26,11 +26,11 @@ contains
     do s = 1, 2
       model%curve(s)%strain = [0.0_wp, 0.005_wp, 0.01_wp, 0.02_wp, 0.05_wp]
       model%curve(s)%stress = [0.0_wp, 1.0_wp, 1.4_wp, 1.6_wp, 1.9_wp]
-      model%curve(s)%ends = .true.
     end do
     do s = 3, 5
       model%curve(s)%strain = [0.0_wp, 0.005_wp, 0.01_wp]
       model%curve(s)%stress = [0.0_wp, 1.0_wp, 1.0_wp]
+      model%curve(s)%ends = .false.
     end do
     model%controls%paper_ratio = paper_ratio
   end function new_yielding_model

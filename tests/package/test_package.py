@@ -130,6 +130,7 @@ class Installed(unittest.TestCase):
             done = run(CMAKE, "--build", place / "build", cwd=place)
             self.assertEqual(0, done.returncode, done.stdout + done.stderr)
             done = run(place / "build/two_blocks", cwd=place)
+            self.assertEqual(done.stdout, self.linked_by_hand(place))
             self.assertEqual((0, ""), (done.returncode, done.stderr))
             forces = [float(force) for force in re.findall(r"force +([\d.]+), gap +0.00E\+00", done.stdout)]
             self.assertRegex(done.stdout, r"^answer: valid\n")
@@ -138,6 +139,15 @@ class Installed(unittest.TestCase):
                 self.assertAlmostEqual(mirrored, force, delta=1e-3)
             # A strip of E' = E/(1 - nu^2) in each block, 4 long and 1 high, gives 4 times 0.001/(1/E1' + 1/E2') where nothing bulges.
             self.assertAlmostEqual(4e-3/(0.91/2.1e5 + 0.8911/7e4), sum(forces), delta=0.25*sum(forces))
+
+    def linked_by_hand(self, place):
+        """What the example says that is linked as the page tells it."""
+        page = (place / "epcont" / EXAMPLE / "README.md").read_text()
+        compiler, = re.findall("CMAKE_Fortran_COMPILER:[A-Z]+=(.*)", (BUILD / "CMakeCache.txt").read_text())
+        words = re.search("^    gfortran (.*)", page, re.MULTILINE)[1].replace("~/epcont", str(place / "epcont")).split()
+        done = run(compiler, *words, "-o", place / "by_hand", cwd=place / "epcont" / EXAMPLE)
+        self.assertEqual(0, done.returncode, done.stdout + done.stderr)
+        return run(place / "by_hand", cwd=place).stdout
 
 
 class Package(unittest.TestCase):

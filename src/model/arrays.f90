@@ -1,0 +1,135 @@
+!> What a scene is given by: arrays, with nothing in them that follows from others. They may be changed as one
+!> likes between two solves: each looks at all of them (epcont_model_given).
+module epcont_model_arrays
+  use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: directions
+  use epcont_model_controls, only: controls_type, uniaxial_curve
+  implicit none
+  private
+  public :: scene_type, new_scene, set_sections, add_elements, set_pairs
+  public :: element_block, line_couple, named_line, side_pressure
+
+  !> Elements of one kind.
+  type :: element_block
+    character(len=8) :: name = ''             !! of their card: CTRIA3, CTRIA6, CQUAD4, CQUAD8, CTRAX3, CTRAX6
+    !> Corners in either turning sense, then middles of sides, the first behind the first corner
+    !! [nodes, elements]
+    integer, allocatable :: node(:, :)
+    integer, allocatable :: section(:)        !! of each [elements]
+  end type element_block
+
+  !> A pressure along a side of an element, linear from one of its corners to the other.
+  type :: side_pressure
+    integer :: element = 0                    !! whose side it is
+    integer :: corner(2) = 0                  !! nodes at the ends of the side
+    real(wp) :: pressure(2) = 0.0_wp          !! at these, positive into the element [stress]
+    real(wp) :: theta = 0.0_wp                !! counter-clockwise from the inward normal [degree]
+  end type side_pressure
+
+  !> A boundary line (BLSEG).
+  type :: named_line
+    !> In their order along the boundary, in either sense; none: they were not sound
+    integer, allocatable :: node(:)
+    integer :: id = 0                         !! of its card
+    integer, allocatable :: side(:)           !! of the outline, with the body to the left; found
+    !> Least and largest coordinates of their ends [length] [2, 2]; found
+    real(wp) :: box(directions, 2) = 0.0_wp
+  end type named_line
+
+  !> Two lines that may touch (BCONP).
+  type :: line_couple
+    integer :: line(2) = 0                    !! slave and master, by their positions
+    integer :: id = 0                         !! of its card
+  end type line_couple
+
+  type :: scene_type
+    real(wp), allocatable :: x(:, :)            !! coordinates [length] [2, nodes]
+    type(element_block), allocatable :: block(:)   !! elements, numbered through all blocks [any]
+    real(wp), allocatable :: young(:)           !! [stress] [sections]
+    real(wp), allocatable :: poisson(:)         !! [sections]
+    integer, allocatable :: kinematics(:)       !! plane_strain, plane_stress or axisymmetric [sections]
+    real(wp), allocatable :: thickness(:)       !! [length] [sections]
+    type(uniaxial_curve), allocatable :: curve(:)  !! how each section yields, if it does [sections]
+    logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
+    real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
+    !> Node whose displacement the freedom shares: itself if not tied [2, nodes]
+    integer, allocatable :: leader(:, :)
+    logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
+    real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]
+    type(side_pressure), allocatable :: pressure(:)   !! in addition to these [any]
+    integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
+    real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
+    real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
+    type(named_line), allocatable :: line(:)    !! lines of nodes [any]
+    type(line_couple), allocatable :: couple(:) !! which of these may touch [any]
+    type(controls_type) :: controls             !! of the plastic iteration
+  end type scene_type
+
+contains
+
+  !> A scene of nodes alone: no elements, supports, ties, loads, pairs and lines.
+  function new_scene(x) result(scene)
+    real(wp), intent(in) :: x(:, :)            !! their coordinates [length] [2, nodes]
+    type(scene_type) :: scene
+    integer :: i, nodes
+
+    nodes = size(x, 2)
+    scene%x = x
+    scene%leader = spread([(i, i=1, nodes)], 1, directions)
+    allocate (scene%held(directions, nodes), scene%reference(directions, nodes), source=.false.)
+    allocate (scene%prescribed(directions, nodes), scene%load(directions, nodes), source=0.0_wp)
+    allocate (scene%block(0), scene%pressure(0), scene%line(0), scene%couple(0))
+    call set_sections(scene, [real(wp) ::], [real(wp) ::], [integer ::])
+    call set_pairs(scene, reshape([integer ::], [2, 0]), reshape([real(wp) ::], [2, 0]), [real(wp) ::])
+  end function new_scene
+
+  !> What elements are made of; of thickness 1, and nothing yields: that may be changed.
+  pure subroutine set_sections(scene, young, poisson, kinematics)
+    type(scene_type), intent(inout) :: scene   !! is changed
+    real(wp), intent(in) :: young(:)           !! [stress] [sections]
+    real(wp), intent(in) :: poisson(:)         !! [sections]
+    integer, intent(in) :: kinematics(:)       !! plane_strain, plane_stress or axisymmetric [sections]
+
+    scene%young = young
+    scene%poisson = poisson
+    scene%kinematics = kinematics
+    scene%thickness = spread(1.0_wp, 1, size(young))
+    if (allocated(scene%curve)) deallocate (scene%curve)
+    allocate (scene%curve(size(young)))
+  end subroutine set_sections
+
+  !> Elements of one kind, behind those that the scene has; their numbers go on.
+  pure subroutine add_elements(scene, name, node, section)
+    type(scene_type), intent(inout) :: scene   !! is added to
+    !> Of their card: CTRIA3, CTRIA6, CQUAD4, CQUAD8, CTRAX3, CTRAX6
+    character(len=*), intent(in) :: name
+    !> Corners in either turning sense, then middles of sides, the first behind the first corner
+    !! [nodes, elements]
+    integer, intent(in) :: node(:, :)
+    integer, intent(in) :: section(:)          !! of each [elements]
+    type(element_block), allocatable :: longer(:)
+    integer :: blocks
+
+    if (size(section) == 0 .and. size(node, 2) == 0) return
+    blocks = 0
+    if (allocated(scene%block)) blocks = size(scene%block)
+    allocate (longer(blocks + 1))
+    if (blocks > 0) longer(:blocks) = scene%block
+    longer(blocks + 1)%name = name
+    longer(blocks + 1)%node = node
+    longer(blocks + 1)%section = section
+    call move_alloc(longer, scene%block)
+  end subroutine add_elements
+
+  !> Pairs of nodes that may touch, numbered from 1 on.
+  pure subroutine set_pairs(scene, node, normal, gap)
+    type(scene_type), intent(inout) :: scene   !! is changed
+    integer, intent(in) :: node(:, :)          !! A and B [2, pairs]
+    real(wp), intent(in) :: normal(:, :)       !! unit, along which B is pushed; zero: from A to B [2, pairs]
+    real(wp), intent(in) :: gap(:)             !! initial [length] [pairs]
+
+    scene%pair_node = node
+    scene%normal = normal
+    scene%initial_gap = gap
+  end subroutine set_pairs
+end module epcont_model_arrays
