@@ -10,12 +10,6 @@ module epcont_base_tolerances
   !> Part of the magnitudes that a sum is made of that rounding leaves where it should cancel: some hundred
   !! terms, each rounded once. One rounding is too little (tests/contact/test_random).
   real(wp), parameter, public :: cancelled = 100*epsilon(1.0_wp)
-  !> Part of the largest coordinate by which places differ from rounding alone.
-  real(wp), parameter, public :: coordinate_rounding = 16*epsilon(1.0_wp)
-  !> Part of the sum of its terms that rounding leaves of the slope of an energy.
-  real(wp), parameter, public :: slope_rounding = 1.0e3_wp*epsilon(1.0_wp)
-  !> Part of a prescribed displacement that a motion which follows it exactly leaves.
-  real(wp), parameter, public :: travel_rounding = 64*epsilon(1.0_wp)
 
   ! Rounding of what has been solved for.
 
@@ -48,13 +42,8 @@ module epcont_base_tolerances
   !> Part of the largest force or pivot that such digits, or rounding, may make of nothing (1e-10 takes them
   !! for a support: tests/contact/test_answers).
   real(wp), parameter, public :: lost_digits = 1.0e-8_wp
-  !> Part of the scene's extent below which a gap is none.
-  real(wp), parameter, public :: no_gap = 1.0e-8_wp
-  !> Part of a side or of a body's extent within which places are one, or on one line.
-  real(wp), parameter, public :: same_place = 1.0e-6_wp
-  !> Part of the largest of its kind (gaps, pressures, curvatures, errors of elements) by which figures differ
-  !! that are as large.
-  real(wp), parameter, public :: alike = 1.0e-6_wp
+  !> Part of an extent, of the scene or a body, within which places are one: less is no gap, and no lever.
+  real(wp), parameter, public :: same_place = 1.0e-8_wp
   !> Part of the largest force, displacement or turn of its kind up to which there is none.
   real(wp), parameter, public :: no_effect = 1.0e-6_wp
   !> Part of a side within which nodes are at one place.

@@ -2,7 +2,7 @@
 module epcont_model_given
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_base_tolerances, only: same_place
+  use epcont_base_tolerances, only: no_effect
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, directions, plane_strain
   use epcont_model_finding, only: findings, of_couple, of_element, of_line, of_node, of_pair, of_scene, &
@@ -140,7 +140,7 @@ contains
       call check_numbers(model%pair_node(:, i), model%nodes, of_pair, i, 'node')
       call need(abs(model%initial_gap(i)) <= huge(1.0_wp), of_pair, i, ': its gap is no number', 'a length')
       call need(all(model%normal(:, i) == 0.0_wp) .or. &
-                abs(norm2(model%normal(:, i)) - 1.0_wp) <= same_place, of_pair, i, &
+                abs(norm2(model%normal(:, i)) - 1.0_wp) <= no_effect, of_pair, i, &
                 ': its normal is no unit vector', 'one of length 1, or zero: from A to B')
     end do
     do i = 1, size(model%line)
