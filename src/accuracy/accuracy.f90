@@ -11,7 +11,7 @@ module epcont_accuracy_accuracy
                                      unresolved, wave_height, weights_of
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: alike, least_difference
+  use epcont_base_tolerances, only: least_difference, no_effect
   use epcont_element_element_kind, only: by_quadratics
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
@@ -313,7 +313,7 @@ contains
     left = .true.
     do k = 1, min(worst_count, size(energy))
       largest = maxval(energy, mask=left)   ! by rounding it may be below zero
-      worst = [worst, findloc(left .and. energy >= largest - alike*abs(largest), .true., dim=1)]
+      worst = [worst, findloc(left .and. energy >= largest - no_effect*abs(largest), .true., dim=1)]
       left(worst(k)) = .false.
     end do
   end function worst_of

@@ -8,7 +8,7 @@ module epcont_accuracy_limits
   use epcont_accuracy_surface_line, only: corner, surface_line
   use epcont_accuracy_weights, only: tip_matters, tip_stands_out
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: same_place
+  use epcont_base_tolerances, only: coincident
   use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
   use epcont_result_contact_line, only: contact_line, outer_sides
@@ -177,7 +177,7 @@ contains
       integer, intent(in) :: other
 
       associate (x => model%x(c, [node, other]), held => model%held(:, [node, other]), &
-                 near => same_place*norm2(model%x(:, node) - model%x(:, other)))
+                 near => coincident*norm2(model%x(:, node) - model%x(:, other)))
         along_symmetry = any(abs(mirror(c, :) - x(1)) <= near .and. abs(mirror(c, :) - x(2)) <= near)
         if (abs(x(1) - x(2)) > near) return
         along_symmetry = along_symmetry .or. all(held(c, :)) .and. .not. any(held(3 - c, :)) &

@@ -8,7 +8,7 @@
 module epcont_accuracy_surface_line
   use epcont_accuracy_weights, only: waves_are_common, waves_flattened
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: alike
+  use epcont_base_tolerances, only: no_effect
   use epcont_element_kinematics, only: plane_stress
   use epcont_material_material_law, only: point_state
   use epcont_material_scene_materials, only: scene_materials
@@ -259,7 +259,7 @@ contains
   pure logical function by_turns(x)
     real(wp), intent(in) :: x(4)
 
-    associate (odd => x([1, 3]), even => x([2, 4]), least => alike*maxval(abs(x)))
+    associate (odd => x([1, 3]), even => x([2, 4]), least => no_effect*maxval(abs(x)))
       by_turns = minval(odd) - maxval(even) > least .or. minval(even) - maxval(odd) > least
     end associate
   end function by_turns

@@ -10,7 +10,7 @@ module epcont_accuracy_zone_error
   use epcont_accuracy_surface_line, only: elements_behind, find_waves, first_element, surface_line
   use epcont_accuracy_weights, only: beyond_mean, estimate_weights, stretched, waves_alone, weights_of
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: alike, dependent, least_difference
+  use epcont_base_tolerances, only: dependent, least_difference, no_effect
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
   use epcont_result_zones, only: contact_zone, falls
@@ -97,7 +97,7 @@ contains
     associate (before => max(1, peak - 1), behind => min(n, peak + 1))
       if (n > 1) spacing = (zone%along(behind) - zone%along(before))/(behind - before)
     end associate
-    if (n > 1 .and. .not. any(ends%open) .and. maxval(p) - minval(p) <= alike*largest) then
+    if (n > 1 .and. .not. any(ends%open) .and. maxval(p) - minval(p) <= no_effect*largest) then
       error%resolution = 0.0_wp
     else
       ! of a single pair it stays 1

@@ -14,7 +14,7 @@
 !>                          left to speak of
 module epcont_certificate_allowance
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: same_place
+  use epcont_base_tolerances, only: coincident
   use epcont_element_kinematics, only: directions
   use epcont_geometry_outline_shape, only: outline_shape
   use epcont_geometry_plane, only: cross_product
@@ -121,7 +121,7 @@ contains
         theta = max(theta, abs(turn))
         covered = covered + self%length(i)
         i = self%beside(way, i)
-        if (covered + self%length(i) > length*(1.0_wp + same_place)) exit
+        if (covered + self%length(i) > length*(1.0_wp + coincident)) exit
         turn = turn + self%arch(i)
         theta = max(theta, abs(turn))
       end do

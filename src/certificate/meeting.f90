@@ -2,7 +2,7 @@
 !> these allow there.
 module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: no_gap
+  use epcont_base_tolerances, only: same_place
   use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
   use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, rated
   use epcont_contact_geometry_mates, only: find_mates, is_mate
@@ -21,7 +21,7 @@ module epcont_certificate_meeting
   !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths
   !! off the largest allowance counts.
   real(wp), parameter :: about = 1.5_wp
-  !> The least that is allowed, beside `no_gap`, in roundings of the coordinates.
+  !> The least that is allowed, beside `same_place`, in roundings of the coordinates.
   real(wp), parameter :: roundings = 16.0_wp
 
   !> A point of a body.
@@ -66,7 +66,7 @@ contains
       search%allowance = new_allowance(model, search%drawn, search%now)
       search%mate = find_mates(model)
       search%moved = maxval(norm2(displacement, dim=1))
-      search%least = no_gap*maxval(maxval(x, dim=2) - minval(x, dim=2)) &
+      search%least = same_place*maxval(maxval(x, dim=2) - minval(x, dim=2)) &
                      + roundings*epsilon(1.0_wp)*(maxval(abs(x)) + maxval(abs(displacement)))
       allocate (search%line_length(outline%sides), source=0.0_wp)
       if (allocated(model%line)) then

@@ -10,7 +10,7 @@
 !> nodes may be displaced beyond a line at which their body ends: the axis of rings, or a line of symmetry.
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: no_effect, same_place
+  use epcont_base_tolerances, only: no_effect
   use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, rated, scene_type
   use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, motion_at, new_search, &
                                        part_along, point_on, point_type, search_type, sides_meeting
@@ -230,7 +230,7 @@ contains
                    next => model%body_outline%node(2, first:last))
           x = way*model%x(c, node)
           u = way*displacement(c, node)
-          edge = minval(x) + same_place*(maxval(x) - minval(x))
+          edge = minval(x) + search%least
           if (.not. all(x > edge .or. is_held(c, node) .and. abs(u) <= search%least)) return
           if (all(x > edge .or. way*model%x(c, next) > edge &
                   .or. is_held(3 - c, node) .and. is_held(3 - c, next))) return

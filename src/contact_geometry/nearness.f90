@@ -5,7 +5,7 @@
 !> displacements.
 module epcont_contact_geometry_nearness
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: no_gap
+  use epcont_base_tolerances, only: same_place
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_contact_geometry_line_pairs, only: add_pairs
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
@@ -106,7 +106,7 @@ contains
         face = find_facing(contact%master, model%boundary, node_of(contact%slave, side, which), extent)
         if (.not. face(1)%found) return
         moved = gap_and_slip(node(which), contact%master, face(1))
-        if (moved(1) < -no_gap*extent .or. any(holds(node))) &
+        if (moved(1) < -same_place*extent .or. any(holds(node))) &
           contact%search = max(contact%search, further*abs(face(1)%gap))
       end associate
     end subroutine look_from_slave
@@ -143,7 +143,7 @@ contains
       real(wp) :: angle
       integer :: beside
 
-      left_open = no_gap*extent
+      left_open = same_place*extent
       associate (slave => contact%slave, master => contact%master, s => face%segment)
         smooth = which == 3 .or. .not. master%corner(min(which, 2), side)
         if (smooth .and. all(holds(slave%segment(:, s)) .or. slave%segment(:, s) == 0)) then

@@ -5,7 +5,7 @@
 !> one too.
 module epcont_geometry_facing
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: coordinate_rounding, least_difference
+  use epcont_base_tolerances, only: cancelled, least_difference
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_plane, only: cross_product
   implicit none
@@ -72,7 +72,7 @@ contains
     real(wp) :: ahead(2), more, rounding, within
     integer :: k, round
 
-    rounding = coordinate_rounding*maxval(abs(from%x))
+    rounding = cancelled*maxval(abs(from%x))
     ahead = from%x + aside*from%along
     more = min(search, 2.0_wp*norm2(from%along))
     do round = rounds, 0, -1

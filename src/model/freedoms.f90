@@ -6,7 +6,7 @@ module epcont_model_freedoms
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_text, only: text_of
-  use epcont_base_tolerances, only: same_place, travel_rounding
+  use epcont_base_tolerances, only: cancelled, same_place
   use epcont_element_kinematics, only: directions
   use epcont_model_finding, only: findings, of_node
   use epcont_model_model, only: model_type
@@ -160,7 +160,7 @@ contains
     if (maxval(abs(u - travel), mask=known) > follows*maxval(abs(u), mask=known)) return
     model%travel(:, node) = travel
     model%beyond_travel(:, node) = merge(u - travel, 0.0_wp, known .and. &
-                                         abs(u - travel) > travel_rounding*maxval(abs(u)))
+                                         abs(u - travel) > cancelled*maxval(abs(u)))
   end subroutine find_travel
 
   !> Mean of those values that are known, exact where they are all the same; 0 of none.

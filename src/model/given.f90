@@ -2,7 +2,7 @@
 module epcont_model_given
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
-  use epcont_base_tolerances, only: same_place
+  use epcont_base_tolerances, only: no_effect
   use epcont_deck_entry, only: farthest, least_cause, least_divisor
   use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
@@ -51,7 +51,7 @@ contains
               'prescribed(:, #) is not 0.0 where held is false', '0.0, or held')
     call need(all(within(scene%leader, nodes), dim=1), 'leader(:, #) is no node', up_to(nodes))
     call need(all(within(scene%pair_node, nodes), dim=1), 'pair_node(:, #) is no node', up_to(nodes))
-    call need(abs(norm2(scene%normal, dim=1) - 1.0_wp) <= same_place .or. &
+    call need(abs(norm2(scene%normal, dim=1) - 1.0_wp) <= no_effect .or. &
               all(scene%normal == 0.0_wp, dim=1), &
               'normal(:, #) is no unit vector', 'one of length 1, or zero: from A to B')
     call need(has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size)

@@ -5,7 +5,6 @@
 !> the slope (f_int - f).d, since differences of the energy itself drown in rounding.
 module epcont_plasticity_newton
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: slope_rounding
   use epcont_element_kinematics, only: components
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_scene_state, only: scene_state
@@ -108,20 +107,20 @@ contains
     pure subroutine find_length(length, point)
       real(wp), intent(out) :: length
       type(point_state), allocatable, intent(out) :: point(:)   !! at that length; not allocated for 1
-      real(wp) :: at(2), begin, slope, slopes(2), terms   ! before and behind the zero
+      real(wp) :: at(2), begin, slope, slopes(2)   ! before and behind the zero
       integer :: k, last, side
 
       length = 1.0_wp
       at = [0.0_wp, 1.0_wp]
-      call find_slope(about%point, slopes(1), terms)
-      call find_slope(found%point, slopes(2), terms)
+      slopes(1) = slope_of(about%point)
+      slopes(2) = slope_of(found%point)
       begin = slopes(1)
-      if (begin >= -slope_rounding*terms .or. slopes(2) <= -flat_enough*begin) return
+      if (begin >= 0.0_wp .or. slopes(2) <= -flat_enough*begin) return
       last = 0
       do k = 1, most_slopes
         length = (at(1)*slopes(2) - at(2)*slopes(1))/(slopes(2) - slopes(1))
         point = linear%materials%states(about%strain + length*along)
-        call find_slope(point, slope, terms)
+        slope = slope_of(point)
         if (abs(slope) <= -found_enough*begin) return
         side = merge(2, 1, slope > 0.0_wp)
         at(side) = length
@@ -131,20 +130,15 @@ contains
       end do
     end subroutine find_length
 
-    !> (f_int - f).d with the stresses of some states, and the sum of the magnitudes of its terms.
-    pure subroutine find_slope(state, slope, terms)
+    !> (f_int - f).d with the stresses of some states.
+    pure real(wp) function slope_of(state) result(slope)
       type(point_state), intent(in) :: state(:)
-      real(wp), intent(out) :: slope, terms
-      real(wp) :: term
       integer :: p
 
       slope = -load_factor*sum(model%load*travel)
-      terms = load_factor*sum(abs(model%load*travel))
       do p = 1, size(state)
-        term = linear%operator%volume(p)*dot_product(state(p)%stress, along(:, p))
-        slope = slope + term
-        terms = terms + abs(term)
+        slope = slope + linear%operator%volume(p)*dot_product(state(p)%stress, along(:, p))
       end do
-    end subroutine find_slope
+    end function slope_of
   end subroutine advance
 end module epcont_plasticity_newton

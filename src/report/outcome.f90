@@ -7,7 +7,7 @@ module epcont_report_outcome
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, plural, short_real, text_of
-  use epcont_base_tolerances, only: alike, lost_digits
+  use epcont_base_tolerances, only: lost_digits, no_effect
   use epcont_certificate_certificate, only: figure_name
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_model_controls, only: precision_name
@@ -242,8 +242,9 @@ contains
 
       if (run%model%pairs == 0 .or. any(run%answer%contact%touching)) return
       ! Of gaps that are as good as equal the first: rounding chooses no pair.
-      nearest = findloc(run%answer%contact%gap <= (1.0_wp + alike)*minval(run%answer%contact%gap), .true., &
-                        dim=1)
+      associate (gap => run%answer%contact%gap)
+        nearest = findloc(gap <= (1.0_wp + no_effect)*minval(gap), .true., dim=1)
+      end associate
       call warn('nothing touches: no pair carries a force; nearest is '// &
                 run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
                 short_real(run%answer%contact%gap(nearest))//' away')
