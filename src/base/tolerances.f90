@@ -19,7 +19,7 @@ module epcont_base_tolerances
   ! Rounding of what has been solved for.
 
   !> Part of the largest of its kind below which a number is rounding: of a table's column, of a row's
-  !! weights, of gaps, of the square of an element's longest side.
+  !! weights, of gaps, of the square of an element's extent.
   !! > and < report/test_columns, and all listings
   real(wp), parameter, public :: rounded_off = 1.0e-12_wp
   !> In scaled units, where what drives the contact is of size one, an entry up to this is zero, and ratios

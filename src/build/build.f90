@@ -111,6 +111,9 @@ contains
           if (card(2) <= deck%card(card(1))%count) exit
           card(2) = card(2) - deck%card(card(1))%count
         end do
+        if (card(3) < 0) &   ! a node: behind id and section
+          card(3) = findloc(deck%card(card(1))%value(:, card(2)), &
+                            deck%card(card_grid)%value(1, -card(3)), dim=1, back=.true.)
       case (of_pair)
         card(1) = card_cgap
       case (of_line)

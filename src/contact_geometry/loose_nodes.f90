@@ -34,8 +34,10 @@ contains
     if (first == 0) return
     call found%add_warning(of_node, first, 1, ': lies on side '//model%name_of(of_node, edge(1, first))// &
                            ' to '//text_of(model%node_id(edge(2, first)))//' of '// &
-                           model%name_of(of_element, edge(3, first))// &
-                           ' and is no node of it: the body may open there'// &
+                           model%name_of(of_element, edge(3, first))//' and is '// &
+                           trim(merge('a corner beside it', 'no node of it     ', &
+                                      any(model%connectivity(:, edge(3, first)) == first)))// &
+                           ': the body may open there'// &
                            and_more(count(edge(3, :) > 0), '; so do ', ' more nodes'), &
                            'elements that share all nodes of their common sides')
 
@@ -88,7 +90,8 @@ contains
       end associate
     end function goes_back
 
-    !> From the end of a side back to its start: what lies on it between, and is no node of it, hangs.
+    !> From the end of a side back to its start: what lies on it between hangs; so does its own middle, where
+    !! the other sides have that for an end.
     subroutine follow(side, from)
       integer, intent(in) :: side, from
       type(near_place) :: place
@@ -106,8 +109,7 @@ contains
         t = from
         do while (t /= last)
           associate (node => outline%node(2, t))
-            if (node /= outline%node(3, side) .and. .not. model%is_tied([node])) &
-              edge(:, node) = [outline%node(:2, side), outline%element(side)]
+            if (.not. model%is_tied([node])) edge(:, node) = [outline%node(:2, side), outline%element(side)]
           end associate
           t = outline%after(t)
         end do

@@ -5,6 +5,7 @@
 !> Sides are straight, or parabolas through their middle nodes.
 module epcont_element_element_kind
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: cancelled, rounded_off
   use epcont_element_kinematics, only: directions
   implicit none
   private
@@ -12,6 +13,13 @@ module epcont_element_element_kind
 
   !> Nodes, integration points and places of comparison of an element, at most.
   integer, parameter, public :: most_nodes = 8, most_points = 9, most_places = 9
+  !> In search of a fold: ten along either coordinate leave open where the area comes nearer to none than
+  !! about 4**-10, a millionth, of its largest.
+  integer, parameter :: most_halvings = 20
+
+  !> Bernstein coefficients of a cubic from its values at 0, 1/3, 2/3 and 1.
+  real(wp), parameter :: from_values(4, 0:3) = &
+    reshape([6, -5, 2, 0, 0, 18, -9, 0, 0, -9, 18, 0, 0, 2, -5, 6]/6.0_wp, [4, 4])
 
   !> What `estimated_as` may be.
   integer, parameter, public :: by_linear_triangles = 1, by_quadrilaterals = 2, by_quadratics = 3
@@ -32,6 +40,8 @@ module epcont_element_element_kind
     real(wp) :: values(most_nodes, most_points) = 0.0_wp               !! shape functions at the points
     !> And their derivatives by the local coordinates
     real(wp) :: slopes(directions, most_nodes, most_points) = 0.0_wp
+    !> What each two nodes have in the area, see `turn`: Bernstein coefficients [4, 4, nodes, nodes]
+    real(wp) :: spanned(4, 4, 2:most_nodes - 1, 3:most_nodes) = 0.0_wp
     ! For the estimate of the error (accuracy/):
     integer :: estimated_as = by_linear_triangles       !! which weights it has
     !> Smooth strains are fitted to samples: strain(points) sample_of, where the shape functions are
@@ -48,6 +58,7 @@ module epcont_element_element_kind
     real(wp) :: p(most_points, most_places) = 0.0_wp
     real(wp) :: v(most_points, most_places) = 0.0_wp
   contains
+    procedure :: turn
     procedure :: compare_at
     procedure :: sample_at
   end type element_kind
@@ -66,8 +77,9 @@ contains
 
   !> A kind by its nodes, shape functions and integration points; its strains are sampled and compared at
   !! these.
-  pure function new_kind(corners, nodes, shape, point, weight) result(kind)
-    integer, intent(in) :: corners, nodes      !! how many
+  pure function new_kind(corner, nodes, shape, point, weight) result(kind)
+    real(wp), intent(in) :: corner(:, :)       !! local places [directions, corners]
+    integer, intent(in) :: nodes               !! how many
     procedure(shape_functions) :: shape        !! of the nodes
     real(wp), intent(in) :: point(:, :)        !! local places [directions, points]
     real(wp), intent(in) :: weight(:)          !! [points]
@@ -75,9 +87,9 @@ contains
     real(wp) :: unit(size(weight), size(weight))
     integer :: p
 
-    kind%corners = corners
+    kind%corners = size(corner, 2)
     kind%nodes = nodes
-    kind%degree = nodes/corners
+    kind%degree = nodes/kind%corners
     kind%shape => shape
     kind%points = size(weight)
     kind%point(:, :kind%points) = point
@@ -90,7 +102,75 @@ contains
     call kind%compare_at(point, unit, unit)
     kind%sees_points = .true.
     if (kind%degree > 1) call kind%sample_at(point, unit)
+    call find_spanned(kind, corner(:, min([1, 2, 3, 4], kind%corners)))
   end function new_kind
+
+  !> The determinant of the Jacobian is a sum over each two nodes: what the vectors to them span, times a
+  !! polynomial, which is at most cubic in either coordinate of a square. A triangle is a square with a side
+  !! in its third corner.
+  pure subroutine find_spanned(kind, corner)
+    type(element_kind), intent(inout) :: kind
+    real(wp), intent(in) :: corner(directions, 4)   !! local places of the square's
+    real(wp) :: n(most_nodes), part(4, 4), slope(directions, most_nodes)
+    integer :: a, b, i, j
+
+    do j = 0, 3
+      do i = 0, 3
+        call kind%shape(matmul(corner, [(3 - i)*(3 - j), i*(3 - j), i*j, (3 - i)*j]/9.0_wp), n, slope)
+        part = sum(kind%weight)*matmul(from_values(:, i:i), transpose(from_values(:, j:j)))
+        do b = 3, kind%nodes
+          do a = 2, b - 1
+            kind%spanned(:, :, a, b) = kind%spanned(:, :, a, b) + &
+                                       part*(slope(1, a)*slope(2, b) - slope(2, a)*slope(1, b))
+          end do
+        end do
+      end do
+    end do
+  end subroutine find_spanned
+
+  !> How an element turns: 1 counter-clockwise, -1 clockwise; 0: it folds over, or is flat, somewhere. That is
+  !! where the determinant of its Jacobian, as the area which it would have if that were so everywhere, is
+  !! not above what rounding leaves of the square of its extent, and of its coordinates.
+  pure integer function turn(self, x)
+    class(element_kind), intent(in) :: self
+    real(wp), intent(in) :: x(directions, most_nodes)   !! of its nodes; behind the last the first [length]
+    real(wp) :: area(4, 4), dx(most_nodes), dy(most_nodes), extent
+    integer :: a, b
+
+    dx = x(1, :) - x(1, 1)
+    dy = x(2, :) - x(2, 1)
+    area = 0.0_wp
+    do b = 3, self%nodes
+      do a = 2, b - 1
+        area = area + self%spanned(:, :, a, b)*(dx(a)*dy(b) - dy(a)*dx(b))
+      end do
+    end do
+    turn = merge(1, -1, sum(area) > 0.0_wp)
+    extent = maxval(abs([dx, dy]))
+    if (.not. is_above(turn*area, extent*max(rounded_off*extent, cancelled*maxval(abs(x))), &
+                       most_halvings)) turn = 0
+  end function turn
+
+  !> Is a polynomial above a bound on the unit square? Its values lie between its Bernstein coefficients, and
+  !! those at the corners are values (Johnen, Remacle and Geuzaine 2013). Where they do not tell, those of
+  !! both halves do (de Casteljau), along one coordinate after the other; what is open after all halvings
+  !! counts as not above.
+  pure recursive logical function is_above(net, bound, halvings) result(above)
+    real(wp), intent(in) :: net(4, 4), bound   !! its coefficients; in their unit
+    integer, intent(in) :: halvings            !! at most
+    real(wp), dimension(4, 4) :: lower, upper
+    integer :: k
+
+    above = all(net > bound)
+    if (above .or. halvings == 0 .or. any(net(::3, ::3) <= bound)) return
+    upper = net
+    do k = 1, 4
+      lower(k, :) = upper(1, :)
+      upper(:4 - k, :) = 0.5_wp*(upper(:4 - k, :) + upper(2:5 - k, :))
+    end do
+    above = is_above(transpose(lower), bound, halvings - 1)
+    if (above) above = is_above(transpose(upper), bound, halvings - 1)
+  end function is_above
 
   !> Compare strains at these places.
   pure subroutine compare_at(self, place, p, v)

@@ -8,7 +8,7 @@ module epcont_element_quad4
   public :: quad4
 
   real(wp), parameter :: corner(directions, 4) = &
-    reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [directions, 4])
+    reshape([real(wp) :: -1, -1, 1, -1, 1, 1, -1, 1], [directions, 4])
   !> Integration points and weights of Gauss, two by two.
   real(wp), parameter :: point(directions, 4) = corner/sqrt(3.0_wp), weight(4) = 1.0_wp
 
@@ -18,7 +18,7 @@ contains
   pure function quad4() result(kind)
     type(element_kind) :: kind
 
-    kind = new_kind(4, 4, shape, point, weight)
+    kind = new_kind(corner, 4, shape, point, weight)
     kind%plane_card = 'CQUAD4'
     kind%vtk = 9
     kind%mean_dilatation = .true.

@@ -9,13 +9,12 @@ module epcont_element_quad8
   public :: quad8
 
   real(wp), parameter :: node(directions, 8) = &
-    reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, &
-             0.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, -1.0_wp, 0.0_wp], [directions, 8])
+    reshape([real(wp) :: -1, -1, 1, -1, 1, 1, -1, 1, 0, -1, 1, 0, 0, 1, -1, 0], [directions, 8])
   !> Places and weights of Gauss along a line. Three by three points integrate the stiffness; two by two would
   !! leave a motion without energy, but there the strains are best (Barlow 1976), and there they are sampled.
   real(wp), parameter :: three(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
-  real(wp), parameter :: part(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
-  real(wp), parameter :: two(2) = [-1.0_wp, 1.0_wp]/sqrt(3.0_wp)
+  real(wp), parameter :: part(3) = [5, 8, 5]/9.0_wp
+  real(wp), parameter :: two(2) = [-1, 1]/sqrt(3.0_wp)
 
 contains
 
@@ -25,7 +24,8 @@ contains
     real(wp) :: sample_of(9, 4)
     integer :: i, j
 
-    kind = new_kind(4, 8, shape, grid(three), reshape(spread(part, 1, 3)*spread(part, 2, 3), [9]))
+    kind = new_kind(node(:, :4), 8, shape, grid(three), &
+                    reshape(spread(part, 1, 3)*spread(part, 2, 3), [9]))
     kind%plane_card = 'CQUAD8'
     kind%vtk = 23
     kind%estimated_as = by_quadratics

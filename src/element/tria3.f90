@@ -11,7 +11,7 @@ module epcont_element_tria3
   real(wp), parameter :: point(directions, 1) = 1.0_wp/3.0_wp, weight(1) = 0.5_wp
   !> Strains are compared in the middles of the sides: exact for quadratics.
   real(wp), parameter :: middle(directions, 3) = &
-    reshape([0.5_wp, 0.5_wp, 0.0_wp, 0.5_wp, 0.5_wp, 0.0_wp], [directions, 3])
+    reshape([1, 1, 0, 1, 1, 0]/2.0_wp, [directions, 3])
 
 contains
 
@@ -19,7 +19,7 @@ contains
   pure function tria3() result(kind)
     type(element_kind) :: kind
 
-    kind = new_kind(3, 3, shape, point, weight)
+    kind = new_kind(reshape([real(wp) :: 0, 0, 1, 0, 0, 1], [directions, 3]), 3, shape, point, weight)
     kind%plane_card = 'CTRIA3'
     kind%ring_card = 'CTRAX3'
     kind%vtk = 5
@@ -36,6 +36,6 @@ contains
     n = 0.0_wp
     slope = 0.0_wp
     n(:3) = [1.0_wp - place(1) - place(2), place]
-    slope(:, :3) = reshape([-1.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [directions, 3])
+    slope(:, :3) = reshape([real(wp) :: -1, -1, 1, 0, 0, 1], [directions, 3])
   end subroutine shape
 end module epcont_element_tria3

@@ -11,14 +11,14 @@ module epcont_element_tria6
   !> Integration points and weights: exact for quadratics, that is for the stiffness of a straight-sided
   !! element.
   real(wp), parameter :: point(directions, 3) = &
-    reshape([1.0_wp, 1.0_wp, 4.0_wp, 1.0_wp, 1.0_wp, 4.0_wp]/6.0_wp, [directions, 3])
+    reshape([1, 1, 4, 1, 1, 4]/6.0_wp, [directions, 3])
   real(wp), parameter :: weight(3) = 1.0_wp/6.0_wp
   !> Where strains are compared, and with which parts of the volume. The integration points would flatter, the
   !! error there is least; these are exact for polynomials of the fourth degree (Dunavant 1985).
   real(wp), parameter :: near = 0.091576213509771_wp, far = 0.445948490915965_wp
   real(wp), parameter :: place(directions, 6) = &
-    reshape([near, near, 1.0_wp - 2.0_wp*near, near, near, 1.0_wp - 2.0_wp*near, &
-             far, far, 1.0_wp - 2.0_wp*far, far, far, 1.0_wp - 2.0_wp*far], [directions, 6])
+    reshape([near, near, 1 - 2*near, near, near, 1 - 2*near, &
+             far, far, 1 - 2*far, far, far, 1 - 2*far], [directions, 6])
   real(wp), parameter :: part(6) = [spread(0.109951743655322_wp, 1, 3), spread(0.223381589678011_wp, 1, 3)]
 
 contains
@@ -29,7 +29,7 @@ contains
     real(wp) :: from_points(3, 6)
     integer :: k
 
-    kind = new_kind(3, 6, shape, point, weight)
+    kind = new_kind(reshape([real(wp) :: 0, 0, 1, 0, 0, 1], [directions, 3]), 6, shape, point, weight)
     kind%plane_card = 'CTRIA6'
     kind%ring_card = 'CTRAX6'
     kind%vtk = 22
@@ -47,7 +47,7 @@ contains
     real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
     integer, parameter :: next(3) = [2, 3, 1]
     real(wp), parameter :: l_slope(directions, 3) = &
-      reshape([-1.0_wp, -1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [directions, 3])
+      reshape([real(wp) :: -1, -1, 1, 0, 0, 1], [directions, 3])
     real(wp) :: l(3)
     integer :: i
 

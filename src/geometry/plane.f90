@@ -3,21 +3,9 @@ module epcont_geometry_plane
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: polygon_area, cross_product, turned
+  public :: cross_product, turned
 
 contains
-
-  !> Signed area: positive where the corners turn counter-clockwise [length**2].
-  pure function polygon_area(x) result(area)
-    real(wp), intent(in) :: x(:, :)  !! corners [2, any]
-    real(wp) :: area
-    integer :: k
-
-    area = 0.0_wp
-    do k = 2, size(x, 2) - 1
-      area = area + 0.5_wp*cross_product(x(:2, k) - x(:2, 1), x(:2, k + 1) - x(:2, 1))
-    end do
-  end function polygon_area
 
   !> The part of a x b across the plane: positive where b lies to the left of a.
   pure real(wp) function cross_product(a, b)

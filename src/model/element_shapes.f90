@@ -3,10 +3,8 @@ module epcont_model_element_shapes
   use epcont_base_incidence, only: new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
-  use epcont_base_tolerances, only: rounded_off
+  use epcont_base_tolerances, only: cancelled
   use epcont_element_element_kind, only: most_nodes
-  use epcont_element_kinematics, only: axisymmetric
-  use epcont_geometry_plane, only: polygon_area
   use epcont_model_finding, only: and_more, findings, of_element, of_node
   use epcont_model_model, only: model_type
   implicit none
@@ -23,6 +21,7 @@ contains
   subroutine complete_elements(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
+    logical :: is_ring(model%elements)
     integer :: e, next, plane, ring
 
     model%node_count = model%kinds(model%kind)%nodes
@@ -37,9 +36,9 @@ contains
     end do
     model%first_point(e) = next
     model%around = new_incidence(model%connectivity, model%nodes)
-    if (all(model%kinematics == axisymmetric) .or. all(model%kinematics /= axisymmetric)) return
-    ring = findloc([(model%is_ring(e), e=1, model%elements)], .true., dim=1)
-    plane = findloc([(model%section(e) > 0 .and. .not. model%is_ring(e), e=1, model%elements)], .true., dim=1)
+    is_ring = [(model%is_ring(e), e=1, model%elements)]
+    ring = findloc(is_ring, .true., dim=1)
+    plane = findloc(model%section > 0 .and. .not. is_ring, .true., dim=1)
     if (ring > 0 .and. plane > 0) call found%add_error(of_element, ring, 0, &
       ': a ring in a deck of plane elements ('//model%name_of(of_element, plane)//')', &
       'plane elements only, or rings only')
@@ -48,43 +47,63 @@ contains
 
     !> Turn the element counter-clockwise; a shape that is none is a fault.
     subroutine check_shape(e, n)
-      integer, intent(in) :: e, n                           !! which, and its corners
-      real(wp), dimension(2, most_nodes + 1) :: side, x     ! behind the last the first one again
-      real(wp) :: area, least
-      integer :: k
-      logical :: bends_wrong
+      integer, intent(in) :: e, n   !! which, and its corners
+      real(wp), dimension(2, most_nodes) :: x, straight   ! its nodes; with straight sides
+      integer :: k, turn
 
-      associate (node => model%connectivity(:model%node_count(e), e))
-        do k = 1, n
-          x(:, k) = model%x(:, node(k))
+      associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)))
+        do k = 1, most_nodes
+          x(:, k) = model%x(:, node(merge(k, 1, k <= size(node))))
         end do
-        x(:, n + 1) = x(:, 1)
-        side(:, :n) = x(:, 2:n + 1) - x(:, :n)
-        side(:, n + 1) = side(:, 1)
-        area = polygon_area(x(:, :n))
-        least = rounded_off*maxval(side(1, :n)**2 + side(2, :n)**2)
-        bends_wrong = any(sign(1.0_wp, area)*(side(1, :n)*side(2, 2:n + 1) - side(2, :n)*side(1, 2:n + 1)) &
-                          <= least)
-        if (any(side(:, :n) /= 0.0_wp) .and. all(abs(side(:, :n)) < shortest_side)) then
-          call found%add_error(of_element, e, 3, ': its sides are shorter than '//short_real(shortest_side), &
-                               'other units')
-        else if (n == 3 .and. abs(area) <= least) then
-          call found%add_error(of_element, e, 4, ': its corners '//ids(node(:3))//' lie on one line', &
-                               'corners that span an area')
-        else if (n == 4 .and. bends_wrong) then
-          call found%add_error(of_element, e, 3, ': its corners '//ids(node(:4))// &
-                               ' cross over, bend inwards or lie on one line', &
-                               'four corners in turn, each bending the same way')
-        else
-          if (area < 0.0_wp) then
+        straight = x
+        do k = 1, n
+          straight(:, n + k) = 0.5_wp*(x(:, k) + x(:, mod(k, n) + 1))
+        end do
+        turn = kind%turn(x)
+        if (turn /= 0 .and. all(abs(straight(:, n + 1:2*n) - x(:, :n)) < 0.5_wp*shortest_side)) then
+          call found%add_error(of_element, e, -node(1), ': its sides are shorter than '// &
+                               short_real(shortest_side), 'other units')
+        else if (turn /= 0 .or. kind%turn(straight) /= 0) then
+          if (size(node) > n) call check_middles(e, n, turn, x, straight)
+          if (turn < 0) then
             node(2:n) = node(n:2:-1)
             node(n + 1:) = node(size(node):n + 1:-1)
           end if
-          if (size(node) > n) call check_middles(e, n, model%x(:, node([(k, k=1, n), 1])), &
-                                                 model%x(:, node(n + 1:)))
+        else if (n == 3) then
+          call found%add_error(of_element, e, -node(2), ': its corners '//ids(node(:n))//' lie on one line', &
+                               'corners that span an area')
+        else
+          call found%add_error(of_element, e, -node(1), ': its corners '//ids(node(:n))// &
+                               ' cross over, bend inwards or lie on one line', &
+                               'four corners in turn, each bending the same way')
         end if
       end associate
     end subroutine check_shape
+
+    !> A side's middle node may leave the middle as long as the element does not fold over; a side that bulges
+    !! more than half a circle does is hardly meant.
+    subroutine check_middles(e, n, turn, x, straight)
+      integer, intent(in) :: e, n, turn   !! which, its corners; 0: it folds over, and would not if straight
+      real(wp), dimension(2, most_nodes), intent(in) :: x, straight   !! as in `check_shape`
+      character(len=*), parameter :: remedy = 'nodes near the middles of the sides'
+      character(len=:), allocatable :: name
+      real(wp) :: part(n)
+      integer :: node
+
+      associate (middle => straight(:, n + 1:2*n))
+        part = sum((x(:, n + 1:2*n) - middle)**2, dim=1)/sum((x(:, :n) - middle)**2, dim=1)
+      end associate
+      if (turn /= 0 .and. all(part <= 1.0_wp)) return
+      node = model%connectivity(n + maxloc(part, dim=1), e)
+      name = ': middle node '//text_of(model%node_id(node))
+      if (turn == 0) then
+        call found%add_error(of_element, e, -node, name//' is so far from the middle of its side that '// &
+                             'the element folds over', remedy)
+      else
+        call found%add_warning(of_element, e, -node, name//' is farther from the middle of its side '// &
+                               'than half of that side is long', remedy)
+      end if
+    end subroutine check_middles
 
     !> `1, 2 and 3` of nodes.
     pure function ids(node) result(text)
@@ -97,48 +116,39 @@ contains
         text = text//trim(merge(' and', ',   ', k == size(node)))//' '//text_of(model%node_id(node(k)))
       end do
     end function ids
-
-    !> A side's middle node may leave the middle as long as the element does not fold over at a corner; a side
-    !! that bulges more than half a circle does is hardly meant.
-    subroutine check_middles(e, n, x, middle)
-      integer, intent(in) :: e, n
-      real(wp), intent(in) :: x(:, :)        !! corners, behind the last the first one again [2, n + 1]
-      real(wp), intent(in) :: middle(:, :)   !! of the sides [2, n]
-      character(len=*), parameter :: remedy = 'nodes near the middles of the sides'
-      real(wp) :: at_start(2, n + 1), at_end(2, n)   ! tangents of the sides, into them
-      integer :: k
-
-      at_start(:, :n) = 4.0_wp*middle - 3.0_wp*x(:, :n) - x(:, 2:)
-      at_start(:, n + 1) = at_start(:, 1)
-      at_end = 4.0_wp*middle - 3.0_wp*x(:, 2:) - x(:, :n)
-      if (.not. all(at_start(1, 2:)*at_end(2, :) - at_start(2, 2:)*at_end(1, :) > 0.0_wp)) then
-        call found%add_error(of_element, e, 3, ': a middle node is so far from the middle of its side '// &
-                             'that the element folds over', remedy)
-      else if (any([(norm2(2.0_wp*middle(:, k) - x(:, k) - x(:, k + 1)) > norm2(x(:, k + 1) - x(:, k)), &
-                     k=1, n)])) then
-        call found%add_warning(of_element, e, 3, ': a middle node is farther from the middle of its side '// &
-                               'than half of that side is long', remedy)
-      end if
-    end subroutine check_middles
   end subroutine complete_elements
 
-  !> Rings lie at x >= 0, and their nodes on the axis cannot leave it. Supports and ties are known.
+  !> Rings lie at x >= 0, the parabolas of their sides as well, and their nodes on the axis cannot leave it.
+  !! Supports and ties are known.
   subroutine check_axis(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    logical :: in_ring(model%nodes), loose(model%nodes)
+    logical, dimension(model%nodes) :: beyond, in_ring, loose
+    real(wp) :: control, radius(3)
     integer :: e, i
 
     in_ring = .false.
+    beyond = .false.
     do e = 1, model%elements
       associate (node => model%connectivity(:model%node_count(e), e))
-        if (model%is_ring(e) .and. all(node > 0)) in_ring(node) = .true.
+        if (.not. (model%is_ring(e) .and. all(node > 0))) cycle
+        in_ring(node) = .true.
+        do i = model%corners(e) + 1, size(node)
+          radius = model%x(1, model%edge(e, i - model%corners(e)))
+          control = 2.0_wp*radius(3) - 0.5_wp*(radius(1) + radius(2))
+          ! The least is (radius(1) radius(2) - control**2)/(radius(1) + radius(2) - 2 control)
+          beyond(node(i)) = -control > sqrt(abs(radius(1)*radius(2))) + cancelled*maxval(radius)
+        end do
       end associate
     end do
     do i = 1, model%nodes
-      if (in_ring(i) .and. model%x(1, i) < 0.0_wp) &
+      if (in_ring(i) .and. model%x(1, i) < 0.0_wp) then
         call found%add_error(of_node, i, 3, ': belongs to a ring and lies at a negative radius', &
                              'X1 of at least 0.0: x is the radius')
+      else if (beyond(i)) then
+        call found%add_error(of_node, i, 3, ': is the middle of a side of a ring that goes beyond the axis', &
+                             'x of at least 0.0 all along it: x is the radius')
+      end if
     end do
     loose = in_ring .and. model%x(1, :) == 0.0_wp .and. .not. model%held(1, model%leader(1, :))
     if (.not. any(loose)) return
@@ -171,10 +181,7 @@ contains
       integer :: i, k, least
 
       associate (corner => model%connectivity(:corners, element), start => model%around%start)
-        least = corner(1)
-        do k = 2, corners
-          if (start(corner(k) + 1) - start(corner(k)) < start(least + 1) - start(least)) least = corner(k)
-        end do
+        least = corner(minloc(start(corner + 1) - start(corner), dim=1))
         do i = start(least), start(least + 1) - 1
           other = model%around%group(i)
           if (other == element) exit

@@ -1,7 +1,6 @@
 !> The answer to a scene: displacements, contact and stresses, and how they were found.
 module epcont_result_answer
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: lost_digits
   use epcont_model_controls, only: precision_double
   use epcont_plasticity_iteration, only: followed_loads
   use epcont_result_body_force, only: body_force

@@ -1,6 +1,5 @@
 !> Shapes of every kind of element, patches of them, and what tests ask of an element: strains, stiffness, eigenvalues.
 module element_kinds
-  use epcont_geometry_plane, only: polygon_area
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes
   use epcont_element_integration_point, only: evaluate_points, integration_point
@@ -13,7 +12,7 @@ module element_kinds
   private
   public :: sample_shapes, label, sample_place, local_node, kind_with, shape_values, slopes, corners_of, centroid_radius
   public :: points_of, places_of, strains_of, linear_field, elasticity, stiffness, eigenvalues
-  public :: patch_of, solved_patch, grid_element
+  public :: patch_of, solved_patch, grid_element, polygon_area
 
   integer, parameter, public :: node_numbers(4) = [3, 6, 4, 8]
   real(wp), parameter, public :: thickness = 0.7_wp
@@ -192,6 +191,13 @@ contains
 
     corner = x(:, :merge(4, 3, modulo(size(x, 2), 4) == 0))
   end function corners_of
+
+  !> Signed area of a polygon: positive where its corners turn counter-clockwise.
+  pure real(wp) function polygon_area(x) result(area)
+    real(wp), intent(in) :: x(:, :)
+
+    area = 0.5_wp*sum(x(1, :)*cshift(x(2, :), 1) - x(2, :)*cshift(x(1, :), 1))
+  end function polygon_area
 
   !> Distance of a polygon's centroid from the axis.
   pure real(wp) function centroid_radius(corner) result(radius)

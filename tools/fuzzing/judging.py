@@ -189,7 +189,7 @@ def fault_of_answer(run, name, place, tolerance):
     except NOT_UNDERSTOOD:
         return None
     except (OSError, KeyError, ValueError, IndexError, TypeError) as error:
-        if any("a middle node is farther" in line for line in run.told(name)):
+        if any(" is farther from the middle of its side" in line for line in run.told(name)):
             return None  # What faces such a side is found elsewhere there.
         return f"verify: {type(error).__name__} {error}"
     return "verify: " + next(line for line in lines if line.endswith("WRONG")) if faults else None
