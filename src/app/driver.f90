@@ -145,7 +145,7 @@ contains
     call watch%lap(stage_model)
     if (run%faults%errors > 0) return
     call run%find_motions(run%faults)
-    call tell(run%deck, run%faults)
+    call tell(run%deck, run%model%kinds, run%faults)
     call watch%lap(stage_plan)
   end subroutine prepare
 

@@ -16,6 +16,8 @@ module epcont_build_build
                                     card_spc, card_spc1, card_tables1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: least_cause
+  use epcont_element_element_kind, only: element_kind
+  use epcont_element_element_kinds, only: element_kinds
   use epcont_model_element_shapes, only: check_axis
   use epcont_model_finding, only: findings, of_body, of_couple, of_element, of_line, of_node, of_pair, &
                                   of_paper_ratio, of_scene
@@ -39,11 +41,12 @@ contains
     type(card_index) :: nodes
     integer :: k
 
+    model%kinds = element_kinds()
     do k = 1, size(own_ids)
       call check_unique(deck, own_ids(k:k), faults)
     end do
     call check_unique(deck, [card_pshell, card_psolid], faults)
-    call check_unique(deck, [element_cards(deck), card_rbe2, card_cgap], faults)
+    call check_unique(deck, [element_cards(deck, model%kinds), card_rbe2, card_cgap], faults)
     nodes = index_of(deck, card_grid)
     call build_mesh(deck, nodes, model, faults)
     model%controls = read_controls(deck)
@@ -59,17 +62,18 @@ contains
     if (model%elements == 0 .and. faults%errors == 0) &
       call faults%add_error(of_scene, 0, 0, 'the deck has no elements', 'CTRIA3 cards')
     if (faults%errors == 0) call finish_model(model, faults)
-    call tell(deck, faults)
+    call tell(deck, model%kinds, faults)
   end subroutine build_model
 
   !> Put the names of their cards before what was found of the scene, with the places of these.
-  subroutine tell(deck, faults)
+  subroutine tell(deck, kinds, faults)
     type(deck_type), intent(in) :: deck          !! its cards
+    type(element_kind), intent(in) :: kinds(:)   !! of elements
     type(diagnostics), intent(inout) :: faults   !! of the deck, and findings of the scene that it makes
     integer, allocatable :: elements(:)   ! the cards of elements
     integer :: i
 
-    elements = element_cards(deck)
+    elements = element_cards(deck, kinds)
     do i = 1, faults%count
       if (faults%list(i)%of /= of_scene .or. faults%list(i)%which > 0) call name_card(faults%list(i))
     end do

@@ -5,7 +5,7 @@ module epcont_build_mesh
   use epcont_build_reference, only: card_index, index_of, resolve
   use epcont_deck_card_kinds, only: card_grid, card_mat1, card_mats1, card_pshell, card_psolid, card_tables1
   use epcont_deck_deck, only: deck_type
-  use epcont_element_element_kinds, only: element_kinds
+  use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
   use epcont_model_arrays, only: add_elements, new_scene, set_sections
   use epcont_model_controls, only: uniaxial_curve
@@ -35,7 +35,7 @@ contains
   subroutine build_mesh(deck, nodes, model, found)
     type(deck_type), intent(in) :: deck       !! its cards
     type(card_index), intent(in) :: nodes     !! ids of GRID
-    type(model_type), intent(out) :: model    !! the scene
+    type(model_type), intent(inout) :: model  !! the scene, with the kinds of elements
     type(findings), intent(inout) :: found    !! what is wrong with it is added
     type(material_card), allocatable :: material(:)   ! of each MAT1
     integer, allocatable :: cards(:)                  ! of elements
@@ -53,7 +53,7 @@ contains
     end associate
     call read_materials()
     call read_sections()
-    cards = element_cards(deck)
+    cards = element_cards(deck, model%kinds)
     do i = 1, size(cards)
       call read_elements(cards(i))
     end do
@@ -227,8 +227,8 @@ contains
       integer, allocatable :: node(:, :), section(:)
       logical :: ring
 
-      associate (table => deck%card(card), kinds => element_kinds())
-        ring = any(kinds%ring_card == table%entry%name)
+      associate (table => deck%card(card))
+        ring = any(model%kinds%ring_card == table%entry%name)
         n = size(table%entry%field) - 2   ! without id and section
         allocate (node(n, table%count), section(table%count))
         call resolve(deck, card, 2, index_of(deck, merge(card_psolid, card_pshell, ring)), found, section)
@@ -244,16 +244,15 @@ contains
   end subroutine build_mesh
 
   !> The cards of elements, in the order in which they are read: those that the table of elements names.
-  pure function element_cards(deck) result(cards)
-    type(deck_type), intent(in) :: deck   !! its cards
+  pure function element_cards(deck, kinds) result(cards)
+    type(deck_type), intent(in) :: deck         !! its cards
+    type(element_kind), intent(in) :: kinds(:)  !! of elements
     integer, allocatable :: cards(:)
     character(len=8) :: name(size(deck%card))
     integer :: c
 
     name = deck%card%entry%name
-    associate (kinds => element_kinds())
-      cards = pack([(c, c=1, size(name))], &
-                   [(any(kinds%plane_card == name(c) .or. kinds%ring_card == name(c)), c=1, size(name))])
-    end associate
+    cards = pack([(c, c=1, size(name))], &
+                 [(any(kinds%plane_card == name(c) .or. kinds%ring_card == name(c)), c=1, size(name))])
   end function element_cards
 end module epcont_build_mesh

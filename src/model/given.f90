@@ -237,7 +237,7 @@ contains
     type(model_type), intent(inout) :: model   !! with what is given; its blocks become the list
     integer :: b, first, i, last
 
-    model%kinds = element_kinds()
+    if (.not. allocated(model%kinds)) model%kinds = element_kinds()
     model%nodes = size(model%x, 2)
     model%pairs = size(model%initial_gap)
     model%elements = sum([(size(model%block(b)%section), b=1, size(model%block))])

@@ -45,7 +45,7 @@ contains
     call read_lines(cards//'ENDDATA|', deck, faults)
     call build_model(deck, scene%model, faults)
     if (faults%errors == 0) call scene%find_motions(faults)
-    call tell(deck, faults)
+    call tell(deck, scene%model%kinds, faults)
     words = bars(render(faults, deck%source))
   end function faults_of
 
