@@ -7,12 +7,11 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_recovery, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_surface_line, only: first_element, new_surface_line, smooth_pressures, surface_line
   use epcont_accuracy_unit_loads, only: contact_sensitivity, find_sensitivity, find_unit_loads, unit_loads
-  use epcont_accuracy_weights, only: concentrated, estimate_weights, least_energy, of_shares, uncancelled, &
-                                     unresolved, wave_height, weights_of
+  use epcont_accuracy_weights, only: concentrated, least_energy, of_shares, uncancelled, unresolved, &
+                                     wave_height
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, no_effect
-  use epcont_element_element_kind, only: by_quadratics
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
@@ -166,24 +165,21 @@ contains
     !! lets the bodies come too near.
     pure real(wp) function error_along(j) result(error)
       integer, intent(in) :: j   !! in `loads%moved`
-      type(estimate_weights) :: weights
       real(wp) :: at_end, end_error, near, short, vague
       integer :: z
 
       near = 0.0_wp
       end_error = 0.0_wp
       vague = 1.0_wp
-      weights = weights_of(by_quadratics, scene%model%has_rings(), any(answer%plastic))   ! without a zone
       do z = 1, size(accuracy%zone)
         associate (zone => accuracy%zone(z), force => loads%force(answer%zones(z)%pairs, loads%moved(j)))
-          weights = zone%weights
           at_end = answer%zones(z)%max_pressure*zone%half_length*surface%compliance(zone%peak)
           ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it
           ! says nothing of one.
-          if (.not. zone%unbounded) near = near + weights%between*(at_end*zone%resolution**2)*sum(force)
+          if (.not. zone%unbounded) near = near + zone%weights%between*(at_end*zone%resolution**2)*sum(force)
           if (.not. zone%resolved) vague = unresolved
           ! Of a tilt of either sign the ends count, not the sum.
-          end_error = end_error + sum(abs(force))*(weights%end*(at_end*zone%end_resolution**2) &
+          end_error = end_error + sum(abs(force))*(zone%weights%end*(at_end*zone%end_resolution**2) &
                                                    + wave_height*zone%wave_height + zone%too_near)
         end associate
       end do
@@ -193,10 +189,9 @@ contains
         if (loads%moved(j) > max(1, scene%motions%count)) short = of_shares*(unsigned + abs(near))
       end associate
       ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its
-      ! field is too small.
-      error = weights%product*short/max(least_energy, 1.0_wp - accuracy%energy_norm**2) &
-              /max(least_energy, 1.0_wp - field%missing(j)) + end_error
-      error = vague*error
+      ! field is too small. Of unlike elements that bear the largest weight counts.
+      error = vague*(end_error + maxval(accuracy%zone%weights%product)*short/ &
+        max(least_energy, 1.0_wp - accuracy%energy_norm**2)/max(least_energy, 1.0_wp - field%missing(j)))
     end function error_along
 
     !> The total contact force, and what of it each body bears: nothing is off where loads alone make it.

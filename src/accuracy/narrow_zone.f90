@@ -103,7 +103,8 @@ contains
       associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
         bearing = bearing_pairs(model, force(pairs))
         if (bearing > narrow) cycle
-        k = pairs(maxloc(force(pairs), dim=1))
+        k = pairs(maxloc(line%tributary(pairs), dim=1, &   ! of equal ones the widest
+                         mask=force(pairs) >= (1.0_wp - no_effect)*maxval(force(pairs))))
         associate (beside => pack(line%neighbour(:, k), line%neighbour(:, k) > 0))
           aside = maxval([0.0_wp, (0.5_wp*line%distance(k, beside(i))/bearing, i=1, size(beside))])
         end associate
@@ -132,13 +133,15 @@ contains
     logical, intent(in) :: given(:, :)
     real(wp), intent(out) :: total                      !! of the total contact force [force]
     real(wp), intent(out) :: of_body(2, model%bodies)   !! of the resultant on each body [force]
-    real(wp) :: along, change(2), own(2), on(2), lean(2, model%bodies), more, resultant(2, model%bodies)
+    real(wp) :: along, change(2), least, more, own(2), on(2)
+    real(wp), dimension(2, model%bodies) :: lean, resultant
     logical :: is_narrow
     integer :: b, body(2), i, z
 
     total = 0.0_wp
     of_body = 0.0_wp
     lean = 0.0_wp
+    least = no_effect*sum(answer%contact%force)
     resultant = resultants(model, answer%contact%force)
     do z = 1, size(answer%zones)
       more = 0.0_wp
@@ -148,15 +151,15 @@ contains
           associate (k => pairs(i), normal => model%normal(:, pairs(i)))
             body = model%body(model%pair_node(:, k))
             own = -smooth_normal(k)
-            on = kept(resultant(:, body), given(:, body))
-            if (all(own == 0.0_wp) .or. norm2(on) <= no_effect*sum(force)) cycle
+            on = kept(resultant(:, body), given(:, body) .and. abs(resultant(:, body)) > least)
+            if (all(own == 0.0_wp) .or. norm2(on) <= least) cycle
             ! The pair bears the same along `on`, if it bears anything there.
             along = 0.0_wp
             if (is_narrow .or. abs(dot_product(on, own)) >= bears_on*norm2(on)) &
-              along = excess(dot_product(on, normal), dot_product(on, own))
+              along = excess(dot_product(on, normal), dot_product(on, own), no_effect*norm2(on))
             change = (1.0_wp + along)*own - normal
             if (is_narrow) total = total + askew*force(k)*abs(along)
-            more = more + merge(0.0_wp, force(k)*along, is_narrow)
+            if (.not. is_narrow) more = more + force(k)*along
             do b = 1, 2   ! A is pushed against the normal, B along it
               if (is_narrow) then
                 of_body(:, body(b)) = of_body(:, body(b)) + askew*force(k)*abs(change)
@@ -175,7 +178,7 @@ contains
   contains
 
     !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the
-    !! strongest there does.
+    !! strongest there does, and on what that presses on.
     subroutine turn_shared_places()
       real(wp) :: way
       integer :: k
@@ -193,8 +196,9 @@ contains
           way = merge(1.0_wp, -1.0_wp, model%body(model%pair_node(2, strongest(k))) == body(2))
           change = force(k)*abs(model%normal(:, k) - way*model%normal(:, strongest(k)))
           total = total + norm2(change)
-          do b = 1, 2
-            of_body(:, body(b)) = of_body(:, body(b)) + change
+          do b = 1, model%bodies
+            if (any(model%body([model%pair_node(:, [k, strongest(k)])]) == b)) &
+              of_body(:, b) = of_body(:, b) + change
           end do
         end do
       end associate
@@ -226,16 +230,17 @@ contains
     real(wp) :: on(2), of_loads(2, 2)
 
     of_loads = merge(resultant, 0.0_wp, given)
-    if (all(of_loads == 0.0_wp)) of_loads = resultant
-    on = of_loads(:, merge(1, 2, norm2(of_loads(:, 1)) > norm2(of_loads(:, 2))))
+    if (.not. any(given)) of_loads = resultant
+    on = of_loads(:, merge(1, 2, norm2(of_loads(:, 1)) > (1.0_wp + no_effect)*norm2(of_loads(:, 2))))
   end function kept
 
-  !> a/b - 1, between -1 and 1.
-  pure real(wp) function excess(a, b)
+  !> a/b - 1, between -1 and 1; of equal ones 0, and 1 where b alone is nothing.
+  pure real(wp) function excess(a, b, least)
     real(wp), intent(in) :: a, b
+    real(wp), intent(in) :: least   !! up to which there is nothing
 
-    excess = sign(1.0_wp, a - b)*sign(1.0_wp, b)
-    if (abs(a - b) < abs(b)) excess = (a - b)/b
+    excess = merge(1.0_wp, 0.0_wp, abs(a - b) > least)
+    if (abs(b) > least) excess = max(-1.0_wp, min(1.0_wp, (a - b)/b))
   end function excess
 
   !> The normal of a line at one of its nodes; none at a corner, or elsewhere.

@@ -84,9 +84,9 @@ contains
     class(surface_line), intent(in) :: self
     integer, intent(in) :: pair, from   !! one, and its neighbour
 
-    beyond = self%neighbour(1, pair)
-    if (beyond == from) beyond = self%neighbour(2, pair)
-    if (beyond == from) beyond = 0
+    associate (next => self%neighbour(:, pair))   ! round a corner it may be another pair of that node
+      beyond = maxval(merge(next, 0, self%node(max(next, 1)) /= self%node(from)))
+    end associate
   end function beyond
 
   !> The first element at a node; 0: none.
@@ -112,15 +112,8 @@ contains
     if (size(elements) == 0) return
     elements = pack(elements, model%section(elements) == model%section(elements(1)))
     if (model%held(1, model%leader(1, node)) .and. model%held(2, model%leader(2, node)) .or. &
-        all([(is_rigid(elements(i)), i=1, size(elements))])) elements = [integer ::]
-
-  contains
-
-    pure logical function is_rigid(element)
-      integer, intent(in) :: element
-
-      is_rigid = model%is_rigid(model%connectivity(:model%node_count(element), element))
-    end function is_rigid
+        all([(model%is_rigid(model%connectivity(:model%node_count(elements(i)), elements(i))), &
+              i=1, size(elements))])) elements = [integer ::]
   end function elements_behind
 
   !> The normal stress at each pair, as a pressure: the mean of both sides', of which each has errors of its
@@ -158,23 +151,26 @@ contains
     end do
   end function smooth_pressures
 
-  !> 1/E*, of both sides of a pair: (1 - nu**2)/E, 1/E of sheets, 0 of nodes that give way nowhere [1/stress].
+  !> 1/E*, of both sides of a pair: (1 - nu**2)/E, 1/E of sheets, 0 of nodes that give way nowhere; of the
+  !! nodes that share the other side the largest [1/stress].
   pure real(wp) function surface_compliance(model, pair) result(compliance)
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: pair             !! which pair
-    real(wp) :: nu
-    integer :: i
+    real(wp) :: nu, side(2)
+    integer :: i, k
 
-    compliance = 0.0_wp
-    do i = model%row_start(pair), min(model%row_start(pair) + 1, model%row_start(pair + 1) - 1)
+    side = 0.0_wp
+    do i = model%row_start(pair), model%row_start(pair + 1) - 1
+      k = merge(1, 2, i == model%row_start(pair))
       associate (elements => elements_behind(model, model%row_node(i)))
         if (size(elements) == 0) cycle
         associate (section => model%section(elements(1)))
           nu = merge(0.0_wp, model%poisson(section), model%kinematics(section) == plane_stress)
-          compliance = compliance + (1.0_wp - nu**2)/model%young(section)
+          side(k) = max(side(k), (1.0_wp - nu**2)/model%young(section))
         end associate
       end associate
     end do
+    compliance = sum(side)
   end function surface_compliance
 
   !> Of the pairs of a zone: the pressure that flattens all uneven bends, the largest; whether these are
@@ -253,14 +249,15 @@ contains
       goes_on = .false.
       if (pair > 0) goes_on = all(line%neighbour(:, pair) > 0) .or. line%mirrored(pair)
     end function goes_on
+
+    !> Are the first and the third of four curvatures above the others, or below? By more than rounding makes
+    !! of straight sides beside a tip.
+    pure logical function by_turns(x)
+      real(wp), intent(in) :: x(4)
+
+      associate (odd => x([1, 3]), even => x([2, 4]), least => no_effect*maxval(abs(line%curvature(pairs))))
+        by_turns = minval(odd) - maxval(even) > least .or. minval(even) - maxval(odd) > least
+      end associate
+    end function by_turns
   end subroutine find_waves
-
-  !> Are the first and the third of four values above the others, or below?
-  pure logical function by_turns(x)
-    real(wp), intent(in) :: x(4)
-
-    associate (odd => x([1, 3]), even => x([2, 4]), least => no_effect*maxval(abs(x)))
-      by_turns = minval(odd) - maxval(even) > least .or. minval(even) - maxval(odd) > least
-    end associate
-  end function by_turns
 end module epcont_accuracy_surface_line

@@ -72,7 +72,7 @@ contains
 
     !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
     subroutine find_shares()
-      real(wp), allocatable :: one(:)
+      real(wp), dimension(scene%model%pairs) :: one, other   !! of one component, of the other
       integer :: c, i, k
 
       allocate (loads%share(scene%model%pairs, 1), source=1.0_wp)
@@ -83,15 +83,16 @@ contains
           associate (body => answer%bodies(i)%body)
             if (is_free(body, c)) cycle
             one = shares_of_pairs(scene%model, body, c)
+            other = shares_of_pairs(scene%model, body, 3 - c)
           end associate
-          if (any(abs(one) > least_difference) .and. all(answer%bodies(i)%resultant == 0.0_wp) .and. &
-              .not. any(abs(one) > least_difference .and. answer%contact%touching)) then
+          if (any(abs(one) > least_difference) .and. .not. &
+              any(abs(one) + abs(other) > least_difference .and. answer%contact%touching)) then
             loads%column(c, i) = -1
             cycle
           end if
           do k = 2, size(loads%share, 2)
-            associate (other => loads%share(:, k))
-              if (min(maxval(abs(other - one)), maxval(abs(other + one))) <= least_difference) exit
+            associate (known => loads%share(:, k))
+              if (min(maxval(abs(known - one)), maxval(abs(known + one))) <= least_difference) exit
             end associate
           end do
           if (k > size(loads%share, 2)) loads%share = reshape([loads%share, one], [size(one), k])

@@ -80,8 +80,9 @@ module epcont_accuracy_weights
 
   !> Part of the energy that a mesh has at least for its errors to be measured by it (a choice).
   real(wp), parameter, public :: least_energy = 0.5_wp
-  !> Part of the resultant at one node of the mesh from which on it is a point load (a choice).
-  real(wp), parameter, public :: concentrated = 0.5_wp
+  !> Part of the resultant at one node of the mesh from which on it is a point load (a choice; not a half,
+  !! which the node between two sides under pressure has).
+  real(wp), parameter, public :: concentrated = 0.51_wp
   !> A tip's curvature is so many times that of the nodes around it (test_limits.py).
   real(wp), parameter, public :: tip_stands_out = 4.0_wp
   !> The pressure that its bend adds, E* times its angle, is at least this part of the largest

@@ -47,10 +47,8 @@ module epcont_accuracy_zone_error
   type :: zone_end
     !> To the first open pair, or between the last two, if that is more [length]
     real(wp) :: step = 0.0_wp
-    real(wp) :: beyond = 0.0_wp     !! to where the pressure vanishes [length]
     !> What a mean over the last side is short of the pressure at its end [stress]
     real(wp) :: short = 0.0_wp
-    logical :: open = .false.       !! contact ends, not the candidates
     logical :: edge = .false.       !! the candidates do, and the pressure does not fall towards it
     logical :: cut_off = .false.    !! the pressure is largest at the last pair, though contact ends there
   end type zone_end
@@ -67,37 +65,47 @@ contains
     type(zone_error) :: error
     type(zone_end) :: ends(2)
     real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
+    !> Length of all of it, but for a mean side of one that goes all around; of that the whole way, else 0
+    real(wp) :: long, around
     real(wp) :: flattening, largest, spacing
     logical :: mirrored(2), waves
-    integer :: kind, n, peak
+    integer :: at(2), kind, n, peak
 
     n = size(zone%pairs)
     p = answer%pressure(zone%pairs)
     ! Of equal pressures, but for rounding, that on the largest area: a corner on the axis may have its
     ! neighbour's.
-    peak = maxloc(line%tributary(zone%pairs), mask=p >= maxval(p) - least_difference*abs(maxval(p)), dim=1)
+    peak = maxloc(line%tributary(zone%pairs), mask=p >= maxval(p) - no_effect*abs(maxval(p)), dim=1)
     error%peak = zone%pairs(peak)
     largest = p(peak)
-    kind = first_element(model, line%node(zone%first))
+    kind = first_element(model, line%node(error%peak))
     kind = merge(model%kind(max(kind, 1)), 1, kind > 0)
     error%weights = weights_of(model%kinds(kind)%estimated_as, model%has_rings(), any(answer%plastic))
     if (largest <= 0.0_wp) return
     mirrored = line%mirrored([zone%first, zone%last])
+    long = zone%along(n)
+    around = 0.0_wp
+    if (n > 2 .and. any(line%neighbour(:, zone%first) == zone%last)) then
+      around = long + line%distance(zone%first, zone%last)
+      long = around - around/n
+    end if
     ends = [end_at(1), end_at(2)]
     call find_waves(line, zone%pairs, flattening, waves, error%wave_height)
     if (waves) error%waviness = flattening/largest
 
-    error%half_length = 0.5_wp*(zone%along(n) + sum(ends%beyond))
+    error%half_length = 0.5_wp*(long + sum(zone%vanishes))
     if (mirrored(1) .neqv. mirrored(2)) error%half_length = 2.0_wp*error%half_length
     if (zone%half_width >= 0.0_wp) &
       error%half_width = sum(error%weights%step*ends%step)*merge(1.0_wp, 0.5_wp, any(mirrored)) &
                          + error%weights%width_energy*energy*zone%half_width &
                          + flattening/largest*zone%half_width   ! the load is given
-    spacing = 0.0_wp
-    associate (before => max(1, peak - 1), behind => min(n, peak + 1))
-      if (n > 1) spacing = (zone%along(behind) - zone%along(before))/(behind - before)
-    end associate
-    if (n > 1 .and. .not. any(ends%open) .and. maxval(p) - minval(p) <= no_effect*largest) then
+    ! two pairs may stand at one place
+    at = [max(1, count(zone%along < zone%along(peak))), min(n, 1 + count(zone%along <= zone%along(peak)))]
+    spacing = (zone%along(at(2)) - zone%along(at(1)))/max(1, count(zone%along(at) /= zone%along(peak)))
+    at = line%neighbour(:, error%peak)
+    if (around > 0.0_wp) &
+      spacing = 0.5_wp*(line%distance(error%peak, at(1)) + line%distance(error%peak, at(2)))
+    if (n > 1 .and. all(zone%open <= 0.0_wp) .and. maxval(p) - minval(p) <= no_effect*largest) then
       error%resolution = 0.0_wp
     else
       ! of a single pair it stays 1
@@ -119,19 +127,15 @@ contains
     pure type(zone_end) function end_at(e) result(found)
       integer, intent(in) :: e
       integer :: first, second   !! in p: at the end, and beside it
-      real(wp) :: drop, length
+      real(wp) :: length
 
-      if (mirrored(e)) return
-      if (n > 2 .and. any(line%neighbour(:, zone%first) == zone%last)) return   ! it goes all around
+      if (mirrored(e) .or. around > 0.0_wp) return
       first = merge(1, n, e == 1)
-      second = merge(min(n, 2), max(1, n - 1), e == 1)
+      second = max(1, count(zone%along < zone%along(n)))
+      if (e == 1) second = min(n, 1 + count(zone%along <= 0.0_wp))
       length = abs(zone%along(second) - zone%along(first))
-      found%open = zone%open(e) > 0.0_wp
       found%step = max(zone%open(e), length)
-      drop = p(second)**2 - p(first)**2   ! where p**2 is linear
-      if (n > 1) found%beyond = zone%open(e)
-      if (drop > 0.0_wp) found%beyond = min(zone%open(e), length*p(first)**2/drop)
-      if (found%open) then
+      if (zone%open(e) > 0.0_wp) then
         found%cut_off = n > few .and. peak == first
       else
         associate (tell => edge_pairs(model, line, zone%pairs(first)), &
@@ -148,7 +152,7 @@ contains
 
       coarse = 0.0_wp   ! of an even pressure any spacing tells
       if (error%resolution > 0.0_wp) &
-        coarse = max(zone%along(n)/max(1, n - 1), depth_behind())/max(spacing, error%half_length)
+        coarse = max(long/max(1, n - 1), depth_behind())/max(spacing, error%half_length)
       from = [off_parabola(), abs(largest - line%smooth_pressure(error%peak))]
       associate (weights => error%weights)
         off = weights%parabola*from(1) + weights%stress*from(2) + weights%smaller*minval(from) + flattening &
@@ -180,23 +184,31 @@ contains
     end function depth_behind
 
     !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, mirrored
-    !! ones too. Of too few pairs for one: what Hertz's pressure falls by over half a spacing [stress].
+    !! ones and those the other way around too; of those that are as near all. Of too few pairs for one: what
+    !! Hertz's pressure falls by over half a spacing [stress].
     pure real(wp) function off_parabola() result(off)
-      real(wp) :: x(3*n), y(3*n), m(0:4), right(0:2), square
+      real(wp) :: x(3*n), y(3*n), m(0:4), reach, right(0:2), square
       logical :: left(3*n)
       integer :: i, k
 
-      x = [zone%along, -zone%along, 2.0_wp*zone%along(n) - zone%along] - zone%along(peak)
-      x = x/max(spacing, tiny(1.0_wp))
       y = [p, p, p]**2
+      x = [zone%along, -zone%along, 2.0_wp*zone%along(n) - zone%along] - zone%along(peak)
       left = [spread(.true., 1, n), spread(mirrored(1), 1, n), spread(mirrored(2), 1, n)]
       left([n + 1, 3*n]) = .false.   ! they are on the lines of symmetry
+      if (around > 0.0_wp) then
+        x = [zone%along, zone%along - around, zone%along + around] - zone%along(peak)
+        left = abs(x) <= (0.5_wp + no_effect)*around
+      end if
+      x = x/max(spacing, tiny(1.0_wp))
       off = largest*error%resolution**2/8.0_wp
       if (count(left) <= 3) return
       m = 0.0_wp
       right = 0.0_wp
-      do i = 1, min(around_peak, count(left))
+      reach = 0.0_wp
+      do i = 1, count(left)
         k = minloc(abs(x), mask=left, dim=1)
+        if (i > around_peak .and. abs(x(k)) > (1.0_wp + no_effect)*reach) exit
+        reach = abs(x(k))
         left(k) = .false.
         m = m + [1.0_wp, x(k), x(k)**2, x(k)**3, x(k)**4]
         right = right + y(k)*[1.0_wp, x(k), x(k)**2]

@@ -2,13 +2,15 @@
 module epcont_result_zones
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
+  use epcont_base_tolerances, only: no_effect
   use epcont_result_contact_line, only: contact_line
   implicit none
   private
   public :: contact_zone, find_zones
 
-  !> A pressure that is not below this part of the largest at an end does not fall towards it.
-  real(wp), parameter, public :: falls = 0.5_wp
+  !> A pressure that is not below this part of the largest at an end does not fall towards it: half, which
+  !! pressures that rise evenly may have there, but for rounding.
+  real(wp), parameter, public :: falls = 0.5_wp - no_effect
 
   !> A run of neighbouring pairs that touch.
   type :: contact_zone
@@ -22,6 +24,7 @@ module epcont_result_zones
     integer, allocatable :: beyond(:)       !! pairs next to those at its ends
     !> From each end to the first open pair; 0: the end is the last candidate [length]
     real(wp) :: open(2) = 0.0_wp
+    real(wp) :: vanishes(2) = 0.0_wp        !! to where the pressure vanishes, at most up to there [length]
   end type contact_zone
 
 contains
@@ -60,7 +63,6 @@ contains
       integer, intent(in) :: start
       type(contact_zone) :: zone
       integer, allocatable :: run(:)
-      real(wp) :: beyond(2)
       logical :: counts(2), falling(2)
       integer :: k, n
 
@@ -79,13 +81,14 @@ contains
       do k = 2, n
         zone%along(k) = zone%along(k - 1) + line%distance(run(k), run(k - 1))
       end do
-      call extend(run(n:1:-1), zone%open(1), beyond(1), falling(1))
-      call extend(run, zone%open(2), beyond(2), falling(2))
+      call extend(run(n:1:-1), zone%open(1), zone%vanishes(1), falling(1))
+      call extend(run, zone%open(2), zone%vanishes(2), falling(2))
       ! From a line of symmetry on, it is half of the zone.
       counts = .not. line%mirrored(run([1, n])) .or. all(line%mirrored(run([1, n])))
       associate (half => merge(0.5_wp, 1.0_wp, all(counts)))
         zone%half_width_pairs = half*zone%along(n)
-        if (all(falling .or. .not. counts)) zone%half_width = half*(zone%along(n) + sum(beyond, mask=counts))
+        if (all(falling .or. .not. counts)) &
+          zone%half_width = half*(zone%along(n) + sum(zone%vanishes, mask=counts))
       end associate
     end function zone_from
 
@@ -99,7 +102,7 @@ contains
       next = pack(next, touching(next) .eqv. touches)
     end function beside
 
-    !> The touching pairs from `start` as far as they go in one direction.
+    !> The touching pairs from `start` as far as they go in one direction, those at one node after each other.
     pure function run_from(start) result(run)
       integer, intent(in) :: start
       integer, allocatable :: next(:), run(:)
@@ -107,7 +110,10 @@ contains
 
       run = [start]
       do
-        next = beside(run(size(run)), .true.)
+        associate (last => run(size(run)))
+          next = pack([(k, k=1, size(number))], number == number(last) .and. line%node == line%node(last))
+          next = [next, beside(last, .true.)]
+        end associate
         next = pack(next, [(.not. any(run == next(k)), k=1, size(next))])
         if (size(next) == 0) return
         run = [run, next(1)]
@@ -117,24 +123,25 @@ contains
     !> How far beyond the last pair of a run the pressure vanishes: near the edge p**2 is linear. Not beyond
     !! the first open pair; not at all where that end is the last candidate, or the pressure does not fall
     !! towards it.
-    pure subroutine extend(run, open, beyond, falling)
+    pure subroutine extend(run, open, vanishes, falling)
       integer, intent(in) :: run(:)
       !> To the first open pair; to where the pressure vanishes [length]
-      real(wp), intent(out) :: open, beyond
+      real(wp), intent(out) :: open, vanishes
       logical, intent(out) :: falling
       integer, allocatable :: next(:)   !! open pairs
       real(wp) :: drop
-      integer :: n
+      integer :: before, n   !! the last of the run, and the one at the node before
 
       n = size(run)
+      before = findloc(line%node(run) /= line%node(run(n)), .true., dim=1, back=.true.)
       open = 0.0_wp
-      beyond = 0.0_wp
       next = beside(run(n), .false.)
       if (size(next) > 0) open = line%distance(run(n), next(size(next)))
-      falling = n > 1 .and. size(next) > 0 .and. pressure(run(n)) < falls*maxval(pressure(run))
-      if (n < 2 .or. size(next) == 0) return
-      drop = pressure(run(n - 1))**2 - pressure(run(n))**2
-      if (drop > 0.0_wp) beyond = min(line%distance(run(n), run(n - 1))*pressure(run(n))**2/drop, open)
+      falling = before > 0 .and. open > 0.0_wp .and. pressure(run(n)) < falls*maxval(pressure(run))
+      vanishes = merge(open, 0.0_wp, before > 0)
+      if (vanishes <= 0.0_wp) return
+      drop = pressure(run(before))**2 - pressure(run(n))**2
+      if (drop > 0.0_wp) vanishes = min(line%distance(run(n), run(before))*pressure(run(n))**2/drop, open)
     end subroutine extend
   end function find_zones
 end module epcont_result_zones

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """check_same.py PROGRAM DECK OUTPUT PARAM ONE OTHER: a deck must have the same answer by two values of a PARAM: SOLVER BAND and
-FRONTAL, PRECIS DOUBLE and MIXED, FLEXIB AUTO and INVERT.
+FRONTAL, PRECIS DOUBLE and MIXED, FLEXIB AUTO and INVERT; or by two kernels of OpenBLAS, as OPENBLAS_CORETYPE names them.
 
 Exit status, words and whole numbers are to be the same; reals to 1e-9 of the largest of their kind in their table, for two
 factors of one matrix leave different rounding. What measures rounding, and states that are no answers, are not compared.
 """
 import csv
+import os
 import pathlib
 import re
 import subprocess
@@ -24,15 +25,17 @@ WAY = {"equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_
        "iteration_error_displacement", "iteration_error_force", "pivots"}
 
 
-def run(program, deck, choice, output):
+def run(program, deck, parameter, word, output):
     """Exit status and tables, {name: rows}."""
     output.mkdir(parents=True, exist_ok=True)
     for old in output.glob("*"):
         old.unlink()
     copy = output / deck.name
     text = re.sub(r"(?im)^PARAM,ORIGINAL,YES$", "PARAM,METHOD,SECANT", deck.read_text())   # which chooses the rest by itself
-    copy.write_text(re.sub(r"(?im)^(BEGIN BULK.*)$", rf"\1\nPARAM,{choice}", text, count=1))
-    status = subprocess.run([program, copy, "-o", output, "--tables", "all", "--quiet"], stderr=subprocess.DEVNULL).returncode
+    kernel = parameter == "OPENBLAS_CORETYPE"
+    copy.write_text(text if kernel else re.sub(r"(?im)^(BEGIN BULK.*)$", rf"\1\nPARAM,{parameter},{word}", text, count=1))
+    status = subprocess.run([program, copy, "-o", output, "--tables", "all", "--quiet"], stderr=subprocess.DEVNULL,
+                            env=os.environ | ({parameter: word} if kernel else {})).returncode
     tables = {path.suffixes[-2][1:]: list(csv.reader(path.open())) for path in sorted(output.glob("*.csv"))}
     for name in ("history", "pivots"):
         tables.pop(name, None)
@@ -79,8 +82,8 @@ def faults(name, one, other, words):
 def main():
     program, deck, output, parameter, *words = sys.argv[1:]
     deck, output = pathlib.Path(deck), pathlib.Path(output)
-    one, tables = run(program, deck, f"{parameter},{words[0]}", output / words[0])
-    other, others = run(program, deck, f"{parameter},{words[1]}", output / words[1])
+    one, tables = run(program, deck, parameter, words[0], output / words[0])
+    other, others = run(program, deck, parameter, words[1], output / words[1])
     if one != other:
         sys.exit(f"exit status {one} by {words[0]}, {other} by {words[1]}")
     if tables.keys() != others.keys():

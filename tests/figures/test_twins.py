@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Scenes of tools/deceive and their twins, mirrored, moved, renumbered: neither rounding nor the order of nodes decides estimates.
+
+Usage: EPCONT_PROGRAM=... test_twins.py
+"""
+import os
+import pathlib
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from deceiving.judging import Judge, twins_of  # noqa: E402
+from deceiving.scenes import Twin, deck  # noqa: E402
+from tables import rows, summary  # noqa: E402
+
+#: Family, number; what once was decided by chance.
+SCENES = (("nose_in_groove", 0, "two pairs at the tip: which is the neighbour of the next, and which belong to the zone"),
+          ("nose_in_groove", 2, "rounding in the coordinates of straight flanks was waves as high as the tip"),
+          ("shrink_fit", 0, "a zone that goes all around, cut where the deck begins it"),
+          ("concave_corner", 2, "of the nodes beside a corner the first, which may be held, told how a body gives way"))
+NEAR = 1e-5   # what rounding leaves, of a figure
+
+
+def figures(folder, name):
+    """Estimates, and what pressures are called: sorted values by key, without the numbers of zones, bodies and nodes."""
+    found = {}
+    for key, value in summary(folder / f"{name}.summary.csv").items():
+        if key.startswith("mesh_error") or key == "max_pressure_is":
+            found.setdefault(re.sub(r"_\d.*", "", key), []).append(value)
+    for row in rows(folder / f"{name}.bodies.csv"):
+        found.setdefault("bodies", []).extend((row["mesh_error_x"], row["mesh_error_y"]))
+    for row in rows(folder / f"{name}.zones.csv"):
+        found.setdefault("zones", []).extend((row["force"], row["half_width"], row["max_pressure_is"]))
+    return {key: sorted(values, key=lambda text: (float(text), "") if text[-1:].isdigit() else (0.0, text))
+            for key, values in found.items()}
+
+
+class Twins(unittest.TestCase):
+
+    def near(self, one, other, of):
+        self.assertEqual(len(one), len(other), of)
+        for a, b in zip(one, other):
+            if a != b:
+                self.assertLessEqual(abs(float(a) - float(b)), NEAR * abs(float(a)) + 1e-12, f"{of}: {a}, {b}")
+
+    def test_twins(self):
+        for family, number, why in SCENES:
+            scene, finer = Judge(None, "1", 0.0).scenes(family, number)
+            twins = [twin for twin in twins_of(scene, random.Random(1))[0] if twin.name in ("mirrored", "moved")]
+            twins += [Twin(f"renumbered {k}", mix=random.Random(k)) for k in range(4)]
+            with tempfile.TemporaryDirectory() as folder:
+                folder = pathlib.Path(folder)
+                for fine, one in enumerate((scene, finer)):
+                    for k, twin in enumerate([Twin("base")] + twins):
+                        (folder / f"{fine}{k}.dat").write_text(deck(one, twin)[0])
+                decks = sorted(path.name for path in folder.glob("*.dat"))
+                subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", *decks], cwd=folder, check=True, stderr=subprocess.DEVNULL)
+                for fine in range(2):
+                    base = figures(folder, f"{fine}0")
+                    for k, twin in enumerate(twins, 1):
+                        other = figures(folder, f"{fine}{k}")
+                        for key in base:
+                            with self.subTest(family=family, number=number, finer=bool(fine), twin=twin.name, once=why):
+                                self.near(base[key], other[key], key)
+
+
+if __name__ == "__main__":
+    unittest.main()
