@@ -50,6 +50,7 @@ contains
       integer, intent(in) :: e, n   !! which, and its corners
       real(wp), dimension(2, most_nodes) :: x, straight   ! its nodes; with straight sides
       integer :: k, turn
+      logical :: too_short
 
       associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)))
         do k = 1, most_nodes
@@ -60,7 +61,10 @@ contains
           straight(:, n + k) = 0.5_wp*(x(:, k) + x(:, mod(k, n) + 1))
         end do
         turn = kind%turn(x)
-        if (turn /= 0 .and. all(abs(straight(:, n + 1:2*n) - x(:, :n)) < 0.5_wp*shortest_side)) then
+        associate (half_side => straight(:, n + 1:2*n) - x(:, :n))
+          too_short = any(half_side /= 0.0_wp) .and. all(abs(half_side) < 0.5_wp*shortest_side)
+        end associate
+        if (too_short) then
           call found%add_error(of_element, e, -node(1), ': its sides are shorter than '// &
                                short_real(shortest_side), 'other units')
         else if (turn /= 0 .or. kind%turn(straight) /= 0) then
