@@ -36,7 +36,7 @@ class Case(unittest.TestCase):
     def refused(self, tool, arguments, status, words):
         with self.subTest(tool=tool, arguments=arguments):
             run = subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, *arguments.split()], cwd=self.place, capture_output=True, text=True,
-                                 timeout=60, check=False)
+                                 timeout=60)
             self.assertEqual(status, run.returncode, run.stdout + run.stderr)
             self.assertNotIn("Traceback", run.stderr)
             self.assertIn(words, run.stderr)
@@ -47,7 +47,7 @@ class Calls(Case):
         for tool, status in (("batch", 3), ("sweep", 3), ("paraviews.py", 2), ("compare", 2), ("decks", 2), ("verify", 2), ("accept", 2)):
             self.refused(tool, "", status, "--list FILE" if tool == "batch" else "required")
             self.refused(tool, "a b c d --nonsense", status, "")
-            run = subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, "--help"], capture_output=True, text=True, check=False)
+            run = subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, "--help"], capture_output=True, text=True)
             self.assertEqual((0, ""), (run.returncode, run.stderr), tool)
             self.assertIn("usage: ", run.stdout)
 

@@ -68,7 +68,7 @@ class Case(unittest.TestCase):
     def run_it(self, status, *arguments, tool="tools/make_venv", **further):
         self.note("calls")
         run = subprocess.run([self.top / tool, *arguments], cwd=self.place, env=self.environment(**further), capture_output=True, text=True,
-                             timeout=60, check=False)
+                             timeout=60)
         self.assertEqual(status, run.returncode, run.stdout + run.stderr)
         return run
 

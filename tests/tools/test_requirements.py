@@ -113,7 +113,7 @@ class Case(unittest.TestCase):
     def run_it(self, status, *words, shell=()):
         (self.place / "calls").write_text("")
         run = subprocess.run([*shell, *words], cwd=self.top, env={"PATH": str(self.place / "bin")}, capture_output=True, text=True,
-                             timeout=60, check=False)
+                             timeout=60)
         self.assertEqual(status, run.returncode, run.stdout + run.stderr)
         return run
 
