@@ -10,13 +10,15 @@ import sys
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
+import common
+from common import ROOT
+
 PROGRAM = str(pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve())
 DECK = ROOT / "input" / "hertz" / "hertz44.dat"
 BINARY = bytes(range(255, -1, -1)) * 8
 
 
-class Case(unittest.TestCase):
+class Case(common.Case):
     @classmethod
     def setUpClass(cls):
         cls.kept = tempfile.TemporaryDirectory()
@@ -24,9 +26,7 @@ class Case(unittest.TestCase):
         subprocess.run([PROGRAM, DECK, "-o", cls.kept.name, "--tables", "all", "--quiet"], check=True)
 
     def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.place = pathlib.Path(directory.name)
+        super().setUp()
         shutil.copytree(self.kept.name, self.place / "out")
         shutil.copy(DECK, self.place)
         (self.place / "folder").mkdir()
