@@ -43,7 +43,7 @@ def run(program, deck):
     with tempfile.TemporaryDirectory() as place:
         path = pathlib.Path(place) / "scene.dat"
         path.write_text(deck.text(), encoding="ascii")
-        ended = subprocess.run([program, path, "-o", place], capture_output=True, text=True, check=False, timeout=120)
+        ended = subprocess.run([program, path, "-o", place], capture_output=True, text=True, timeout=120)
         if ended.returncode:
             raise Failed(f"{deck.title}: exit status {ended.returncode}: {ended.stdout}{ended.stderr[:300]}")
         yield path

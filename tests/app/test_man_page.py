@@ -22,7 +22,7 @@ class Page(unittest.TestCase):
     def quiet(self, *command):
         if not shutil.which(command[0]):
             self.skipTest(f"no {command[0]}")
-        run = subprocess.run(command, input=PAGE.encode(), capture_output=True, check=False)
+        run = subprocess.run(command, input=PAGE.encode(), capture_output=True)
         return run.stdout.decode("utf-8"), run.stderr.decode("utf-8"), run.returncode
 
     def test_groff(self):
@@ -37,7 +37,7 @@ class Page(unittest.TestCase):
         """What judges the page sees a font that is never closed and a request that there is none of."""
         if not shutil.which("groff"):
             self.skipTest("no groff")
-        run = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=PAGE.encode() + b".XYZ\n", capture_output=True, check=False)
+        run = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=PAGE.encode() + b".XYZ\n", capture_output=True)
         self.assertIn(b"XYZ", run.stderr)
 
     def test_sections(self):
@@ -80,7 +80,7 @@ class Page(unittest.TestCase):
             shutil.copy(DECK, place)
             for command in commands:
                 self.assertEqual("epcont", command[0])
-                run = subprocess.run(" ".join(['"$EPCONT_PROGRAM"'] + command[1:]), shell=True, cwd=place, capture_output=True, check=False)
+                run = subprocess.run(" ".join(['"$EPCONT_PROGRAM"'] + command[1:]), shell=True, cwd=place, capture_output=True)
                 self.assertEqual((0, b""), (run.returncode, run.stderr), command)
             self.assertTrue((pathlib.Path(place) / "out" / "hertz44.nodes.csv").exists())
 

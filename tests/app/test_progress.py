@@ -25,7 +25,7 @@ class Case(unittest.TestCase):
         self.place = pathlib.Path(directory.name)
 
     def run_it(self, *arguments):
-        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=self.place, check=False)
+        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=self.place)
 
     def on_terminal(self, *arguments, columns=None, both=False):
         """Status, standard output and all that a terminal behind standard error (or behind both) gets."""

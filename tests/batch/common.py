@@ -62,7 +62,7 @@ class Case(unittest.TestCase):
         return [sys.executable, "-B", str(ROOT / "tools" / tool), *map(str, arguments), *program]
 
     def run_it(self, status, *arguments, tool="batch", **options):
-        run = subprocess.run(self.command(tool, *arguments), cwd=self.place, capture_output=True, text=True, timeout=120, check=False,
+        run = subprocess.run(self.command(tool, *arguments), cwd=self.place, capture_output=True, text=True, timeout=120,
                              **options)
         self.assertEqual(status, run.returncode, run.stdout + run.stderr)
         return run

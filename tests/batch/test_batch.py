@@ -216,7 +216,7 @@ class Misbehaving(Case):
         self.decks(*(f"d{k}.dat" for k in range(12)))
         small = self.place / "small"
         small.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48k", "tmpfs", small], capture_output=True, check=False).returncode:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48k", "tmpfs", small], capture_output=True).returncode:
             self.skipTest("no right to mount")
         try:
             run = self.run_it(3, *(f"d{k}.dat" for k in range(12)), "-o", "small/out")

@@ -34,7 +34,7 @@ class Sweep(Case):
     def checked(self):
         """The program takes every deck."""
         for path in (self.place / "set").glob("*.dat"):
-            run = subprocess.run([PROGRAM, "--check", path], capture_output=True, text=True, check=False)
+            run = subprocess.run([PROGRAM, "--check", path], capture_output=True, text=True)
             self.assertEqual(0, run.returncode, run.stderr)
 
 
@@ -193,7 +193,7 @@ class Sets(Sweep):
     def test_a_full_disk_leaves_nothing(self):
         place = self.place / "small"
         place.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", place], capture_output=True, check=False).returncode:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", place], capture_output=True).returncode:
             self.skipTest("no right to mount")
         try:
             rows = "".join(f"{k}.,.3\n" for k in range(1, 40))

@@ -46,12 +46,12 @@ contains
     real(wp), parameter :: scalene(2, 3) = reshape([0.3_wp, -0.2_wp, 2.1_wp, 0.4_wp, 0.9_wp, 1.7_wp], [2, 3])
     real(wp), parameter :: flat(2, 3) = reshape([4.0_wp, 0.3_wp, 2.6_wp, 0.5_wp, 1.0_wp, 0.0_wp], [2, 3])
     real(wp), parameter :: axis(2, 3) = reshape([0.0_wp, 1.5_wp, 0.0_wp, 0.1_wp, 1.2_wp, 0.4_wp], [2, 3])
-    real(wp), parameter :: one_arc(2, 3) = reshape([0.05_wp, -0.15_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], [2, 3])
+    real(wp), parameter :: one_arc(2, 3) = reshape([real(wp) :: 0.05_wp, -0.15_wp, 0, 0, 0, 0], [2, 3])
     real(wp), parameter :: arcs(2, 3) = reshape([0.0_wp, -0.1_wp, -0.08_wp, -0.06_wp, 0.1_wp, 0.02_wp], [2, 3])
     real(wp), parameter :: four_arcs(2, 4) = reshape([0.0_wp, -0.1_wp, 0.08_wp, 0.05_wp, 0.1_wp, 0.06_wp, 0.0_wp, 0.0_wp], [2, 4])
     real(wp), parameter :: square(2, 4) = reshape([real(wp) :: 1, 0, 2, 0, 2, 1, 1, 1], [2, 4])
     real(wp), parameter :: skew(2, 4) = reshape([1.0_wp, 0.0_wp, 2.5_wp, 0.3_wp, 3.3_wp, 1.4_wp, 1.8_wp, 1.1_wp], [2, 4])
-    real(wp), parameter :: trapezoid(2, 4) = reshape([1.0_wp, 0.0_wp, 3.0_wp, 0.0_wp, 2.2_wp, 1.0_wp, 1.5_wp, 1.0_wp], [2, 4])
+    real(wp), parameter :: trapezoid(2, 4) = reshape([real(wp) :: 1, 0, 3, 0, 2.2_wp, 1, 1.5_wp, 1], [2, 4])
     real(wp), parameter :: irregular(2, 4) = reshape([2.1_wp, 1.3_wp, 0.8_wp, 1.5_wp, 0.4_wp, -0.1_wp, 1.6_wp, -0.6_wp], [2, 4])
     real(wp), parameter :: at_axis(2, 4) = reshape([0.0_wp, 0.0_wp, 0.9_wp, 0.2_wp, 1.1_wp, 0.8_wp, 0.0_wp, 1.2_wp], [2, 4])
     integer :: k
@@ -384,8 +384,8 @@ contains
     real(wp) :: corner(2, 4), local(2, nodes)
     integer :: k
 
-    corner(1, :) = (i - 1 + [0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp])/n
-    corner(2, :) = (j - 1 + [0.0_wp, 0.0_wp, 1.0_wp, 1.0_wp])/n
+    corner(1, :) = (i - 1 + [real(wp) :: 0, 1, 1, 0])/n
+    corner(2, :) = (j - 1 + [real(wp) :: 0, 0, 1, 1])/n
     if (modulo(nodes, 4) == 0) then
       local = with_nodes(nodes, corner)
     else

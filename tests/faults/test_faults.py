@@ -33,7 +33,7 @@ class Case(unittest.TestCase):
 
     def run_it(self, *arguments, **options):
         options = {"stdout": subprocess.PIPE, "timeout": 120, **options}
-        return subprocess.run([PROGRAM, *map(str, arguments)], stderr=subprocess.PIPE, check=False, **options)
+        return subprocess.run([PROGRAM, *map(str, arguments)], stderr=subprocess.PIPE, **options)
 
     def check(self, run, status, *words):
         message = run.stderr.decode("latin-1")
@@ -159,7 +159,7 @@ class Disk(Case):
     def test_small_file_system(self):
         place = self.directory / "small"
         place.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=24k", "tmpfs", place], capture_output=True, check=False).returncode:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=24k", "tmpfs", place], capture_output=True).returncode:
             self.skipTest("no right to mount")
         try:
             self.check(self.run_it(SMALL, "-o", place, *ALL), 3, "is the disk full?")

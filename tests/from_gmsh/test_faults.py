@@ -175,7 +175,7 @@ class Mistakes(unittest.TestCase):
         for name, text in (("scene.toml", toml), ("two.geo", geo)):
             (self.place / name).write_text(text, encoding="utf-8")
         run = subprocess.run([sys.executable, "-m", "from_gmsh", "scene.toml", "-o", target], cwd=self.place, capture_output=True, text=True,
-                             env={**os.environ, "PYTHONPATH": str(TOOLS)}, check=False)
+                             env={**os.environ, "PYTHONPATH": str(TOOLS)})
         text = run.stdout + run.stderr
         self.assertNotIn("Traceback", text)
         return run.returncode, text
@@ -270,7 +270,7 @@ class Mistakes(unittest.TestCase):
             with self.subTest(target):
                 self.assertEqual(self.said(target=target), (3, f"tools/deck: {said}\n"))
         run = subprocess.run([sys.executable, "-m", "from_gmsh", "other.toml"], cwd=self.place, capture_output=True, text=True,
-                             env={**os.environ, "PYTHONPATH": str(TOOLS)}, check=False)
+                             env={**os.environ, "PYTHONPATH": str(TOOLS)})
         self.assertEqual(run.stderr, "other.toml: scene: there is no such file\n  TOML files beside it: scene.toml\nother.toml: 1 error, no deck written\n")
 
     def test_one_for_another(self):
@@ -280,7 +280,7 @@ class Mistakes(unittest.TestCase):
                 ("plot", "two.geo", "two.geo is no deck; tools/deck SCENE.toml -o DECK.dat makes one"),
                 ("paraview", "two.msh", "two.msh is no deck; tools/deck SCENE.toml -o DECK.dat makes one"),
                 ("deck", "two.geo", 'two.geo is no scene: that is a .toml, with mesh = "NAME.geo" (input/README.md, "From Gmsh")')):
-            run = subprocess.run([TOOLS / tool, name], cwd=self.place, capture_output=True, text=True, check=False)
+            run = subprocess.run([TOOLS / tool, name], cwd=self.place, capture_output=True, text=True)
             self.assertEqual(run.returncode, 3, run.stderr)
             self.assertRegex(run.stderr, rf"^.*tools/{tool}: {re.escape(said)}\n$")
 

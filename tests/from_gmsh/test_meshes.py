@@ -88,7 +88,7 @@ class Meshes(unittest.TestCase):
         else:
             (self.place / name).write_bytes(mesh)
         run = subprocess.run([sys.executable, "-m", "from_gmsh", "scene.toml"], cwd=self.place, capture_output=True, text=True,
-                             env={**os.environ, "PYTHONPATH": str(TOOLS)}, check=False)
+                             env={**os.environ, "PYTHONPATH": str(TOOLS)})
         lines = [line for line in (run.stdout + run.stderr).splitlines() if "is used by nothing" not in line]
         files = [self.place / f"scene{suffix}" for suffix in (".dat", ".mesh.bdf")]
         return run.returncode, lines, [file.read_text() if file.exists() else None for file in files]

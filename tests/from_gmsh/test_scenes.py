@@ -25,7 +25,7 @@ SCENES = TOP / "input" / "from_gmsh"
 
 
 def make(scene, deck):
-    return subprocess.run([sys.executable, "-m", "from_gmsh", scene, "-o", deck], capture_output=True, text=True, check=False,
+    return subprocess.run([sys.executable, "-m", "from_gmsh", scene, "-o", deck], capture_output=True, text=True,
                           env={**os.environ, "PYTHONPATH": str(TOP / "tools")})
 
 
@@ -49,7 +49,7 @@ class Scenes(unittest.TestCase):
         self.place = pathlib.Path(directory.name)
 
     def solved(self, deck):
-        run = subprocess.run([PROGRAM, deck, "-o", self.place, "--tables", "all", "--quiet"], capture_output=True, text=True, check=False)
+        run = subprocess.run([PROGRAM, deck, "-o", self.place, "--tables", "all", "--quiet"], capture_output=True, text=True)
         self.assertEqual(run.returncode, 0, run.stderr)
         table = {name: list(csv.DictReader((self.place / f"{deck.stem}.{name}.csv").read_text().splitlines()))
                  for name in ("summary", "contact", "zones", "nodes")}

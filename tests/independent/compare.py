@@ -102,7 +102,7 @@ def main():
     for path in options.decks:
         with tempfile.TemporaryDirectory() as place:
             run = subprocess.run([options.program.resolve(), tightened(path, place), "-o", place, "--tables", "all"], capture_output=True,
-                                 text=True, check=False)
+                                 text=True)
             expected = 0
             try:
                 found, _ = solve(path)

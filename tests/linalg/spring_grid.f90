@@ -40,7 +40,7 @@ contains
     real(wp), intent(in) :: weight
     integer, allocatable, intent(out) :: numbers(:, :)          !! [8, cells]
     real(wp), allocatable, intent(out) :: stiffness(:, :, :)    !! [8, 8, cells]
-    real(wp), parameter :: x(2, 4) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 1.0_wp], [2, 4])
+    real(wp), parameter :: x(2, 4) = reshape([real(wp) :: 0, 0, 1, 0, 1, 1, 0, 1], [2, 4])
     real(wp) :: along(2), spring(8), modulus
     integer :: c, cell, i, j, point(4), r
 

@@ -198,7 +198,7 @@ def run(text, place):
         text = ". tools/venv && " + text
     environment = {**os.environ, "PATH": f"{place / 'build/release'}:{os.environ['PATH']}", "PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run(["bash", "-c", text], cwd=place, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+                          stderr=subprocess.STDOUT, text=True, errors="replace")
 
 
 def status_of_fault(text, place):

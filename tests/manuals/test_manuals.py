@@ -111,7 +111,7 @@ class Examples(unittest.TestCase):
         with tempfile.TemporaryDirectory() as place:
             deck = pathlib.Path(place) / "example.dat"
             deck.write_text(text, encoding="ascii")
-            run = subprocess.run([os.environ["EPCONT_PROGRAM"], "--check", deck], capture_output=True, text=True, check=False, cwd=place)
+            run = subprocess.run([os.environ["EPCONT_PROGRAM"], "--check", deck], capture_output=True, text=True, cwd=place)
         return run.returncode, [line for line in run.stderr.splitlines() if line.startswith(str(deck) + ":")]
 
     def test_cards(self):

@@ -19,7 +19,7 @@ contains
     type(model_type) :: model
     integer :: s
 
-    model%young = [200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp, 200.0_wp]
+    model%young = spread(200.0_wp, 1, 6)
     model%poisson = [0.3_wp, 0.3_wp, 0.25_wp, 0.25_wp, 0.4999_wp, 0.3_wp]
     model%kinematics = [plane_strain, plane_stress, plane_strain, plane_stress, plane_strain, plane_strain]
     allocate (model%curve(sections), model%section(0), model%point_element(0))

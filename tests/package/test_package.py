@@ -31,7 +31,7 @@ PACKED = {"bin/epcont", "share/man/man1/epcont.1.gz", "share/doc/epcont/README.m
 
 
 def run(*command, **options):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, **options)
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
 
 
 def files(folder):

@@ -69,7 +69,7 @@ def cut(field, form):
 def run(paths, out):
     """Exit status and tables by stem; one run for all."""
     out.mkdir(exist_ok=True)
-    subprocess.run([PROGRAM, *paths, "-o", out, "--tables", "all", "--quiet"], capture_output=True, text=True, timeout=600, check=False)
+    subprocess.run([PROGRAM, *paths, "-o", out, "--tables", "all", "--quiet"], capture_output=True, text=True, timeout=600)
     return {path.stem: Tables(out, path.stem) for path in paths}
 
 

@@ -54,7 +54,7 @@ def install():
     try:
         command = ["apt-get", "install", "-y", "--no-install-recommends", "-o", "DPkg::Lock::Timeout=120", *PACKAGES]
         environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
-        if subprocess.run(command, env=environment, capture_output=True, check=False).returncode:
+        if subprocess.run(command, env=environment, capture_output=True).returncode:
             subprocess.run(["apt-get", "update"], env=environment, capture_output=True, check=True)
             subprocess.run(command, env=environment, check=True)
     finally:
@@ -98,7 +98,7 @@ class Cluster:
     def wait_until_idle(self, seconds):
         until = time.monotonic() + seconds
         while time.monotonic() < until:
-            said = subprocess.run(["sinfo", "--noheader", "--format=%T"], capture_output=True, text=True, check=False).stdout.strip()
+            said = subprocess.run(["sinfo", "--noheader", "--format=%T"], capture_output=True, text=True).stdout.strip()
             if said == "idle":
                 return
             time.sleep(0.3)
@@ -106,7 +106,7 @@ class Cluster:
         raise RuntimeError(f"the node did not come up (sinfo: {said or 'no answer'})\n{logs}")
 
     def __exit__(self, *_):
-        subprocess.run(["scancel", "--user", str(os.getuid())], capture_output=True, check=False)
+        subprocess.run(["scancel", "--user", str(os.getuid())], capture_output=True)
         for process in reversed(self.processes):
             process.terminate()
         for process in self.processes:

@@ -1,38 +1,18 @@
 """Tests of tools/compare and tools/accept."""
 import contextlib
-import importlib.machinery
-import importlib.util
 import io
 import pathlib
-import sys
-import tempfile
 import unittest
 
-sys.dont_write_bytecode = True
-TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
-sys.path.insert(0, str(TOOLS))
+import common
+
+compare = common.load("compare")
+accept = common.load("accept")
 
 
-def load(name):
-    loader = importlib.machinery.SourceFileLoader(name, str(TOOLS / name))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
-    sys.modules[name] = module
-    loader.exec_module(module)
-    return module
-
-
-compare = load("compare")
-accept = load("accept")
-
-
-class Case(unittest.TestCase):
-    def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.directory = pathlib.Path(directory.name)
-
+class Case(common.Case):
     def write(self, name, text):
-        path = self.directory / name
+        path = self.place / name
         path.parent.mkdir(exist_ok=True)
         path.write_text(text)
         return str(path)
@@ -113,8 +93,8 @@ class Numbers(Case):
         for old, new in (("< 1E-12", "< 1E+12"), ("< 1E+12", "< 1E-12"), ("6.0E-03", "< 1E+12"), ("6.0E-03", "< 1E-12"), ("0.0", "< 1E-12"),
                          ("< 1E-12", "< 1E-9"), ("< 1E-9", "< 1E-12")):
             self.assertEqual(self.verdict(f"r {old}\n", f"r {new}\n"), 1, (old, new))
-            self.assertIn(f"new.lst: 1 of 1 reals differ from {self.directory}/old.lst\n", self.output)
-            self.assertIn(f"{self.directory}/new.lst:1:3: {new}, reference {self.directory}/old.lst:1:3: {old}\n", self.output)
+            self.assertIn(f"new.lst: 1 of 1 reals differ from {self.place}/old.lst\n", self.output)
+            self.assertIn(f"{self.place}/new.lst:1:3: {new}, reference {self.place}/old.lst:1:3: {old}\n", self.output)
         for old, new in (("< 1E-12", "< 1E-10"), ("< 1E-10", "< 1E-12")):
             self.assertEqual(self.verdict(f"r {old}\n", f"r {new}\n"), 0, (old, new))
 
@@ -123,15 +103,15 @@ class Numbers(Case):
 
     def test_worst_differences_are_named(self):
         self.verdict("a 1000.0\nb 1.0\n", "a 1001.0\nb 1.5\n")
-        self.assertIn("worst absolute difference 1.000E+00 at " + str(self.directory / "new.lst") + ":1:3", self.output)
-        self.assertIn("worst relative difference 3.333E-01 at " + str(self.directory / "new.lst") + ":2:3", self.output)
+        self.assertIn("worst absolute difference 1.000E+00 at " + str(self.place / "new.lst") + ":1:3", self.output)
+        self.assertIn("worst relative difference 3.333E-01 at " + str(self.place / "new.lst") + ":2:3", self.output)
 
 
 class Files(Case):
     def test_directories_both_ways(self):
         for name in ("old/a.lst", "new/a.lst", "old/b.csv"):
             self.write(name, "a\n")
-        old, new = self.directory / "old", self.directory / "new"
+        old, new = self.place / "old", self.place / "new"
         self.assertEqual(self.run_tool(compare, old, new), 1)
         self.assertIn("b.csv: only here", self.output)
         self.assertEqual(self.run_tool(compare, new, old), 1)
@@ -139,15 +119,15 @@ class Files(Case):
         self.assertEqual(self.run_tool(compare, old, new), 0)
 
     def test_unreadable(self):
-        self.assertEqual(self.run_tool(compare, self.directory / "none.lst", self.write("a.lst", "a\n")), 2)
-        self.assertEqual(self.run_tool(compare, self.directory, self.directory), 0)
-        (self.directory / "empty").mkdir()
-        self.assertEqual(self.run_tool(compare, self.directory / "empty", self.directory / "empty"), 2)
+        self.assertEqual(self.run_tool(compare, self.place / "none.lst", self.write("a.lst", "a\n")), 2)
+        self.assertEqual(self.run_tool(compare, self.place, self.place), 0)
+        (self.place / "empty").mkdir()
+        self.assertEqual(self.run_tool(compare, self.place / "empty", self.place / "empty"), 2)
         self.assertIn("no .lst or .csv in them", self.output)
         for suffix in ("lst", "csv"):
             self.assertEqual(self.verdict("", "", suffix=suffix), 2)
-            self.assertIn(f"compare: {self.directory}/old.{suffix}: nothing in it: a listing or a table would be right\n", self.output)
-            strange = self.directory / f"strange.{suffix}"
+            self.assertIn(f"compare: {self.place}/old.{suffix}: nothing in it: a listing or a table would be right\n", self.output)
+            strange = self.place / f"strange.{suffix}"
             strange.write_bytes(b"a\n\xff\n")
             self.assertEqual(self.run_tool(compare, self.write(f"a.{suffix}", "a\n"), strange), 2)
             self.assertIn(f"compare: {strange}:2: not a text in UTF-8", self.output)
@@ -166,10 +146,10 @@ class Files(Case):
 
     def test_only_listings_are_accepted(self):
         for text in (b"", b"a deck\n", b"\xff\n"):
-            (self.directory / "a.lst").write_bytes(text)
-            self.assertEqual(self.run_tool(accept, self.directory / "a.lst", "--yes", "--references", self.directory / "none"), 2)
+            (self.place / "a.lst").write_bytes(text)
+            self.assertEqual(self.run_tool(accept, self.place / "a.lst", "--yes", "--references", self.place / "none"), 2)
             self.assertIn("a.lst: not a listing of epcont", self.output)
-        self.assertEqual(self.run_tool(accept, self.directory / "b.lst"), 2)
+        self.assertEqual(self.run_tool(accept, self.place / "b.lst"), 2)
         self.assertIn("b.lst: No such file", self.output)
 
 

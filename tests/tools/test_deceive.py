@@ -3,8 +3,6 @@
 Usage: EPCONT_PROGRAM=... test_deceive.py
 """
 import contextlib
-import importlib.machinery
-import importlib.util
 import io
 import os
 import pathlib
@@ -14,14 +12,13 @@ import sys
 import tempfile
 import unittest
 
-sys.dont_write_bytecode = True
-TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
-sys.path.insert(0, str(TOOLS))
-from deceiving.families import FAMILIES  # noqa: E402
-from deceiving.judging import Fault, Judge, same, solve, through, unlike  # noqa: E402
-from deceiving.scenes import PLANE, RINGS, Scene, Twin, deck, lines_of  # noqa: E402
-from deceiving.shapes import cells, disc  # noqa: E402
+import common
+from deceiving.families import FAMILIES
+from deceiving.judging import Fault, Judge, same, solve, through, unlike
+from deceiving.scenes import PLANE, RINGS, Scene, Twin, deck, lines_of
+from deceiving.shapes import cells, disc
 
+deceive = common.load("deceive")
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 SOUND = ("stack", 2)   # nothing is wrong with this scene
 
@@ -40,16 +37,6 @@ with path.open("w") as file:
     writer.writerows(rows)
 sys.exit(run.returncode)
 """
-
-
-def load():
-    loader = importlib.machinery.SourceFileLoader("deceive", str(TOOLS / "deceive"))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("deceive", loader))
-    loader.exec_module(module)
-    return module
-
-
-deceive = load()
 
 
 def drawn(name, number, n=1):
@@ -72,14 +59,9 @@ def block(n=1, kind="CQUAD4", gap=0.0):
     return scene
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.directory = pathlib.Path(directory.name)
-
+class Case(common.Case):
     def solve(self, scene, *twins):
-        return list(solve(PROGRAM, self.directory, [(twin.name, scene, twin) for twin in twins], 60).values())
+        return list(solve(PROGRAM, self.place, [(twin.name, scene, twin) for twin in twins], 60).values())
 
 
 class Scenes(Case):
@@ -153,7 +135,7 @@ class Scenes(Case):
 
 class Judging(Case):
     def falsified(self, name, table, column, change, where="True"):
-        path = self.directory / "falsifier"
+        path = self.place / "falsifier"
         path.write_text(FALSIFIER.format(python=sys.executable, program=PROGRAM, name=name, table=table, column=column, change=change, where=where))
         path.chmod(0o755)
         return str(path)
@@ -166,7 +148,7 @@ class Judging(Case):
         self.assertEqual(self.faults(PROGRAM), [])
 
     def test_a_run_that_crashes_takes_no_other_with_it(self):
-        path = self.directory / "crasher"
+        path = self.place / "crasher"
         path.write_text(f"#!/bin/sh\ncase $* in *moved.dat*) kill -SEGV $$;; esac\nexec \"{PROGRAM}\" \"$@\"\n")
         path.chmod(0o755)
         self.assertEqual(self.faults(str(path)), [("broken", "moved"), ("twin", "moved")])
@@ -224,7 +206,7 @@ class Judging(Case):
 class CommandLine(Case):
     def run_it(self, *arguments):
         out, before = io.StringIO(), sys.argv
-        sys.argv = ["deceive", "--program", PROGRAM, "--keep", str(self.directory / "kept"), *arguments]
+        sys.argv = ["deceive", "--program", PROGRAM, "--keep", str(self.place / "kept"), *arguments]
         try:
             with contextlib.redirect_stdout(out):
                 status = deceive.main()
@@ -237,7 +219,7 @@ class CommandLine(Case):
         self.assertEqual(status, 0, text)
         self.assertRegex(text, r"stack +2 +2 +0 +0 +0 +0 +0 +0 +0 ")
         self.assertEqual(self.run_it("--family", SOUND[0], "--scenes", "2"), (status, text))
-        self.assertFalse((self.directory / "kept").exists())
+        self.assertFalse((self.place / "kept").exists())
 
     def test_one_scene_at_length(self):
         status, text = self.run_it("--family", SOUND[0], "--only", str(SOUND[1]))
@@ -251,7 +233,7 @@ class CommandLine(Case):
         status, text = self.run_it("--family", SOUND[0], "--only", str(SOUND[1]))
         self.assertEqual(status, 1)
         self.assertIn("rotated: off", text)
-        self.assertEqual({path.name for path in (self.directory / "kept" / "{}_{}".format(*SOUND)).iterdir()}, {"base.dat", "finer.dat", "rotated.dat"})
+        self.assertEqual({path.name for path in (self.place / "kept" / "{}_{}".format(*SOUND)).iterdir()}, {"base.dat", "finer.dat", "rotated.dat"})
 
     def found(self, verdict):
         verdict.faults.append(Fault("twin", "rotated", "off"))

@@ -10,13 +10,15 @@ import sys
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
+import common
+from common import ROOT
+
 PROGRAM = str(pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve())
 DECK = ROOT / "input" / "hertz" / "hertz44.dat"
 BINARY = bytes(range(255, -1, -1)) * 8
 
 
-class Case(unittest.TestCase):
+class Case(common.Case):
     @classmethod
     def setUpClass(cls):
         cls.kept = tempfile.TemporaryDirectory()
@@ -24,9 +26,7 @@ class Case(unittest.TestCase):
         subprocess.run([PROGRAM, DECK, "-o", cls.kept.name, "--tables", "all", "--quiet"], check=True)
 
     def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.place = pathlib.Path(directory.name)
+        super().setUp()
         shutil.copytree(self.kept.name, self.place / "out")
         shutil.copy(DECK, self.place)
         (self.place / "folder").mkdir()
@@ -36,7 +36,7 @@ class Case(unittest.TestCase):
     def refused(self, tool, arguments, status, words):
         with self.subTest(tool=tool, arguments=arguments):
             run = subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, *arguments.split()], cwd=self.place, capture_output=True, text=True,
-                                 timeout=60, check=False)
+                                 timeout=60)
             self.assertEqual(status, run.returncode, run.stdout + run.stderr)
             self.assertNotIn("Traceback", run.stderr)
             self.assertIn(words, run.stderr)
@@ -47,7 +47,7 @@ class Calls(Case):
         for tool, status in (("batch", 3), ("sweep", 3), ("paraviews.py", 2), ("compare", 2), ("decks", 2), ("verify", 2), ("accept", 2)):
             self.refused(tool, "", status, "--list FILE" if tool == "batch" else "required")
             self.refused(tool, "a b c d --nonsense", status, "")
-            run = subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, "--help"], capture_output=True, text=True, check=False)
+            run = subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, "--help"], capture_output=True, text=True)
             self.assertEqual((0, ""), (run.returncode, run.stderr), tool)
             self.assertIn("usage: ", run.stdout)
 

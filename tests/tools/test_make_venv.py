@@ -1,11 +1,10 @@
 """tools/make_venv and tests/in_venv with a python3, an apt-get and an id that stand in for those of other machines."""
-import pathlib
 import shutil
 import subprocess
-import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+import common
+from common import ROOT
 
 # A python3 of version $MINOR; the file `bare` says that it has no venv; what it makes is a Python whose pip does as the file `pip` says.
 PYTHON = """#!/bin/sh
@@ -36,11 +35,9 @@ cat {place}/user
 """
 
 
-class Case(unittest.TestCase):
+class Case(common.Case):
     def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.place = pathlib.Path(directory.name)
+        super().setUp()
         self.top, self.minor = self.place / "epcont", 11
         for name in ("tools/make_venv", "tools/requirements", "tools/requirements.txt", "tests/in_venv"):
             (self.top / name).parent.mkdir(parents=True, exist_ok=True)
@@ -68,7 +65,7 @@ class Case(unittest.TestCase):
     def run_it(self, status, *arguments, tool="tools/make_venv", **further):
         self.note("calls")
         run = subprocess.run([self.top / tool, *arguments], cwd=self.place, env=self.environment(**further), capture_output=True, text=True,
-                             timeout=60, check=False)
+                             timeout=60)
         self.assertEqual(status, run.returncode, run.stdout + run.stderr)
         return run
 

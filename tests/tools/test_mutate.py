@@ -6,13 +6,10 @@ import pathlib
 import sys
 import tempfile
 import unittest
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
-from mutating.mutants import Mutant, choose, mutants_of, real_text  # noqa: E402
-from mutating.trial import Trial  # noqa: E402
+from common import ROOT, load
+from mutating.mutants import Mutant, choose, mutants_of, real_text
+from mutating.trial import Trial
 
 SNIPPET = """\
 !> Twice 2.0 < 3.
@@ -37,13 +34,6 @@ contains
 
 def changes(snippet):
     return [(m.line, m.old, m.new) for m in mutants_of("a.f90", snippet)]
-
-
-def load():
-    loader = SourceFileLoader("mutate", str(ROOT / "tools" / "mutate"))
-    module = module_from_spec(spec_from_loader("mutate", loader))
-    loader.exec_module(module)
-    return module
 
 
 class Generator(unittest.TestCase):
@@ -87,7 +77,7 @@ class Generator(unittest.TestCase):
 
     def test_sources(self):
         """All layers that decide an answer."""
-        mutate = load()
+        mutate = load("mutate")
         self.assertEqual({path.split("/")[1] for path in mutate.sources()},
                          {"contact", "contact_geometry", "geometry", "certificate", "plasticity", "flexibility", "accuracy", "report", "result"})
 
@@ -138,7 +128,7 @@ class Judging(unittest.TestCase):
 
     def test_results_go_on(self):
         """A line of the table for each mutant, with what was written beside it by hand."""
-        mutate = load()
+        mutate = load("mutate")
         mutant = Mutant("src/contact/a.f90", 1, 4, "1", "2", "y = 1 + x")
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "results.csv"
@@ -154,7 +144,7 @@ class Judging(unittest.TestCase):
 
     def test_list(self):
         """--list names mutants, and changes nothing."""
-        mutate, said = load(), io.StringIO()
+        mutate, said = load("mutate"), io.StringIO()
         with contextlib.redirect_stdout(said):
             sys.argv = ["mutate", "--list", "--mutants", "5", "--only", "certificate/", "--only", "parameter"]
             self.assertEqual(mutate.main(), 0)

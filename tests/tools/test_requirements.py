@@ -1,11 +1,11 @@
 """tools/run and tools/test with a compiler, a CMake, an apt-get and an id that stand in for those of other machines; tests/skipped."""
-import pathlib
 import shutil
 import subprocess
-import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+import common
+from common import ROOT
+
 PRINTED = "packages are missing; please run: sudo apt-get update && sudo apt-get install -y --no-install-recommends"
 
 # What the file `slow` names takes three seconds. CMake finds a LAPACK where there is the file `liblapack.so`, and says what CMake says.
@@ -70,11 +70,10 @@ Skipped, and why:
 HOST = ("sh", "bash", "basename", "cat", "chmod", "cp", "dirname", "env", "grep", "ln", "mkdir", "mv", "rm", "sed", "sleep", "touch")
 
 
-class Case(unittest.TestCase):
+class Case(common.Case):
     def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.place = pathlib.Path(directory.name) / "with blanks"
+        super().setUp()
+        self.place /= "with blanks"
         self.top = self.place / "a clone"
         for name in ("tools/requirements", "tools/run", "tools/build", "tools/test", "tests/skipped"):
             (self.top / name).parent.mkdir(parents=True, exist_ok=True)
@@ -113,7 +112,7 @@ class Case(unittest.TestCase):
     def run_it(self, status, *words, shell=()):
         (self.place / "calls").write_text("")
         run = subprocess.run([*shell, *words], cwd=self.top, env={"PATH": str(self.place / "bin")}, capture_output=True, text=True,
-                             timeout=60, check=False)
+                             timeout=60)
         self.assertEqual(status, run.returncode, run.stdout + run.stderr)
         return run
 

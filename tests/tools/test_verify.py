@@ -1,26 +1,19 @@
 """tools/verify: each single edit of a table is found, or its column is named as not read."""
 import contextlib
 import csv
-import importlib.machinery
-import importlib.util
 import io
 import os
 import pathlib
 import random
 import shutil
 import subprocess
-import sys
-import tempfile
 import unittest
 
-sys.dont_write_bytecode = True
-ROOT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
-PROGRAM = str(pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve())
-sys.path.insert(0, str(ROOT / "tools"))
-loader = importlib.machinery.SourceFileLoader("verify", str(ROOT / "tools" / "verify"))
-verify = importlib.util.module_from_spec(importlib.util.spec_from_loader("verify", loader))
-loader.exec_module(verify)
+import common
+from common import ROOT
 
+PROGRAM = str(pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve())
+verify = common.load("verify")
 HERTZ, LINES, RING = (ROOT / "input" / name for name in ("hertz/hertz44.dat", "flat_match/flat_lines.dat", "from_gmsh/press_fit.dat"))
 TABLES = ("summary", "nodes", "elements", "contact", "zones", "bodies", "history")
 WORDS = {"touching": "open", "open": "touching", "plastic": "elastic", "elastic": "plastic"}
@@ -46,12 +39,7 @@ def size(value):
         return 0.0
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.place = pathlib.Path(directory.name)
-
+class Case(common.Case):
     def solved(self, deck):
         subprocess.run([PROGRAM, deck, "-o", self.place, "--tables", "all", "--quiet"], check=True, stderr=subprocess.DEVNULL)
 

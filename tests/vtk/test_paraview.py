@@ -22,7 +22,7 @@ class Pictures(unittest.TestCase):
         self.place = pathlib.Path(directory.name)
 
     def run_it(self, *arguments):
-        run = subprocess.run([TOP / "tools" / "paraview", *arguments], cwd=self.place, capture_output=True, text=True, check=False)
+        run = subprocess.run([TOP / "tools" / "paraview", *arguments], cwd=self.place, capture_output=True, text=True)
         self.assertNotIn("Traceback", run.stderr)
         return run
 

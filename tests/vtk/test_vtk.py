@@ -71,13 +71,13 @@ class Case(unittest.TestCase):
         self.directory = pathlib.Path(directory.name)
 
     def run_it(self, deck, *options, status=0):
-        run = subprocess.run([PROGRAM, deck, "-o", self.directory, *options], capture_output=True, text=True, check=False)
+        run = subprocess.run([PROGRAM, deck, "-o", self.directory, *options], capture_output=True, text=True)
         self.assertEqual(status, run.returncode, run.stderr)
 
     def grids(self, *names):
         """What the reader finds; it must have nothing to complain of."""
         paths = [self.directory / name for name in names]
-        run = subprocess.run([sys.executable, "-W", "error", HERE / "read_vtu.py", READER, *paths], capture_output=True, text=True, check=False)
+        run = subprocess.run([sys.executable, "-W", "error", HERE / "read_vtu.py", READER, *paths], capture_output=True, text=True)
         self.assertEqual((0, ""), (run.returncode, run.stderr))
         return json.loads(run.stdout)
 
