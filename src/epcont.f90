@@ -50,9 +50,8 @@ contains
     type(findings) :: found
     type(observer) :: watch
     real(wp) :: limit
-    integer :: k
+    integer :: before(2), k
     type(ieee_status_type) :: traps
-    integer :: before(2)
 
     limit = huge(limit)
     if (present(memory)) limit = memory
@@ -77,32 +76,28 @@ contains
       end if
     end if
     call use_threads(before)
-    call tell(solution, found, outcome)
+    call tell()
     call ieee_set_status(traps)
+
+  contains
+
+    !> What was found of a scene, before what was found of its answer, by the names that arrays have; of a
+    !! scene that is refused its first error.
+    subroutine tell()
+      do k = 1, outcome%found%count
+        call found%add(outcome%found%list(k))
+      end do
+      if (found%count == 0) allocate (found%list(0))
+      found%list = found%list(:found%count)
+      do k = 1, found%count
+        associate (one => found%list(k))
+          one%what = in_array_words(solution%model%name_of(one%of, one%which)//one%what)
+          one%remedy = in_array_words(one%remedy)
+        end associate
+      end do
+      k = findloc(found%list%severity, severity_error, dim=1)
+      if (k > 0) outcome%sentence = found%list(k)%what//' (wanted: '//found%list(k)%remedy//')'
+      outcome%found = found
+    end subroutine tell
   end subroutine solve_scene
-
-  !> What was found of a scene, before what was found of its answer, by the names that arrays have; of a scene
-  !! that is refused its first error.
-  subroutine tell(solution, found, outcome)
-    type(solution_type), intent(in) :: solution
-    type(findings), intent(inout) :: found
-    type(outcome_type), intent(inout) :: outcome
-    integer :: i
-
-    do i = 1, found%count
-      found%list(i)%what = solution%model%name_of(found%list(i)%of, found%list(i)%which)//found%list(i)%what
-    end do
-    do i = 1, outcome%found%count
-      call found%add(outcome%found%list(i))
-    end do
-    if (found%count == 0) allocate (found%list(0))
-    found%list = found%list(:found%count)
-    do i = 1, found%count
-      found%list(i)%what = in_array_words(found%list(i)%what)
-      found%list(i)%remedy = in_array_words(found%list(i)%remedy)
-    end do
-    i = findloc(found%list%severity, severity_error, dim=1)
-    if (i > 0) outcome%sentence = found%list(i)%what//' (wanted: '//found%list(i)%remedy//')'
-    outcome%found = found
-  end subroutine tell
 end module epcont

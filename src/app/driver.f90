@@ -16,7 +16,7 @@ module epcont_app_driver
   use epcont_report_results, only: remove_results, write_results
   use epcont_report_run, only: run_results
   use epcont_system_memory, only: peak_memory
-  use epcont_system_stopwatch, only: stage_model, stage_plan, stage_reading, stage_writing, stopwatch
+  use epcont_system_stopwatch, only: stage_model, stage_plan, stage_reading, stage_writing
   implicit none
   private
   public :: run_deck
@@ -28,126 +28,104 @@ contains
     character(len=*), intent(in) :: path   !! of the deck
     type(arguments_type), intent(in) :: arguments   !! of the command line
     integer, intent(out) :: status   !! its exit status
+    character(len=:), allocatable :: name, stem   ! of the deck, shown; of the results, with folder
     type(progress_type) :: watch
+    type(run_results) :: run
     type(error_type), allocatable :: error
     type(file_lock) :: lock
-    logical :: writes, written
+    logical :: writes, written   ! results are wanted; they are written, as far as that could be done
 
-    call watch%begin(shown(stem_of(path)), arguments%asks('--progress'), arguments%asks('--quiet'))
+    status = status_valid
+    stem = stem_of(path)
+    name = shown(stem)
+    if (len(arguments%directory) > 0) stem = arguments%directory//'/'//stem
+    call watch%begin(name, arguments%asks('--progress'), arguments%asks('--quiet'))
     writes = .not. (arguments%asks('--check') .or. arguments%asks('--plan'))
-    if (writes) call lock_files(output_stem(path, arguments), lock, error)
-    if (allocated(error)) then
-      call refuse(error, status)
-    else
-      call solve_deck(path, arguments, watch, status, written)
-      if (writes .and. .not. written) call remove_results(output_stem(path, arguments))
+    written = .false.
+    if (writes) call lock_files(stem, lock, error)
+    if (.not. allocated(error)) then
+      call solve_deck()
+      if (writes .and. .not. written) call remove_results(stem)
       if (writes) call unlock_files(lock)
     end if
-    if (arguments%asks('--timing')) call print_error(timing_text(shown(stem_of(path)), watch, peak_memory()))
-  end subroutine run_deck
+    if (allocated(error)) then
+      call print_error(shown(error%message)//newline)
+      status = error%status
+    end if
+    if (arguments%asks('--timing')) call print_error(timing_text(name, watch, peak_memory()))
 
-  !> From file to results, and what there is to say of it.
-  subroutine solve_deck(path, arguments, watch, status, written)
-    character(len=*), intent(in) :: path
-    type(arguments_type), intent(in) :: arguments
-    type(progress_type), intent(inout) :: watch
-    integer, intent(out) :: status
-    logical, intent(out) :: written   !! results, as far as that could be done
-    type(error_type), allocatable :: error
-    type(run_results) :: run
-    character(len=:), allocatable :: name
+  contains
 
-    name = shown(stem_of(path))
-    status = status_valid
-    written = .false.
-    call prepare(path, run, watch, error)
-    if (.not. allocated(error)) then
+    !> From file to results, and what there is to say of it.
+    subroutine solve_deck()
+      call prepare()
+      if (allocated(error)) return
       if (run%faults%errors > 0) then
         call print_error(render(run%faults, run%deck%source))
         status = status_deck
-        call say(arguments, name//'  rejected', status)
+        call say(name//'  rejected')
         return
       end if
       if (arguments%asks('--check')) then
-        call say(arguments, name//'  checked', status)
+        call say(name//'  checked')
       else
         call run%make_plan(watch)
         if (arguments%asks('--plan')) call print_text(name//plan_text(run%planned_scene), status)
       end if
       call print_error(render(run%faults, run%deck%source))
-      if (arguments%asks('--check') .or. arguments%asks('--plan')) return
+      if (.not. writes) return
       run%deck_notes = render_notes(run%faults, run%deck%source)
       call run%deck%forget_text()
       call run%solve(arguments%memory, watch, error)
-      if (allocated(error)) error%message = path//': '//error%message
-    end if
-    if (.not. allocated(error)) then
+      if (allocated(error)) then
+        error%message = path//': '//error%message
+        return
+      end if
       run%outcome = judge(run)
       status = run%outcome%status
-      call write_results(run, output_stem(path, arguments), arguments%asks('--tables'), &
-                         arguments%asks('--vtk'), error)
+      call write_results(run, stem, arguments%asks('--tables'), arguments%asks('--vtk'), error)
       written = .true.
       call watch%lap(stage_writing)
       call watch%erase()
-    end if
-    if (allocated(error)) then
-      call refuse(error, status)
-    else
-      call say_lines(shown(path)//': ', remark_lines(run%outcome%found, .false.))
-      if (len(run%outcome%sentence) > 0) call say_lines(shown(path)//': ', run%outcome%sentence//newline)
-      call say(arguments, one_line(name, run), status)
-    end if
-  end subroutine solve_deck
+      if (allocated(error)) return
+      call say_lines(remark_lines(run%outcome%found, .false.))
+      if (len(run%outcome%sentence) > 0) call say_lines(run%outcome%sentence//newline)
+      call say(one_line(name, run))
+    end subroutine solve_deck
 
-  !> Say what is wrong.
-  subroutine refuse(error, status)
-    type(error_type), intent(in) :: error
-    integer, intent(out) :: status
+    !> Read and check.
+    subroutine prepare()
+      call read_deck(path, run%deck, run%faults, error)
+      call watch%lap(stage_reading)
+      if (allocated(error)) return
+      call build_model(run%deck, run%model, run%faults)
+      call watch%lap(stage_model)
+      if (run%faults%errors > 0) return
+      call run%find_motions(run%faults)
+      call tell(run%deck, run%model%kinds, run%faults)
+      call watch%lap(stage_plan)
+    end subroutine prepare
 
-    call print_error(shown(error%message)//newline)
-    status = error%status
-  end subroutine refuse
+    !> Lines on standard error, each behind the name of the deck.
+    subroutine say_lines(text)
+      character(len=*), intent(in) :: text
+      integer :: from, to
 
-  !> Lines on standard error, each behind the name of the deck.
-  subroutine say_lines(name, text)
-    character(len=*), intent(in) :: name, text
-    integer :: from, to
+      from = 1
+      do while (from <= len(text))
+        to = from + index(text(from:), newline) - 2
+        call print_error(shown(path)//': '//text(from:to + 1))
+        from = to + 2
+      end do
+    end subroutine say_lines
 
-    from = 1
-    do while (from <= len(text))
-      to = from + index(text(from:), newline) - 2
-      call print_error(name//text(from:to + 1))
-      from = to + 2
-    end do
-  end subroutine say_lines
+    !> A line on standard output.
+    subroutine say(text)
+      character(len=*), intent(in) :: text
 
-  !> Path of the result files, without their suffixes.
-  pure function output_stem(path, arguments) result(stem)
-    character(len=*), intent(in) :: path
-    type(arguments_type), intent(in) :: arguments
-    character(len=:), allocatable :: stem
-
-    stem = stem_of(path)
-    if (len(arguments%directory) > 0) stem = arguments%directory//'/'//stem
-  end function output_stem
-
-  !> Read and check.
-  subroutine prepare(path, run, watch, error)
-    character(len=*), intent(in) :: path
-    type(run_results), intent(inout) :: run
-    class(stopwatch), intent(inout) :: watch
-    type(error_type), allocatable, intent(out) :: error
-
-    call read_deck(path, run%deck, run%faults, error)
-    call watch%lap(stage_reading)
-    if (allocated(error)) return
-    call build_model(run%deck, run%model, run%faults)
-    call watch%lap(stage_model)
-    if (run%faults%errors > 0) return
-    call run%find_motions(run%faults)
-    call tell(run%deck, run%model%kinds, run%faults)
-    call watch%lap(stage_plan)
-  end subroutine prepare
+      if (.not. arguments%asks('--quiet')) call print_text(text, status)
+    end subroutine say
+  end subroutine run_deck
 
   !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh
   !! shows, that too.
@@ -166,12 +144,4 @@ contains
     if (run%motions%count > 0) &
       text = text//'  approach'//right(listed_number(number, run%answer%contact%approach(1), 0.0_wp), 13)
   end function one_line
-
-  subroutine say(arguments, text, status)
-    type(arguments_type), intent(in) :: arguments
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: status
-
-    if (.not. arguments%asks('--quiet')) call print_text(text, status)
-  end subroutine say
 end module epcont_app_driver

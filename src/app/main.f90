@@ -20,50 +20,47 @@ program epcont_main
   call watch_exit(ended)
   call prepare_heap()
   call use_threads(one_thread)
-  call run(status)
+  call run()
   ended = .true.
   call c_exit(int(status, c_int))
 
 contains
 
   !> What the command line asks for; of several decks the largest status counts.
-  subroutine run(worst)
-    integer, intent(out) :: worst
+  subroutine run()
     type(arguments_type) :: arguments
     type(error_type), allocatable :: error
     character(len=:), allocatable :: cards
-    logical :: found
     integer :: i, one
 
-    worst = status_valid
+    status = status_valid
     call read_arguments(command_line(), arguments, error)
     if (.not. allocated(error) .and. .not. has_memory(memory_of_libraries)) &
       call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs')
     if (allocated(error)) then
-      call refuse(error%message, worst)
+      call refuse(error%message)
     else if (arguments%asks('--help')) then
-      call print_text(help_text(), worst)
+      call print_text(help_text(), status)
     else if (arguments%asks('--man')) then
-      call print_text(man_page(), worst)
+      call print_text(man_page(), status)
     else if (arguments%asks('--version')) then
-      call print_text(program_name//' '//program_version, worst)
+      call print_text(program_name//' '//program_version, status)
     else if (arguments%asks('--cards')) then
-      cards = manual(arguments%card, found)
-      if (found) call print_text(cards, worst)
-      if (.not. found) call refuse(arguments%card//': no such card; epcont --cards lists them', worst)
+      cards = manual(arguments%card)
+      if (cards /= '') call print_text(cards, status)
+      if (cards == '') call refuse(arguments%card//': no such card; epcont --cards lists them')
     else
       if (len(arguments%directory) > 0) call make_directory(arguments%directory)
       do i = 1, size(arguments%deck)
         call run_deck(arguments%deck(i)%text, arguments, one)
-        worst = max(worst, one)
+        status = max(status, one)
       end do
     end if
   end subroutine run
 
   !> Say what is wrong with the command line.
-  subroutine refuse(message, status)
+  subroutine refuse(message)
     character(len=*), intent(in) :: message
-    integer, intent(out) :: status
 
     call print_error(program_name//': '//shown(message)//newline)
     status = status_usage

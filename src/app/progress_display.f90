@@ -27,7 +27,6 @@ module epcont_app_progress_display
     procedure :: expect
     procedure :: solved
     procedure :: erase
-    procedure, private :: show
   end type progress_type
 
 contains
@@ -53,7 +52,7 @@ contains
     real(wp), intent(in) :: operations       !! of a solve
 
     self%expected = new_expectation(plan, most_iterations, operations, self%elapsed())
-    call self%show(iteration_record())
+    call show(self, iteration_record())
   end subroutine expect
 
   !> A solve has been done; `over` if it was the last at its load.
@@ -63,7 +62,7 @@ contains
     logical, intent(in) :: over   !! it was the last at its load
 
     call self%expected%learn(now, over, self%elapsed())
-    call self%show(now)
+    call show(self, now)
   end subroutine solved
 
   !> Show how far it is, where that is wanted.
@@ -71,15 +70,17 @@ contains
     class(progress_type), intent(inout) :: self
     type(iteration_record), intent(in) :: now
     character(len=:), allocatable :: line
+    integer :: width
 
     if (max(self%elapsed(), self%expected%seconds, self%expected%first_solve) < self%silent_to) return
+    ! A line that fills the last column may go on in the next row, where it could not be erased.
+    width = merge(terminal_columns() - 1, huge(1), self%on_terminal)
+    line = progress_line(self%stem, self%elapsed(), self%expected, now, width)
     if (self%on_terminal) then
-      ! A line that fills the last column may go on in the next row, where it could not be erased.
-      line = progress_line(self%stem, self%elapsed(), self%expected, now, terminal_columns() - 1)
       call print_error(achar(13)//line//repeat(' ', max(0, self%drawn - len(line))))
       self%drawn = max(self%drawn, len(line))
     else
-      call print_error(progress_line(self%stem, self%elapsed(), self%expected, now, huge(1))//newline)
+      call print_error(line//newline)
     end if
   end subroutine show
 

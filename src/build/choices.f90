@@ -25,27 +25,28 @@ contains
     controls%search = deck%parameter_value('SEARCH', controls%search)
     controls%corner = deck%parameter_value('CORNER', controls%corner)
     if (controls%original) return
-    controls%method = choice(deck, 'METHOD', method_name, controls%method)
-    controls%rule = choice(deck, 'RULE', rule_name, controls%rule)
-    controls%solver = choice(deck, 'SOLVER', solver_name, controls%solver)
-    controls%precision = 1 + choice(deck, 'PRECIS', precision_name, precision_open - 1)
+    controls%method = choice('METHOD', method_name, controls%method)
+    controls%rule = choice('RULE', rule_name, controls%rule)
+    controls%solver = choice('SOLVER', solver_name, controls%solver)
+    controls%precision = 1 + choice('PRECIS', precision_name, precision_open - 1)
     controls%accuracy = deck%parameter_value('ACCURACY', controls%accuracy)
     controls%tolerance = deck%parameter_value('TOL', controls%tolerance)
     controls%load_steps = nint(deck%parameter_value('NLOAD', real(controls%load_steps, wp)))
     controls%by_inversion = deck%parameter_word('FLEXIB', 'AUTO') == 'INVERT'
     controls%paper_ratio = deck%parameter_word('MUP', 'EXACT') == 'PAPER'
+
+  contains
+
+    !> The place of the word that a PARAM says among the names of its choices, from 0 on; `default` where it
+    !! says none of these.
+    pure integer function choice(parameter, names, default)
+      character(len=*), intent(in) :: parameter, names(:)
+      integer, intent(in) :: default
+
+      choice = findloc(names == deck%parameter_word(parameter, ''), .true., dim=1) - 1
+      if (choice < 0) choice = default
+    end function choice
   end function read_controls
-
-  !> The place of the word that a PARAM says among the names of its choices, from 0 on; `default` where it
-  !! says none of these.
-  pure integer function choice(deck, parameter, names, default)
-    type(deck_type), intent(in) :: deck
-    character(len=*), intent(in) :: parameter, names(:)
-    integer, intent(in) :: default
-
-    choice = findloc(names == deck%parameter_word(parameter, ''), .true., dim=1) - 1
-    if (choice < 0) choice = default
-  end function choice
 
   !> Each PARAM stands once, and none beside ORIGINAL YES that this chooses: of two, one would be ignored.
   pure subroutine check_once(deck, original, found)

@@ -8,10 +8,11 @@ module epcont_build_conditions
                                     card_suport
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
+  use epcont_model_arrays, only: side_pressure
   use epcont_model_finding, only: and_more, findings, of_element
   use epcont_model_freedoms, only: follow_to_the_end, freedom, set_reference, tie
   use epcont_model_model, only: model_type
-  use epcont_model_pressure, only: add_pressure, element_behind
+  use epcont_model_pressure, only: add_pressure
   implicit none
   private
   public :: build_conditions
@@ -142,7 +143,7 @@ contains
     subroutine add_pressures()
       integer, dimension(deck%card(card_ploadx1)%count) :: a, b, behind, element
       type(card_index) :: elements
-      integer :: ga, i, side
+      integer :: ga, i
 
       elements = card_index(new_id_index(model%element_id), 'element', found%errors == 0)
       behind = 0
@@ -154,19 +155,15 @@ contains
         do i = 1, pressure%count
           if (element(i) == 0 .or. a(i) == 0 .or. b(i) == 0 .or. nint(pressure%value(1, i)) /= load_set) cycle
           if (any(model%connectivity(:model%node_count(element(i)), element(i)) == 0)) cycle
-          side = model%side_between(element(i), a(i), b(i))
-          if (side == 0) then
+          call add_pressure(model, side_pressure(element(i), [a(i), b(i)], pressure%value(3:4, i), &
+                                                 pressure%number('THETA', i)), behind(i))
+          if (behind(i) < 0) &
             call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &
                                  model%name_of(of_element, element(i)), &
                                  'two neighbouring corners of the element')
-          else if (model%section(element(i)) > 0) then
-            call add_pressure(model, element(i), side, a(i), pressure%value(3:4, i), &
-                              pressure%number('THETA', i))
-            behind(i) = element_behind(model, element(i), side)
-          end if
         end do
       end associate
-      if (all(behind == 0)) return
+      if (all(behind <= 0)) return
       i = findloc(behind > 0, .true., dim=1)
       call found%add_warning(card_ploadx1, i, ga, ': presses inside a body, between '// &
                              model%name_of(of_element, element(i))//' and '// &

@@ -28,7 +28,7 @@ contains
 
     axis = spread([1.0_wp, 0.0_wp], 2, size(axis, 2))
     do i = 1, deck%card(card_cord2r)%count
-      if (deck%card(card_cord2r)%sound(i)) call read_system(i)
+      if (deck%card(card_cord2r)%sound(i)) call read_system()
     end do
     call read_pairs()
     associate (blseg => deck%card(card_blseg), bconp => deck%card(card_bconp))
@@ -37,7 +37,7 @@ contains
       model%line%id = nint(blseg%value(1, :))
       model%couple%id = nint(bconp%value(1, :))
       do i = 1, blseg%count
-        call read_line(i, model%line(i)%node)
+        call read_line()
       end do
       do k = 1, 2
         call resolve(deck, card_bconp, 1 + k, index_of(deck, card_blseg), found, model%couple%line(k))
@@ -47,8 +47,7 @@ contains
   contains
 
     !> The axis of a CORD2R; of a bad one it remains that of the basic system.
-    subroutine read_system(i)
-      integer, intent(in) :: i
+    subroutine read_system()
       real(wp) :: point(3, 3), x(3), z(3), to_c(3)
       integer :: a
 
@@ -96,9 +95,7 @@ contains
     end subroutine read_pairs
 
     !> The nodes of a BLSEG, ranges and steps written out; none where it is not sound.
-    subroutine read_line(i, node)
-      integer, intent(in) :: i
-      integer, allocatable, intent(out) :: node(:)
+    subroutine read_line()
       integer :: id, k
       logical :: sound
 
@@ -114,9 +111,9 @@ contains
             exit   ! of a range the first one
           end do
         end do
-        node = [integer ::]
-        if (sound) node = [((nodes%find(id), id=blseg%list(k)%from, blseg%list(k)%to, blseg%list(k)%step), &
-                            k=first, last)]
+        model%line(i)%node = [integer ::]
+        if (sound) model%line(i)%node = [((nodes%find(id), id=blseg%list(k)%from, blseg%list(k)%to, &
+                                           blseg%list(k)%step), k=first, last)]
       end associate
     end subroutine read_line
   end subroutine build_contacts

@@ -15,7 +15,7 @@ module epcont_contact_geometry_complete
   use epcont_model_freedoms, only: find_travels, follow_to_the_end, set_reference, tie
   use epcont_model_given, only: check_given, number_parts
   use epcont_model_model, only: model_type
-  use epcont_model_pressure, only: add_pressure, element_behind
+  use epcont_model_pressure, only: add_pressure
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
   private
@@ -51,21 +51,13 @@ contains
 
     !> Pressures are loads of the nodes beside them.
     subroutine load_sides()
-      integer :: i, side
+      integer :: behind, i
 
       do i = 1, size(scene%pressure)
-        associate (given => scene%pressure(i))
-          side = model%side_between(given%element, given%corner(1), given%corner(2))
-          if (side > 0) then
-            if (element_behind(model, given%element, side) > 0) side = 0
-          end if
-          if (side > 0) then
-            call add_pressure(model, given%element, side, given%corner(1), given%pressure, given%theta)
-          else
-            call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner is of no side of the'// &
-                                 ' boundary', 'two neighbouring corners of a side that its element alone has')
-          end if
-        end associate
+        call add_pressure(model, scene%pressure(i), behind)
+        if (behind /= 0) &
+          call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner is of no side of the'// &
+                               ' boundary', 'two neighbouring corners of a side that its element alone has')
       end do
     end subroutine load_sides
 

@@ -1,7 +1,7 @@
 !> Finds the outlines of all bodies from the elements, and from nothing else.
 module epcont_contact_geometry_free_sides
   use epcont_base_incidence, only: incidence, new_incidence
-  use epcont_geometry_outline, only: outline_type
+  use epcont_geometry_outline_shape, only: outline_type
   use epcont_model_model, only: model_type
   use epcont_model_freedoms, only: join_nodes
   implicit none
@@ -29,7 +29,7 @@ contains
     number = 0
     sides = 0
     do node = 1, model%nodes
-      call look_around(node)
+      call look_around()
     end do
     before = [(number(former(1, k), former(2, k)), k=1, sides)]
     ! Only where elements lie on each other, and share a side the same way round, is there none: it begins
@@ -59,8 +59,7 @@ contains
 
     !> Free sides that begin at a node. The elements' sides to the next and from the former corner are
     !! compared: a side is shared where it is met both ways.
-    subroutine look_around(node)
-      integer, intent(in) :: node
+    subroutine look_around()
       integer :: corners, i, k, n
 
       n = 0

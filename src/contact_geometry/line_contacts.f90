@@ -11,7 +11,7 @@ module epcont_contact_geometry_line_contacts
   use epcont_contact_geometry_line_warnings, only: warn_of_both_ways, warn_of_contact
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_finding, only: findings, of_couple, of_line
-  use epcont_model_freedoms, only: find_bodies
+  use epcont_model_freedoms, only: join_nodes
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
@@ -39,14 +39,14 @@ contains
     integer :: c, contacts, i
 
     if (found%errors == 0) then   ! only sound elements have outlines
-      call find_bodies(model)
+      call join_nodes(model, .true., model%body, model%bodies)
       model%body_outline = find_outline(model)
     end if
     call find_line_sides(model, found)
     used = .false.
     do i = 1, size(model%couple)
       used(model%couple(i)%line) = .true.
-      if (all(model%couple(i)%line > 0)) call check_couple(i)
+      if (all(model%couple(i)%line > 0)) call check_couple()
     end do
     do i = 1, size(model%line)
       if (.not. used(i)) call found%add_warning(of_line, i, 1, ': no BCONP names it', &
@@ -66,8 +66,7 @@ contains
 
     !> A line does not touch itself, and two lines touch once: of two contacts each would bear a part of the
     !! forces.
-    subroutine check_couple(i)
-      integer, intent(in) :: i
+    subroutine check_couple()
       integer :: k
 
       associate (slave => model%couple(i)%line(1), master => model%couple(i)%line(2))

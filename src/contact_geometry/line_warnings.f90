@@ -11,19 +11,19 @@ module epcont_contact_geometry_line_warnings
   private
   public :: warn_of_both_ways, warn_of_contact
 
-  !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off by
-  !! 3 % and more.
-  real(wp), parameter :: finer = 1.3_wp
-  !> Sides so many times longer than those of the slave cannot follow it: where little of them touches,
-  !! approaches are off as well.
-  real(wp), parameter :: far_coarser = 4.0_wp
-  !> Gaps of curves over sides that are chords are exact to this part of how high the curves rise above them;
-  !! and coordinates
-  !> have so many digits where a card has eight columns.
-  real(wp), parameter :: curve_error = 0.01_wp, digits = 1.0e-7_wp
-  !> Normals of two contacts at a node are of one face within 45 degrees; less than so much of a row says
-  !! nothing of a node.
-  real(wp), parameter :: one_face = sqrt(0.5_wp), least_weight = 1.0e-3_wp
+  real(wp), parameter :: &
+    !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off
+    !! by 3 % and more.
+    finer = 1.3_wp, &
+    !> Sides so many times longer than those of the slave cannot follow it: where little of them touches,
+    !! approaches are off as well.
+    far_coarser = 4.0_wp, &
+    !> Gaps of curves over sides that are chords are exact to this part of how high the curves rise above
+    !! them; and coordinates have so many digits where a card has eight columns.
+    curve_error = 0.01_wp, digits = 1.0e-7_wp, &
+    !> Normals of two contacts at a node are of one face within 45 degrees; less than so much of a row says
+    !! nothing of a node.
+    one_face = sqrt(0.5_wp), least_weight = 1.0e-3_wp
 
 contains
 

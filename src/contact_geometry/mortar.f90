@@ -26,17 +26,20 @@ module epcont_contact_geometry_mortar
 
   !> Gauss points of each piece of a side: exact for the product of two quadratics on a straight one.
   integer, parameter :: gauss_points = 3
-  real(wp), parameter :: gauss_place(3) = 0.5_wp + 0.5_wp*[-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
-  real(wp), parameter :: gauss_weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/18.0_wp
-  !> Normals that differ by less (cosine) along a side may be those of one curve: 35 degrees.
-  real(wp), parameter :: one_curve = 0.816_wp
+  real(wp), parameter :: &
+    gauss_place(3) = 0.5_wp + 0.5_wp*[-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)], &
+    gauss_weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/18.0_wp, &
+    !> What values there count at the piece's end, in the parabola through them.
+    at_end(3) = [1.0_wp - sqrt(0.6_wp), -0.8_wp, 1.0_wp + sqrt(0.6_wp)]/1.2_wp, &
+    !> Normals that differ by less (cosine) along a side may be those of one curve: 35 degrees.
+    one_curve = 0.816_wp, &
 
-  !> Where gaps jump by more than this part of a side there is a step in the other line.
-  real(wp), parameter :: step = 0.01_wp
-  !> Only sides that are nearly parallel, by this cosine, can touch all along: 20 degrees.
-  real(wp), parameter :: parallel = 0.94_wp
-  !> Normals whose cosine is less, on either side of a node, meet at a corner there: more than 9 degrees.
-  real(wp), parameter :: smooth = 0.988_wp
+    !> Where gaps jump by more than this part of a side there is a step in the other line.
+    step = 0.01_wp, &
+    !> Only sides that are nearly parallel, by this cosine, can touch all along: 20 degrees.
+    parallel = 0.94_wp, &
+    !> Normals whose cosine is less, on either side of a node, meet at a corner there: more than 9 degrees.
+    smooth = 0.988_wp
 
   !> A side of the slave, with the integration points of its pieces, one piece behind the other.
   type :: side_points
@@ -67,8 +70,8 @@ contains
 
     area = 0.0_wp
     do s = 1, size(points)
-      points(s) = cut_side(s)
-      points(s)%covered = points(s)%covered .and. is_even(s, points(s))
+      points(s) = cut_side()
+      points(s)%covered = points(s)%covered .and. is_even()
       call set_integrals(points(s), contact%slave%segment(3, s) > 0)
       associate (own => pack(faces%row_of(:, s), faces%row_of(:, s) > 0))
         area(own) = area(own) + pack(points(s)%integral, faces%row_of(:, s) > 0)
@@ -82,10 +85,10 @@ contains
       allocate (rows(row)%node(0), rows(row)%weight(0))
     end do
     do s = 1, size(points)
-      call add_side(faces%row_of(:, s), points(s))
+      call add_side()
     end do
     do row = 1, size(rows)
-      if (alone(row)) call add(row, faces%row(row)%facing_type, 1.0_wp)
+      if (alone(row)) call add(faces%row(row)%facing_type, 1.0_wp)
       associate (counts => abs(rows(row)%weight) > rounded_off)
         rows(row) = mortar_row(pack(rows(row)%node, counts), pack(rows(row)%weight, counts))
       end associate
@@ -95,15 +98,14 @@ contains
 
     !> Integration points of a side, cut where nodes of the other line face it. It may be covered where all of
     !! them face that line, nearly parallel.
-    pure type(side_points) function cut_side(s) result(points)
-      integer, intent(in) :: s
+    pure type(side_points) function cut_side() result(points)
       type(looking_point) :: from
       type(facing_type) :: face(2)
       real(wp), allocatable :: cut(:), width(:)
       real(wp) :: tangent(2)
       integer :: i, k, p
 
-      cut = cuts_of(s)
+      cut = cuts_of_side()
       width = cut(2:) - cut(:size(cut) - 1)
       cut = pack(cut(:size(width)), width > beyond)   ! what lies beyond an end by so little is not beyond it
       width = pack(width, width > beyond)
@@ -127,8 +129,7 @@ contains
 
     !> Places along a side, from 0 to 1, at which the ends of the other line's sides face it, not farther away
     !! than the part of that line lies that it faces: twice as far as its ends say, or its length.
-    pure function cuts_of(s) result(cut)
-      integer, intent(in) :: s
+    pure function cuts_of_side() result(cut)
       real(wp), allocatable :: cut(:)
       type(facing_type) :: place
       real(wp) :: middle(2), reach, within
@@ -155,57 +156,49 @@ contains
           end do
         end do
       end associate
-    end function cuts_of
+    end function cuts_of_side
 
     !> Do the points of a side face the same face of the other line as its nodes, without a step or a corner?
-    pure logical function is_even(s, points)
-      integer, intent(in) :: s
-      type(side_points), intent(in) :: points
-      real(wp) :: before, cut, length
-      integer :: k, last, p
+    pure logical function is_even()
+      real(wp) :: before, most
+      integer :: k, p
 
-      associate (row => faces%row_of(:, s), facing => points%facing, along => points%along)
+      associate (row => faces%row_of(:, s), facing => points(s)%facing)
         is_even = all(row > 0 .or. contact%slave%segment(:, s) == 0)
         if (.not. is_even) return
         do k = 1, 3
           if (row(k) > 0) is_even = is_even .and. all(facing%cosine(faces%row(row(k))) > one_curve)
         end do
-        length = contact%slave%chord_length(s)
-        last = size(along)
+        most = step*contact%slave%chord_length(s)
         before = faces%row(row(1))%gap
-        do p = 1, last, gauss_points   ! piece by piece
-          associate (gap => facing(p:p + 2)%gap, at => along(p:p + 2))
-            cut = at(1) - (at(3) - at(1))*gauss_place(1)/(gauss_place(3) - gauss_place(1))
-            is_even = is_even .and. abs(continued(at, gap, cut) - before) <= step*length
-            before = continued(at, gap, at(3) + (at(1) - cut))
-          end associate
+        do p = 1, size(facing), gauss_points   ! piece by piece
+          is_even = is_even .and. abs(dot_product(at_end, facing(p + 2:p:-1)%gap) - before) <= most
+          before = dot_product(at_end, facing(p:p + 2)%gap)
           if (p > 1) is_even = is_even .and. facing(p - 1)%cosine(facing(p)) > smooth
         end do
-        is_even = is_even .and. abs(faces%row(row(2))%gap - before) <= step*length
+        is_even = is_even .and. abs(faces%row(row(2))%gap - before) <= most
       end associate
     end function is_even
 
     !> Add what a side makes of the rows of its nodes: one that is covered by its points, others at the nodes.
-    subroutine add_side(own, points)
-      integer, intent(in) :: own(3)
-      type(side_points), intent(in) :: points
+    subroutine add_side()
       integer :: k, p
 
       do k = 1, 3
-        if (own(k) == 0) cycle
-        if (points%covered) then
-          do p = 1, size(points%weight)
-            call add(own(k), points%facing(p), points%dual(k, p))
+        row = faces%row_of(k, s)
+        if (row == 0) cycle
+        if (covered(s)) then
+          do p = 1, size(points(s)%weight)
+            call add(points(s)%facing(p), points(s)%dual(k, p))
           end do
         else
-          call add(own(k), faces%row(own(k))%facing_type, points%integral(k))
+          call add(faces%row(row)%facing_type, points(s)%integral(k))
         end if
       end do
     end subroutine add_side
 
-    !> Add a weight to a row: it is shared by the nodes of the side that is faced.
-    subroutine add(row, facing, weight)
-      integer, intent(in) :: row
+    !> Add a weight to the row: it is shared by the nodes of the side that is faced.
+    subroutine add(facing, weight)
       type(facing_type), intent(in) :: facing
       real(wp), intent(in) :: weight
       integer :: i, k
@@ -246,15 +239,6 @@ contains
       end do
     end associate
   end subroutine set_integrals
-
-  !> The value at s of the parabola through three points.
-  pure real(wp) function continued(at, value, s)
-    real(wp), intent(in) :: at(3), value(3), s
-
-    continued = value(1)*(s - at(2))*(s - at(3))/((at(1) - at(2))*(at(1) - at(3))) + &
-                value(2)*(s - at(1))*(s - at(3))/((at(2) - at(1))*(at(2) - at(3))) + &
-                value(3)*(s - at(1))*(s - at(2))/((at(3) - at(1))*(at(3) - at(2)))
-  end function continued
 
   !> By cofactors.
   pure function inverse(a) result(b)

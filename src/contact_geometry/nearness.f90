@@ -16,17 +16,18 @@ module epcont_contact_geometry_nearness
   private
   public :: enter_nodes_that_came_near
 
-  !> A node between those of the other line that stand on its own may pass through by so many times what
-  !! chords of curves and of bent sides make.
-  real(wp), parameter :: allowance = 3.0_wp
-  !> But not by more than this part of the largest displacement: that is no end of contact, but contact
-  !! missed.
-  real(wp), parameter :: most = 0.5_wp
-  !> The two lines, not quite parallel, tell gaps by normals of their own: what these make of nodes that
-  !! slide, and of gaps that close, differs by this much at most.
-  real(wp), parameter :: askew = 1.5_wp
-  !> Search beyond what came near.
-  real(wp), parameter :: further = 1.5_wp
+  real(wp), parameter :: &
+    !> A node between those of the other line that stand on its own may pass through by so many times what
+    !! chords of curves and of bent sides make.
+    allowance = 3.0_wp, &
+    !> But not by more than this part of the largest displacement: that is no end of contact, but contact
+    !! missed.
+    most = 0.5_wp, &
+    !> The two lines, not quite parallel, tell gaps by normals of their own: what these make of nodes that
+    !! slide, and of gaps that close, differs by this much at most.
+    askew = 1.5_wp, &
+    !> Search beyond what came near.
+    further = 1.5_wp
 
 contains
 

@@ -2,7 +2,7 @@
 module epcont_contact_geometry_pair_checks
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: plural, short_real, text_of
+  use epcont_base_text, only: plural, short_real
   use epcont_base_tolerances, only: least_difference, no_effect, rounded_off
   use epcont_element_kinematics, only: directions
   use epcont_geometry_boundary_line, only: unit
@@ -13,13 +13,14 @@ module epcont_contact_geometry_pair_checks
   private
   public :: check_pairs
 
-  !> A normal within 60 degrees of a boundary's own goes its way.
-  real(wp), parameter :: same_way = 0.5_wp
-  !> Normals of two CGAPs are one within 2.5 degrees: in a groove, whose walls stand at a larger angle, each
-  !! has its force.
-  real(wp), parameter :: parallel = 0.999_wp
-  !> The normal of a CGAP is that of a line, which bends from node to node, within 45 degrees.
-  real(wp), parameter :: one_face = sqrt(0.5_wp)
+  real(wp), parameter :: &
+    !> A normal within 60 degrees of a boundary's own goes its way.
+    same_way = 0.5_wp, &
+    !> Normals of two CGAPs are one within 2.5 degrees: in a groove, whose walls stand at a larger angle, each
+    !! has its force.
+    parallel = 0.999_wp, &
+    !> The normal of a CGAP is that of a line, which bends from node to node, within 45 degrees.
+    one_face = sqrt(0.5_wp)
 
 contains
 

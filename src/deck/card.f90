@@ -16,9 +16,10 @@ module epcont_deck_card
   private
   public :: card_fields, gather, continues, find_name
 
-  integer, parameter :: width = 8            !! columns of a small field
-  integer, parameter :: longest_fixed = 80   !! columns of a fixed line
-  integer, parameter :: longest_free = 256   !! columns of a free line
+  integer, parameter :: &
+    width = 8, &            !! columns of a small field
+    longest_fixed = 80, &   !! columns of a fixed line
+    longest_free = 256      !! columns of a free line
 
   !> One data field of a card.
   type :: card_slot

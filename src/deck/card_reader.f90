@@ -44,11 +44,11 @@ contains
     do slot = 1, size(table%entry%field)
       associate (at => card%slot(min(slot, card%count + 1)))   ! the one behind the last is blank
         if (at%last < at%first) then
-          call take_blank(slot)
+          call take_blank()
         else if (table%entry%field(slot)%kind == kind_blank) then
-          call refuse_surplus(slot)
+          call refuse_surplus()
         else
-          call take_value(slot)
+          call take_value()
         end if
       end associate
     end do
@@ -58,7 +58,7 @@ contains
       call read_ids()
     else
       do slot = size(table%entry%field) + 1, card%count
-        if (card%slot(slot)%last >= card%slot(slot)%first) call refuse_surplus(slot)
+        if (card%filled(slot)) call refuse_surplus()
       end do
     end if
 
@@ -74,8 +74,7 @@ contains
     end subroutine refuse
 
     !> A field that the catalogue does not know must be blank.
-    subroutine refuse_surplus(slot)
-      integer, intent(in) :: slot
+    subroutine refuse_surplus()
       character(len=:), allocatable :: remedy
 
       remedy = 'blank'
@@ -87,8 +86,7 @@ contains
     end subroutine refuse_surplus
 
     !> A blank field has its default, or the value of another; some may not be blank.
-    subroutine take_blank(slot)
-      integer, intent(in) :: slot
+    subroutine take_blank()
       logical :: needed
 
       associate (field => table%entry%field(slot), i => table%count)
@@ -101,40 +99,28 @@ contains
     end subroutine take_blank
 
     !> Take the value of a field that is not blank.
-    subroutine take_value(slot)
-      integer, intent(in) :: slot
+    subroutine take_value()
       type(field_value) :: value
 
       associate (entry => table%entry%field(slot), i => table%count)
-        call read_value(card, slot, entry, value)
-        if (value%outcome == scan_sound) then
-          table%value(slot, i) = value%number
-          if (entry%kind == kind_word) table%word(slot, i) = value%word
-          table%given(slot, i) = .true.
-        else
-          call refuse_value(slot, entry, value)
-        end if
+        call read_slot(slot, entry, value)
+        if (value%outcome /= scan_sound) return
+        table%value(slot, i) = value%number
+        if (entry%kind == kind_word) table%word(slot, i) = value%word
+        table%given(slot, i) = .true.
       end associate
     end subroutine take_value
 
-    !> Read a field of a list; one that is blank, or cannot be taken, is a fault.
+    !> Read a field; where it is blank, or cannot be taken, say why.
     subroutine read_slot(slot, entry, value)
       integer, intent(in) :: slot
       type(field_entry), intent(in) :: entry    !! what it may hold
       type(field_value), intent(out) :: value
-
-      call read_value(card, slot, entry, value)
-      if (value%outcome /= scan_sound) call refuse_value(slot, entry, value)
-    end subroutine read_slot
-
-    !> Say why a field cannot be taken.
-    subroutine refuse_value(slot, entry, value)
-      integer, intent(in) :: slot
-      type(field_entry), intent(in) :: entry
-      type(field_value), intent(in) :: value
       character(len=:), allocatable :: text, what, remedy
       integer :: last
 
+      call read_value(card, slot, entry, value)
+      if (value%outcome == scan_sound) return
       text = card%text(card%slot(slot)%first:card%slot(slot)%last)
       remedy = entry%allowed()
       select case (value%outcome)
@@ -171,7 +157,7 @@ contains
         end if
       end select
       call refuse(slot, what, remedy)
-    end subroutine refuse_value
+    end subroutine read_slot
 
     !> Does a slot hold this word?
     logical function is_word(slot, word)
@@ -187,11 +173,10 @@ contains
 
     !> The ids at the end of a card, one at least.
     subroutine read_ids()
-      integer :: slot
+      integer :: k, slot
 
       slot = table%entry%list_slot
-      if (.not. any(card%slot(slot:card%count)%last >= card%slot(slot:card%count)%first)) &
-        call refuse(slot, 'is blank', id%allowed())
+      if (.not. any([(card%filled(k), k=slot, card%count)])) call refuse(slot, 'is blank', id%allowed())
       do while (slot <= card%count)
         if (card%filled(slot)) call read_range(slot)
         slot = slot + 1

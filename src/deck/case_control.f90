@@ -48,9 +48,7 @@ contains
     type(statement) :: parts
     integer :: line
 
-    control%title = ''
-    control%subtitle = ''
-    control%label = ''
+    control = case_control(title='', subtitle='', label='')
     bulk = behind_begin_bulk(lines)
     stated = .false.
     do line = 1, bulk - 2

@@ -8,8 +8,9 @@ module epcont_deck_catalogue
   public :: catalogue, parameters
 
   !> All cards, in the order of `epcont_deck_card_kinds`: name and meaning of each, and under it its fields in
-  !! their order, fields 2 to 9, then 12 to 19, and so on, each as `new_field` takes it. Behind them there may
-  !! be a list, of `ids`, some of which are `ranges`, with `steps`, or of `points`.
+  !! their order, fields 2 to 9, then 12 to 19, and so on, each as `new_field` takes it; the first so many may
+  !! be `like` those of a card before. Behind them there may be a list, of `ids`, some of which are `ranges`,
+  !! with `steps`, or of `points`.
   character(len=*), parameter :: cards(*) = [character(len=140) :: &
     'GRID: node', &
     '  ID; id; node', &
@@ -141,8 +142,7 @@ module epcont_deck_catalogue
     '  ; blank times=7;', &
     '  ; points; strain and stress of each point: 0.0 0.0, the yield point, and on; ENDT behind the last', &
     'CTRIA6: six-node triangle', &
-    '  EID; id; element', &
-    '  PID; id; its PSHELL', &
+    '  like 2 CTRIA3', &
     '  G1; id; first corner, in either turning sense', &
     '  G2; id; second corner', &
     '  G3; id; third corner', &
@@ -150,11 +150,7 @@ module epcont_deck_catalogue
     '  G5; id; between the second and the third', &
     '  G6; id; between the third and the first', &
     'CQUAD4: four-node quadrilateral, B-bar', &
-    '  EID; id; element', &
-    '  PID; id; its PSHELL', &
-    '  G1; id; first node, in either turning sense', &
-    '  G2; id; second node', &
-    '  G3; id; third node', &
+    '  like 5 CTRIA3', &
     '  G4; id; fourth node', &
     'CTRAX3: ring of a three-node triangle; x is the radius', &
     '  EID; id; element', &
@@ -163,8 +159,7 @@ module epcont_deck_catalogue
     '  G2; id; second node', &
     '  G3; id; third node', &
     'CTRAX6: ring of a six-node triangle; x is the radius', &
-    '  EID; id; element', &
-    '  PID; id; its PSOLID', &
+    '  like 2 CTRAX3', &
     '  G1; id; first corner, in either turning sense', &
     '  G2; id; between the first and the second', &
     '  G3; id; second corner', &
@@ -188,11 +183,7 @@ module epcont_deck_catalogue
     '  PTYPE; whole from=1 to=1 default=1; forces from slave and master: 1', &
     '  CID; system only_zero; system of the contact plane: the basic one', &
     'CQUAD8: eight-node quadrilateral', &
-    '  EID; id; element', &
-    '  PID; id; its PSHELL', &
-    '  G1; id; first corner, in either turning sense', &
-    '  G2; id; second corner', &
-    '  G3; id; third corner', &
+    '  like 5 CTRIA6', &
     '  G4; id; fourth corner', &
     '  G5; id; between the first and the second', &
     '  G6; id; between the second and the third', &
@@ -242,6 +233,9 @@ contains
           k = k + 1
           at = index(line, ':')
           card(k) = card_entry(line(:at - 1), trim(line(at + 2:)), [field_entry ::])
+        else if (line(:6) == '  like') then
+          read (line(7:9), *) at
+          card(k)%field = card(findloc(card%name == line(10:17), .true., dim=1))%field(:at)
         else
           field = new_field(trim(line))
           if (index(line(:12), '; ids') + index(line(:12), '; points') > 0) then

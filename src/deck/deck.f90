@@ -79,10 +79,7 @@ contains
     class(deck_type), intent(in) :: self
     character(len=*), intent(in) :: name   !! of the parameter
 
-    do row = 1, self%card(card_param)%count
-      if (self%card(card_param)%word(1, row) == name) return
-    end do
-    row = 0
+    row = findloc(self%card(card_param)%word(1, :) == name, .true., dim=1)
   end function parameter_row
 
   !> The word that a PARAM says, blank if it is at fault; `default` where there is no such card.

@@ -9,8 +9,6 @@ module epcont_deck_entry
   !> Kinds of fields.
   integer, parameter, public :: &
     kind_blank = 0, kind_integer = 1, kind_real = 2, kind_components = 3, kind_word = 4, kind_any = 5
-  !> Fields that belong together are neighbours.
-  integer, parameter, public :: next_field = 1, last_field = -1
   !> The largest id.
   integer, parameter, public :: largest_id = 99999999
   !> Data fields on one line: numbers 2 to 9, then 12 to 19, and so on.
@@ -30,8 +28,8 @@ module epcont_deck_entry
     character(len=8) :: unit = ''
     logical :: used = .true.           !! false: noted, that is accepted without effect
     logical :: required = .false.      !! may not be blank
-    integer :: with = 0                !! may not be blank where this neighbour is filled; 0: none
-    integer :: same_as = 0             !! a blank means the value of this neighbour; 0: none
+    integer :: with = 0                !! may not be blank where the next (1), the last (-1) field is filled
+    integer :: same_as = 0             !! a blank means the value of the last field (-1)
     real(wp) :: default = 0.0_wp       !! the value of a blank field
     logical :: has_default = .false.   !! false: a blank has a meaning of its own
     real(wp) :: lowest = -huge(1.0_wp), highest = huge(1.0_wp)
@@ -190,11 +188,11 @@ contains
       case ('point_optional')
         field%point_optional = .true.
       case ('as_last')
-        field%same_as = last_field
+        field%same_as = -1
       case ('with_next')
-        field%with = next_field
+        field%with = 1
       case ('with_last')
-        field%with = last_field
+        field%with = -1
       case ('needed')
         field%required = .true.
       case ('optional')

@@ -92,9 +92,43 @@ contains
       end if
       if (parts%negative) number = -number
     else
-      call convert(text(:parts%mantissa_last), parts, power, number, outcome)
+      call convert(number, outcome)
     end if
     if (outcome == scan_sound .and. parts%point == 0) outcome = scan_no_point
+
+  contains
+
+    !> The real of a mantissa with many digits or a large exponent, by way of READ. What would overflow is
+    !! kept away from READ, which would trap or give infinity.
+    pure subroutine convert(number, outcome)
+      real(wp), intent(out) :: number
+      integer, intent(out) :: outcome
+      character(len=len(text) + 8) :: clean
+      integer(i8) :: first_digits  ! 17 of them, filled up with zeros
+      integer :: leading           ! exponent of the first of them
+      integer :: status
+
+      number = 0.0_wp
+      first_digits = parts%digits
+      leading = power + parts%dropped + 16
+      if (first_digits >= full) then
+        first_digits = first_digits/10
+        leading = leading + 1
+      end if
+      do while (first_digits < full/10)
+        first_digits = 10*first_digits
+        leading = leading - 1
+      end do
+      outcome = scan_too_large
+      if (leading > largest_exponent) return
+      if (leading == largest_exponent .and. first_digits > largest_digits) return
+      outcome = scan_too_small
+      if (leading < -largest_exponent) return
+      clean = text(:parts%mantissa_last)//'E'//text_of(parts%exponent)
+      read (clean, *, iostat=status) number
+      if (status /= 0) outcome = scan_malformed
+      if (abs(number) >= tiny(number)) outcome = scan_sound
+    end subroutine convert
   end subroutine scan_real
 
   !> The parts of a real; `outcome` says whether it is one.
@@ -147,41 +181,6 @@ contains
     if (outcome == scan_too_large) outcome = scan_sound
     exponent = int(max(-endless_exponent, min(number, endless_exponent)))
   end subroutine take_exponent
-
-  !> The real of a mantissa with many digits or a large exponent, by way of READ. What would overflow is
-  !! kept away from READ, which would trap or give infinity.
-  pure subroutine convert(mantissa, parts, power, number, outcome)
-    character(len=*), intent(in) :: mantissa  !! checked digits with a point
-    type(decimal), intent(in) :: parts
-    integer, intent(in) :: power
-    real(wp), intent(out) :: number
-    integer, intent(out) :: outcome
-    character(len=len(mantissa) + 8) :: clean
-    integer(i8) :: first_digits  ! 17 of them, filled up with zeros
-    integer :: leading           ! exponent of the first of them
-    integer :: status
-
-    number = 0.0_wp
-    first_digits = parts%digits
-    leading = power + parts%dropped + 16
-    if (first_digits >= full) then
-      first_digits = first_digits/10
-      leading = leading + 1
-    end if
-    do while (first_digits < full/10)
-      first_digits = 10*first_digits
-      leading = leading - 1
-    end do
-    outcome = scan_too_large
-    if (leading > largest_exponent) return
-    if (leading == largest_exponent .and. first_digits > largest_digits) return
-    outcome = scan_too_small
-    if (leading < -largest_exponent) return
-    clean = mantissa//'E'//text_of(parts%exponent)
-    read (clean, *, iostat=status) number
-    if (status /= 0) outcome = scan_malformed
-    if (abs(number) >= tiny(number)) outcome = scan_sound
-  end subroutine convert
 
   !> Directions: digits from 1 to 6, each at most once, such as `12`.
   pure subroutine scan_components(text, number, outcome)

@@ -1,6 +1,6 @@
 !> The manual of the cards, printed from the catalogue that the reader checks by.
 module epcont_deck_manual
-  use epcont_base_text, only: text_of, upper
+  use epcont_base_text, only: newline, text_of, upper
   use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_catalogue, only: catalogue, parameters
   use epcont_deck_entry, only: card_entry, field_entry, fields_a_line, kind_any, kind_blank, kind_real, &
@@ -9,17 +9,15 @@ module epcont_deck_manual
   private
   public :: manual
 
-  character(len=*), parameter :: newline = new_line('a')
   !> What fields hold, by their kinds.
   character(len=7), parameter :: kind_name(5) = ['integer', 'real   ', 'digits ', 'word   ', 'any    ']
 
 contains
 
-  !> The cards in one line each, or all about the card `name`. `found` is false where there is no such card.
-  !! Each line is ended by a newline.
-  function manual(name, found) result(text)
+  !> The cards in one line each, or all about the card `name`; empty where there is no such card. Each line is
+  !! ended by a newline.
+  function manual(name) result(text)
     character(len=*), intent(in) :: name  !! blank: all cards
-    logical, intent(out) :: found   !! there is such a card
     character(len=:), allocatable :: text
     type(card_entry) :: entry(card_kinds)
     integer :: k
@@ -34,7 +32,6 @@ contains
         if (k == card_param) text = text//parameter_text()
       end if
     end do
-    found = len(text) > 0
   end function manual
 
   !> All about one card.
@@ -56,7 +53,7 @@ contains
       if (field(slot)%kind == kind_blank) then
         call add_row('', '', '', '', 'blank', 'must be blank')
       else
-        call add_row('', field(slot)%name, kind_name(field(slot)%kind), default_text(entry, slot), &
+        call add_row('', field(slot)%name, kind_name(field(slot)%kind), default_text(), &
                      merge('used ', 'noted', field(slot)%used), meaning_text(field(slot)))
       end if
     end do
@@ -81,6 +78,18 @@ contains
         number_of(slot), more, first, first + 7, name, kind, default, use
       text = text//head//meaning//newline
     end subroutine add_row
+
+    !> What a blank means: a value, another field, nothing that would do, or `blank` where it has a meaning of
+    !! its own.
+    pure function default_text() result(text)
+      character(len=:), allocatable :: text
+
+      text = 'blank'
+      if (field(slot)%has_default) &
+        text = text_of(nint(field(slot)%default))//merge('.0', '  ', field(slot)%kind == kind_real)
+      if (field(slot)%same_as /= 0) text = entry%field_name(slot + field(slot)%same_as)
+      if (field(slot)%required) text = 'none'
+    end function default_text
   end function card_text
 
   !> The parameters that PARAM may set.
@@ -95,21 +104,6 @@ contains
       end do
     end associate
   end function parameter_text
-
-  !> What a blank means: a value, another field, nothing that would do, or `blank` where it has a meaning of
-  !! its own.
-  pure function default_text(entry, slot) result(text)
-    type(card_entry), intent(in) :: entry
-    integer, intent(in) :: slot
-    character(len=:), allocatable :: text
-
-    associate (field => entry%field(slot))
-      text = 'blank'
-      if (field%has_default) text = text_of(nint(field%default))//merge('.0', '  ', field%kind == kind_real)
-      if (field%same_as /= 0) text = entry%field_name(slot + field%same_as)
-      if (field%required) text = 'none'
-    end associate
-  end function default_text
 
   pure function meaning_text(field) result(text)
     type(field_entry), intent(in) :: field

@@ -2,7 +2,7 @@
 module epcont_deck_render
   use epcont_base_diagnostic, only: diagnostic, diagnostics, place_type, severity_error, severity_note, &
                                      severity_warning
-  use epcont_base_text, only: plural, shown, text_of
+  use epcont_base_text, only: newline, plural, shown, text_of
   use epcont_deck_source, only: source
   implicit none
   private
@@ -12,7 +12,6 @@ module epcont_deck_render
   integer, parameter :: most_shown = 50
   !> Columns shown of a line of the deck.
   integer, parameter :: width = 132
-  character(len=*), parameter :: newline = new_line('a')
 
 contains
 

@@ -11,12 +11,14 @@ module epcont_deck_source
   private
   public :: source, read_source
 
-  !> How deep files may include files, the deck itself not counted.
-  integer, parameter :: deepest = 8
-  !> How many INCLUDE lines a deck may have: files that include each other twice would double at every depth.
-  integer, parameter :: most_files = 10000
-  !> Characters of a line, as they are mostly: that is the room for lines at first.
-  integer, parameter :: usual_line = 32
+  integer, parameter :: &
+    !> How deep files may include files, the deck itself not counted.
+    deepest = 8, &
+    !> How many INCLUDE lines a deck may have: files that include each other twice would double at every
+    !! depth.
+    most_files = 10000, &
+    !> Characters of a line, as they are mostly: that is the room for lines at first.
+    usual_line = 32
   !> What ends a line: either of them, or a return with a newline behind it.
   character(len=*), parameter :: newline = achar(10), return = achar(13)
 
@@ -82,6 +84,7 @@ contains
       character(len=*), intent(in) :: path
       integer, intent(in) :: parent
       character(len=:), allocatable, intent(out) :: trouble
+      character(len=:), allocatable :: longer
       integer(i8) :: bytes
       integer :: first, last, status, unit
       logical :: exists, is_directory
@@ -106,7 +109,11 @@ contains
       else
         first = lines%used + 1
         last = lines%used + int(bytes)
-        call grow_text(last + 1)
+        if (last >= len(lines%text)) then   ! the first file gets just its size; included ones make it double
+          allocate (character(len=max(last + 1, int(min(2_i8*len(lines%text), int(huge(1), i8))))) :: longer)
+          longer(:lines%used) = lines%text(:lines%used)
+          call move_alloc(longer, lines%text)
+        end if
         read (unit, iostat=status) lines%text(first:max(last, first))
         if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
         if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
@@ -120,20 +127,6 @@ contains
       lines%used = last + 1
       lines%text(lines%used:lines%used) = newline
     end subroutine load
-
-    !> Room for `length` characters. The first file gets just its size; included ones make the buffer double.
-    subroutine grow_text(length)
-      integer, intent(in) :: length
-      character(len=:), allocatable :: longer
-      integer(i8) :: wanted
-
-      if (length <= len(lines%text)) return
-      wanted = length
-      if (lines%used > 0) wanted = min(max(wanted, 2_i8*len(lines%text)), int(huge(1), i8))
-      allocate (character(len=int(wanted)) :: longer)
-      longer(:lines%used) = lines%text(:lines%used)
-      call move_alloc(longer, lines%text)
-    end subroutine grow_text
 
     !> Cut a file into lines and, where it includes another, that one too. `ended`: it had its ENDDATA.
     recursive subroutine cut(file, ended)

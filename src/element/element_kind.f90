@@ -67,7 +67,7 @@ module epcont_element_element_kind
     !> Shape functions at a local place, and their derivatives by the local coordinates; 0 beyond the last
     !! node.
     pure subroutine shape_functions(place, n, slope)
-      import :: directions, most_nodes, wp
+      import
       real(wp), intent(in) :: place(directions)
       real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
     end subroutine shape_functions

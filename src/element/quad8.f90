@@ -8,13 +8,15 @@ module epcont_element_quad8
   private
   public :: quad8
 
-  real(wp), parameter :: node(directions, 8) = &
-    reshape([real(wp) :: -1, -1, 1, -1, 1, 1, -1, 1, 0, -1, 1, 0, 0, 1, -1, 0], [directions, 8])
-  !> Places and weights of Gauss along a line. Three by three points integrate the stiffness; two by two would
-  !! leave a motion without energy, but there the strains are best (Barlow 1976), and there they are sampled.
-  real(wp), parameter :: three(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
-  real(wp), parameter :: part(3) = [5, 8, 5]/9.0_wp
-  real(wp), parameter :: two(2) = [-1, 1]/sqrt(3.0_wp)
+  real(wp), parameter :: &
+    node(directions, 8) = &
+      reshape([real(wp) :: -1, -1, 1, -1, 1, 1, -1, 1, 0, -1, 1, 0, 0, 1, -1, 0], [directions, 8]), &
+    !> Places and weights of Gauss along a line. Three by three points integrate the stiffness; two by two
+    !! would leave a motion without energy, but there the strains are best (Barlow 1976), and there they are
+    !! sampled.
+    three(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)], &
+    part(3) = [5, 8, 5]/9.0_wp, &
+    two(2) = [-1, 1]/sqrt(3.0_wp)
 
 contains
 

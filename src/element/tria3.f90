@@ -1,7 +1,7 @@
 !> Three-node triangle, linear: corners in turn at (0, 0), (1, 0), (0, 1).
 module epcont_element_tria3
   use epcont_base_kinds, only: wp
-  use epcont_element_element_kind, only: by_linear_triangles, element_kind, most_nodes, new_kind
+  use epcont_element_element_kind, only: element_kind, most_nodes, new_kind
   use epcont_element_kinematics, only: directions
   implicit none
   private
@@ -24,7 +24,6 @@ contains
     kind%ring_card = 'CTRAX3'
     kind%vtk = 5
     kind%locks = .true.
-    kind%estimated_as = by_linear_triangles
     call kind%compare_at(middle, spread([1.0_wp], 2, 3), spread([1.0_wp/3.0_wp], 2, 3))
   end function tria3
 

@@ -8,18 +8,18 @@ module epcont_element_tria6
   private
   public :: tria6
 
-  !> Integration points and weights: exact for quadratics, that is for the stiffness of a straight-sided
-  !! element.
-  real(wp), parameter :: point(directions, 3) = &
-    reshape([1, 1, 4, 1, 1, 4]/6.0_wp, [directions, 3])
-  real(wp), parameter :: weight(3) = 1.0_wp/6.0_wp
-  !> Where strains are compared, and with which parts of the volume. The integration points would flatter, the
-  !! error there is least; these are exact for polynomials of the fourth degree (Dunavant 1985).
-  real(wp), parameter :: near = 0.091576213509771_wp, far = 0.445948490915965_wp
-  real(wp), parameter :: place(directions, 6) = &
-    reshape([near, near, 1 - 2*near, near, near, 1 - 2*near, &
-             far, far, 1 - 2*far, far, far, 1 - 2*far], [directions, 6])
-  real(wp), parameter :: part(6) = [spread(0.109951743655322_wp, 1, 3), spread(0.223381589678011_wp, 1, 3)]
+  real(wp), parameter :: &
+    !> Integration points and weights: exact for quadratics, that is for the stiffness of a straight-sided
+    !! element.
+    point(directions, 3) = reshape([1, 1, 4, 1, 1, 4]/6.0_wp, [directions, 3]), &
+    weight(3) = 1.0_wp/6.0_wp, &
+    !> Where strains are compared, and with which parts of the volume. The integration points would flatter,
+    !! the error there is least; these are exact for polynomials of the fourth degree (Dunavant 1985).
+    near = 0.091576213509771_wp, far = 0.445948490915965_wp, &
+    place(directions, 6) = &
+      reshape([near, near, 1 - 2*near, near, near, 1 - 2*near, &
+               far, far, 1 - 2*far, far, far, 1 - 2*far], [directions, 6]), &
+    part(6) = [spread(0.109951743655322_wp, 1, 3), spread(0.223381589678011_wp, 1, 3)]
 
 contains
 

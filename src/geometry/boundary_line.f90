@@ -66,11 +66,6 @@ module epcont_geometry_boundary_line
     real(wp) :: x(2, 3) = 0.0_wp            !! of start, end and middle [length]
     real(wp) :: normal(2, 2) = 0.0_wp       !! at start and end
     real(wp) :: tangent_length(2) = 0.0_wp  !! there [length]
-  contains
-    procedure :: values
-    procedure :: tangent
-    procedure :: scaled_normal
-    procedure :: rise
   end type side_type
 
 contains
@@ -135,7 +130,7 @@ contains
     type(side_type) :: side
 
     side = side_of(self, segment)
-    tangent = side%tangent(s)
+    tangent = tangent_at(side, s)
     normal = unit([tangent(2), -tangent(1)])
   end function own_normal
 
@@ -170,9 +165,9 @@ contains
       place%found = place%found .and. s >= -beyond .and. s <= 1.0_wp + beyond
       if (.not. place%found) return
       if (s > beyond .and. s < 1.0_wp - beyond) then
-        place%share = side%values(s)
-        place%normal = unit(side%scaled_normal(s))
-        place%gap = dot_product(place%normal, from - matmul(side%x, place%share)) - side%rise(s)
+        place%share = values(side, s)
+        place%normal = unit(scaled_normal(side, s))
+        place%gap = dot_product(place%normal, from - matmul(side%x, place%share)) - rise(side, s)
         return
       end if
       end = merge(1, 2, s <= beyond)
@@ -193,17 +188,17 @@ contains
       real(wp) :: away(2), normal(2), rate, start(2), step, turn(2)
       integer :: k
 
-      start = side%scaled_normal(0.0_wp)
-      turn = side%scaled_normal(1.0_wp) - start
+      start = scaled_normal(side, 0.0_wp)
+      turn = scaled_normal(side, 1.0_wp) - start
       associate (chord => side%x(:, 2))
         s = dot_product(from, chord)/dot_product(chord, chord)
       end associate
       found = .false.
       do k = 1, most_steps
         if (abs(s) > 10.0_wp) return
-        away = from - matmul(side%x, side%values(s))
+        away = from - matmul(side%x, values(side, s))
         normal = start + s*turn
-        rate = cross_product(turn, away) - cross_product(normal, side%tangent(s))
+        rate = cross_product(turn, away) - cross_product(normal, tangent_at(side, s))
         if (rate == 0.0_wp) return
         step = -cross_product(normal, away)/rate
         s = s + step
@@ -231,9 +226,9 @@ contains
     type(side_type) :: side
 
     side = side_of(self, segment)
-    share = side%values(s)
-    tangent = side%tangent(s)
-    x = matmul(self%x(:, :, segment), share) + side%rise(s)*unit(side%scaled_normal(s))
+    share = values(side, s)
+    tangent = tangent_at(side, s)
+    x = matmul(self%x(:, :, segment), share) + rise(side, s)*unit(scaled_normal(side, s))
   end subroutine at
 
   pure type(side_type) function side_of(line, segment) result(side)
@@ -245,13 +240,13 @@ contains
     side%x = line%x(:, :, segment) - spread(line%x(:, 1, segment), 2, 3)
     if (.not. side%curved) side%x(:, 3) = 0.0_wp
     side%normal = line%normal(:, :, segment)
-    side%tangent_length = [(norm2(side%tangent(real(k, wp))), k=0, 1)]
+    side%tangent_length = [(norm2(tangent_at(side, real(k, wp))), k=0, 1)]
   end function side_of
 
   !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is
   !! linear between them.)
   pure function scaled_normal(self, s) result(normal)
-    class(side_type), intent(in) :: self
+    type(side_type), intent(in) :: self
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: normal(2)
 
@@ -262,7 +257,7 @@ contains
   !> How far along its normal the smooth curve rises above a chord: exactly where the normals at the ends are
   !! those of an arc [length].
   pure real(wp) function rise(self, s)
-    class(side_type), intent(in) :: self
+    type(side_type), intent(in) :: self
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: along(2), lean
 
@@ -279,7 +274,7 @@ contains
 
   !> Shape functions of start, end and middle.
   pure function values(self, s)
-    class(side_type), intent(in) :: self
+    type(side_type), intent(in) :: self
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: values(3)
 
@@ -288,15 +283,15 @@ contains
   end function values
 
   !> Along the side, as long as it would be if it were straight on from there [length].
-  pure function tangent(self, s)
-    class(side_type), intent(in) :: self
+  pure function tangent_at(self, s) result(tangent)
+    type(side_type), intent(in) :: self
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: tangent(2), slope(3)
 
     slope = [-1.0_wp, 1.0_wp, 0.0_wp]
     if (self%curved) slope = [4.0_wp*s - 3.0_wp, 4.0_wp*s - 1.0_wp, 4.0_wp - 8.0_wp*s]
     tangent = matmul(self%x, slope)
-  end function tangent
+  end function tangent_at
 
   !> Zero of zero: a side without length, which its element is refused for.
   pure function unit(vector)

@@ -14,14 +14,15 @@ module epcont_geometry_corners
   private
   public :: find_normals
 
-  real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
-  !> A turn below the first is smooth, one above the second a corner, whatever lies beside them. Neither is an
-  !! angle that people draw: rounding must not decide.
-  real(wp), parameter :: always_smooth = 4.7_wp*degree, always_corner = 35.3_wp*degree
-  !> Turns that differ by less than this factor are those of one curve, its sides graded.
-  real(wp), parameter :: alike = 1.0_wp/0.39_wp
-  !> Turns that differ from PARAM CORNER by less are as large.
-  real(wp), parameter :: rounding = 1.0e-6_wp*degree
+  real(wp), parameter :: &
+    degree = acos(-1.0_wp)/180.0_wp, &
+    !> A turn below the first is smooth, one above the second a corner, whatever lies beside them. Neither is
+    !! an angle that people draw: rounding must not decide.
+    always_smooth = 4.7_wp*degree, always_corner = 35.3_wp*degree, &
+    !> Turns that differ by less than this factor are those of one curve, its sides graded.
+    alike = 1.0_wp/0.39_wp, &
+    !> Turns that differ from PARAM CORNER by less are as large.
+    rounding = 1.0e-6_wp*degree
   !> Held in x and y.
   integer, parameter :: both = 3
 
@@ -55,7 +56,7 @@ contains
     line%mirrored = reshape([((is_mirrored(end, i), end=1, 2), i=1, n)], [2, n])
     do i = 1, n
       do end = 1, 2
-        if (line%mirrored(end, i)) call reflect(end, i)
+        if (line%mirrored(end, i)) call reflect()
       end do
     end do
     ends_there = line%neighbour == 0 .and. .not. line%mirrored
@@ -87,15 +88,14 @@ contains
 
     !> The normal within a line of symmetry where a side meets it, and the turn there, as the side goes on
     !! beyond it.
-    subroutine reflect(end, side)
-      integer, intent(in) :: end, side
+    subroutine reflect()
       real(wp) :: mirrored(2)
 
-      associate (across => held(end, side), normal => own(:, end, side))
-        line%end_normal(3 - across, end, side) = sign(1.0_wp, normal(3 - across))
+      associate (across => held(end, i), normal => own(:, end, i))
+        line%end_normal(3 - across, end, i) = sign(1.0_wp, normal(3 - across))
         mirrored = normal
         mirrored(across) = -normal(across)
-        turn(end, side) = merge(-1.0_wp, 1.0_wp, end == 1)*angle_between(normal, mirrored)
+        turn(end, i) = merge(-1.0_wp, 1.0_wp, end == 1)*angle_between(normal, mirrored)
       end associate
     end subroutine reflect
 

@@ -30,16 +30,15 @@ contains
 
     do p = 1, edge_point_count
       s = place(p)
-      if (size(x, 2) == 3) then
-        point(p)%values = [0.5_wp*s*(s - 1.0_wp), 0.5_wp*s*(s + 1.0_wp), 1.0_wp - s*s]
-      else
-        point(p)%values = [0.5_wp*(1.0_wp - s), 0.5_wp*(1.0_wp + s), 0.0_wp]
-      end if
-      point(p)%x = matmul(x, point(p)%values(:size(x, 2)))
+      point(p)%values = [0.5_wp*(1.0_wp - s), 0.5_wp*(1.0_wp + s), 0.0_wp]
       ! From differences: along an axis no rounding is left across it, which would push what is free to move
       ! there.
       point(p)%tangent = 0.5_wp*(x(:, 2) - x(:, 1))
-      if (size(x, 2) == 3) point(p)%tangent = point(p)%tangent + s*((x(:, 1) - x(:, 3)) + (x(:, 2) - x(:, 3)))
+      if (size(x, 2) == 3) then
+        point(p)%values = [0.5_wp*s*(s - 1.0_wp), 0.5_wp*s*(s + 1.0_wp), 1.0_wp - s*s]
+        point(p)%tangent = point(p)%tangent + s*((x(:, 1) - x(:, 3)) + (x(:, 2) - x(:, 3)))
+      end if
+      point(p)%x = matmul(x, point(p)%values(:size(x, 2)))
       point(p)%tangent = weight(p)*point(p)%tangent
       point(p)%along = 0.5_wp*(1.0_wp + s)
     end do

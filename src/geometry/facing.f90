@@ -21,16 +21,15 @@ module epcont_geometry_facing
   !> Most points have the line before their eyes: it is looked for within search/widening**rounds first.
   real(wp), parameter :: widening = 8.0_wp
   integer, parameter :: rounds = 3
-  !> Bodies are not thinner than this part of their sides: where the gap is smaller nothing stands between.
-  real(wp), parameter :: thin = 1.0e-3_wp
-  !> Curves rise above the chords of their sides by an eighth of chord times turn; nearer to a side than this
-  !! much of it, and
-  !> than this part of the way, is the side itself.
-  real(wp), parameter :: rise = 0.2_wp, at_end = 0.01_wp
-  !> What stands between is looked for this part of the side away from a node, towards the middle of its side:
-  !! flush faces
-  !> do not count.
-  real(wp), parameter :: aside = 1.0e-3_wp
+  real(wp), parameter :: &
+    !> Bodies are not thinner than this part of their sides: where the gap is smaller nothing stands between.
+    thin = 1.0e-3_wp, &
+    !> Curves rise above the chords of their sides by an eighth of chord times turn; nearer to a side than
+    !! this much of it, and than this part of the way, is the side itself.
+    rise = 0.2_wp, at_end = 0.01_wp, &
+    !> What stands between is looked for this part of the side away from a node, towards the middle of its
+    !! side: flush faces do not count.
+    aside = 1.0e-3_wp
 
   !> Who looks.
   type :: looking_point

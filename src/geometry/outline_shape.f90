@@ -1,19 +1,34 @@
-!> The outlines of the bodies in one state, as drawn or displaced: what a point is near to, and whether a body
-!> has it inside. Sides of six-node elements are the parabolas that they are.
+!> The outlines of the bodies, and in one state, as drawn or displaced, what a point is near to, and whether a
+!> body has it inside. Sides of six-node elements are the parabolas that they are.
 module epcont_geometry_outline_shape
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
   use epcont_geometry_box_tree, only: box_tree, most_waiting, new_box_tree
-  use epcont_geometry_outline, only: outline_type
   implicit none
   private
-  public :: outline_shape, near_place, new_outline_shape
+  public :: outline_type, outline_shape, near_place, new_outline_shape
 
   !> Places of a curved side that are tried first, and steps of Newton's method from the nearest of them.
   integer, parameter :: tried = 4, most_steps = 8
 
   !> Farther than anything is, and its square still a number.
   real(wp), parameter :: far = 1.0e150_wp
+
+  !> The outlines of all bodies: the sides that one element alone has. Each is walked with the body to the
+  !! left, and so are the edges of holes. Nodes without elements have none.
+  !!
+  !! Part 1 has the sides first(1) to first(2) - 1, and so on.
+  type :: outline_type
+    integer :: sides = 0
+    integer :: parts = 0                   !! that elements join; what RBE2 alone join are two
+    integer, allocatable :: node(:, :)     !! where a side begins, where it ends, its middle or 0 [3, sides]
+    integer, allocatable :: element(:)     !! whose side it is [sides]
+    integer, allocatable :: before(:)      !! the side that ends where it begins [sides]
+    integer, allocatable :: after(:)       !! the side that begins where it ends [sides]
+    integer, allocatable :: part(:)        !! [sides]
+    integer, allocatable :: first(:)       !! [parts + 1]
+    integer, allocatable :: part_of(:)     !! part of each node; 0: it has no elements [nodes]
+  end type outline_type
 
   type :: outline_shape
     type(outline_type) :: outline

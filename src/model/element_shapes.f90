@@ -22,7 +22,8 @@ contains
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     logical :: is_ring(model%elements)
-    integer :: e, next, plane, ring
+    real(wp), dimension(2, most_nodes) :: x, straight   ! nodes of an element; with straight sides
+    integer :: e, n, next, plane, ring, turn            ! it, its corners; 0: it folds over
 
     model%node_count = model%kinds(model%kind)%nodes
     model%points = sum(model%kinds(model%kind)%points)
@@ -32,7 +33,7 @@ contains
       model%first_point(e) = next
       next = next + model%kinds(model%kind(e))%points
       model%point_element(model%first_point(e):next - 1) = e
-      if (all(model%connectivity(:model%node_count(e), e) > 0)) call check_shape(e, model%corners(e))
+      if (all(model%connectivity(:model%node_count(e), e) > 0)) call check_shape()
     end do
     model%first_point(e) = next
     model%around = new_incidence(model%connectivity, model%nodes)
@@ -46,12 +47,11 @@ contains
   contains
 
     !> Turn the element counter-clockwise; a shape that is none is a fault.
-    subroutine check_shape(e, n)
-      integer, intent(in) :: e, n   !! which, and its corners
-      real(wp), dimension(2, most_nodes) :: x, straight   ! its nodes; with straight sides
-      integer :: k, turn
+    subroutine check_shape()
+      integer :: k
       logical :: too_short
 
+      n = model%corners(e)
       associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)))
         do k = 1, most_nodes
           x(:, k) = model%x(:, node(merge(k, 1, k <= size(node))))
@@ -68,7 +68,7 @@ contains
           call found%add_error(of_element, e, -node(1), ': its sides are shorter than '// &
                                short_real(shortest_side), 'other units')
         else if (turn /= 0 .or. kind%turn(straight) /= 0) then
-          if (size(node) > n) call check_middles(e, n, turn, x, straight)
+          if (size(node) > n) call check_middles()
           if (turn < 0) then
             node(2:n) = node(n:2:-1)
             node(n + 1:) = node(size(node):n + 1:-1)
@@ -86,9 +86,7 @@ contains
 
     !> A side's middle node may leave the middle as long as the element does not fold over; a side that bulges
     !! more than half a circle does is hardly meant.
-    subroutine check_middles(e, n, turn, x, straight)
-      integer, intent(in) :: e, n, turn   !! which, its corners; 0: it folds over, and would not if straight
-      real(wp), dimension(2, most_nodes), intent(in) :: x, straight   !! as in `check_shape`
+    subroutine check_middles()
       character(len=*), parameter :: remedy = 'nodes near the middles of the sides'
       character(len=:), allocatable :: name
       real(wp) :: part(n)

@@ -12,7 +12,7 @@ module epcont_model_freedoms
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: freedom, tie, follow_to_the_end, set_reference, find_bodies, join_nodes, find_travels
+  public :: freedom, tie, follow_to_the_end, set_reference, join_nodes, find_travels
 
   !> A motion is taken off where all supports of a body follow it but for this part of the largest prescribed
   !! displacement.
@@ -86,14 +86,7 @@ contains
     text = 'direction '//text_of(c)//' of '//model%name_of(of_node, node)
   end function freedom
 
-  !> Bodies: nodes joined by elements or ties.
-  pure subroutine find_bodies(model)
-    type(model_type), intent(inout) :: model   !! the scene
-
-    call join_nodes(model, .true., model%body, model%bodies)
-  end subroutine find_bodies
-
-  !> Sets of nodes that elements join, and ties if these are to count.
+  !> Sets of nodes that elements join, and ties if these are to count: then they are the bodies.
   pure subroutine join_nodes(model, by_ties, set, sets)
     type(model_type), intent(in) :: model   !! the scene
     logical, intent(in) :: by_ties   !! RBE2 joins too
@@ -125,9 +118,7 @@ contains
     allocate (model%travel(directions, model%nodes), source=0.0_wp)
     model%beyond_travel = model%prescribed
     moved = .false.
-    do i = 1, model%nodes
-      if (any(model%prescribed(:, i) /= 0.0_wp)) moved(model%body(i)) = .true.
-    end do
+    moved(pack(model%body, any(model%prescribed /= 0.0_wp, dim=1))) = .true.
     do b = 1, model%bodies
       if (moved(b)) call find_travel(model, pack([(i, i=1, model%nodes)], model%body == b))
     end do

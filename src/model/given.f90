@@ -22,7 +22,7 @@ contains
   subroutine check_given(scene, found)
     type(scene_type), intent(in) :: scene      !! that is given
     type(findings), intent(inout) :: found     !! what is wrong with it is added
-    character(len=:), allocatable :: above_zero, any_size
+    character(len=:), allocatable :: a_node, above_zero, any_size
     integer :: elements, i, nodes
 
     any_size = '0.0, or a size of '//short_real(least_cause)//' to '//short_real(farthest)
@@ -30,14 +30,17 @@ contains
     call check_shapes()
     if (found%errors > 0) return
     nodes = size(scene%x, 2)
-    call need(is_positive(scene%young), 'young(#) is no stiffness', above_zero)
+    a_node = '1 to '//text_of(nodes)
+    call need(scene%young >= least_divisor .and. scene%young <= farthest, 'young(#) is no stiffness', &
+              above_zero)
     call need(scene%poisson >= 0.0_wp .and. scene%poisson < 0.5_wp, 'poisson(#) is out of range', &
               '0.0 or more, and less than 0.5')
-    call need(is_positive(scene%thickness), 'thickness(#) is no thickness', above_zero)
+    call need(scene%thickness >= least_divisor .and. scene%thickness <= farthest, &
+              'thickness(#) is no thickness', above_zero)
     call need(within(scene%kinematics, axisymmetric), 'kinematics(#) is unknown', &
               'plane_strain, plane_stress or axisymmetric')
     do i = 1, size(scene%curve)
-      if (found%errors == 0) call check_curve('curve('//text_of(i)//')', i)
+      if (found%errors == 0) call check_curve()
     end do
     elements = 0
     do i = 1, size(scene%block)
@@ -49,28 +52,27 @@ contains
     call need(all(has_size(scene%prescribed), dim=1), 'prescribed(:, #) is no displacement', any_size)
     call need(all(scene%held .or. scene%prescribed == 0.0_wp, dim=1), &
               'prescribed(:, #) is not 0.0 where held is false', '0.0, or held')
-    call need(all(within(scene%leader, nodes), dim=1), 'leader(:, #) is no node', up_to(nodes))
-    call need(all(within(scene%pair_node, nodes), dim=1), 'pair_node(:, #) is no node', up_to(nodes))
+    call need(all(within(scene%leader, nodes), dim=1), 'leader(:, #) is no node', a_node)
+    call need(all(within(scene%pair_node, nodes), dim=1), 'pair_node(:, #) is no node', a_node)
     call need(abs(norm2(scene%normal, dim=1) - 1.0_wp) <= no_effect .or. &
               all(scene%normal == 0.0_wp, dim=1), &
               'normal(:, #) is no unit vector', 'one of length 1, or zero: from A to B')
     call need(has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size)
     if (elements > 0) &
       call need(within(scene%pressure%element, elements), 'pressure(#)%element is no element', &
-                up_to(elements))
+                '1 to '//text_of(elements))
     call need(has_size(scene%pressure%pressure(1)) .and. has_size(scene%pressure%pressure(2)) .and. &
               has_size(scene%pressure%theta), 'pressure(#) is no pressure', any_size)
     do i = 1, size(scene%line)
       if (allocated(scene%line(i)%node)) then
-        call need(within(scene%line(i)%node, nodes), 'line('//text_of(i)//')%node(#) is no node', &
-                  up_to(nodes))
+        call need(within(scene%line(i)%node, nodes), 'line('//text_of(i)//')%node(#) is no node', a_node)
       else
         call need([.false.], 'line('//text_of(i)//')%node is not allocated', 'nodes')
       end if
     end do
     call need(within(scene%couple%line(1), size(scene%line)) .and. &
               within(scene%couple%line(2), size(scene%line)), 'couple(#)%line is no line', &
-              up_to(size(scene%line)))
+              '1 to '//text_of(size(scene%line)))
     call check_choices()
 
   contains
@@ -108,13 +110,13 @@ contains
     end subroutine check_shapes
 
     !> A curve that can be.
-    subroutine check_curve(name, s)
-      character(len=*), intent(in) :: name
-      integer, intent(in) :: s
+    subroutine check_curve()
       type(curve_fault) :: fault
+      character(len=:), allocatable :: name
       logical :: fits
 
-      associate (curve => scene%curve(s))
+      name = 'curve('//text_of(i)//')'
+      associate (curve => scene%curve(i))
         fits = allocated(curve%strain) .eqv. allocated(curve%stress)
         if (fits .and. .not. allocated(curve%strain)) return
         if (fits) fits = size(curve%strain) == size(curve%stress)
@@ -122,7 +124,7 @@ contains
         call need([fits], name//' has strain or stress alone, or points that are none', &
                   'a number of both for each point')
         if (.not. fits) return
-        fault = fault_of_curve(curve%strain, curve%stress, scene%young(s))
+        fault = fault_of_curve(curve%strain, curve%stress, scene%young(i))
         if (fault%point > 0) call need([.false.], name//': '//fault%what, fault%remedy)
       end associate
     end subroutine check_curve
@@ -131,7 +133,6 @@ contains
     subroutine check_block(name, block)
       character(len=*), intent(in) :: name
       type(element_block), intent(in) :: block
-      type(element_kind) :: kind
       type(element_kind), allocatable :: kinds(:)
       integer :: row
       logical :: fits
@@ -141,18 +142,17 @@ contains
       call need([row > 0], name//'name is '''//trim(block%name)//'''', &
                 'the card of a kind of elements: CTRIA3, say')
       if (row == 0) return
-      kind = kinds(row)
       fits = allocated(block%node) .and. allocated(block%section)
-      if (fits) fits = all(shape(block%node) == [kind%nodes, size(block%section)])
+      if (fits) fits = all(shape(block%node) == [kinds(row)%nodes, size(block%section)])
       call need([fits], name//'node and section are not allocated, or of other shapes', &
-                '('//text_of(kind%nodes)//', elements) and (elements)')
+                '('//text_of(kinds(row)%nodes)//', elements) and (elements)')
       if (.not. fits) return
       elements = elements + size(block%section)
-      call need(all(within(block%node, nodes), dim=1), name//'node(:, #) is no node', up_to(nodes))
+      call need(all(within(block%node, nodes), dim=1), name//'node(:, #) is no node', a_node)
       call need(within(block%section, size(scene%young)), name//'section(#) is no section', &
-                up_to(size(scene%young)))
+                '1 to '//text_of(size(scene%young)))
       if (found%errors > 0) return
-      call need((scene%kinematics(block%section) == axisymmetric) .eqv. block%name == kind%ring_card, &
+      call need((scene%kinematics(block%section) == axisymmetric) .eqv. block%name == kinds(row)%ring_card, &
                 name//'section(#) is not of the kinematics of '//trim(block%name), &
                 'axisymmetric for rings (CTRAX3), and for no others')
     end subroutine check_block
@@ -182,16 +182,14 @@ contains
     subroutine need(holds, what, remedy)
       logical, intent(in) :: holds(:)
       character(len=*), intent(in) :: what, remedy
+      character(len=:), allocatable :: text
       integer :: at
 
       if (all(holds)) return
       at = index(what, '#')
-      if (at == 0) then
-        call found%add_error(of_scene, 0, 0, what, remedy)
-      else
-        call found%add_error(of_scene, 0, 0, what(:at - 1)//text_of(findloc(holds, .false., dim=1))// &
-                             what(at + 1:), remedy)
-      end if
+      text = what
+      if (at > 0) text = what(:at - 1)//text_of(findloc(holds, .false., dim=1))//what(at + 1:)
+      call found%add_error(of_scene, 0, 0, text, remedy)
     end subroutine need
   end subroutine check_given
 
@@ -202,27 +200,12 @@ contains
     has_size = cause == 0.0_wp .or. abs(cause) >= least_cause .and. abs(cause) <= farthest
   end function has_size
 
-  !> Is it a number to divide by?
-  elemental logical function is_positive(value)
-    real(wp), intent(in) :: value
-
-    is_positive = value >= least_divisor .and. value <= farthest
-  end function is_positive
-
   !> Is there a thing of a number?
   elemental logical function within(number, most)
     integer, intent(in) :: number, most   !! the last one
 
     within = number >= 1 .and. number <= most
   end function within
-
-  !> What would be right of a number.
-  pure function up_to(most) result(text)
-    integer, intent(in) :: most
-    character(len=:), allocatable :: text
-
-    text = '1 to '//text_of(most)
-  end function up_to
 
   !> The row of the table of elements that has a card; 0: none.
   pure integer function kind_of(kinds, card)

@@ -9,7 +9,7 @@ module epcont_model_model
   use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: axisymmetric, directions
   use epcont_geometry_boundary_line, only: boundary_line
-  use epcont_geometry_outline, only: outline_type
+  use epcont_geometry_outline_shape, only: outline_type
   use epcont_model_arrays, only: scene_type
   use epcont_model_finding, only: of_couple, of_element, of_line, of_node, of_pair, of_paper_ratio, of_section
   implicit none

@@ -20,19 +20,19 @@ module epcont_system_large_pages
 
   interface
     integer(c_int) function madvise(address, length, advice) bind(c)
-      import :: c_int, c_intptr_t, c_size_t
+      import
       integer(c_intptr_t), value, intent(in) :: address
       integer(c_size_t), value, intent(in) :: length
       integer(c_int), value, intent(in) :: advice
     end function madvise
 
     integer(c_int) function mallopt(parameter, value) bind(c)
-      import :: c_int
+      import
       integer(c_int), value, intent(in) :: parameter, value
     end function mallopt
 
     integer(c_intptr_t) function sbrk(increment) bind(c)
-      import :: c_intptr_t
+      import
       integer(c_intptr_t), value, intent(in) :: increment
     end function sbrk
   end interface

@@ -18,7 +18,7 @@ module epcont_system_memory
 
   interface
     integer(c_intptr_t) function c_mmap(address, length, protection, flags, file, offset) bind(c, name='mmap')
-      import :: c_int, c_intptr_t, c_long, c_size_t
+      import
       integer(c_intptr_t), value :: address
       integer(c_size_t), value :: length
       integer(c_int), value :: protection, flags, file
@@ -26,13 +26,13 @@ module epcont_system_memory
     end function c_mmap
 
     integer(c_int) function c_munmap(address, length) bind(c, name='munmap')
-      import :: c_int, c_intptr_t, c_size_t
+      import
       integer(c_intptr_t), value :: address
       integer(c_size_t), value :: length
     end function c_munmap
 
     integer(c_int) function c_getrusage(who, usage) bind(c, name='getrusage')
-      import :: c_int, c_long
+      import
       integer(c_int), value :: who
       integer(c_long), intent(out) :: usage(*)
     end function c_getrusage

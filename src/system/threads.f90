@@ -13,12 +13,12 @@ module epcont_system_threads
 
   abstract interface
     subroutine set_threads(count) bind(c)
-      import :: c_int
+      import
       integer(c_int), value :: count
     end subroutine set_threads
 
     integer(c_int) function get_number() bind(c)
-      import :: c_int
+      import
     end function get_number
   end interface
 
@@ -26,7 +26,7 @@ module epcont_system_threads
     !> Where a procedure of the program or its libraries is; null: nowhere. Which BLAS there is, is not known
     !! before.
     function c_dlsym(library, name) bind(c, name='dlsym') result(address)
-      import :: c_char, c_funptr, c_ptr
+      import
       type(c_ptr), value :: library
       character(kind=c_char), intent(in) :: name(*)
       type(c_funptr) :: address
@@ -36,10 +36,11 @@ module epcont_system_threads
 contains
 
   !> As many as OMP_NUM_THREADS says; 1 where it is not set (decks side by side use cores better), where the
-  !! program is built without OpenMP, or where the BLAS is not known to bear calls side by side.
+  !! program is built without OpenMP, or where the BLAS is not known to bear calls side by side: an OpenBLAS
+  !! that is built for threads (1) or OpenMP (2) locks its buffers, one that is not (0) shares them.
   integer function granted_threads()
     granted_threads = 1
-    !$ if (blas_may_be_shared()) granted_threads = max(1, stated_threads())
+    !$ if (blas_number('openblas_get_parallel') /= 0) granted_threads = max(1, stated_threads())
   end function granted_threads
 
   !> The number in OMP_NUM_THREADS, of a list the first, without READ; 0 where there is none.
@@ -90,10 +91,4 @@ contains
     call c_f_procpointer(address, get)
     blas_number = int(get())
   end function blas_number
-
-  !> Whether threads may call the BLAS at the same time: an OpenBLAS that is built for threads locks its
-  !! buffers, one that is not shares them, and of another nothing is known.
-  logical function blas_may_be_shared()
-    blas_may_be_shared = blas_number('openblas_get_parallel') /= 0   ! 0 sequential, 1 threads, 2 OpenMP
-  end function blas_may_be_shared
 end module epcont_system_threads
