@@ -18,10 +18,11 @@ module epcont_build_mesh
   private
   public :: build_mesh, element_cards
 
-  !> LIMIT1 and the table's yield stress may differ by this part.
-  real(wp), parameter :: same_stress = 1.0e-4_wp
-  !> Moduli that are all three given agree to this part.
-  real(wp), parameter :: same_moduli = 1.0e-3_wp
+  real(wp), parameter :: &
+    !> LIMIT1 and the table's yield stress may differ by this part.
+    same_stress = 1.0e-4_wp, &
+    !> Moduli that are all three given agree to this part.
+    same_moduli = 1.0e-3_wp
 
   type :: material_card
     real(wp) :: young = 1.0_wp      !! [stress]

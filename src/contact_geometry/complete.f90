@@ -28,7 +28,7 @@ contains
     type(scene_type), intent(in) :: scene      !! what is given
     type(model_type), intent(out) :: model     !! what comes of it
     type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
-    integer :: s
+    integer :: behind, i, s
 
     call check_given(scene, found)
     if (found%errors > 0) return
@@ -39,7 +39,14 @@ contains
     end do
     call number_parts(model)
     call complete_elements(model, found)
-    if (found%errors == 0) call load_sides()
+    if (found%errors == 0) then
+      do i = 1, size(scene%pressure)   ! loads of the nodes beside them
+        call add_pressure(model, scene%pressure(i), behind)
+        if (behind /= 0) &
+          call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner is of no side of the'// &
+                               ' boundary', 'two neighbouring corners of a side that its element alone has')
+      end do
+    end if
     call complete_freedoms()
     call check_axis(model, found)
     call complete_pairs(model, .false., found)
@@ -49,21 +56,9 @@ contains
 
   contains
 
-    !> Pressures are loads of the nodes beside them.
-    subroutine load_sides()
-      integer :: behind, i
-
-      do i = 1, size(scene%pressure)
-        call add_pressure(model, scene%pressure(i), behind)
-        if (behind /= 0) &
-          call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner is of no side of the'// &
-                               ' boundary', 'two neighbouring corners of a side that its element alone has')
-      end do
-    end subroutine load_sides
-
     !> Ties and reference freedoms, one by one: each is checked against those before it.
     subroutine complete_freedoms()
-      integer :: c, i
+      integer :: c
 
       model%leader = spread([(i, i=1, model%nodes)], 1, directions)
       do i = 1, model%nodes

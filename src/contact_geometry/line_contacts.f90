@@ -17,12 +17,13 @@ module epcont_contact_geometry_line_contacts
   private
   public :: find_contacts
 
-  !> Where nothing is said of it, a side is looked for within this many times the longest side of the two
-  !! lines.
-  real(wp), parameter :: default_search = 2.0_wp
-  !> If nothing is found, within this many times as much, again and again, until more than the scene is looked
-  !! through.
-  real(wp), parameter :: widening = 4.0_wp
+  real(wp), parameter :: &
+    !> Where nothing is said of it, a side is looked for within this many times the longest side of the two
+    !! lines.
+    default_search = 2.0_wp, &
+    !> If nothing is found, within this many times as much, again and again, until more than the scene is
+    !! looked through.
+    widening = 4.0_wp
 
 contains
 

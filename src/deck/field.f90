@@ -191,10 +191,8 @@ contains
 
     number = 0
     outcome = scan_malformed
-    if (verify(text, '123456') > 0) return
-    do at = 2, len(text)
-      if (index(text(:at - 1), text(at:at)) > 0) return
-    end do
+    if (verify(text, '123456') > 0 .or. &
+        any([(index(text(:at - 1), text(at:at)) > 0, at=2, len(text))])) return
     call scan_integer(text, number, outcome)
   end subroutine scan_components
 

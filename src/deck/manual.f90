@@ -54,7 +54,7 @@ contains
         call add_row('', '', '', '', 'blank', 'must be blank')
       else
         call add_row('', field(slot)%name, kind_name(field(slot)%kind), default_text(), &
-                     merge('used ', 'noted', field(slot)%used), meaning_text(field(slot)))
+                     merge('used ', 'noted', field(slot)%used), meaning_text())
       end if
     end do
     if (entry%has_points) then
@@ -90,6 +90,14 @@ contains
       if (field(slot)%same_as /= 0) text = entry%field_name(slot + field(slot)%same_as)
       if (field(slot)%required) text = 'none'
     end function default_text
+
+    pure function meaning_text() result(text)
+      character(len=:), allocatable :: text
+
+      text = trim(field(slot)%meaning)
+      if (field(slot)%unit /= '') text = text//' ['//trim(field(slot)%unit)//']'
+      if (field(slot)%kind /= kind_any) text = text//'; '//field(slot)%allowed()
+    end function meaning_text
   end function card_text
 
   !> The parameters that PARAM may set.
@@ -104,13 +112,4 @@ contains
       end do
     end associate
   end function parameter_text
-
-  pure function meaning_text(field) result(text)
-    type(field_entry), intent(in) :: field
-    character(len=:), allocatable :: text
-
-    text = trim(field%meaning)
-    if (field%unit /= '') text = text//' ['//trim(field%unit)//']'
-    if (field%kind /= kind_any) text = text//'; '//field%allowed()
-  end function meaning_text
 end module epcont_deck_manual

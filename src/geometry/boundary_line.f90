@@ -127,10 +127,8 @@ contains
     integer, intent(in) :: segment   !! which side
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: normal(2), tangent(2)
-    type(side_type) :: side
 
-    side = side_of(self, segment)
-    tangent = tangent_at(side, s)
+    tangent = tangent_at(side_of(self, segment), s)
     normal = unit([tangent(2), -tangent(1)])
   end function own_normal
 
