@@ -8,8 +8,7 @@ module epcont_geometry_edge
   !> Gauss points along an edge: exact for a linear pressure on a straight one, and for a uniform one on any,
   !! rings too.
   integer, parameter, public :: edge_point_count = 3
-  real(wp), parameter :: place(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)]
-  real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
+  real(wp), parameter :: place(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)], weight(3) = [5, 8, 5]/9.0_wp
 
   type :: edge_point
     real(wp) :: values(3) = 0.0_wp   !! shape functions of its beginning, its end and its middle node

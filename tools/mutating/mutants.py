@@ -96,7 +96,7 @@ def mutants_of(path, source):
             # Of a declaration only values count: behind the first = on the right of ::, not shapes.
             head = text.index("::") + 2
             value = re.search(r"(?<![=<>/])=(?![=>])", text[head:])
-            barren = value is None
+            barren = value is None and not code.endswith(":: &")   # the values may stand below
             start = head + value.end() if value else len(text)
         if not barren:
             for match in TOKEN.finditer(text):
