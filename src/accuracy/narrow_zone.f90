@@ -43,19 +43,18 @@ contains
     !> How far a smooth gap may fall below its values at the peak and beside it, by the most that it bends at
     !! one of them [length].
     pure real(wp) function bulge()
-      integer :: k
+      integer :: k, near(3)
 
       bulge = 0.0_wp
-      associate (near => [zone%peak, line%neighbour(:, zone%peak)])
-        do k = 1, 3
-          if (near(k) == 0) cycle
-          associate (angle => line%bend(near(k)), curvature => line%curvature(near(k)))
-            ! beyond, one pair faces a step, or another side
-            if (curvature <= 0.0_wp .or. angle > corner) cycle
-            bulge = max(bulge, angle**2/curvature/8.0_wp)   ! an eighth of angle times spacing
-          end associate
-        end do
-      end associate
+      near = [zone%peak, line%neighbour(:, zone%peak)]
+      do k = 1, 3
+        if (near(k) == 0) cycle
+        associate (angle => line%bend(near(k)), curvature => line%curvature(near(k)))
+          ! beyond, one pair faces a step, or another side
+          if (curvature <= 0.0_wp .or. angle > corner) cycle
+          bulge = max(bulge, angle**2/curvature/8.0_wp)   ! an eighth of angle times spacing
+        end associate
+      end do
     end function bulge
 
     !> Force of the peak over the depth of its elements [force/length].

@@ -118,7 +118,7 @@ contains
         if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
         if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
         ! The mark that editors put before UTF-8 says nothing.
-        if (lines%text(first:min(first + 2, last)) == achar(239)//achar(187)//achar(191)) first = first + 3
+        if (lines%text(first:min(first + 2, last)) == char(239)//char(187)//char(191)) first = first + 3
       end if
       close (unit, iostat=status)
       if (allocated(trouble)) return
