@@ -10,7 +10,7 @@ module epcont_accuracy_unit_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, solved_to
   use epcont_contact_basis, only: contact_basis, new_basis, respond
-  use epcont_contact_scaling, only: scale_problem, scaled_problem
+  use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
@@ -59,6 +59,8 @@ contains
     integer :: j
 
     loads%problem = scale_problem(linear%problem)
+    ! Motions that no pressed pair resists are where they are: held so, they say nothing of the others.
+    call drop_motions(loads%problem, answer%contact%motion_free)
     loads%basis = new_basis(loads%problem, answer%contact%force > 0.0_wp)
     call find_shares()
     associate (pairs => scene%model%pairs, motions => scene%motions%count)
