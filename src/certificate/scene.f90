@@ -12,7 +12,7 @@ module epcont_certificate_scene
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
   use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, rated, scene_type
-  use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, motion_at, new_search, &
+  use epcont_certificate_meeting, only: insert, keep, meet, motion_at, new_search, &
                                        part_along, point_on, point_type, search_type, sides_meeting
   use epcont_certificate_way, only: look_at_ways
   use epcont_element_kinematics, only: directions
@@ -76,7 +76,7 @@ contains
 
       associate (low => search%now%low(:, side), high => search%now%high(:, side), &
                  part => search%now%outline%part(side))
-        parts = boxes_meeting(search%now%part_tree, low, high)
+        parts = search%now%part_tree%meeting(low, high)
         do b = 1, size(parts)
           if (parts(b) == part) cycle
           crossing = crossings(search%now, side, parts(b))
@@ -101,7 +101,7 @@ contains
       integer :: b
 
       associate (point => search%middle(part))
-        parts = boxes_meeting(search%now%part_tree, point%x, point%x)
+        parts = search%now%part_tree%meeting(point%x, point%x)
         do b = 1, size(parts)
           if (parts(b) /= part) call look_at_point(point, parts(b))
         end do
