@@ -152,9 +152,6 @@ contains
 
       now = scene%iteration
       associate (plan => scene%iteration)
-        answer%asked_precision = plan%precision
-        answer%largest_rounding_error = plan%rounding_error
-        answer%asked_load_steps = plan%load_steps
         call follow_or_step(now)
         if (plan%precision /= precision_double .and. &
             .not. (answer%converged .and. answer%rounding_error <= plan%rounding_error)) then

@@ -36,23 +36,6 @@ module epcont_report_file
   !> SIGHUP, SIGINT and SIGTERM: who sends these wants the program to end in good order.
   integer(c_int), parameter :: stop_signals(3) = [1_c_int, 2_c_int, 15_c_int]
 
-  abstract interface
-    integer(c_int) function of_stream(stream) bind(c)
-      import
-      type(c_ptr), value :: stream
-    end function of_stream
-    integer(c_int) function of_number(number) bind(c)   ! of a descriptor, of a signal
-      import
-      integer(c_int), value :: number
-    end function of_number
-  end interface
-  procedure(of_stream), bind(c, name='ferror') :: c_ferror
-  procedure(of_stream), bind(c, name='fclose') :: c_fclose
-  procedure(of_stream), bind(c, name='fileno') :: c_fileno
-  procedure(of_number), bind(c, name='close') :: c_close
-  procedure(of_number), bind(c, name='sighold') :: c_sighold
-  procedure(of_number), bind(c, name='sigrelse') :: c_sigrelse
-
   interface
     type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
       import
@@ -64,6 +47,18 @@ module epcont_report_file
       integer(c_size_t), value :: size, count
       type(c_ptr), value :: stream
     end function c_fwrite
+    integer(c_int) function c_ferror(stream) bind(c, name='ferror')
+      import
+      type(c_ptr), value :: stream
+    end function c_ferror
+    integer(c_int) function c_fclose(stream) bind(c, name='fclose')
+      import
+      type(c_ptr), value :: stream
+    end function c_fclose
+    integer(c_int) function c_fileno(stream) bind(c, name='fileno')
+      import
+      type(c_ptr), value :: stream
+    end function c_fileno
     integer(c_int) function c_flock(descriptor, operation) bind(c, name='flock')
       import
       integer(c_int), value :: descriptor, operation
@@ -72,6 +67,10 @@ module epcont_report_file
       import
       integer(c_int), value :: descriptor, command, argument
     end function c_fcntl
+    integer(c_int) function c_close(descriptor) bind(c, name='close')
+      import
+      integer(c_int), value :: descriptor
+    end function c_close
     type(c_ptr) function c_errno_location() bind(c, name='__errno_location')
       import
     end function c_errno_location
@@ -88,6 +87,14 @@ module epcont_report_file
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: mode
     end function c_mkdir
+    integer(c_int) function c_sighold(signal) bind(c, name='sighold')
+      import
+      integer(c_int), value :: signal
+    end function c_sighold
+    integer(c_int) function c_sigrelse(signal) bind(c, name='sigrelse')
+      import
+      integer(c_int), value :: signal
+    end function c_sigrelse
   end interface
 
 contains

@@ -219,8 +219,8 @@ contains
     subroutine list_iterations()
       call put_table(run, 'history', listing)
       call listing%line('')
-      if (run%answer%load_steps > run%answer%asked_load_steps) &
-        call say('in '//plural(run%answer%asked_load_steps, 'load step')// &
+      if (run%answer%load_steps > run%iteration%load_steps) &
+        call say('in '//plural(run%iteration%load_steps, 'load step')// &
                  ' no answer was found; tried again in '//text_of(run%answer%load_steps)//' (AUTO)')
       if (any(run%answer%history%by_tangent)) call say( &
         'the last step is one by the tangent: its change is what the others have left')
@@ -312,10 +312,10 @@ contains
       call list_figures(['iteration_error_', 'condition       '])
       if (in_single) call list_figure('error that single precision leaves', &
                                       short_real(run%answer%rounding_error), '')
-      if (run%answer%precision /= run%answer%asked_precision) call say( &
+      if (run%answer%precision /= run%iteration%precision) call say( &
         '  (factors in double: in single precision '// &
-        when(run%answer%asked_precision == precision_single, 'they left an error of more than '// &
-             short_real(run%answer%largest_rounding_error)//', or no answer)', &
+        when(run%iteration%precision == precision_single, 'they left an error of more than '// &
+             short_real(run%iteration%rounding_error)//', or no answer)', &
              'there was no answer that refinement could reach)'))
       if (.not. in_single) call list_figure('digits that rounding leaves, at least', &
                                             text_of(max(0, floor(-log10(run%answer%rounding())))), '')
