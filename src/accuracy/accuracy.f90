@@ -31,7 +31,6 @@ module epcont_accuracy_accuracy
     type(zone_error), allocatable :: zone(:)
     !> Error of the largest pressure of all; negative: unknown [stress]
     real(wp) :: max_pressure = -1.0_wp
-    logical :: pressure_unbounded = .false.        !! it grows with every finer mesh
     real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
     logical, allocatable :: approach_unbounded(:)  !! it grows with every finer mesh [motions]
     !> Error of the total contact force; negative: unknown [force]
@@ -72,11 +71,8 @@ contains
     call assess_mesh()
     if (pressed) call assess_zones()
     if (carried) call assess_sums()
-    if (size(accuracy%zone) == 0) return
-    associate (largest => accuracy%zone(maxloc(answer%zones%max_pressure, dim=1)))
-      accuracy%max_pressure = largest%pressure
-      accuracy%pressure_unbounded = largest%unbounded
-    end associate
+    if (size(accuracy%zone) > 0) &
+      accuracy%max_pressure = accuracy%zone(maxloc(answer%zones%max_pressure, dim=1))%pressure
 
   contains
 

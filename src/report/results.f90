@@ -13,7 +13,7 @@ module epcont_report_results
   use epcont_report_echo, only: list_cards
   use epcont_report_file, only: new_text_file, remove_file
   use epcont_report_names, only: centre_name, joined, point_name, when
-  use epcont_report_outcome, only: most_pairs, poisson_text, remark_lines
+  use epcont_report_outcome, only: limit_of_pressure, most_pairs, poisson_text, remark_lines, unbounded
   use epcont_report_plan_text, only: plan_text
   use epcont_report_run, only: run_results
   use epcont_report_scene_text, only: deeper
@@ -372,7 +372,7 @@ contains
       real(wp) :: left
 
       call list_figure('wanted error of contact pressures', short_real(run%model%controls%accuracy), '')
-      if (run%accuracy%pressure_unbounded) then
+      if (limit_of_pressure(run) == unbounded) then
         call say('  not to be had: the largest pressure is unbounded: it grows with every finer mesh')
       else if (run%accuracy%max_pressure < 0.0_wp .or. .not. any(run%answer%contact%force > 0.0_wp)) then
         call say('  (of the mesh''s error nothing is known: no pressure, or too few pairs in contact)')
