@@ -65,7 +65,7 @@ contains
         lifted = lifted + [(1.0_wp + real(k, wp)/size(lifted), k=1, size(lifted))]/2.0_wp**attempt
       end if
       if (attempt > 1) cycle
-      call exchange_afresh(attempt*own_flexibility, found)
+      call exchange_afresh(found)
       if (found) return
     end do
     if (.not. has_right_signs(scaled, state, solved_to)) solution%state = contact_stalled
@@ -92,8 +92,7 @@ contains
 
     !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless
     !! the set is right without that too.
-    subroutine exchange_afresh(own, found)
-      real(wp), intent(in) :: own      !! part of the largest flexibility
+    subroutine exchange_afresh(found)
       logical, intent(out) :: found
       type(scaled_problem) :: softer
       type(contact_solution) :: trial
@@ -103,7 +102,8 @@ contains
       softer = scaled
       if (allocated(softer%guess)) deallocate (softer%guess)
       do k = 1, size(scaled%gap)
-        softer%flexibility(k, k) = softer%flexibility(k, k) + own*maxval(abs(scaled%flexibility))
+        softer%flexibility(k, k) = softer%flexibility(k, k) &
+                                   + attempt*own_flexibility*maxval(abs(scaled%flexibility))
       end do
       call measure(softer)
       trial%pivots = solution%pivots

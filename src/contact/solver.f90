@@ -8,7 +8,7 @@ module epcont_contact_solver
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
     contact_solution, contact_stalled
-  use epcont_contact_scaling, only: drop_motions, restore_units, scale_problem, scaled_problem
+  use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
   implicit none
@@ -113,7 +113,10 @@ contains
       call share_equally(scaled, solution%indeterminate, state%force)
       pressed = state%force > lost_digits*maxval([state%force, 1.0_wp])
       solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)
-      call restore_units(scaled, state%force, state%gap, state%approach, solution)
+      ! In the deck's units; dropped motions stay at zero.
+      solution%force = state%force*scaled%force_unit
+      solution%gap = state%gap*scaled%gap_unit
+      solution%approach(scaled%kept) = state%approach*scaled%gap_unit/scaled%motion_size(scaled%kept)
     end subroutine settle
 
     !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
