@@ -22,7 +22,7 @@ module epcont_report_results
   use epcont_report_vtk, only: write_vtk
   implicit none
   private
-  public :: write_results, remove_results, result_file
+  public :: write_results, remove_results
 
   !> A file of results: what stands behind the name of the deck, and what it holds.
   type :: result_file
