@@ -231,22 +231,15 @@ contains
           x = way*model%x(c, node)
           u = way*displacement(c, node)
           edge = minval(x) + search%least
-          if (.not. all(x > edge .or. is_held(c, node) .and. abs(u) <= search%least)) return
+          if (.not. all(x > edge .or. model%is_held(c, node) .and. abs(u) <= search%least)) return
           if (all(x > edge .or. way*model%x(c, next) > edge &
-                  .or. is_held(3 - c, node) .and. is_held(3 - c, next))) return
+                  .or. model%is_held(3 - c, node) .and. model%is_held(3 - c, next))) return
           associate (farthest => minloc(x + u, dim=1))
             place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
           end associate
         end associate
       end associate
     end function beyond_end
-
-    !> Does a support hold a node?
-    elemental logical function is_held(direction, node)
-      integer, intent(in) :: direction, node
-
-      is_held = model%held(direction, model%leader(direction, node))
-    end function is_held
   end function look_through
 
   !> Where the chord of a side crosses those of another part, ascending.

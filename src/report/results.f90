@@ -113,7 +113,7 @@ contains
         call wrap('  *NOT VALID*  '//run%outcome%word//': '//run%outcome%sentence)
       end if
       if (run%outcome%has_answer) then
-        if (any([(run%model%can_yield(k), k=1, run%model%elements)])) call list_iterations()
+        if (run%iteration%yields) call list_iterations()
         if (run%model%pairs > 0) call list_contact()
         if (nodes) call put_table(run, 'nodes', listing)
         if (elements) call put_table(run, 'elements', listing)

@@ -129,15 +129,15 @@ contains
 
       is_on_symmetry = .false.
       along = merge(1, 2, abs(model%normal(2, pair)) > abs(model%normal(1, pair)))
-      if (abs(model%normal(3 - along, pair)) <= along_line .or. .not. is_held(along, node)) return
+      if (abs(model%normal(3 - along, pair)) <= along_line .or. .not. model%is_held(along, node)) return
       ends = .false.
       guided = is_guided(along, node)
       rigid = .true.
       do i = model%row_start(pair), model%row_start(pair + 1) - 1
         associate (other => model%row_node(i))
           if (other == node) cycle
-          rigid = rigid .and. is_held(along, other)
-          if (.not. is_held(along, other)) cycle
+          rigid = rigid .and. model%is_held(along, other)
+          if (.not. model%is_held(along, other)) cycle
           if (abs(model%x(along, other) - model%x(along, node)) > beside_line*side) cycle
           ends = .true.
           guided = guided .or. is_guided(along, other)
@@ -146,17 +146,11 @@ contains
       is_on_symmetry = guided .and. (ends .or. rigid)
     end function is_on_symmetry
 
-    pure logical function is_held(along, node)
-      integer, intent(in) :: along, node
-
-      is_held = model%held(along, model%leader(along, node))
-    end function is_held
-
     !> Is a node held by itself along the boundary, and free across it?
     pure logical function is_guided(along, node)
       integer, intent(in) :: along, node
 
-      is_guided = model%held(along, node) .and. .not. is_held(3 - along, node)
+      is_guided = model%held(along, node) .and. .not. model%is_held(3 - along, node)
     end function is_guided
   end subroutine find_edges
 
