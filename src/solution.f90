@@ -15,7 +15,7 @@ module epcont_solution
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: plan_threads
-  use epcont_plasticity_iteration, only: follow_loads, followed_loads
+  use epcont_plasticity_iteration, only: follow_loads
   use epcont_plasticity_observer, only: observer
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: find_body_forces
@@ -92,12 +92,12 @@ contains
     type(certificate_type) :: found_certificate
     integer :: step
 
-    call solve_in_precision(scene, linear, answer, watch)
+    call solve_in_precision()
     if (answer%failed_body > 0 .or. allocated(answer%against_double)) return
     if (answer%contact%state /= contact_solved) return
 
     line = find_contact_line(scene%model)
-    call evaluate(scene, linear, line, answer, certificate, watch)
+    call evaluate()
     do step = 1, most_refinements
       if (.not. answer%converged .or. certificate%balanced .and. answer%lost() <= lost_digits .and. &
           (step == 1 .or. answer%last_correction <= lost_digits)) exit
@@ -106,7 +106,7 @@ contains
         found_certificate = certificate
       end if
       call linear%sharpen(scene, answer%load_factor, answer%scene_state, answer%last_correction, watch)
-      call evaluate(scene, linear, line, answer, certificate, watch)
+      call evaluate()
     end do
     ! Gaps far below a travel are rounding, and contact found from them is out of balance.
     if (step > 1 .and. certificate%has_spoilt(found_certificate)) then
@@ -117,83 +117,69 @@ contains
     ! An open pair does not press.
     where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
     call watch%lap(stage_accuracy)
-  end subroutine analyse
 
-  !> Stresses, pressures and zones of the state that was found, and their certificate.
-  subroutine evaluate(scene, linear, line, answer, certificate, watch)
-    type(planned_scene), intent(in) :: scene
-    type(linear_problem), intent(in) :: linear
-    type(contact_line), intent(in) :: line
-    type(answer_type), intent(inout) :: answer
-    type(certificate_type), intent(out) :: certificate
-    class(observer), intent(inout) :: watch
-    logical, allocatable :: touching(:)
+  contains
 
-    if (linear%materials%yields .and. .not. allocated(answer%point)) &
-      answer%point = linear%materials%states(answer%strain)
-    associate (model => scene%model, force => answer%contact%force, volume => linear%operator%volume)
-      call recover_stresses(model, linear, answer%load_factor*model%load + pair_forces(model, force), answer)
-      answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
-                                    answer%secant_modulus)
-      answer%gradient = find_gradients(model, volume, answer%displacement)
-      touching = line%in_contact(answer%contact%touching)
-      answer%pressure = pair_pressures(model, line, touching, force)
-      answer%zones = find_zones(line, touching, force, answer%pressure)
-      answer%lines = compare_sides(model, answer%contact%touching, force, answer%pressure)
-      answer%bodies = find_body_forces(model, force)
-      call watch%lap(stage_stresses)
-      call certify(model, answer, scene%iteration%off_curve, certificate)
-      if (answer%converged .and. certificate%valid) &
-        certificate%scene = look_through(model, answer%displacement, force)
-    end associate
-    call watch%lap(stage_certificate)
-  end subroutine evaluate
+    !> Stresses, pressures and zones of the state that was found, and their certificate.
+    subroutine evaluate()
+      logical, allocatable :: touching(:)
 
-  !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved
-  !! by others in double.
-  subroutine solve_in_precision(scene, linear, answer, watch)
-    type(planned_scene), intent(in) :: scene
-    type(linear_problem), allocatable, intent(out) :: linear
-    type(answer_type), intent(inout) :: answer
-    class(observer), intent(inout) :: watch
-    type(iteration_plan) :: now
+      if (linear%materials%yields .and. .not. allocated(answer%point)) &
+        answer%point = linear%materials%states(answer%strain)
+      associate (model => scene%model, force => answer%contact%force, volume => linear%operator%volume)
+        call recover_stresses(model, linear, answer%load_factor*model%load + pair_forces(model, force), &
+                              answer)
+        answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
+                                      answer%secant_modulus)
+        answer%gradient = find_gradients(model, volume, answer%displacement)
+        touching = line%in_contact(answer%contact%touching)
+        answer%pressure = pair_pressures(model, line, touching, force)
+        answer%zones = find_zones(line, touching, force, answer%pressure)
+        answer%lines = compare_sides(model, answer%contact%touching, force, answer%pressure)
+        answer%bodies = find_body_forces(model, force)
+        call watch%lap(stage_stresses)
+        call certify(model, answer, scene%iteration%off_curve, certificate)
+        if (answer%converged .and. certificate%valid) &
+          certificate%scene = look_through(model, answer%displacement, force)
+      end associate
+      call watch%lap(stage_certificate)
+    end subroutine evaluate
 
-    now = scene%iteration
-    associate (plan => scene%iteration)
-      answer%asked_precision = plan%precision
-      answer%largest_rounding_error = plan%rounding_error
-      answer%asked_load_steps = plan%load_steps
-      call follow_or_step(scene, now, linear, answer%followed_loads, watch)
-      if (plan%precision /= precision_double .and. &
-          .not. (answer%converged .and. answer%rounding_error <= plan%rounding_error)) then
-        if (allocated(plan%against_double)) then
-          answer%against_double = plan%against_double
-          return
+    !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved
+    !! by others in double.
+    subroutine solve_in_precision()
+      type(iteration_plan) :: now
+
+      now = scene%iteration
+      associate (plan => scene%iteration)
+        call follow_or_step(now)
+        if (plan%precision /= precision_double .and. &
+            .not. (answer%converged .and. answer%rounding_error <= plan%rounding_error)) then
+          if (allocated(plan%against_double)) then
+            answer%against_double = plan%against_double
+            return
+          end if
+          now%precision = precision_double
+          now%load_steps = plan%load_steps
+          call follow_or_step(now)
         end if
-        now%precision = precision_double
-        now%load_steps = plan%load_steps
-        call follow_or_step(scene, now, linear, answer%followed_loads, watch)
-      end if
-    end associate
-    answer%precision = now%precision
-    answer%load_steps = now%load_steps
-  end subroutine solve_in_precision
+      end associate
+      answer%precision = now%precision
+      answer%load_steps = now%load_steps
+    end subroutine solve_in_precision
 
-  !> Follow the loads; where the method was chosen here and has found neither an answer nor a limit load, in
-  !! more steps.
-  subroutine follow_or_step(scene, plan, linear, answer, watch)
-    type(planned_scene), intent(in) :: scene
-    type(iteration_plan), intent(inout) :: plan   !! its load steps become those that were taken
-    type(linear_problem), allocatable, intent(out) :: linear
-    type(followed_loads), intent(out) :: answer
-    class(observer), intent(inout) :: watch
+    !> Follow the loads; where the method was chosen here and has found neither an answer nor a limit load, in
+    !! more steps.
+    subroutine follow_or_step(plan)
+      type(iteration_plan), intent(inout) :: plan   !! its load steps become those that were taken
 
-    call follow_loads(scene, plan, linear, answer, watch)
-    if (.not. (plan%chosen_here .and. plan%yields)) return
-    if (answer%converged .or. answer%runs_away .or. answer%lacks_memory) return
-    ! What the first solve does not find, steps do not; single precision is followed by double.
-    if (size(answer%history) <= 1 .or. plan%precision /= precision_double) return
-    plan%load_steps = more_steps*plan%load_steps
-    call follow_loads(scene, plan, linear, answer, watch)
-  end subroutine follow_or_step
+      call follow_loads(scene, plan, linear, answer%followed_loads, watch)
+      if (.not. (plan%chosen_here .and. plan%yields)) return
+      if (answer%converged .or. answer%runs_away .or. answer%lacks_memory) return
+      ! What the first solve does not find, steps do not; single precision is followed by double.
+      if (size(answer%history) <= 1 .or. plan%precision /= precision_double) return
+      plan%load_steps = more_steps*plan%load_steps
+      call follow_loads(scene, plan, linear, answer%followed_loads, watch)
+    end subroutine follow_or_step
+  end subroutine analyse
 end module epcont_solution

@@ -21,7 +21,7 @@ module epcont_accuracy_accuracy
   public :: accuracy_type, assess
 
   !> Elements that are named as the worst.
-  integer, parameter, public :: worst_count = 5
+  integer, parameter :: worst_count = 5
 
   type :: accuracy_type
     !> Error of the mesh over the size of the answer, in the energy norm
@@ -31,7 +31,6 @@ module epcont_accuracy_accuracy
     type(zone_error), allocatable :: zone(:)
     !> Error of the largest pressure of all; negative: unknown [stress]
     real(wp) :: max_pressure = -1.0_wp
-    logical :: pressure_unbounded = .false.        !! it grows with every finer mesh
     real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
     logical, allocatable :: approach_unbounded(:)  !! it grows with every finer mesh [motions]
     !> Error of the total contact force; negative: unknown [force]
@@ -72,11 +71,8 @@ contains
     call assess_mesh()
     if (pressed) call assess_zones()
     if (carried) call assess_sums()
-    if (size(accuracy%zone) == 0) return
-    associate (largest => accuracy%zone(maxloc(answer%zones%max_pressure, dim=1)))
-      accuracy%max_pressure = largest%pressure
-      accuracy%pressure_unbounded = largest%unbounded
-    end associate
+    if (size(accuracy%zone) > 0) &
+      accuracy%max_pressure = accuracy%zone(maxloc(answer%zones%max_pressure, dim=1))%pressure
 
   contains
 
@@ -85,7 +81,9 @@ contains
       table = new_patch_table(scene%model)
       call compare_fields(scene, linear, answer, table, loads%force(:, loads%moved), field)
       accuracy%element = field%element
-      accuracy%energy_norm = sqrt(part(sum(field%element), sum(field%element) + abs(field%energy)))
+      associate (error => sum(field%element))
+        if (error > 0.0_wp) accuracy%energy_norm = sqrt(error/(error + abs(field%energy)))
+      end associate
       if (accuracy%energy_norm > least_difference) then
         accuracy%worst = worst_of(accuracy%element)
       else
@@ -103,7 +101,9 @@ contains
 
       associate (model => scene%model, element => accuracy%element, zones => answer%zones)
         surface = new_surface_line(model, line, smooth_pressures(model, linear%materials, field%smooth))
-        energy = accuracy%energy_norm**2*part(sum(element, mask=.not. beside_point_loads()), sum(element))
+        energy = 0.0_wp
+        if (accuracy%energy_norm > 0.0_wp) energy = accuracy%energy_norm**2* &
+          max(0.0_wp, sum(element, mask=.not. beside_point_loads())/sum(element))
         accuracy%zone = [(estimate_zone(model, surface, answer, energy, zones(z)), z=1, size(zones))]
         do z = 1, size(zones)
           accuracy%zone(z)%too_near = &
@@ -286,14 +286,6 @@ contains
       end associate
     end function find_weak
   end subroutine assess
-
-  !> a/b, 0 where a is 0.
-  pure real(wp) function part(a, b)
-    real(wp), intent(in) :: a, b
-
-    part = 0.0_wp
-    if (a > 0.0_wp) part = a/b
-  end function part
 
   !> Elements with the largest errors, largest first; of equal ones, but for rounding, the first. None where
   !! there is no error.

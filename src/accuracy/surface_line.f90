@@ -111,7 +111,7 @@ contains
     elements = model%around%group(model%around%start(node):model%around%start(node + 1) - 1)
     if (size(elements) == 0) return
     elements = pack(elements, model%section(elements) == model%section(elements(1)))
-    if (model%held(1, model%leader(1, node)) .and. model%held(2, model%leader(2, node)) .or. &
+    if (all(model%is_held([1, 2], node)) .or. &
         all([(model%is_rigid(model%connectivity(:model%node_count(elements(i)), elements(i))), &
               i=1, size(elements))])) elements = [integer ::]
   end function elements_behind

@@ -185,7 +185,7 @@ contains
       integer :: k, s
 
       at_node = 0.0_wp
-      do k = 1, model%pairs - sum(model%line_contact%last - model%line_contact%first + 1)
+      do k = 1, model%single_pairs()
         associate (pair => model%pair_node(:, k))
           if (any(model%body_outline%part_of(pair) == 0)) cycle
           gap_drawn = dot_product(model%normal(:, k), model%x(:, pair(2)) - model%x(:, pair(1)))

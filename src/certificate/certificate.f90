@@ -26,7 +26,7 @@ module epcont_certificate_certificate
   real(wp), parameter :: several = 4.0_wp
   !> Largest part of the bodies' give that the rounding of the gaps may be: a travel far beyond it leaves no
   !! digits.
-  real(wp), parameter, public :: largest_rounding = 1.0e-6_wp
+  real(wp), parameter :: largest_rounding = 1.0e-6_wp
 
   !> A rigid motion strains an element by so many roundings of its displacements, at most: motions of a chain
   !! of 40 hinges, sums that cancel, were seen to leave 750.

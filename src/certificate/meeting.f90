@@ -7,12 +7,11 @@ module epcont_certificate_meeting
   use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, rated
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_element_kinematics, only: directions
-  use epcont_geometry_box_tree, only: box_tree
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: point_type, search_type, new_search, point_on, boxes_meeting, sides_meeting, motion_at, &
+  public :: point_type, search_type, new_search, point_on, sides_meeting, motion_at, &
             part_along, meet, keep, insert
 
   !> Bodies deeper in each other, or farther apart where they press, than this part of the largest
@@ -107,23 +106,14 @@ contains
                        search%now%at(side, s))
   end function point_on
 
-  !> The boxes of a tree that meet the one from `low` to `high`.
-  pure function boxes_meeting(tree, low, high) result(box)
-    type(box_tree), intent(in) :: tree        !! of the boxes
-    real(wp), intent(in) :: low(directions), high(directions)   !! [length]
-    integer, allocatable :: box(:)
-
-    box = tree%meeting(low, high)
-  end function boxes_meeting
-
-  !> The sides of a part whose boxes do.
+  !> The sides of a part whose boxes meet the one from `low` to `high`.
   pure function sides_meeting(shape, part, low, high) result(side)
     type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
     integer, intent(in) :: part                !! of the outlines
     real(wp), intent(in) :: low(directions), high(directions)    !! [length]
     integer, allocatable :: side(:)
 
-    side = boxes_meeting(shape%side_tree(part), low, high)
+    side = shape%side_tree(part)%meeting(low, high)
     side = side + (shape%outline%first(part) - 1)
   end function sides_meeting
 

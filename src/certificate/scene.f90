@@ -12,7 +12,7 @@ module epcont_certificate_scene
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
   use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, rated, scene_type
-  use epcont_certificate_meeting, only: boxes_meeting, insert, keep, meet, motion_at, new_search, &
+  use epcont_certificate_meeting, only: insert, keep, meet, motion_at, new_search, &
                                        part_along, point_on, point_type, search_type, sides_meeting
   use epcont_certificate_way, only: look_at_ways
   use epcont_element_kinematics, only: directions
@@ -76,7 +76,7 @@ contains
 
       associate (low => search%now%low(:, side), high => search%now%high(:, side), &
                  part => search%now%outline%part(side))
-        parts = boxes_meeting(search%now%part_tree, low, high)
+        parts = search%now%part_tree%meeting(low, high)
         do b = 1, size(parts)
           if (parts(b) == part) cycle
           crossing = crossings(search%now, side, parts(b))
@@ -101,7 +101,7 @@ contains
       integer :: b
 
       associate (point => search%middle(part))
-        parts = boxes_meeting(search%now%part_tree, point%x, point%x)
+        parts = search%now%part_tree%meeting(point%x, point%x)
         do b = 1, size(parts)
           if (parts(b) /= part) call look_at_point(point, parts(b))
         end do
@@ -231,22 +231,15 @@ contains
           x = way*model%x(c, node)
           u = way*displacement(c, node)
           edge = minval(x) + search%least
-          if (.not. all(x > edge .or. is_held(c, node) .and. abs(u) <= search%least)) return
+          if (.not. all(x > edge .or. model%is_held(c, node) .and. abs(u) <= search%least)) return
           if (all(x > edge .or. way*model%x(c, next) > edge &
-                  .or. is_held(3 - c, node) .and. is_held(3 - c, next))) return
+                  .or. model%is_held(3 - c, node) .and. model%is_held(3 - c, next))) return
           associate (farthest => minloc(x + u, dim=1))
             place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
           end associate
         end associate
       end associate
     end function beyond_end
-
-    !> Does a support hold a node?
-    elemental logical function is_held(direction, node)
-      integer, intent(in) :: direction, node
-
-      is_held = model%held(direction, model%leader(direction, node))
-    end function is_held
   end function look_through
 
   !> Where the chord of a side crosses those of another part, ascending.

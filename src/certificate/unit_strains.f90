@@ -48,9 +48,7 @@ contains
     integer :: k, n, p
 
     n = model%node_count(element)
-    do k = 1, n
-      x(:, k) = model%x(:, model%connectivity(k, element))
-    end do
+    x(:, :n) = model%coordinates(element)
     associate (s => model%section(element), kind => model%kinds(model%kind(element)))
       do p = 1, kind%points
         ! d x/d local, one column each; from the first node, so that a place far from the origin takes no

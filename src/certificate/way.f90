@@ -8,7 +8,7 @@
 module epcont_certificate_way
   use epcont_base_kinds, only: wp
   use epcont_certificate_findings, only: is_worse, overlap_place, rated, scene_type
-  use epcont_certificate_meeting, only: boxes_meeting, insert, meet, point_on, point_type, search_type, &
+  use epcont_certificate_meeting, only: insert, meet, point_on, point_type, search_type, &
                                        sides_meeting
   use epcont_element_kinematics, only: directions
   use epcont_geometry_box_tree, only: box_tree, new_box_tree
@@ -85,7 +85,7 @@ contains
       integer, allocatable :: parts(:)
       integer :: b
 
-      parts = boxes_meeting(part_tree, min(point%drawn, point%x), max(point%drawn, point%x))
+      parts = part_tree%meeting(min(point%drawn, point%x), max(point%drawn, point%x))
       do b = 1, size(parts)
         if (parts(b) /= search%now%outline%part(point%side) .and. straight(parts(b))) &
           call look_at_way(point, parts(b))

@@ -50,16 +50,15 @@ contains
     integer :: patience   ! steps left to come below it
 
     found = .false.
+    stride = 1
     if (allocated(scaled%guess)) then
       closed = scaled%guess .or. scaled%first_touching
       solution%block_steps = solution%block_steps + 1
       call test_afresh(guess_tolerance)
-      stride = 1
       if (.not. found) call exchange_blocks(guess_tolerance)
     end if
     if (.not. found) then
       closed = scaled%first_touching
-      stride = 1
       do while (size(closed)/(2*stride) >= fewest_candidates)
         stride = 2*stride
       end do

@@ -67,7 +67,7 @@ contains
     do count = 0, pivots_per_unknown*(n + size(scaled%resultant))
       if (count > 0) call pivot()
       column = -place(entering)
-      slope = entries_of_column(column)
+      slope = entries_of_rows([(row, row=1, n)], column)
       call test_ratios()
       complete = is_complete()
       if (complete .or. row == 0) exit
@@ -113,18 +113,6 @@ contains
         settled(:, n + 1) = basic_values(state) - start
       end associate
     end subroutine begin_tableau
-
-    !> The entries of a column.
-    pure function entries_of_column(column) result(entry)
-      integer, intent(in) :: column
-      real(wp) :: entry(n)
-      integer :: i
-
-      entry = settled(:, column)
-      do i = 1, pending
-        if (pivot_rows(i, column) /= 0.0_wp) entry = entry + pivot_rows(i, column)*pivot_columns(:, i)
-      end do
-    end function entries_of_column
 
     !> How far the entering variable can grow, and the row of the basic one that becomes zero first; 0: none.
     subroutine test_ratios()

@@ -11,10 +11,10 @@
 module epcont_contact_scaling
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible
-  use epcont_contact_problem, only: contact_problem, contact_solution
+  use epcont_contact_problem, only: contact_problem
   implicit none
   private
-  public :: scaled_problem, scale_problem, drop_motions, measure, restore_units
+  public :: scaled_problem, scale_problem, drop_motions, measure
 
   !> The problem in its own units, over the motions that are kept.
   type :: scaled_problem
@@ -115,18 +115,6 @@ contains
       scaled%rank_tolerance = max(negligible/100, 4*n*epsilon(1.0_wp))*softest
     end associate
   end subroutine measure
-
-  !> Put forces, gaps and approach into `solution` in the deck's units; dropped motions stay at zero.
-  pure subroutine restore_units(scaled, force, gap, approach, solution)
-    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
-    real(wp), intent(in) :: force(:), gap(:)      !! [n]
-    real(wp), intent(in) :: approach(:)           !! of the kept motions [m]
-    type(contact_solution), intent(inout) :: solution   !! in the deck's units
-
-    solution%force = force*scaled%force_unit
-    solution%gap = gap*scaled%gap_unit
-    solution%approach(scaled%kept) = approach*scaled%gap_unit/scaled%motion_size(scaled%kept)
-  end subroutine restore_units
 
   !> Largest absolute value; 0 of none.
   pure real(wp) function largest_of(values)

@@ -37,7 +37,7 @@ contains
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
     real(wp), allocatable :: lifted(:)   ! basic variable of each pair at t = 0 [n]
     logical, allocatable :: closed(:)
-    integer :: attempt
+    integer :: attempt, k
     logical :: complete, found
 
     closed = scaled%first_touching
@@ -61,10 +61,11 @@ contains
         if (has_right_signs(scaled, state, solved_to)) return
       else
         call take_set(scaled%first_touching)
-        lifted = lifted + apart(size(lifted))/2.0_wp**attempt
+        ! By values that are all apart from each other, against ties that rounding decides wrongly.
+        lifted = lifted + [(1.0_wp + real(k, wp)/size(lifted), k=1, size(lifted))]/2.0_wp**attempt
       end if
       if (attempt > 1) cycle
-      call exchange_afresh(attempt*own_flexibility, found)
+      call exchange_afresh(found)
       if (found) return
     end do
     if (.not. has_right_signs(scaled, state, solved_to)) solution%state = contact_stalled
@@ -91,8 +92,7 @@ contains
 
     !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless
     !! the set is right without that too.
-    subroutine exchange_afresh(own, found)
-      real(wp), intent(in) :: own      !! part of the largest flexibility
+    subroutine exchange_afresh(found)
       logical, intent(out) :: found
       type(scaled_problem) :: softer
       type(contact_solution) :: trial
@@ -102,7 +102,8 @@ contains
       softer = scaled
       if (allocated(softer%guess)) deallocate (softer%guess)
       do k = 1, size(scaled%gap)
-        softer%flexibility(k, k) = softer%flexibility(k, k) + own*maxval(abs(scaled%flexibility))
+        softer%flexibility(k, k) = softer%flexibility(k, k) &
+                                   + attempt*own_flexibility*maxval(abs(scaled%flexibility))
       end do
       call measure(softer)
       trial%pivots = solution%pivots
@@ -134,13 +135,4 @@ contains
                 .and. dot_product(scaled%gap, z) < -negligible*largest
     end function is_overlap
   end subroutine find_contacts
-
-  !> Values that are all apart from each other, against ties that rounding decides wrongly.
-  pure function apart(n) result(values)
-    integer, intent(in) :: n   !! of them
-    real(wp) :: values(n)
-    integer :: k
-
-    values = [(1.0_wp + real(k, wp)/n, k=1, n)]
-  end function apart
 end module epcont_contact_simplex

@@ -8,7 +8,7 @@ module epcont_contact_solver
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
     contact_solution, contact_stalled
-  use epcont_contact_scaling, only: drop_motions, restore_units, scale_problem, scaled_problem
+  use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
   implicit none
@@ -28,7 +28,7 @@ contains
 
     scaled = scale_problem(problem)
     if (present(start)) scaled%guess = start
-    call clear(scaled, solution)
+    call clear()
     call find_rigid_start(scaled%motion, scaled%resultant, scaled%unloaded_gap, rigid)
     if (.not. rigid%balanced) then
       solution%state = contact_no_equilibrium
@@ -39,114 +39,111 @@ contains
     call drop_motions(scaled, rigid%redundant)
     solution%motion_free = rigid%redundant
     if (present(by_blocks)) then
-      if (by_blocks) call solve_by_blocks(scaled, solution)
+      if (by_blocks) call solve_by_blocks()
     end if
-    if (.not. solution%by_blocks) call solve_by_simplex(scaled, solution)
+    if (.not. solution%by_blocks) call solve_by_simplex()
+
+  contains
+
+    !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left
+    !! of it.
+    subroutine solve_by_blocks()
+      type(contact_solution) :: trial
+      type(contact_state) :: state
+      logical, allocatable :: pressed(:)
+
+      trial = solution
+      call find_by_blocks(scaled, trial, state, trial%by_blocks)
+      solution%block_steps = trial%block_steps
+      if (.not. trial%by_blocks) return
+      call settle(state, trial)
+      ! Motions that only touching pairs without force hold back may stand elsewhere too.
+      pressed = trial%force > negligible*maxval([trial%force, 0.0_wp])
+      if (any(trial%indeterminate) .or. any(find_free_motions(scaled, pressed, pressed))) return
+      solution = trial
+    end subroutine solve_by_blocks
+
+    !> RULE CONRY. Where ties may have led the path round in a circle blocks are tried, which know of no path.
+    subroutine solve_by_simplex()
+      type(contact_solution) :: trial
+      type(contact_state) :: state
+      real(wp), allocatable :: ray(:)
+
+      trial = solution
+      call find_contacts(scaled, trial, state, ray)
+      if (trial%state == contact_stalled) call solve_by_blocks()
+      if (solution%by_blocks) return
+      solution = trial
+      if (solution%state == contact_overlap) then
+        solution%overlapping = ray > null_component*maxval(ray)
+      else
+        call settle(state, solution)
+      end if
+    end subroutine solve_by_simplex
+
+    !> An answer of no contact at all, to be filled in.
+    subroutine clear()
+      integer :: m, n
+
+      n = size(scaled%gap)
+      m = size(scaled%resultant)
+      allocate (solution%force(n), solution%approach(m), solution%escape(m), source=0.0_wp)
+      solution%gap = scaled%gap*scaled%gap_unit
+      allocate (solution%touching(n), solution%overlapping(n), solution%indeterminate(n), source=.false.)
+      allocate (solution%motion_free(m), source=.false.)
+      allocate (solution%history(0))
+    end subroutine clear
+
+    !> The answer in the deck's units, and what the conditions leave open in it.
+    subroutine settle(state, solution)
+      type(contact_state), intent(inout) :: state
+      type(contact_solution), intent(inout) :: solution
+      logical, allocatable :: pressed(:)
+      !> What gaps are the sum of; the motions have the rounding of those that hold them [n]
+      real(wp), allocatable :: terms(:)
+      real(wp) :: zero                    !! force that rounding leaves of none
+
+      zero = negligible*maxval([state%force, 1.0_wp])
+      call cut_rounding(state, terms)
+      where (state%force > 0.0_wp) state%gap = 0.0_wp
+      solution%touching = state%gap <= negligible*max(terms, maxval([terms(state%pairs), 0.0_wp]))
+      where (solution%touching) state%gap = 0.0_wp
+      pressed = state%force > zero
+      solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
+      call share_equally(scaled, solution%indeterminate, state%force)
+      pressed = state%force > lost_digits*maxval([state%force, 1.0_wp])
+      solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)
+      ! In the deck's units; dropped motions stay at zero.
+      solution%force = state%force*scaled%force_unit
+      solution%gap = state%gap*scaled%gap_unit
+      solution%approach(scaled%kept) = state%approach*scaled%gap_unit/scaled%motion_size(scaled%kept)
+    end subroutine settle
+
+    !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
+    !! than none: its pair need not be closed. Where rigid stops take the load, gaps may be far below the size
+    !! that they are measured in, and that force may have held other pairs closed: those are solved for again.
+    pure subroutine cut_rounding(state, terms)
+      type(contact_state), intent(inout) :: state
+      real(wp), allocatable, intent(out) :: terms(:)   !! what gaps are the sum of [n]
+      type(contact_state) :: fewer
+      logical, allocatable :: moving(:), pressed(:)
+
+      do
+        pressed = state%force > cancelled
+        where (.not. pressed) state%force = 0.0_wp
+        terms = terms_of_gaps(scaled, state)
+        moving = abs(state%approach) > cancelled*maxval([terms(state%pairs), cancelled])
+        if (all(moving) .and. all(pressed(state%pairs))) return
+        where (.not. moving) state%approach = 0.0_wp
+        terms = terms_of_gaps(scaled, state)
+        state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
+        if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. &
+            all(pressed(state%pairs))) return
+        fewer%contact_basis = new_basis(scaled, pressed)
+        if (.not. fewer%sound) return   ! a motion is held by rounding
+        call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
+        state = fewer
+      end do
+    end subroutine cut_rounding
   end subroutine solve_contact
-
-  !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left of
-  !! it.
-  subroutine solve_by_blocks(scaled, solution)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_solution), intent(inout) :: solution
-    type(contact_solution) :: trial
-    type(contact_state) :: state
-    logical, allocatable :: pressed(:)
-
-    trial = solution
-    call find_by_blocks(scaled, trial, state, trial%by_blocks)
-    solution%block_steps = trial%block_steps
-    if (.not. trial%by_blocks) return
-    call settle(scaled, state, trial)
-    ! Motions that only touching pairs without force hold back may stand elsewhere too.
-    pressed = trial%force > negligible*maxval([trial%force, 0.0_wp])
-    if (any(trial%indeterminate) .or. any(find_free_motions(scaled, pressed, pressed))) return
-    solution = trial
-  end subroutine solve_by_blocks
-
-  !> RULE CONRY. Where ties may have led the path round in a circle blocks are tried, which know of no path.
-  subroutine solve_by_simplex(scaled, solution)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_solution), intent(inout) :: solution
-    type(contact_solution) :: trial
-    type(contact_state) :: state
-    real(wp), allocatable :: ray(:)
-
-    trial = solution
-    call find_contacts(scaled, trial, state, ray)
-    if (trial%state == contact_stalled) call solve_by_blocks(scaled, solution)
-    if (solution%by_blocks) return
-    solution = trial
-    if (solution%state == contact_overlap) then
-      solution%overlapping = ray > null_component*maxval(ray)
-    else
-      call settle(scaled, state, solution)
-    end if
-  end subroutine solve_by_simplex
-
-  !> An answer of no contact at all, to be filled in.
-  pure subroutine clear(scaled, solution)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_solution), intent(inout) :: solution
-    integer :: m, n
-
-    n = size(scaled%gap)
-    m = size(scaled%resultant)
-    allocate (solution%force(n), solution%approach(m), solution%escape(m), source=0.0_wp)
-    solution%gap = scaled%gap*scaled%gap_unit
-    allocate (solution%touching(n), solution%overlapping(n), solution%indeterminate(n), source=.false.)
-    allocate (solution%motion_free(m), source=.false.)
-    allocate (solution%history(0))
-  end subroutine clear
-
-  !> The answer in the deck's units, and what the conditions leave open in it.
-  subroutine settle(scaled, state, solution)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_state), intent(inout) :: state
-    type(contact_solution), intent(inout) :: solution
-    logical, allocatable :: pressed(:)
-    !> What gaps are the sum of; the motions have the rounding of those that hold them [n]
-    real(wp), allocatable :: terms(:)
-    real(wp) :: zero                    !! force that rounding leaves of none
-
-    zero = negligible*maxval([state%force, 1.0_wp])
-    call cut_rounding(scaled, state, terms)
-    where (state%force > 0.0_wp) state%gap = 0.0_wp
-    solution%touching = state%gap <= negligible*max(terms, maxval([terms(state%pairs), 0.0_wp]))
-    where (solution%touching) state%gap = 0.0_wp
-    pressed = state%force > zero
-    solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
-    call share_equally(scaled, solution%indeterminate, state%force)
-    pressed = state%force > lost_digits*maxval([state%force, 1.0_wp])
-    solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)
-    call restore_units(scaled, state%force, state%gap, state%approach, solution)
-  end subroutine settle
-
-  !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
-  !! than none: its pair need not be closed. Where rigid stops take the load, gaps may be far below the size
-  !! that they are measured in, and that force may have held other pairs closed: those are solved for again.
-  pure subroutine cut_rounding(scaled, state, terms)
-    type(scaled_problem), intent(in) :: scaled
-    type(contact_state), intent(inout) :: state
-    real(wp), allocatable, intent(out) :: terms(:)   !! what gaps are the sum of [n]
-    type(contact_state) :: fewer
-    logical, allocatable :: moving(:), pressed(:)
-
-    do
-      pressed = state%force > cancelled
-      where (.not. pressed) state%force = 0.0_wp
-      terms = terms_of_gaps(scaled, state)
-      moving = abs(state%approach) > cancelled*maxval([terms(state%pairs), cancelled])
-      if (all(moving) .and. all(pressed(state%pairs))) return
-      where (.not. moving) state%approach = 0.0_wp
-      terms = terms_of_gaps(scaled, state)
-      state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
-      if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. &
-          all(pressed(state%pairs))) return
-      fewer%contact_basis = new_basis(scaled, pressed)
-      if (.not. fewer%sound) return   ! a motion is held by rounding
-      call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
-      state = fewer
-    end do
-  end subroutine cut_rounding
 end module epcont_contact_solver

@@ -165,7 +165,7 @@ contains
       integer, intent(in) :: node
       integer :: c
 
-      held_direction = sum([(merge(c, 0, model%held(c, model%leader(c, node))), c=1, 2)])
+      held_direction = sum([(merge(c, 0, model%is_held(c, node)), c=1, 2)])
     end function held_direction
   end function find_boundary
 end module epcont_contact_geometry_line_sides

@@ -175,7 +175,6 @@ contains
     !> The same to double precision with factors in single: step by step the forces out of balance, in double,
     !! are solved for, and the contact with them. `contact_stalled` where that does not converge.
     subroutine refine()
-      logical, allocatable :: touching(:)
       real(wp) :: change, before(2)   ! of this step, of the two before
       integer :: step
 
@@ -187,7 +186,8 @@ contains
       end if
       call prescribe(scene, load_factor, state%deformation)
       state%strain = self%operator%strains(scene%model, state%deformation)
-      if (allocated(start)) touching = start
+      if (allocated(state%contact%touching)) deallocate (state%contact%touching)
+      if (allocated(start)) state%contact%touching = start
       before = 0.0_wp
       step = 0
       do
@@ -203,10 +203,9 @@ contains
           return
         end if
         before = [before(2), change]
-        call correct_contact(self, scene, load_factor, touching, state)
+        call correct_contact(self, scene, load_factor, state)
         call watch%lap(stage_contact)
         if (state%contact%state /= contact_solved) return
-        touching = state%contact%touching
       end do
       self%last = state
     end subroutine refine
@@ -223,15 +222,13 @@ contains
     real(wp), intent(out) :: change             !! of displacements and contact forces, of the largest of each
     class(stopwatch), intent(inout) :: watch    !! takes the time
     type(scene_state) :: refined
-    logical, allocatable :: touching(:)
     real(wp) :: strained   ! by a correction: the displacements tell what the step has done
 
     change = huge(1.0_wp)
     refined = state
-    touching = state%contact%touching
     call correct(self, scene, load_factor, refined, strained)
     call watch%lap(stage_displacements)
-    call correct_contact(self, scene, load_factor, touching, refined)
+    call correct_contact(self, scene, load_factor, refined)
     call watch%lap(stage_contact)
     if (refined%contact%state /= contact_solved) return
     call correct(self, scene, load_factor, refined, strained)
@@ -253,14 +250,12 @@ contains
     type(scene_state), intent(in) :: state      !! what `solve` has found
     real(wp), intent(out) :: error              !! relative
     type(scene_state) :: refined
-    logical, allocatable :: touching(:)
     real(wp) :: second
 
     refined = state
     call correct(self, scene, load_factor, refined, error)
     call correct(self, scene, load_factor, refined, second)
-    touching = state%contact%touching
-    call correct_contact(self, scene, load_factor, touching, refined)
+    call correct_contact(self, scene, load_factor, refined)
     if (second > max(slowest_rate*error, solved_to)) error = 1.0_wp
     if (refined%contact%state /= contact_solved) error = 1.0_wp
     error = max(error, relative_change(state%deformation, refined%deformation, of=state%deformation), &
@@ -301,17 +296,18 @@ contains
   end subroutine correct
 
   !> The contact with the gaps of a deformation, of which the contact forces' part goes by the flexibility.
-  subroutine correct_contact(self, scene, load_factor, touching, state)
+  subroutine correct_contact(self, scene, load_factor, state)
     type(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: load_factor
-    logical, allocatable, intent(in) :: touching(:)   !! guess of the pairs in contact, if allocated [pairs]
-    type(scene_state), intent(inout) :: state
+    type(scene_state), intent(inout) :: state   !! its touching pairs, if allocated, are a guess
+    logical, allocatable :: guess(:)
 
+    call move_alloc(state%contact%touching, guess)
     self%problem%load_gap = gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap - &
                             matmul(self%problem%flexibility, state%contact%force)
     self%problem%resultant = load_factor*self%resultant
-    call solve_contact(self%problem, state%contact, touching, self%plan%by_blocks)
+    call solve_contact(self%problem, state%contact, guess, self%plan%by_blocks)
   end subroutine correct_contact
   !> What follows from deformation, strains and contact: stresses, displacements and gaps.
   pure subroutine complete(self, scene, load_factor, state)

@@ -86,7 +86,7 @@ contains
         k = k - 1
       end do
       if (self%paper_ratio) then
-        call find_paper_secant(self, k, e, point%total, secant)
+        call find_paper_secant(point%total, secant)
         point%modulus = young/(young/secant - young*shift)  ! (2-5)
       else
         point%modulus = (self%stress(k) + self%slope(k)*(e - self%deviatoric(k)))/e
@@ -94,27 +94,26 @@ contains
         point%total = e*(1.0_wp + shift*point%modulus)
       end if
     end associate
+
+  contains
+
+    !> eps_i, and E' = sigma_i/eps_i, with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 +
+    !! (a - c - b e) eps = e a.
+    pure subroutine find_paper_secant(strain, secant)
+      real(wp), intent(out) :: strain, secant
+      real(wp) :: a, b, c, half
+
+      b = self%total_slope(k)
+      a = self%stress(k) - b*self%total(k)
+      c = self%elastic%young*self%elastic%shift*self%stress(1)
+      half = 0.5_wp*(a - c - b*e)
+      ! The positive root, written so that nothing cancels for b = 0.
+      if (half > 0.0_wp) then
+        strain = e*a/(half + sqrt(half**2 + b*e*a))
+      else
+        strain = (sqrt(half**2 + b*e*a) - half)/b
+      end if
+      secant = a/strain + b
+    end subroutine find_paper_secant
   end function at_strain
-
-  !> eps_i, and E' = sigma_i/eps_i, with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 + (a -
-  !! c - b e) eps = e a.
-  pure subroutine find_paper_secant(self, k, e, strain, secant)
-    class(deviatoric_curve), intent(in) :: self
-    integer, intent(in) :: k
-    real(wp), intent(in) :: e
-    real(wp), intent(out) :: strain, secant
-    real(wp) :: a, b, c, half
-
-    b = self%total_slope(k)
-    a = self%stress(k) - b*self%total(k)
-    c = self%elastic%young*self%elastic%shift*self%stress(1)
-    half = 0.5_wp*(a - c - b*e)
-    ! The positive root, written so that nothing cancels for b = 0.
-    if (half > 0.0_wp) then
-      strain = e*a/(half + sqrt(half**2 + b*e*a))
-    else
-      strain = (sqrt(half**2 + b*e*a) - half)/b
-    end if
-    secant = a/strain + b
-  end subroutine find_paper_secant
 end module epcont_material_curve

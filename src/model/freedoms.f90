@@ -71,7 +71,7 @@ contains
     integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
     type(findings), intent(inout) :: found   !! what is wrong with it is added
 
-    if (model%held(c, model%leader(c, node)) .or. model%leader(c, node) /= node) &
+    if (model%is_held(c, node) .or. model%leader(c, node) /= node) &
       call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)// &
                            ' is held by a support or follows an RBE2', 'a freedom that is free to move')
     model%reference(c, node) = .true.

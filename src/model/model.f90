@@ -76,6 +76,7 @@ module epcont_model_model
     procedure :: depth
     procedure :: is_ring
     procedure :: has_rings
+    procedure :: is_held
     procedure :: is_tied
     procedure :: is_rigid
     procedure :: can_yield
@@ -211,6 +212,14 @@ contains
       flat = flat .or. self%curve(s)%stress(n) <= self%curve(s)%stress(n - 1)
     end do
   end function has_flat_curve
+
+  !> Does a support hold a node along a component, itself or what it is tied to?
+  elemental logical function is_held(self, component, node)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: component, node   !! 1: x, 2: y
+
+    is_held = self%held(component, self%leader(component, node))
+  end function is_held
 
   !> How far displacements open the gap of a pair.
   pure function opening(self, pair, displacement)

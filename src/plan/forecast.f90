@@ -47,22 +47,22 @@ contains
     real(wp), intent(in) :: limit         !! [GB]
     type(error_type), allocatable, intent(out) :: error   !! not enough of it
 
-    if (.not. real(bytes, wp)/giga <= limit) then
+    if (.not. bytes/giga <= limit) then
       call raise(error, status_usage, &
-                 'the scene needs about '//gigabytes(real(bytes, wp))//' of memory, and --memory allows '// &
-                 gigabytes(giga*limit))
+                 'the scene needs about '//gigabytes(bytes/giga)//' of memory, and --memory allows '// &
+                 gigabytes(limit))
     else if (.not. has_memory(most_memory(bytes))) then
-      call raise(error, status_usage, 'the scene needs up to '//gigabytes(real(most_memory(bytes), wp))// &
+      call raise(error, status_usage, 'the scene needs up to '//gigabytes(most_memory(bytes)/giga)// &
                  ' of memory, and the system does not give it (ulimit -v)')
     end if
 
   contains
 
-    pure function gigabytes(bytes) result(text)
-      real(wp), intent(in) :: bytes
+    pure function gigabytes(number) result(text)
+      real(wp), intent(in) :: number
       character(len=:), allocatable :: text
 
-      text = short_real(bytes/giga)//' GB'
+      text = short_real(number)//' GB'
     end function gigabytes
   end subroutine check_memory
 

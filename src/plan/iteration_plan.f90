@@ -66,9 +66,7 @@ contains
       plan%rule_chosen_here = asked%rule == rule_auto
       plan%by_blocks = asked%rule == rule_block .or. (plan%rule_chosen_here .and. model%pairs >= many_pairs)
       plan%from_first_pivot = asked%original
-      do e = 1, model%elements
-        plan%yields = plan%yields .or. model%can_yield(e)
-      end do
+      plan%yields = any([(model%can_yield(e), e=1, model%elements)])
       plan%precision = plan_precision(asked, plan%yields)
       plan%rounding_error = largest_error
       if (asked%accuracy > 0.0_wp) plan%rounding_error = min(largest_error, part_of_accuracy*asked%accuracy)

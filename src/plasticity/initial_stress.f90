@@ -17,19 +17,16 @@ module epcont_plasticity_initial_stress
 contains
 
   !> Initial stress: that of the curve less the elastic one.
-  pure subroutine linearise(self, about, linear)
+  pure subroutine linearise(self, p, about, linear)
     class(initial_stress_method), intent(inout) :: self
+    integer, intent(in) :: p                         !! the point
     type(scene_state), intent(in) :: about           !! its strain, and its points
     type(linear_problem), intent(inout) :: linear    !! its law is set
-    integer :: p
 
-    do p = 1, size(about%point)
-      if (.not. linear%materials%can_yield(p)) cycle
-      associate (law => linear%law, state => about%point(p))
-        law%initial_stress(:, p) = 0.0_wp
-        if (state%yielded) law%initial_stress(:, p) = &
-          state%stress - matmul(law%matrix(:, :, law%matrix_of(p)), about%strain(:, p))
-      end associate
-    end do
+    associate (law => linear%law, state => about%point(p))
+      law%initial_stress(:, p) = 0.0_wp
+      if (state%yielded) law%initial_stress(:, p) = &
+        state%stress - matmul(law%matrix(:, :, law%matrix_of(p)), about%strain(:, p))
+    end associate
   end subroutine linearise
 end module epcont_plasticity_initial_stress

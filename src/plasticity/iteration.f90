@@ -182,11 +182,14 @@ contains
       class(secant_method), intent(inout) :: method
       integer, intent(out) :: failed_body
       logical :: may_stay, possible
+      integer :: p
 
       failed_body = 0
       method%blend = 0.0_wp
       do
-        if (linear%materials%yields) call method%linearise(about, linear)
+        do p = 1, scene%model%points
+          if (linear%materials%can_yield(p)) call method%linearise(p, about, linear)
+        end do
         call watch%lap(stage_yielding)
         may_stay = plan%method == method_inistr .or. elastic .and. yielded == 0
         if (failed_body == 0 .and. stiff .and. may_stay) return

@@ -43,28 +43,25 @@ contains
     self%takes_full_step = .true.
   end subroutine restart
 
-  !> Tangents: stress(strain) + D (d strain), D = D_t + blend (D_secant - D_t): a flat curve makes D_t
+  !> Tangent: stress(strain) + D (d strain), D = D_t + blend (D_secant - D_t): a flat curve makes D_t
   !! semidefinite.
-  pure subroutine linearise(self, about, linear)
+  pure subroutine linearise(self, p, about, linear)
     class(newton_method), intent(inout) :: self
+    integer, intent(in) :: p                         !! the point
     type(scene_state), intent(in) :: about           !! its strain, and its points
     type(linear_problem), intent(inout) :: linear    !! its law is set
     real(wp) :: matrix(components, components)
-    integer :: p
 
-    do p = 1, size(about%point)
-      associate (material => linear%materials%section(linear%materials%of_point(p))%law, &
-                 strain => about%strain(:, p), state => about%point(p))
-        if (.not. linear%materials%can_yield(p)) cycle
-        linear%law%initial_stress(:, p) = 0.0_wp
-        matrix = material%secant_matrix(state)
-        if (state%yielded) then
-          matrix = self%blend*matrix + (1.0_wp - self%blend)*material%tangent_matrix(strain, state)
-          linear%law%initial_stress(:, p) = state%stress - matmul(matrix, strain)
-        end if
-        call linear%law%set_matrix(p, matrix)
-      end associate
-    end do
+    associate (material => linear%materials%section(linear%materials%of_point(p))%law, &
+               strain => about%strain(:, p), state => about%point(p))
+      linear%law%initial_stress(:, p) = 0.0_wp
+      matrix = material%secant_matrix(state)
+      if (state%yielded) then
+        matrix = self%blend*matrix + (1.0_wp - self%blend)*material%tangent_matrix(strain, state)
+        linear%law%initial_stress(:, p) = state%stress - matmul(matrix, strain)
+      end if
+      call linear%law%set_matrix(p, matrix)
+    end associate
   end subroutine linearise
 
   !> The next of `blends`.

@@ -31,20 +31,16 @@ contains
     if (allocated(self%mixer)) self%mixer = anderson_mixer()
   end subroutine restart
 
-  !> The law about a state, for the points that can yield; that of the others stays as it is. Secant matrices
-  !! (2-8).
-  pure subroutine linearise(self, about, linear)
+  !> The law about a state, at a point that can yield. Secant matrix (2-8).
+  pure subroutine linearise(self, p, about, linear)
     class(secant_method), intent(inout) :: self
+    integer, intent(in) :: p                         !! the point
     type(scene_state), intent(in) :: about           !! its strain, and its points
     type(linear_problem), intent(inout) :: linear    !! its law is set
-    integer :: p
 
-    do p = 1, size(about%point)
-      if (.not. linear%materials%can_yield(p)) cycle
-      associate (material => linear%materials%section(linear%materials%of_point(p))%law)
-        call linear%law%set_matrix(p, material%secant_matrix(about%point(p)))
-      end associate
-    end do
+    associate (material => linear%materials%section(linear%materials%of_point(p))%law)
+      call linear%law%set_matrix(p, material%secant_matrix(about%point(p)))
+    end associate
   end subroutine linearise
 
   !> Make the next law a stiffer one, where a stiffness made of the last could not be factored. Most methods

@@ -51,7 +51,7 @@ contains
 
     if (allocated(run%answer%against_double)) then
       call conclude(status_usage, memory, 'factors in single precision ('// &
-                    trim(precision_name(run%answer%asked_precision))// &
+                    trim(precision_name(run%iteration%precision))// &
                     ') give no answer to be trusted, and in double '//run%answer%against_double)
     else if (run%answer%lacks_memory) then
       call conclude(status_usage, memory, &

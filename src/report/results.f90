@@ -13,7 +13,7 @@ module epcont_report_results
   use epcont_report_echo, only: list_cards
   use epcont_report_file, only: new_text_file, remove_file
   use epcont_report_names, only: centre_name, joined, point_name, when
-  use epcont_report_outcome, only: most_pairs, poisson_text, remark_lines
+  use epcont_report_outcome, only: limit_of_pressure, most_pairs, poisson_text, remark_lines, unbounded
   use epcont_report_plan_text, only: plan_text
   use epcont_report_run, only: run_results
   use epcont_report_scene_text, only: deeper
@@ -22,7 +22,7 @@ module epcont_report_results
   use epcont_report_vtk, only: write_vtk
   implicit none
   private
-  public :: write_results, remove_results, result_file
+  public :: write_results, remove_results
 
   !> A file of results: what stands behind the name of the deck, and what it holds.
   type :: result_file
@@ -113,7 +113,7 @@ contains
         call wrap('  *NOT VALID*  '//run%outcome%word//': '//run%outcome%sentence)
       end if
       if (run%outcome%has_answer) then
-        if (any([(run%model%can_yield(k), k=1, run%model%elements)])) call list_iterations()
+        if (run%iteration%yields) call list_iterations()
         if (run%model%pairs > 0) call list_contact()
         if (nodes) call put_table(run, 'nodes', listing)
         if (elements) call put_table(run, 'elements', listing)
@@ -219,8 +219,8 @@ contains
     subroutine list_iterations()
       call put_table(run, 'history', listing)
       call listing%line('')
-      if (run%answer%load_steps > run%answer%asked_load_steps) &
-        call say('in '//plural(run%answer%asked_load_steps, 'load step')// &
+      if (run%answer%load_steps > run%iteration%load_steps) &
+        call say('in '//plural(run%iteration%load_steps, 'load step')// &
                  ' no answer was found; tried again in '//text_of(run%answer%load_steps)//' (AUTO)')
       if (any(run%answer%history%by_tangent)) call say( &
         'the last step is one by the tangent: its change is what the others have left')
@@ -312,10 +312,10 @@ contains
       call list_figures(['iteration_error_', 'condition       '])
       if (in_single) call list_figure('error that single precision leaves', &
                                       short_real(run%answer%rounding_error), '')
-      if (run%answer%precision /= run%answer%asked_precision) call say( &
+      if (run%answer%precision /= run%iteration%precision) call say( &
         '  (factors in double: in single precision '// &
-        when(run%answer%asked_precision == precision_single, 'they left an error of more than '// &
-             short_real(run%answer%largest_rounding_error)//', or no answer)', &
+        when(run%iteration%precision == precision_single, 'they left an error of more than '// &
+             short_real(run%iteration%rounding_error)//', or no answer)', &
              'there was no answer that refinement could reach)'))
       if (.not. in_single) call list_figure('digits that rounding leaves, at least', &
                                             text_of(max(0, floor(-log10(run%answer%rounding())))), '')
@@ -372,7 +372,7 @@ contains
       real(wp) :: left
 
       call list_figure('wanted error of contact pressures', short_real(run%model%controls%accuracy), '')
-      if (run%accuracy%pressure_unbounded) then
+      if (limit_of_pressure(run) == unbounded) then
         call say('  not to be had: the largest pressure is unbounded: it grows with every finer mesh')
       else if (run%accuracy%max_pressure < 0.0_wp .or. .not. any(run%answer%contact%force > 0.0_wp)) then
         call say('  (of the mesh''s error nothing is known: no pressure, or too few pairs in contact)')

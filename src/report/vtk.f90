@@ -136,16 +136,13 @@ contains
 
       call new_text_file(stem//suffix, file, error)
       if (allocated(error)) return
-      call file%line('<?xml version="1.0"?>')
-      call file%line('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
+      call file%line('<?xml version="1.0"?>'//newline// &
+                     '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
                      when(transfer(1, 0_int8) == 1_int8, 'LittleEndian', 'BigEndian')// &
-                     '" header_type="UInt64">')
-      call file%line('<UnstructuredGrid>'//newline//'<FieldData>')
+                     '" header_type="UInt64">'//newline//'<UnstructuredGrid>'//newline//'<FieldData>')
       call put_bytes('Int32', 'exit_status', ' NumberOfTuples="1"', transfer([run%outcome%status], [0_int8]))
-      call file%line('</FieldData>')
-      call file%line('<Piece NumberOfPoints="'//text_of(size(x, 2))//'" NumberOfCells="'// &
-                     text_of(size(cells%kind))//'">')
-      call file%line('<Points>')
+      call file%line('</FieldData>'//newline//'<Piece NumberOfPoints="'//text_of(size(x, 2))// &
+                     '" NumberOfCells="'//text_of(size(cells%kind))//'">'//newline//'<Points>')
       call put('Points', x)
       call file%line('</Points>'//newline//'<Cells>')
       call put('connectivity', cells%point - 1)
@@ -157,8 +154,8 @@ contains
     !> Close the file and give it its name.
     subroutine end_grid()
 
-      call file%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>')
-      call file%line('</VTKFile>')
+      call file%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>'//newline// &
+                     '</VTKFile>')
       call file%finish(error)
     end subroutine end_grid
 

@@ -36,15 +36,12 @@ module epcont_result_answer
     real(wp) :: shortfall = 0.0_wp                   !! of stresses from the curve by (2-4), at most, relative
     type(locking_type) :: locking                    !! of three-node elements
     type(gradient_type) :: gradient                  !! of displacements that are not small
-    integer :: precision = precision_double          !! of the factors
-    integer :: asked_precision = precision_double    !! that did not do, where it is another one
-    real(wp) :: largest_rounding_error = 0.0_wp      !! that single precision may leave
+    integer :: precision = precision_double          !! of the factors, where that of the plan did not do
     !> Of displacements and forces by refinement's last step, relative
     real(wp) :: last_correction = huge(1.0_wp)
     !> Single precision has failed, and this stands against double
     character(len=:), allocatable :: against_double
-    integer :: load_steps = 1                        !! taken
-    integer :: asked_load_steps = 1                  !! that did not lead to an answer, where they are fewer
+    integer :: load_steps = 1                        !! taken, where those of the plan led to no answer
   contains
     procedure :: largest_pressure
     procedure :: lost

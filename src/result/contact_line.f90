@@ -65,40 +65,29 @@ contains
       places = new_partition(n)
     end associate
     ! A node may have a pair in each of several contacts: neighbours are of one.
-    at = pairs_at_nodes(1, model%single_pairs())
-    call find_edges(model, 1, model%single_pairs(), at, line)
+    call find_edges(model, 1, model%single_pairs(), line, at)
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
-        at = pairs_at_nodes(contact%first, contact%first_of_master - 1)
-        call find_edges(model, contact%first, contact%first_of_master - 1, at, line)
+        call find_edges(model, contact%first, contact%first_of_master - 1, line, at)
         call insert_masters(model, contact, at, line, places)
       end associate
     end do
     call places%numbers(place, count)
     line%at_place = new_incidence(reshape(place, [1, model%pairs]), count)
-
-  contains
-
-    !> Of a range of pairs those at each node.
-    pure function pairs_at_nodes(first, last) result(at)
-      integer, intent(in) :: first, last
-      type(incidence) :: at
-
-      at = new_incidence(reshape(line%node(first:last), [1, last - first + 1]), model%nodes)
-      at%group = first - 1 + at%group
-    end function pairs_at_nodes
   end function find_contact_line
 
   !> Edges at a range of pairs, and the neighbours among them.
-  pure subroutine find_edges(model, first, last, at, line)
+  pure subroutine find_edges(model, first, last, line, at)
     type(model_type), intent(in) :: model
     integer, intent(in) :: first, last
-    type(incidence), intent(in) :: at   !! these pairs at each node
     type(contact_line), intent(inout) :: line
+    type(incidence), intent(out) :: at   !! these pairs at each node
     integer, allocatable :: sides(:, :)
     real(wp) :: longest, share(3)
     integer :: beside, end, i, k, pair, own
 
+    at = new_incidence(reshape(line%node(first:last), [1, last - first + 1]), model%nodes)
+    at%group = first - 1 + at%group
     do pair = first, last
       longest = 0.0_wp
       sides = outer_sides(model, line%node(pair))
@@ -140,15 +129,15 @@ contains
 
       is_on_symmetry = .false.
       along = merge(1, 2, abs(model%normal(2, pair)) > abs(model%normal(1, pair)))
-      if (abs(model%normal(3 - along, pair)) <= along_line .or. .not. is_held(along, node)) return
+      if (abs(model%normal(3 - along, pair)) <= along_line .or. .not. model%is_held(along, node)) return
       ends = .false.
       guided = is_guided(along, node)
       rigid = .true.
       do i = model%row_start(pair), model%row_start(pair + 1) - 1
         associate (other => model%row_node(i))
           if (other == node) cycle
-          rigid = rigid .and. is_held(along, other)
-          if (.not. is_held(along, other)) cycle
+          rigid = rigid .and. model%is_held(along, other)
+          if (.not. model%is_held(along, other)) cycle
           if (abs(model%x(along, other) - model%x(along, node)) > beside_line*side) cycle
           ends = .true.
           guided = guided .or. is_guided(along, other)
@@ -157,17 +146,11 @@ contains
       is_on_symmetry = guided .and. (ends .or. rigid)
     end function is_on_symmetry
 
-    pure logical function is_held(along, node)
-      integer, intent(in) :: along, node
-
-      is_held = model%held(along, model%leader(along, node))
-    end function is_held
-
     !> Is a node held by itself along the boundary, and free across it?
     pure logical function is_guided(along, node)
       integer, intent(in) :: along, node
 
-      is_guided = model%held(along, node) .and. .not. is_held(3 - along, node)
+      is_guided = model%held(along, node) .and. .not. model%is_held(3 - along, node)
     end function is_guided
   end subroutine find_edges
 

@@ -8,7 +8,7 @@ module epcont_result_displacement_gradient
   public :: gradient_type, find_gradients
 
   !> Norm of the displacement gradient that is no longer small: a turn by 4 degrees, a stretch by 10 %.
-  real(wp), parameter, public :: large_gradient = 0.1_wp
+  real(wp), parameter :: large_gradient = 0.1_wp
   !> Part of the volume that may be beyond it: at a corner, or at the end of a contact, some element always
   !! is.
   real(wp), parameter :: negligible_part = 0.01_wp

@@ -24,8 +24,9 @@ contains
     type(point_state) :: point
     type(deviatoric_curve) :: curve   ! without (2-4)
     real(wp) :: mises(model%points), nothing(model%elements)
+    real(wp), allocatable :: force(:, :)   ! that the elements need at the nodes [force] [2, nodes]
     real(wp) :: modulus, share, whole
-    integer :: e, p
+    integer :: c, e, node, p
 
     nothing = 0.0_wp
     answer%stress = spread(nothing, 1, components)
@@ -67,26 +68,16 @@ contains
         end do
       end associate
     end do
-    answer%reaction = reactions(linear%operator%nodal_forces(model, answer%point_stress))
-
-  contains
-
-    !> What the supports must hold [force] [2, nodes].
-    pure function reactions(force) result(reaction)
-      real(wp), intent(in) :: force(:, :)     !! that the elements need at the nodes [2, nodes]
-      real(wp) :: reaction(directions, model%nodes)
-      integer :: c, node
-
-      reaction = 0.0_wp
-      do node = 1, model%nodes
-        do c = 1, directions
-          associate (leader => model%leader(c, node))
-            if (model%held(c, leader)) &
-              reaction(c, leader) = reaction(c, leader) + force(c, node) - applied(c, node)
-          end associate
-        end do
+    force = linear%operator%nodal_forces(model, answer%point_stress)
+    answer%reaction = spread([0.0_wp, 0.0_wp], 2, model%nodes)
+    do node = 1, model%nodes
+      do c = 1, directions
+        associate (leader => model%leader(c, node))
+          if (model%held(c, leader)) &
+            answer%reaction(c, leader) = answer%reaction(c, leader) + force(c, node) - applied(c, node)
+        end associate
       end do
-    end function reactions
+    end do
   end subroutine recover_stresses
 
   !> Where the largest of some stresses is; of equal ones, but for rounding, the first.
