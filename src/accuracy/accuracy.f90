@@ -206,10 +206,11 @@ contains
         given(:, answer%bodies%body) = column == 0
         if (scene%model%has_rings()) given(1, :) = .false.
         call find_turned(scene%model, line, answer, given, turned, turned_on)
+        where (column == 0) accuracy%body_force = 0.0_wp
+        if (.not. loads%basis%sound) return
         accuracy%total_force = with_waves(off, 1) + turned
         do i = 1, size(answer%bodies)
           do c = 1, 2
-            if (column(c, i) >= 0) accuracy%body_force(c, i) = 0.0_wp
             if (column(c, i) > 0) &
               accuracy%body_force(c, i) = with_waves(off, column(c, i)) + turned_on(c, answer%bodies(i)%body)
           end do

@@ -68,6 +68,18 @@ class Twins(unittest.TestCase):
                             with self.subTest(family=family, number=number, finer=bool(fine), twin=twin.name, once=why):
                                 self.near(base[key], other[key], key)
 
+    def test_motion_that_nothing_drives(self):
+        """A press fit that is free along its axis has the errors of one that is held there: they were 0.0."""
+        found = []
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            free = (pathlib.Path(__file__).resolve().parents[1] / "found/free_along_its_axis.dat").read_text(encoding="ascii")
+            for name, text in (("free", free), ("held", free.replace("SUPORT,191,2", "SPC1,1,2,207"))):
+                (folder / f"{name}.dat").write_text(text)
+                subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", f"{name}.dat"], cwd=folder, check=True, stderr=subprocess.DEVNULL)
+                found.append(float(summary(folder / f"{name}.summary.csv")["mesh_error_total_contact_force"]))
+        self.assertLess(abs(found[0] - found[1]), 0.2 * found[1], found)
+
 
 if __name__ == "__main__":
     unittest.main()
