@@ -133,22 +133,23 @@ contains
   !! not above what rounding leaves of the square of its extent, and of its coordinates.
   pure integer function turn(self, x)
     class(element_kind), intent(in) :: self
-    real(wp), intent(in) :: x(directions, most_nodes)   !! of its nodes; behind the last the first [length]
-    real(wp) :: area(4, 4), dx(most_nodes), dy(most_nodes), extent
+    real(wp), intent(in) :: x(directions, most_nodes)   !! of its nodes [length]
+    real(wp) :: area(4, 4), extent, farthest, to(directions, most_nodes)
     integer :: a, b
 
-    dx = x(1, :) - x(1, 1)
-    dy = x(2, :) - x(2, 1)
     area = 0.0_wp
-    do b = 3, self%nodes
+    extent = 0.0_wp
+    farthest = maxval(abs(x(:, 1)))
+    do b = 2, self%nodes
+      to(:, b) = x(:, b) - x(:, 1)
+      extent = max(extent, abs(to(1, b)), abs(to(2, b)))
+      farthest = max(farthest, abs(x(1, b)), abs(x(2, b)))
       do a = 2, b - 1
-        area = area + self%spanned(:, :, a, b)*(dx(a)*dy(b) - dy(a)*dx(b))
+        area = area + self%spanned(:, :, a, b)*(to(1, a)*to(2, b) - to(2, a)*to(1, b))
       end do
     end do
     turn = merge(1, -1, sum(area) > 0.0_wp)
-    extent = maxval(abs([dx, dy]))
-    if (.not. is_above(turn*area, extent*max(rounded_off*extent, cancelled*maxval(abs(x))), &
-                       most_halvings)) turn = 0
+    if (.not. is_above(turn*area, extent*max(rounded_off*extent, cancelled*farthest), most_halvings)) turn = 0
   end function turn
 
   !> Is a polynomial above a bound on the unit square? Its values lie between its Bernstein coefficients, and
