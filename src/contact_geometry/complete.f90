@@ -38,7 +38,7 @@ contains
     do s = 1, size(model%curve)   ! the elastic part is that of E
       associate (curve => model%curve(s))
         if (.not. allocated(curve%strain)) cycle
-        if (curve%strain(3) /= 2.0_wp*curve%strain(2)) curve%ends = .true.   ! none of bilinear_curve, any more
+        if (curve%strain(3) /= 2.0_wp*curve%strain(2)) curve%ends = .true.   ! not that of bilinear_curve
         curve%strain(2) = curve%stress(2)/model%young(s)
       end associate
     end do

@@ -133,26 +133,25 @@ contains
     scene%initial_gap = gap
   end subroutine set_pairs
 
-  !> The same scene with all its arrays counted from 1, which those of a caller need not be, and of lines nothing
-  !! but what is given.
+  !> The same scene with all its arrays counted from 1, which those of a caller need not be, and of lines
+  !! nothing but what is given.
   function counted_from_one(given) result(scene)
     type(scene_type), intent(in) :: given   !! its arrays are allocated, and of the shapes that they must have
     type(scene_type) :: scene
 
-    scene = new_scene(given%x)
-    scene%held(:, :) = given%held
-    scene%prescribed(:, :) = given%prescribed
-    scene%leader(:, :) = given%leader
-    scene%reference(:, :) = given%reference
-    scene%load(:, :) = given%load
+    scene = new_scene(given%x)   ! of arrays counted from 1, which stay so where the shape is the same
+    scene%held = given%held
+    scene%prescribed = given%prescribed
+    scene%leader = given%leader
+    scene%reference = given%reference
+    scene%load = given%load
     call set_sections(scene, given%young, given%poisson, given%kinematics)
-    scene%thickness(:) = given%thickness
+    scene%thickness = given%thickness
     call set_pairs(scene, given%pair_node, given%normal, given%initial_gap)
-    deallocate (scene%block, scene%pressure, scene%line, scene%couple)
+    scene%pressure = given%pressure(:)
+    scene%couple = given%couple(:)
+    deallocate (scene%block, scene%line)
     allocate (scene%block(size(given%block)), scene%line(size(given%line)))
-    allocate (scene%pressure(size(given%pressure)), scene%couple(size(given%couple)))
-    scene%pressure(:) = given%pressure
-    scene%couple(:) = given%couple
     scene%controls = given%controls
     call copy_lists(given%block, given%curve, given%line)
 

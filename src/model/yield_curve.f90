@@ -20,8 +20,8 @@ module epcont_model_yield_curve
 
 contains
 
-  !> The curve of a yield stress and a slope over plastic strain: E H/(E + H) over total strain. It has strains
-  !! alone, and so is refused, where there is no such curve.
+  !> The curve of a yield stress and a slope over plastic strain: E H/(E + H) over total strain. Where
+  !! there is no such curve, it has strains alone, and so is refused.
   pure type(uniaxial_curve) function bilinear_curve(young, yield_stress, hardening) result(curve)
     real(wp), intent(in) :: young          !! E [stress]
     real(wp), intent(in) :: yield_stress   !! [stress]
