@@ -42,9 +42,7 @@ contains
         curve%strain(2) = curve%stress(2)/model%young(s)
       end associate
     end do
-    do i = 1, size(model%normal, 2)
-      if (any(model%normal(:, i) /= 0.0_wp)) model%normal(:, i) = model%normal(:, i)/norm2(model%normal(:, i))
-    end do
+    model%normal = model%normal/spread(max(norm2(model%normal, dim=1), 0.5_wp), 1, directions)   ! 0 stays 0
     call number_parts(model)
     call complete_elements(model, found)
     if (found%errors == 0) then
