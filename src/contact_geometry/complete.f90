@@ -2,6 +2,7 @@
 !> can be solved. From arrays (epcont_model_arrays) `complete_model` checks all and finds the rest; they stay
 !> as they are. Nodes, elements and pairs are known by their columns.
 module epcont_contact_geometry_complete
+  use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
@@ -24,19 +25,24 @@ module epcont_contact_geometry_complete
 contains
 
   !> A model made from arrays, checked and made complete; it serves only without errors.
-  subroutine complete_model(scene, model, found)
-    type(scene_type), intent(in) :: scene      !! what is given
+  subroutine complete_model(given, model, found)
+    type(scene_type), intent(in) :: given      !! what is given
     type(model_type), intent(out) :: model     !! what comes of it
     type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
+    type(scene_type) :: scene
     integer :: behind, i, s
 
-    call check_given(scene, found)
+    call check_given(given, scene, found)
     if (found%errors > 0) return
     model%scene_type = scene
     do s = 1, size(model%curve)   ! the elastic part is that of E
-      if (allocated(model%curve(s)%strain)) &
-        model%curve(s)%strain(2) = model%curve(s)%stress(2)/model%young(s)
+      associate (curve => model%curve(s))
+        if (.not. allocated(curve%strain)) cycle
+        if (curve%strain(3) /= 2.0_wp*curve%strain(2)) curve%ends = .true.   ! not that of bilinear_curve
+        curve%strain(2) = curve%stress(2)/model%young(s)
+      end associate
     end do
+    model%normal = model%normal/spread(max(norm2(model%normal, dim=1), 0.5_wp), 1, directions)   ! 0 stays 0
     call number_parts(model)
     call complete_elements(model, found)
     if (found%errors == 0) then

@@ -6,7 +6,7 @@ module epcont_model_arrays
   use epcont_model_controls, only: controls_type, uniaxial_curve
   implicit none
   private
-  public :: scene_type, new_scene, set_sections, add_elements, set_pairs
+  public :: scene_type, new_scene, set_sections, add_elements, set_pairs, counted_from_one
   public :: element_block, line_couple, named_line, side_pressure
 
   !> Elements of one kind.
@@ -132,4 +132,51 @@ contains
     scene%normal = normal
     scene%initial_gap = gap
   end subroutine set_pairs
+
+  !> The same scene with all its arrays counted from 1, which those of a caller need not be, and of lines
+  !! nothing but what is given.
+  function counted_from_one(given) result(scene)
+    type(scene_type), intent(in) :: given   !! its arrays are allocated, and of the shapes that they must have
+    type(scene_type) :: scene
+
+    scene = new_scene(given%x)   ! of arrays counted from 1, which stay so where the shape is the same
+    scene%held = given%held
+    scene%prescribed = given%prescribed
+    scene%leader = given%leader
+    scene%reference = given%reference
+    scene%load = given%load
+    call set_sections(scene, given%young, given%poisson, given%kinematics)
+    scene%thickness = given%thickness
+    call set_pairs(scene, given%pair_node, given%normal, given%initial_gap)
+    scene%pressure = given%pressure(:)
+    scene%couple = given%couple(:)
+    deallocate (scene%block, scene%line)
+    allocate (scene%block(size(given%block)), scene%line(size(given%line)))
+    scene%controls = given%controls
+    call copy_lists(given%block, given%curve, given%line)
+
+  contains
+
+    !> Arrays within arrays, where they are allocated.
+    subroutine copy_lists(block, curve, line)
+      type(element_block), intent(in) :: block(:)
+      type(uniaxial_curve), intent(in) :: curve(:)
+      type(named_line), intent(in) :: line(:)
+      integer :: i
+
+      do i = 1, size(block)
+        scene%block(i)%name = block(i)%name
+        if (allocated(block(i)%node)) scene%block(i)%node = block(i)%node(:, :)
+        if (allocated(block(i)%section)) scene%block(i)%section = block(i)%section(:)
+      end do
+      do i = 1, size(curve)
+        if (allocated(curve(i)%strain)) scene%curve(i)%strain = curve(i)%strain(:)
+        if (allocated(curve(i)%stress)) scene%curve(i)%stress = curve(i)%stress(:)
+        scene%curve(i)%ends = curve(i)%ends
+      end do
+      do i = 1, size(line)
+        if (allocated(line(i)%node)) scene%line(i)%node = line(i)%node(:)
+      end do
+    end subroutine copy_lists
+  end function counted_from_one
 end module epcont_model_arrays

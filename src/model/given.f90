@@ -7,7 +7,7 @@ module epcont_model_given
   use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, directions
-  use epcont_model_arrays, only: element_block, scene_type
+  use epcont_model_arrays, only: counted_from_one, element_block, scene_type
   use epcont_model_finding, only: findings, of_scene
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: curve_fault, fault_of_curve
@@ -19,8 +19,9 @@ contains
 
   !> Arrays that are there and go together, numbers in their ranges; of each array the first fault. What a
   !! deck's reader has looked at by itself is not looked at again.
-  subroutine check_given(scene, found)
-    type(scene_type), intent(in) :: scene      !! that is given
+  subroutine check_given(given, scene, found)
+    type(scene_type), intent(in) :: given      !! arrays, however they are counted
+    type(scene_type), intent(out) :: scene     !! they, counted from 1
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     character(len=:), allocatable :: a_node, above_zero, any_size
     integer :: elements, i, nodes
@@ -29,6 +30,7 @@ contains
     above_zero = short_real(least_divisor)//' to '//short_real(farthest)
     call check_shapes()
     if (found%errors > 0) return
+    scene = counted_from_one(given)
     nodes = size(scene%x, 2)
     a_node = '1 to '//text_of(nodes)
     call need(scene%young >= least_divisor .and. scene%young <= farthest, 'young(#) is no stiffness', &
@@ -87,21 +89,21 @@ contains
       logical :: fits(size(name))
       integer :: k, of_nodes(2), of_pairs(2)
 
-      fits = [allocated(scene%x), allocated(scene%held), allocated(scene%prescribed), &
-              allocated(scene%reference), allocated(scene%leader), allocated(scene%load), &
-              allocated(scene%young), allocated(scene%poisson), allocated(scene%kinematics), &
-              allocated(scene%thickness), allocated(scene%curve), allocated(scene%pair_node), &
-              allocated(scene%normal), allocated(scene%initial_gap), allocated(scene%block), &
-              allocated(scene%pressure), allocated(scene%line), allocated(scene%couple)]
+      fits = [allocated(given%x), allocated(given%held), allocated(given%prescribed), &
+              allocated(given%reference), allocated(given%leader), allocated(given%load), &
+              allocated(given%young), allocated(given%poisson), allocated(given%kinematics), &
+              allocated(given%thickness), allocated(given%curve), allocated(given%pair_node), &
+              allocated(given%normal), allocated(given%initial_gap), allocated(given%block), &
+              allocated(given%pressure), allocated(given%line), allocated(given%couple)]
       if (all(fits)) then
-        of_nodes = [directions, size(scene%x, 2)]
-        of_pairs = [2, size(scene%initial_gap)]
-        fits(:13) = [all(shape(scene%x) == of_nodes), all(shape(scene%held) == of_nodes), &
-                     all(shape(scene%prescribed) == of_nodes), all(shape(scene%reference) == of_nodes), &
-                     all(shape(scene%leader) == of_nodes), all(shape(scene%load) == of_nodes), .true., &
-                     [size(scene%poisson), size(scene%kinematics), size(scene%thickness), &
-                      size(scene%curve)] == size(scene%young), &
-                     all(shape(scene%pair_node) == of_pairs), all(shape(scene%normal) == of_pairs)]
+        of_nodes = [directions, size(given%x, 2)]
+        of_pairs = [2, size(given%initial_gap)]
+        fits(:13) = [all(shape(given%x) == of_nodes), all(shape(given%held) == of_nodes), &
+                     all(shape(given%prescribed) == of_nodes), all(shape(given%reference) == of_nodes), &
+                     all(shape(given%leader) == of_nodes), all(shape(given%load) == of_nodes), .true., &
+                     [size(given%poisson), size(given%kinematics), size(given%thickness), &
+                      size(given%curve)] == size(given%young), &
+                     all(shape(given%pair_node) == of_pairs), all(shape(given%normal) == of_pairs)]
       end if
       do k = 1, size(name)
         call need(fits(k:k), trim(name(k))//' is not allocated, or of another shape', &

@@ -2,6 +2,8 @@
 module epcont_model_yield_curve
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
+  use epcont_base_tolerances, only: no_effect
+  use epcont_deck_entry, only: farthest, least_divisor
   use epcont_model_controls, only: uniaxial_curve
   implicit none
   private
@@ -18,13 +20,17 @@ module epcont_model_yield_curve
 
 contains
 
-  !> The curve of a yield stress and a slope over plastic strain: E H/(E + H) over total strain.
+  !> The curve of a yield stress and a slope over plastic strain: E H/(E + H) over total strain. Where
+  !! there is no such curve, it has strains alone, and so is refused.
   pure type(uniaxial_curve) function bilinear_curve(young, yield_stress, hardening) result(curve)
     real(wp), intent(in) :: young          !! E [stress]
     real(wp), intent(in) :: yield_stress   !! [stress]
     real(wp), intent(in) :: hardening      !! H [stress]
     real(wp) :: slope, yield_strain
 
+    allocate (curve%strain(0))
+    if (young < least_divisor .or. hardening <= -young .or. &
+        max(young, abs(yield_stress), hardening) > farthest) return
     slope = young*(hardening/(young + hardening))
     yield_strain = yield_stress/young
     curve%strain = [0.0_wp, yield_strain, 2.0_wp*yield_strain]
@@ -59,7 +65,7 @@ contains
           fault = curve_fault(k, 'the strain does not rise', 'more than '//short_real(before))
         else if (stress(k) < stress(k - 1)) then
           fault = curve_fault(k, 'the stress falls (softening)', 'at least '//short_real(stress(k - 1)))
-        else if (stress(k) - stress(k - 1) > young*(strain(k) - before)) then
+        else if (stress(k) - stress(k - 1) > young*(strain(k) - before)*(1.0_wp + no_effect)) then
           fault = curve_fault(k, 'steeper than the elastic line of the MAT1', 'a slope of at most E')
         end if
         if (fault%point > 0) then
