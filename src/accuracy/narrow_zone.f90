@@ -9,6 +9,7 @@ module epcont_accuracy_narrow_zone
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
+  use epcont_plan_rigid_parts, only: part_motions
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: resultants
   use epcont_result_contact_line, only: contact_line
@@ -111,7 +112,8 @@ contains
           associate (node => model%pair_node(i, k))
             do m = 1, motions%count
               if (motions%body(m) == model%body(node)) load(m, z) = load(m, z) + &
-                (2*i - 3)*sum(force(pairs))*aside*motions%coefficient(3, motions%parts%of_node(node), m)
+                (2*i - 3)*sum(force(pairs))*aside/motions%parts%extent(model%body(node)) &
+                *motions%coefficient(part_motions, motions%parts%of_node(node), m)
             end do
           end associate
         end do

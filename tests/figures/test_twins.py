@@ -40,6 +40,25 @@ def figures(folder, name):
             for key, values in found.items()}
 
 
+def beam_on_posts(unit):
+    """A deck in this unit of length, newtons; the posts are crowned."""
+    cards, elements = ["BEGIN BULK", "PARAM,PLANE,STRAIN", f"MAT1,1,{2e11 / unit**2:.9E},,0.3", f"PSHELL,1,1,{unit}"], 0
+    for first, left, columns, low, high in ((100, 0.0, 8, 1.0, 2.0), (200, 0.5, 2, 0.0, 1.0), (300, 6.5, 2, 0.0, 1.0)):
+        step = 8.0 / 8 if columns == 8 else 0.5
+        for j, y in enumerate((low, high)):
+            for i in range(columns + 1):
+                crown = 0.02 * (i != 1) * (j == 1) * (columns == 2)
+                cards.append(f"GRID,{first + 10 * j + i},,{unit * (left + step * i)},{unit * (y - crown)},0.0")
+        for i in range(columns):
+            elements += 1
+            cards.append(f"CQUAD4,{elements},1,{first + i},{first + i + 1},{first + 11 + i},{first + 10 + i}")
+    cards += ["SPC1,1,12,200,201,202,300,301,302", "SPC1,1,1,100", "SUPORT,100,2,108,2", "FORCE,1,113,0,1000.0,0.0,-1.0,0.0"]
+    for line, nodes in ((1, range(100, 109)), (2, range(210, 213)), (3, range(310, 313))):
+        nodes = [str(node) for node in nodes]
+        cards.append(f"BLSEG,{line}," + ",".join(nodes[:7]) + ("" if len(nodes) < 8 else "\n," + ",".join(nodes[7:])))
+    return "\n".join(cards + ["BCONP,1,2,1", "BCONP,2,3,1", "ENDDATA", ""])
+
+
 class Twins(unittest.TestCase):
 
     def near(self, one, other, of):
@@ -79,6 +98,18 @@ class Twins(unittest.TestCase):
                 subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", f"{name}.dat"], cwd=folder, check=True, stderr=subprocess.DEVNULL)
                 found.append(float(summary(folder / f"{name}.summary.csv")["mesh_error_total_contact_force"]))
         self.assertLess(abs(found[0] - found[1]), 0.2 * found[1], found)
+
+    def test_units_of_length(self):
+        """A beam on two posts, pressed beside its middle: what each post bears is off by as much in metres as in micrometres."""
+        found = []
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            for name, unit in (("m", 1.0), ("um", 1e6)):
+                (folder / f"{name}.dat").write_text(beam_on_posts(unit))
+                subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", f"{name}.dat"], cwd=folder, check=True, stderr=subprocess.DEVNULL)
+                found.append([float(row["mesh_error_y"]) for row in rows(folder / f"{name}.bodies.csv")])
+        self.assertGreater(found[0][1], 0.0)
+        self.near(found[0], found[1], "mesh_error_y")
 
 
 if __name__ == "__main__":
