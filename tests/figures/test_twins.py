@@ -40,6 +40,17 @@ def figures(folder, name):
             for key, values in found.items()}
 
 
+def solved(decks, read):
+    """Solve decks; what `read` takes from the results of each, by their folder and name."""
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        for k, text in enumerate(decks):
+            (folder / f"{k}.dat").write_text(text)
+        subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", *(f"{k}.dat" for k in range(len(decks)))], cwd=folder, check=True,
+                       stderr=subprocess.DEVNULL)
+        return [read(folder, str(k)) for k in range(len(decks))]
+
+
 def beam_on_posts(unit):
     """A deck in this unit of length, newtons; the posts are crowned."""
     cards, elements = ["BEGIN BULK", "PARAM,PLANE,STRAIN", f"MAT1,1,{2e11 / unit**2:.9E},,0.3", f"PSHELL,1,1,{unit}"], 0
@@ -72,42 +83,24 @@ class Twins(unittest.TestCase):
             scene, finer = Judge(None, "1", 0.0).scenes(family, number)
             twins = [twin for twin in twins_of(scene, random.Random(1))[0] if twin.name in ("mirrored", "moved")]
             twins += [Twin(f"renumbered {k}", mix=random.Random(k)) for k in range(4)]
-            with tempfile.TemporaryDirectory() as folder:
-                folder = pathlib.Path(folder)
-                for fine, one in enumerate((scene, finer)):
-                    for k, twin in enumerate([Twin("base")] + twins):
-                        (folder / f"{fine}{k}.dat").write_text(deck(one, twin)[0])
-                decks = sorted(path.name for path in folder.glob("*.dat"))
-                subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", *decks], cwd=folder, check=True, stderr=subprocess.DEVNULL)
-                for fine in range(2):
-                    base = figures(folder, f"{fine}0")
-                    for k, twin in enumerate(twins, 1):
-                        other = figures(folder, f"{fine}{k}")
-                        for key in base:
-                            with self.subTest(family=family, number=number, finer=bool(fine), twin=twin.name, once=why):
-                                self.near(base[key], other[key], key)
+            for fine, one in enumerate((scene, finer)):
+                base, *others = solved([deck(one, twin)[0] for twin in [Twin("base")] + twins], figures)
+                for twin, other in zip(twins, others):
+                    for key in base:
+                        with self.subTest(family=family, number=number, finer=bool(fine), twin=twin.name, once=why):
+                            self.near(base[key], other[key], key)
 
     def test_motion_that_nothing_drives(self):
         """A press fit that is free along its axis has the errors of one that is held there: they were 0.0."""
-        found = []
-        with tempfile.TemporaryDirectory() as folder:
-            folder = pathlib.Path(folder)
-            free = (pathlib.Path(__file__).resolve().parents[1] / "found/free_along_its_axis.dat").read_text(encoding="ascii")
-            for name, text in (("free", free), ("held", free.replace("SUPORT,191,2", "SPC1,1,2,207"))):
-                (folder / f"{name}.dat").write_text(text)
-                subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", f"{name}.dat"], cwd=folder, check=True, stderr=subprocess.DEVNULL)
-                found.append(float(summary(folder / f"{name}.summary.csv")["mesh_error_total_contact_force"]))
+        free = (pathlib.Path(__file__).resolve().parents[1] / "found/free_along_its_axis.dat").read_text(encoding="ascii")
+        found = solved([free, free.replace("SUPORT,191,2", "SPC1,1,2,207")],
+                       lambda folder, name: float(summary(folder / f"{name}.summary.csv")["mesh_error_total_contact_force"]))
         self.assertLess(abs(found[0] - found[1]), 0.2 * found[1], found)
 
     def test_units_of_length(self):
         """A beam on two posts, pressed beside its middle: what each post bears is off by as much in metres as in micrometres."""
-        found = []
-        with tempfile.TemporaryDirectory() as folder:
-            folder = pathlib.Path(folder)
-            for name, unit in (("m", 1.0), ("um", 1e6)):
-                (folder / f"{name}.dat").write_text(beam_on_posts(unit))
-                subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", f"{name}.dat"], cwd=folder, check=True, stderr=subprocess.DEVNULL)
-                found.append([float(row["mesh_error_y"]) for row in rows(folder / f"{name}.bodies.csv")])
+        found = solved([beam_on_posts(1.0), beam_on_posts(1e6)],
+                       lambda folder, name: [float(row["mesh_error_y"]) for row in rows(folder / f"{name}.bodies.csv")])
         self.assertGreater(found[0][1], 0.0)
         self.near(found[0], found[1], "mesh_error_y")
 
