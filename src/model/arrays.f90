@@ -108,13 +108,17 @@ contains
     integer, intent(in) :: node(:, :)
     integer, intent(in) :: section(:)          !! of each [elements]
     type(element_block), allocatable :: longer(:)
-    integer :: blocks
+    integer :: blocks, i
 
     if (size(section) == 0 .and. size(node, 2) == 0) return
     blocks = 0
     if (allocated(scene%block)) blocks = size(scene%block)
     allocate (longer(blocks + 1))
-    if (blocks > 0) longer(:blocks) = scene%block
+    do i = 1, blocks   ! the lists of blocks before are not copied for each that comes
+      longer(i)%name = scene%block(i)%name
+      call move_alloc(scene%block(i)%node, longer(i)%node)
+      call move_alloc(scene%block(i)%section, longer(i)%section)
+    end do
     longer(blocks + 1)%name = name
     longer(blocks + 1)%node = node
     longer(blocks + 1)%section = section
