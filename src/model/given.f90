@@ -24,6 +24,7 @@ contains
     type(scene_type), intent(out) :: scene     !! they, counted from 1
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     character(len=:), allocatable :: a_node, above_zero, any_size
+    type(element_kind), allocatable :: kinds(:)
     integer :: elements, i, nodes
 
     any_size = '0.0, or a size of '//short_real(least_cause)//' to '//short_real(farthest)
@@ -45,6 +46,7 @@ contains
       if (found%errors == 0) call check_curve()
     end do
     elements = 0
+    kinds = element_kinds()
     do i = 1, size(scene%block)
       if (found%errors == 0) call check_block('block('//text_of(i)//')%', scene%block(i))
     end do
@@ -135,11 +137,9 @@ contains
     subroutine check_block(name, block)
       character(len=*), intent(in) :: name
       type(element_block), intent(in) :: block
-      type(element_kind), allocatable :: kinds(:)
       integer :: row
       logical :: fits
 
-      kinds = element_kinds()
       row = kind_of(kinds, block%name)
       call need([row > 0], name//'name is '''//trim(block%name)//'''', &
                 'the card of a kind of elements: CTRIA3, say')
