@@ -257,6 +257,6 @@ contains
     if (at(1) < 3) then
       if (line%corner(at(1), at(2))) return
     end if
-    normal = line%outward(at(2), at(1))
+    normal = line%normal(:, at(1), at(2))
   end function normal_at
 end module epcont_accuracy_narrow_zone

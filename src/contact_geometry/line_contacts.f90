@@ -4,6 +4,7 @@ module epcont_contact_geometry_line_contacts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_text, only: text_of
+  use epcont_contact_geometry_balance, only: balance_pairs
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_contact_geometry_free_sides, only: find_outline
   use epcont_contact_geometry_line_pairs, only: add_pairs
@@ -61,7 +62,9 @@ contains
       call find_pairs()
       model%line_contact(c) = contact
     end do
-    if (found%errors == 0) call warn_of_both_ways(model, found)
+    if (found%errors > 0) return
+    call balance_pairs(model)
+    call warn_of_both_ways(model, found)
 
   contains
 

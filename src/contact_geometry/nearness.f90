@@ -6,6 +6,7 @@
 module epcont_contact_geometry_nearness
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: same_place
+  use epcont_contact_geometry_balance, only: balance_pairs
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_contact_geometry_line_pairs, only: add_pairs
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
@@ -66,6 +67,7 @@ contains
       call add_pairs(model, contact, faces)
       model%line_contact(c) = contact
     end do
+    call balance_pairs(model)
     entered = model%pairs > before
 
   contains
@@ -160,7 +162,7 @@ contains
           left_open = left_open + bend(slave, s, 0.0_wp)
         end if
         if (smooth) then
-          angle = norm2(face%normal + master%outward(side, which))
+          angle = norm2(face%normal + master%normal(:, which, side))
           left_open = left_open + askew*angle*(slip + 0.5_wp*angle*abs(face%gap))
         end if
       end associate

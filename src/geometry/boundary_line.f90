@@ -2,7 +2,8 @@
 !>
 !> Sides are walked with the body to the left, so that outward is to the right. Normals at the nodes come from
 !> the two sides that meet there, exact on a circle (epcont_geometry_corners); along a side they turn from one
-!> to the other, so that none is met twice and none left out. Where sides are chords, the boundary that is
+!> to the other by its shape functions, so that none is met twice and none left out, and that on a circle, of
+!> chords or of parabolas, all pass through its centre. Where sides are chords, the boundary that is
 !> meant is the smooth curve through their ends: the gap is measured to it (an arc over each chord) and not to
 !> the chord, whose facets would show in the pressures. Force and counterforce still lie on one line, through
 !> the chord.
@@ -27,7 +28,7 @@ module epcont_geometry_boundary_line
     integer, allocatable :: element(:)         !! whose sides they are [sides]
     integer, allocatable :: neighbour(:, :)    !! the sides before and after each, 0: there is none [2, sides]
     real(wp), allocatable :: x(:, :, :)        !! coordinates of the nodes [length] [2, 3, sides]
-    real(wp), allocatable :: normal(:, :, :)   !! outward, at start and end of each side [2, 2, sides]
+    real(wp), allocatable :: normal(:, :, :)   !! outward, at start, end and middle of each side [2, 3, sides]
     logical, allocatable :: corner(:, :)       !! its start, its end is a corner of the boundary [2, sides]
     logical, allocatable :: tip(:, :)          !! and a convex one [2, sides]
     !> Its start, its end lies on a line of symmetry, and the normal there: within that line, though it be a
@@ -41,7 +42,6 @@ module epcont_geometry_boundary_line
     procedure :: pick
     procedure :: chord_length
     procedure :: own_normal
-    procedure :: outward
     procedure :: face
     procedure :: at
   end type boundary_line
@@ -64,8 +64,7 @@ module epcont_geometry_boundary_line
   type :: side_type
     logical :: curved = .false.             !! it has a middle node
     real(wp) :: x(2, 3) = 0.0_wp            !! of start, end and middle [length]
-    real(wp) :: normal(2, 2) = 0.0_wp       !! at start and end
-    real(wp) :: tangent_length(2) = 0.0_wp  !! there [length]
+    real(wp) :: normal(2, 3) = 0.0_wp       !! there
   end type side_type
 
 contains
@@ -132,19 +131,6 @@ contains
     normal = unit([tangent(2), -tangent(1)])
   end function own_normal
 
-  !> Outward normal at a node of a side: 1 its start, 2 its end, 3 its middle; at a corner the side's own.
-  pure function outward(self, segment, which) result(normal)
-    class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment, which   !! side; 1 its start, 2 its end, 3 its middle
-    real(wp) :: normal(2)
-
-    if (which == 3) then
-      normal = self%own_normal(segment, 0.5_wp)
-    else
-      normal = self%normal(:, which, segment)
-    end if
-  end function outward
-
   !> Where a point faces a side: the place whose normal leads to it.
   pure function face(self, segment, point) result(place)
     class(boundary_line), intent(in) :: self
@@ -164,7 +150,7 @@ contains
       if (.not. place%found) return
       if (s > beyond .and. s < 1.0_wp - beyond) then
         place%share = values(side, s)
-        place%normal = unit(scaled_normal(side, s))
+        place%normal = unit(matmul(side%normal, place%share))
         place%gap = dot_product(place%normal, from - matmul(side%x, place%share)) - rise(side, s)
         return
       end if
@@ -183,11 +169,9 @@ contains
     pure subroutine find_foot(s, found)
       real(wp), intent(out) :: s      !! from 0 to 1, or beyond
       logical, intent(out) :: found   !! there is one
-      real(wp) :: away(2), normal(2), rate, start(2), step, turn(2)
+      real(wp) :: away(2), normal(2), rate, step
       integer :: k
 
-      start = scaled_normal(side, 0.0_wp)
-      turn = scaled_normal(side, 1.0_wp) - start
       associate (chord => side%x(:, 2))
         s = dot_product(from, chord)/dot_product(chord, chord)
       end associate
@@ -195,8 +179,9 @@ contains
       do k = 1, most_steps
         if (abs(s) > 10.0_wp) return
         away = from - matmul(side%x, values(side, s))
-        normal = start + s*turn
-        rate = cross_product(turn, away) - cross_product(normal, tangent_at(side, s))
+        normal = matmul(side%normal, values(side, s))
+        rate = cross_product(matmul(side%normal, slopes(side, s)), away) - &
+               cross_product(normal, tangent_at(side, s))
         if (rate == 0.0_wp) return
         step = -cross_product(normal, away)/rate
         s = s + step
@@ -226,31 +211,18 @@ contains
     side = side_of(self, segment)
     share = values(side, s)
     tangent = tangent_at(side, s)
-    x = matmul(self%x(:, :, segment), share) + rise(side, s)*unit(scaled_normal(side, s))
+    x = matmul(self%x(:, :, segment), share) + rise(side, s)*unit(matmul(side%normal, share))
   end subroutine at
 
   pure type(side_type) function side_of(line, segment) result(side)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: segment
-    integer :: k
 
     side%curved = line%segment(3, segment) > 0
     side%x = line%x(:, :, segment) - spread(line%x(:, 1, segment), 2, 3)
     if (.not. side%curved) side%x(:, 3) = 0.0_wp
     side%normal = line%normal(:, :, segment)
-    side%tangent_length = [(norm2(tangent_at(side, real(k, wp))), k=0, 1)]
   end function side_of
-
-  !> Normal within a side, as long as the tangent there: between those at its ends. (A parabola's own is
-  !! linear between them.)
-  pure function scaled_normal(self, s) result(normal)
-    type(side_type), intent(in) :: self
-    real(wp), intent(in) :: s   !! from 0 to 1
-    real(wp) :: normal(2)
-
-    normal = (1.0_wp - s)*self%tangent_length(1)*self%normal(:, 1) + &
-             s*self%tangent_length(2)*self%normal(:, 2)
-  end function scaled_normal
 
   !> How far along its normal the smooth curve rises above a chord: exactly where the normals at the ends are
   !! those of an arc [length].
@@ -280,15 +252,23 @@ contains
     if (self%curved) values = [(1.0_wp - s)*(1.0_wp - 2.0_wp*s), s*(2.0_wp*s - 1.0_wp), 4.0_wp*s*(1.0_wp - s)]
   end function values
 
+  !> What they change by along the side.
+  pure function slopes(self, s)
+    type(side_type), intent(in) :: self
+    real(wp), intent(in) :: s   !! from 0 to 1
+    real(wp) :: slopes(3)
+
+    slopes = [-1.0_wp, 1.0_wp, 0.0_wp]
+    if (self%curved) slopes = [4.0_wp*s - 3.0_wp, 4.0_wp*s - 1.0_wp, 4.0_wp - 8.0_wp*s]
+  end function slopes
+
   !> Along the side, as long as it would be if it were straight on from there [length].
   pure function tangent_at(self, s) result(tangent)
     type(side_type), intent(in) :: self
     real(wp), intent(in) :: s   !! from 0 to 1
-    real(wp) :: tangent(2), slope(3)
+    real(wp) :: tangent(2)
 
-    slope = [-1.0_wp, 1.0_wp, 0.0_wp]
-    if (self%curved) slope = [4.0_wp*s - 3.0_wp, 4.0_wp*s - 1.0_wp, 4.0_wp - 8.0_wp*s]
-    tangent = matmul(self%x, slope)
+    tangent = matmul(self%x, slopes(self, s))
   end function tangent_at
 
   !> Zero of zero: a side without length, which its element is refused for.

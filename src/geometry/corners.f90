@@ -43,7 +43,7 @@ contains
     integer :: end, i, n
 
     n = size(line%element)
-    allocate (line%normal(2, 2, n), line%end_normal(2, 2, n), source=0.0_wp)
+    allocate (line%normal(2, 3, n), line%end_normal(2, 2, n), source=0.0_wp)
     own = reshape([((line%own_normal(i, real(end - 1, wp)), end=1, 2), i=1, n)], [2, 2, n])
     turn = 0.0_wp
     do i = 1, n
@@ -134,17 +134,19 @@ contains
       beyond = merge([3 - end, side], [end, line%neighbour(end, side)], line%mirrored(end, side))
     end function beyond
 
-    !> Normals from the sides that meet, or from the other end of the side.
+    !> Normals from the sides that meet, or from the other end of the side. By how much those at its ends are
+    !! not its own counts along it, too.
     subroutine set_normals()
-      real(wp) :: chord(2)
+      real(wp) :: arc(2, 3, n), chord(2)
       integer :: end, i
 
-      line%normal = line%end_normal
+      arc = reshape([(arc_normals(i), i=1, n)], [2, 3, n])
+      line%normal(:, :2, :) = line%end_normal
       do i = 1, n
         if (line%corner(2, i) .or. line%mirrored(2, i)) cycle
         associate (next => line%neighbour(2, i))
-          line%normal(:, 2, i) = unit(line%chord_length(next)*own(:, 2, i) + &
-                                      line%chord_length(i)*own(:, 1, next))
+          line%normal(:, 2, i) = unit(line%chord_length(next)*arc(:, 2, i) + &
+                                      line%chord_length(i)*arc(:, 1, next))
           line%normal(:, 1, next) = line%normal(:, 2, i)
         end associate
       end do
@@ -152,16 +154,44 @@ contains
         chord = line%own_normal(i, 0.5_wp)
         do end = 1, 2
           if (.not. line%corner(end, i)) cycle
-          line%normal(:, end, i) = own(:, end, i)
+          line%normal(:, end, i) = arc(:, end, i)
           if (line%segment(3, i) > 0 .or. line%corner(3 - end, i)) cycle
-          ! Of a circle through both ends the one normal mirrors the other.
-          associate (other => line%normal(:, 3 - end, i))
-            line%normal(:, end, i) = 2.0_wp*dot_product(other, chord)*chord - other
-          end associate
+          line%normal(:, end, i) = mirror_of(line%normal(:, 3 - end, i), chord)
         end do
+        line%normal(:, 3, i) = unit(arc(:, 3, i) + 0.5_wp*sum(line%normal(:, :2, i) - arc(:, :2, i), dim=2))
       end do
     end subroutine set_normals
+
+    !> Normals of the circle through start, end and middle of a side, there; of a chord its own.
+    pure function arc_normals(side) result(normal)
+      integer, intent(in) :: side
+      real(wp) :: half(2, 2), normal(2, 3)
+
+      normal = spread(own(:, 1, side), 2, 3)
+      if (line%segment(3, side) == 0) return
+      half(:, 1) = line%x(:, 3, side) - line%x(:, 1, side)
+      half(:, 2) = line%x(:, 2, side) - line%x(:, 3, side)
+      normal(:, 3) = unit(right_of(half(:, 1)/sum(half(:, 1)**2) + half(:, 2)/sum(half(:, 2)**2)))
+      normal(:, 1) = mirror_of(normal(:, 3), unit(right_of(half(:, 1))))
+      normal(:, 2) = mirror_of(normal(:, 3), unit(right_of(half(:, 2))))
+    end function arc_normals
   end subroutine find_normals
+
+  !> Of a circle through both ends of a chord the one normal mirrors the other.
+  pure function mirror_of(normal, chord)
+    real(wp), intent(in) :: normal(2), chord(2)   !! at one end; of the chord
+    real(wp) :: mirror_of(2)
+
+    mirror_of = 2.0_wp*dot_product(normal, chord)*chord - normal
+  end function mirror_of
+
+  !> A vector turned by a right angle, clockwise.
+  pure function right_of(vector)
+    real(wp), intent(in) :: vector(2)
+    real(wp) :: right_of(2)
+
+    right_of = [vector(2), -vector(1)]
+  end function right_of
 
   !> Counter-clockwise from one vector to another.
   pure real(wp) function angle_between(a, b)

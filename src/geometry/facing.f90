@@ -50,7 +50,7 @@ contains
     type(looking_point) :: from
 
     from%x = line%x(:, which, side)
-    from%outward = line%outward(side, which)
+    from%outward = line%normal(:, which, side)
     from%along = 0.5_wp*(line%x(:, 1, side) + line%x(:, 2, side)) - from%x
     if (which == 3) from%along = 0.5_wp*(line%x(:, 2, side) - from%x)
     from%rise = rise_of(line, side)

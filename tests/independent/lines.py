@@ -1,14 +1,15 @@
 """Contact between boundary lines: what nodes of one face of the other, and what of its displacement counts for them.
 
 Of all sides whose normals lead to a point and look against it, with no body between, the nearest counts; in a concave corner a second
-one too. The master line's displacement is fitted on each slave side that faces it all along by the slave's shape functions, least
-squares; a slave node's gap is against the fits of its sides, averaged as their lengths (in rings areas) that belong to the node. Sides
+one too. Where normals nearly meet in one point they do. The master line's displacement is fitted on each slave side that faces it all along by the slave's shape functions, least
+squares; a slave node's gap is against the fits of its sides, averaged as their lengths (in rings areas) that belong to the node, moved
+along the line until forces balance. Sides
 that do not face it all along count at their nodes' own places, and there corners of the master have pairs of their own. Every side is
 looked at; standard library only.
 """
 from collections import Counter
 from dataclasses import dataclass
-from math import hypot
+from math import copysign, hypot
 
 from deck import DeckError, at, ids, real
 from kinds import solved
@@ -23,6 +24,8 @@ STEP, ASIDE, THIN = 0.01, 1e-3, 1e-3
 RISE, AT_END = 0.2, 0.01
 #: Gaps are equal, of the search; weights and areas are none; gaps are none, of the coordinates; the area a ring's corner has at least.
 EQUAL, NOTHING, ROUNDING, AT_AXIS = 1e-9, 1e-12, 16 * 2.0 ** -52, 1e-3
+#: How far lines pass a centre, of its distance; the variance of their directions, at least.
+ON_LINE, LEAST_TURN = 1e-4, 0.01
 #: Search, of the longest side; further by this factor, where nothing is found.
 SEARCH, FURTHER = 2.0, 4.0
 
@@ -340,7 +343,46 @@ def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g, told=None)
         contacts.append(contact)
     if told is not None:
         came_near(contacts, Counter(told), size)
+    place = x if isinstance(x, dict) else dict(enumerate(x))
+    cut = {one.nodes[-end] for one in found.values() for end in (0, 1)
+           if (one.mirrored[end] or one.corner[end]) and {(one.nodes[-end], 0), (one.nodes[-end], 1)} & held}
+    centres = []
+    for contact in contacts:
+        balance([pair for pair in contact.pairs if pair.node not in cut], place, centres)
     return [contact.pairs for contact in contacts]
+
+
+def balance(pairs, x, centres):
+    """Forces of round contact meet in one of the centres, to which a new one is added; each has its counterforce on its own line."""
+    centre, radius = centre_of([(x[pair.node], pair.normal) for pair in pairs])
+    if radius:
+        centre = next((other for other in centres if hypot(*(a - b for a, b in zip(other, centre))) <= ON_LINE * radius), centre)
+        centres.append(centre)
+        for pair in pairs:
+            away = [x[pair.node][c] - centre[c] for c in (0, 1)]
+            pair.normal = [copysign(1.0, dot(pair.normal, away)) * v for v in unit(away)]
+    for pair in pairs:
+        along = {node: cross(pair.normal, [x[node][c] - x[pair.node][c] for c in (0, 1)]) for node in pair.shares}
+        much = {node: abs(share) for node, share in pair.shares.items()}
+        middle = sum(much[node] * along[node] for node in much) / sum(much.values())
+        lever = sum(share * along[node] for node, share in pair.shares.items())
+        width = sum(much[node] * (along[node] - middle) ** 2 for node in much)
+        if abs(lever) > NOTHING * width ** 0.5 > 0:
+            pair.shares = {node: share - lever * much[node] * (along[node] - middle) / width for node, share in pair.shares.items()}
+
+
+def centre_of(lines):
+    """Where lines (place, direction) nearly meet, and the least distance of the places from there; 0.0: they do not, or turn by little."""
+    across = [(-n[1], n[0]) for _, n in lines]
+    matrix = [[sum(t[i] * t[j] for t in across) for j in (0, 1)] for i in (0, 1)]
+    if not lines or matrix[0][0] * matrix[1][1] - matrix[0][1] ** 2 < LEAST_TURN * len(lines) ** 2:
+        return None, 0.0
+    from_first = [[p[c] - lines[0][0][c] for c in (0, 1)] for p, _ in lines]
+    off = solved(matrix, [[sum(t[i] * dot(t, p) for t, p in zip(across, from_first))] for i in (0, 1)])
+    away = [[p[c] - off[c][0] for c in (0, 1)] for p in from_first]
+    radius = min(hypot(*p) for p in away)
+    meet = all(abs(dot(t, p)) <= ON_LINE * radius for t, p in zip(across, away))
+    return [lines[0][0][c] + off[c][0] for c in (0, 1)], radius if meet else 0.0
 
 
 def came_near(contacts, told, size):

@@ -83,6 +83,11 @@ def cross(a, b):
     return a[0] * b[1] - a[1] * b[0]
 
 
+def mirrored(a, b):
+    """On the other side of a unit vector b."""
+    return [2 * dot(a, b) * b[c] - a[c] for c in (0, 1)]
+
+
 def angle(a, b):
     """Counter-clockwise from a to b, in degrees."""
     return degrees(atan2(cross(a, b), dot(a, b)))
@@ -121,6 +126,7 @@ class Segment:
         self.corner, self.tip = [True, True], [False, False]
         self.mirrored = [False, False]    # the end lies on a line of symmetry,
         self.upright = [None, None]       # with this normal within that line
+        self.arc = self.arcs()            # normals of the circle through its nodes, there
         self.normal = [None, None]
 
     def towards(self, s):
@@ -131,14 +137,24 @@ class Segment:
         along = self.towards(s)
         return unit([along[1], -along[0]])
 
+    def arcs(self):
+        if len(self.nodes) == 2:
+            return [self.own(0.0)] * 2
+        a, b = ([q[c] - p[c] for c in (0, 1)] for p, q in zip(self.local, self.local[1:]))
+        along = [a[c] / dot(a, a) + b[c] / dot(b, b) for c in (0, 1)]
+        middle = unit([along[1], -along[0]])
+        return [mirrored(middle, unit([a[1], -a[0]])), middle, mirrored(middle, unit([b[1], -b[0]]))]
+
     def outward(self, k):
         """Normal at its node k."""
-        return self.normal[0] if k == 0 else self.normal[1] if k == len(self.nodes) - 1 else self.own(self.places[k])
+        return self.normals[k]
 
     def finish(self):
         """The polynomials of the normal, and of its part along a straight side."""
-        long = [hypot(*self.towards(s)) for s in (0.0, 1.0)]
-        self.seen = [[long[0] * a, long[1] * b - long[0] * a] for a, b in zip(*self.normal)]
+        off = [[n[c] - arc[c] for c in (0, 1)] for n, arc in zip(self.normal, self.arc[::len(self.arc) - 1])]
+        between = [unit([arc[c] + (off[0][c] + off[1][c]) / 2 for c in (0, 1)]) for arc in self.arc[1:-1]]
+        self.normals = [self.normal[0], *between, self.normal[1]]
+        self.seen = [[sum(n[c] * column[p] for n, column in zip(self.normals, self.shape)) for p in range(len(self.nodes))] for c in (0, 1)]
         self.bend = self.chord * hypot(*(b - a for a, b in zip(*self.normal)))
         lean = [dot(n, self.way) for n in self.normal]
         self.lean = [-lean[0], lean[0] + lean[1]] if len(self.nodes) == 2 else [0.0]
@@ -280,7 +296,7 @@ def find_normals(segments):
     for one in segments:
         after = one.beside[1]
         if not one.corner[1] and not one.mirrored[1]:
-            own, other = one.own(1.0), after.own(0.0)
+            own, other = one.arc[-1], after.arc[0]
             one.normal[1] = after.normal[0] = unit([own[c] * after.chord + other[c] * one.chord for c in (0, 1)])
     for one in segments:
         for end in (0, 1):
@@ -291,4 +307,4 @@ def find_normals(segments):
         for end in (0, 1):
             if one.corner[end]:
                 other = known[1 - end] if len(one.nodes) == 2 and not one.corner[1 - end] else None
-                one.normal[end] = [2 * dot(other, one.across) * one.across[c] - other[c] for c in (0, 1)] if other else one.own(float(end))
+                one.normal[end] = mirrored(other, one.across) if other else one.arc[-end]

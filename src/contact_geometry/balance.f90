@@ -1,0 +1,130 @@
+!> Pairs of lines that make no moment where there is none: force and counterforce lie on one line, and in
+!> round contact all these lines meet in one point.
+!>
+!> A pin turns freely in its hole. Where normals miss the centre by what the digits of a deck leave, or the
+!> master's share in a gap lies beside the node by what chords make of a circle, contact would hold that turn
+!> by levers of nothing, and the pin would turn until it comes loose.
+module epcont_contact_geometry_balance
+  use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: coincident, rounded_off
+  use epcont_geometry_boundary_line, only: unit
+  use epcont_geometry_plane, only: cross_product
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: balance_pairs
+
+  !> Normals have a centre where they turn by 20 degrees at least: the variance of their directions then.
+  real(wp), parameter :: least_turn = 0.01_wp
+
+contains
+
+  !> Balance the pairs of lines, but for nodes where a line of symmetry may cut a body: what lies beyond it
+  !! balances these. Contacts whose centres lie at one place, inside and outside of a ring, have one centre.
+  subroutine balance_pairs(model)
+    type(model_type), intent(inout) :: model   !! the scene, with all its pairs
+    real(wp) :: centre(2, size(model%line_contact))   ! of those that are round [length]
+    logical :: cut(model%nodes)
+    integer :: c, centres, end, i, k
+
+    if (size(model%line_contact) == 0) return
+    cut = .false.
+    associate (line => model%boundary)
+      do i = 1, size(line%element)
+        do end = 1, 2
+          associate (node => line%segment(end, i))
+            if (line%mirrored(end, i) .or. line%corner(end, i)) &
+              cut(node) = any([(model%is_held(k, node), k=1, 2)])
+          end associate
+        end do
+      end do
+    end associate
+    centres = 0
+    do c = 1, size(model%line_contact)
+      associate (contact => model%line_contact(c), b => model%pair_node(2, :))
+        associate (pairs => pack([(k, k=contact%first, contact%last)], &
+                                 .not. cut(b(contact%first:contact%last))))
+          call turn_normals(pairs)
+          do i = 1, size(pairs)
+            call move_weights(model, pairs(i))
+          end do
+        end associate
+      end associate
+    end do
+
+  contains
+
+    !> Have the normals of a contact's pairs meet in one point, if they nearly do.
+    subroutine turn_normals(pairs)
+      integer, intent(in) :: pairs(:)
+      real(wp) :: away(2), radius
+      integer :: nearest
+
+      call find_centre(model%x(:, model%pair_node(2, pairs)), model%normal(:, pairs), &
+                       centre(:, centres + 1), radius)
+      if (radius == 0.0_wp) return
+      do nearest = 1, centres
+        if (norm2(centre(:, nearest) - centre(:, centres + 1)) <= coincident*radius) exit
+      end do
+      centres = max(centres, nearest)
+      do i = 1, size(pairs)
+        away = model%x(:, model%pair_node(2, pairs(i))) - centre(:, nearest)
+        model%normal(:, pairs(i)) = sign(1.0_wp, dot_product(model%normal(:, pairs(i)), away))*unit(away)
+      end do
+    end subroutine turn_normals
+  end subroutine balance_pairs
+
+  !> The place where lines meet, but for what places on a line may differ by, and how far from there their own
+  !! places are at least; 0: they do not meet.
+  pure subroutine find_centre(x, direction, centre, radius)
+    real(wp), intent(in) :: x(:, :), direction(:, :)   !! a place of each line [length] [2, lines]
+    real(wp), intent(out) :: centre(2), radius         !! [length]
+    real(wp) :: across(2, size(x, 2)), matrix(2, 2), right(2), determinant
+
+    radius = 0.0_wp
+    across(1, :) = -direction(2, :)
+    across(2, :) = direction(1, :)
+    matrix = matmul(across, transpose(across))/size(x, 2)
+    determinant = matrix(1, 1)*matrix(2, 2) - matrix(1, 2)**2   ! the trace is 1
+    if (determinant < least_turn) return
+    right = matmul(across, levers_about(x(:, 1)))/size(x, 2)
+    centre = x(:, 1) + [cross_product(right, matrix(:, 2)), cross_product(matrix(:, 1), right)]/determinant
+    radius = minval(norm2(x - spread(centre, 2, size(x, 2)), dim=1))
+    if (maxval(abs(levers_about(centre))) > coincident*radius) radius = 0.0_wp
+
+  contains
+
+    !> How far the lines pass by a place.
+    pure function levers_about(place) result(lever)
+      real(wp), intent(in) :: place(2)
+      real(wp) :: lever(size(x, 2))
+
+      lever = sum(across*(x - spread(place, 2, size(x, 2))), dim=1)
+    end function levers_about
+  end subroutine find_centre
+
+  !> The master's nodes share in a gap so that the counterforce lies on the line of the force: where they do
+  !! not, some of their weights go along the boundary from one to the other.
+  pure subroutine move_weights(model, pair)
+    type(model_type), intent(inout) :: model
+    integer, intent(in) :: pair
+    real(wp), allocatable :: along(:), much(:)   ! of the master's nodes: places along the boundary; weights
+    real(wp) :: lever, width
+    integer :: k
+
+    associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1, &
+               normal => model%normal(:, pair))
+      associate (weight => model%row_weight(first:last), node => model%row_node(first:last))
+        along = [(cross_product(normal, model%x(:, node(k)) - model%x(:, model%pair_node(2, pair))), &
+                  k=1, size(node))]
+        lever = dot_product(weight, along)
+        much = abs(weight)/sum(abs(weight))
+        along = along - dot_product(much, along)
+        width = dot_product(much, along**2)
+        if (width <= 0.0_wp .or. abs(lever) <= rounded_off*sqrt(width)) return
+        weight = weight - lever/width*much*along
+        model%pair_node(1, pair) = node(minloc(weight, dim=1))
+      end associate
+    end associate
+  end subroutine move_weights
+end module epcont_contact_geometry_balance
