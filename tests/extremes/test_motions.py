@@ -57,6 +57,59 @@ class Supports(Extremes):
             deck.force(nodes[1][end], 0.0, -0.5)
         return deck
 
+    def test_round_fits(self):
+        """A disc, or a ring round one, free to turn in the next ring, bears what it bears held, though digits are cut and chords
+        and parabolas are no circles; a lever of a millionth of its radius is none, but an oval turns until its sides are even."""
+        for kind, around in (("CTRIA3", (22, 31)), ("CQUAD4", (24, 48)), ("CTRIA6", (16, 32)), ("CQUAD8", (9, 18)), ("CQUAD4", (24, 37, 48))):
+            for digits in (16, 6):
+                with self.subTest(kind=kind, around=around, digits=digits):
+                    self.assertFalse(self.turns(kind, around, digits))
+        for oval in (1e-6, 0.03):
+            self.assertEqual(self.turns("CQUAD4", (24, 48), 16, oval), oval > 1e-3)
+
+    def turns(self, *fit):
+        held, free = (self.valid(self.fit(hold, *fit)) for hold in (True, False))
+        return max(abs(one - other) for one, other in zip(held.force, free.force)) > 1e-6 * sum(held.force)
+
+    def fit(self, hold, kind, around, digits, oval=0.0):
+        """Rings with so many sides around, each .001 too large for the next, with so many digits of coordinates; the first is loaded
+        towards its centre, if that is exact or it is held."""
+        deck, step = Deck(*STEEL), 2 if kind[-1] in "68" else 1
+        for k, n in enumerate(around):
+            n, first = n * step, 1000 * (k + 1)
+            last = k == len(around) - 1
+            for i in range(n):
+                angle = 2.0 * math.pi * (i + 0.3) / n
+                for j in range(0, 2 * step + 1, 1 + (kind == "CQUAD8") * (i % 2)):
+                    radius = 0.5 + 0.5 * k + (0.501 - 0.001 * last) * j / (2 * step)
+                    radius += oval * math.cos(2.0 * angle) * (abs(radius - 1.0) < 0.01)
+                    deck.grid(first + 10 * i + j, *(round(radius * f(angle), digits) for f in (math.cos, math.sin)))
+            for i in range(0, n, step):
+                for j in range(0, 2 * step, step):
+                    at = [[first + 10 * ((i + a) % n) + j + b for b in range(step + 1)] for a in range(step + 1)]
+                    (a, b), (d, c) = (row[::step] for row in (at[0], at[-1]))
+                    if kind == "CQUAD8":
+                        deck.element(1, a, b, c, d, at[0][1], at[1][2], at[2][1], at[1][0], kind=kind)
+                    elif kind == "CQUAD4":
+                        deck.element(1, a, b, c, d)
+                    else:
+                        deck.element(1, a, b, c, *([at[0][1], at[1][2], at[1][1]] if step == 2 else []))
+                        deck.element(1, a, c, d, *([at[1][1], at[2][1], at[1][0]] if step == 2 else []))
+            ways = [first + 10 * (i % n) for i in range(0, n + step, step)]
+            deck.card("BLSEG", first, *ways)
+            deck.card("BLSEG", first + 1, *(node + 2 * step for node in ways))
+            if k:
+                deck.card("BCONP", k, first - 999, first)
+            if last:
+                deck.hold(12, *(node + 2 * step for node in ways[1:]))
+            else:
+                deck.support(1, first)
+                deck.support(2, first)
+                (deck.hold if hold or k == len(around) - 3 else deck.support)(2, ways[len(ways) // 2])
+        if digits > 6 or len(around) > 2:
+            deck.force(1000, *(-1000.0 * at for at in deck.x[1000]))
+        return deck
+
     def test_no_load(self):
         """A free body without load rests where it is; without SUPORT it is refused with the card to paste."""
         for at in (0, None):
