@@ -65,7 +65,8 @@ module epcont_base_tolerances
     !! > and < accuracy/test_waves
     no_effect = 1.0e-6_wp, &
     !> Part of a side within which places are one, or on one line; of a radius, within which lines meet.
-    !! > and < extremes/test_motions; > model/test_body_outline, test_pair_faults; < model/test_body_outline, certificate/test_allowance
+    !! > model/test_body_outline, test_pair_faults, extremes/test_motions; < model/test_body_outline,
+    !! certificate/test_allowance, extremes/test_motions
     coincident = 1.0e-4_wp, &
     !> Part of its side's area that a corner on the axis has from rounding and curvature alone: of a ball,
     !! where the side is up to a fifth of its radius.
