@@ -203,8 +203,7 @@ contains
       associate (node => model%row_node(i))
         if (abs(model%row_weight(i)) < least_weight) cycle
         side = merge(1, 2, node == line%node(pair))
-        if (side == 2) rigid = rigid .and. (model%around%start(node) == model%around%start(node + 1) .or. &
-                                            all(model%held(:, node)))
+        if (side == 2) rigid = rigid .and. (size(model%around%of(node)) == 0 .or. all(model%held(:, node)))
         inside(side) = max(inside(side), corner_inside(model, node))
       end associate
     end do

@@ -185,9 +185,9 @@ contains
       integer :: k
       integer :: strongest(model%pairs)   !! at the place of each
 
-      associate (start => line%at_place%start, force => answer%contact%force)
-        do k = 1, size(start) - 1
-          associate (pairs => line%at_place%group(start(k):start(k + 1) - 1))
+      associate (force => answer%contact%force)
+        do k = 1, size(line%at_place%start) - 1
+          associate (pairs => line%at_place%of(k))
             strongest(pairs) = pairs(maxloc(force(pairs), dim=1))
           end associate
         end do

@@ -94,9 +94,8 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: node             !! any
 
-    element = 0
-    associate (first => model%around%start(node), beyond => model%around%start(node + 1))
-      if (beyond > first) element = model%around%group(first)
+    associate (elements => [model%around%of(node), 0])
+      element = elements(1)
     end associate
   end function first_element
 
@@ -108,7 +107,7 @@ contains
     integer, allocatable :: elements(:)
     integer :: i
 
-    elements = model%around%group(model%around%start(node):model%around%start(node + 1) - 1)
+    elements = model%around%of(node)
     if (size(elements) == 0) return
     elements = pack(elements, model%section(elements) == model%section(elements(1)))
     if (all(model%is_held([1, 2], node)) .or. &

@@ -163,25 +163,23 @@ contains
     integer :: i, k, side(3)
 
     allocate (sides(4, 0))
-    do i = model%around%start(node), model%around%start(node + 1) - 1
-      associate (element => model%around%group(i))
-        do k = 1, model%corners(element)
-          side = model%edge(element, k)
+    associate (elements => model%around%of(node))
+      do i = 1, size(elements)
+        do k = 1, model%corners(elements(i))
+          side = model%edge(elements(i), k)
           if (.not. any(side == node) .or. elements_at(side(1), side(2)) > 1) cycle
-          sides = reshape([sides, side, element], [4, size(sides, 2) + 1])
+          sides = reshape([sides, side, elements(i)], [4, size(sides, 2) + 1])
         end do
-      end associate
-    end do
+      end do
+    end associate
 
   contains
 
     !> How many elements have both of two nodes.
     pure integer function elements_at(a, b)
       integer, intent(in) :: a, b
-      integer :: i
 
-      elements_at = count([(any(model%connectivity(:, model%around%group(i)) == b), &
-                            i=model%around%start(a), model%around%start(a + 1) - 1)])
+      elements_at = count(any(model%connectivity(:, model%around%of(a)) == b, dim=1))
     end function elements_at
   end function outer_sides
 
@@ -225,7 +223,7 @@ contains
 
     pair = 0
     if (node == 0) return
-    associate (there => at%group(at%start(node):at%start(node + 1) - 1))
+    associate (there => at%of(node))
       if (size(there) == 0) return
       associate (along => model%x(:, side(2)) - model%x(:, side(1)))
         pair = there(minloc(abs(matmul(along, model%normal(:, there))), dim=1))
@@ -248,7 +246,7 @@ contains
     on_side = new_incidence(reshape(contact%stands_on, [1, size(contact%stands_on)]), &
                             size(contact%slave%element))
     do side = 1, size(contact%slave%element)
-      associate (masters => on_side%group(on_side%start(side):on_side%start(side + 1) - 1))
+      associate (masters => on_side%of(side))
         if (size(masters) > 0) &
           call link(side, run_on(side, contact%first_of_master - 1 + masters))
       end associate
