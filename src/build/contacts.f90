@@ -91,7 +91,7 @@ contains
         model%pairs = cgap%count
         model%pair_id = nint(cgap%value(1, :))
       end associate
-      call complete_pairs(model, deck%parameter_word('GAPGEOM', 'NO') == 'YES', found)
+      call complete_pairs(model, deck%parameter_word('GAPGEOM') == 'YES', found)
     end subroutine read_pairs
 
     !> The nodes of a BLSEG, ranges and steps written out; none where it is not sound.

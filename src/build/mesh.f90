@@ -208,7 +208,7 @@ contains
       integer, intent(in) :: i
       integer, intent(out) :: kinematics
 
-      kinematics = merge(plane_stress, plane_strain, deck%parameter_word('PLANE', 'STRAIN') == 'STRESS')
+      kinematics = merge(plane_stress, plane_strain, deck%parameter_word('PLANE') == 'STRESS')
       associate (shell => deck%card(card_pshell))
         if (.not. shell%sound(i)) return
         if (shell%has('MID2', i) .and. kinematics == plane_stress) then

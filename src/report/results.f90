@@ -186,7 +186,7 @@ contains
       if (len(run%deck%title) > 0) call say(printable(run%deck%title))
       if (len(run%deck%subtitle) > 0) call say(printable(run%deck%subtitle))
       if (len(run%deck%label) > 0) call say(printable(run%deck%label))
-      units = run%deck%parameter_word('UNITS', '')
+      units = run%deck%parameter_word('UNITS')
       if (units == '') units = 'as the deck has them'
       call say('units: '//units)
       call listing%heading('DECK')
