@@ -75,10 +75,10 @@ contains
     type(meeting_type), intent(in) :: meeting   !! how it meets another
     real(wp) :: explained   ! by the slide
 
-    associate (slide => meeting%slide, length => self%length(side))
-      explained = slide*self%turn(side) + curve(self, side, meeting)*(0.5_wp*slide**2*self%curvature(side))
-      of_motion = factor*(min(explained, most_by_slide*length) + 0.5_wp*length*self%change(side)**2)
-    end associate
+    explained = meeting%slide*self%turn(side) &
+                + curve(self, side, meeting)*(0.5_wp*meeting%slide**2*self%curvature(side))
+    of_motion = factor*(min(explained, most_by_slide*self%length(side)) &
+                        + 0.5_wp*self%length(side)*self%change(side)**2)
   end function of_motion
 
   !> What of that was there before anything moved, and no more than there was: curves above chords, gaps of

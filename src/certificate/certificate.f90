@@ -212,7 +212,7 @@ contains
     !! residual.
     subroutine add_pairs()
       real(wp) :: apart(directions), gap, opening, rounding, travel
-      integer :: i, k
+      integer :: i, k, node
 
       certificate%smallest_force = minval(answer%contact%force)
       certificate%smallest_gap = huge(1.0_wp)
@@ -222,11 +222,10 @@ contains
           apart = 0.0_wp
           travel = 0.0_wp
           do i = model%row_start(k), model%row_start(k + 1) - 1
-            associate (node => model%row_node(i))
-              apart = apart + model%row_weight(i)*answer%displacement(:, node)
-              travel = max(travel, maxval(abs(answer%displacement(:, node))))
-              residual(:, node) = residual(:, node) - model%row_weight(i)*force*normal
-            end associate
+            node = model%row_node(i)
+            apart = apart + model%row_weight(i)*answer%displacement(:, node)
+            travel = max(travel, maxval(abs(answer%displacement(:, node))))
+            residual(:, node) = residual(:, node) - model%row_weight(i)*force*normal
           end do
           opening = sum(normal*apart)
           work = work + force*opening
@@ -243,15 +242,14 @@ contains
 
     !> A tied freedom hands its forces to its leader.
     subroutine gather_ties()
-      integer :: c, node
+      integer :: c, leader, node
 
       do node = 1, model%nodes
         do c = 1, directions
-          associate (leader => model%leader(c, node))
-            if (leader == node) cycle
-            residual(c, leader) = residual(c, leader) + residual(c, node)
-            residual(c, node) = 0.0_wp
-          end associate
+          leader = model%leader(c, node)
+          if (leader == node) cycle
+          residual(c, leader) = residual(c, leader) + residual(c, node)
+          residual(c, node) = 0.0_wp
         end do
       end do
     end subroutine gather_ties

@@ -224,6 +224,7 @@ contains
       integer, intent(in) :: part, c, way
       real(wp), allocatable :: u(:), x(:)
       real(wp) :: edge
+      integer :: farthest
 
       associate (first => model%body_outline%first(part), last => model%body_outline%first(part + 1) - 1)
         associate (node => model%body_outline%node(1, first:last), &
@@ -234,9 +235,8 @@ contains
           if (.not. all(x > edge .or. model%is_held(c, node) .and. abs(u) <= search%least)) return
           if (all(x > edge .or. way*model%x(c, next) > edge &
                   .or. model%is_held(3 - c, node) .and. model%is_held(3 - c, next))) return
-          associate (farthest => minloc(x + u, dim=1))
-            place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
-          end associate
+          farthest = minloc(x + u, dim=1)
+          place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
         end associate
       end associate
     end function beyond_end

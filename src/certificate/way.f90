@@ -188,9 +188,8 @@ contains
       x_now = x + (1.0_wp - time)*mean(:, part)
       wide = reach + (1.0_wp - time)*spread_of(part)
       near = sides_meeting(search%now, part, x_now - wide, x_now + wide)
-      associate (outline => search%now%outline)
-        sides = [near, outline%before(near), outline%after(near)]   ! at a node both say what is inside
-      end associate
+      ! At a node both sides say what is inside.
+      sides = [near, search%now%outline%before(near), search%now%outline%after(near)]
       between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
       do k = 1, size(near)
         place = between%near_side(near(k), x)

@@ -78,10 +78,8 @@ contains
       character(len=:), allocatable :: remedy
 
       remedy = 'blank'
-      associate (entry => table%entry)
-        if (.not. allocated(entry%list_name)) &
-          remedy = 'blank; '//trim(entry%name)//' ends with field '//text_of(number_of(size(entry%field)))
-      end associate
+      if (.not. allocated(table%entry%list_name)) remedy = 'blank; '//trim(table%entry%name)// &
+        ' ends with field '//text_of(number_of(size(table%entry%field)))
       call refuse(slot, 'must be blank', remedy)
     end subroutine refuse_surplus
 
@@ -209,7 +207,7 @@ contains
       is_word = .false.
       if (.not. card%filled(slot)) return
       associate (at => card%slot(slot))
-        if (at%last - at%first + 1 == len(word)) is_word = upper(card%text(at%first:at%last)) == word
+        is_word = upper(card%text(at%first:at%last)) == word
       end associate
     end function is_word
 

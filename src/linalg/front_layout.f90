@@ -69,7 +69,7 @@ contains
     !> The last front below each, and the one before that
     integer, dimension(size(layout%own)) :: child, next
     integer, allocatable :: row(:)
-    integer :: c, count, k, p
+    integer :: above, c, count, k, p
 
     child = 0
     next = 0
@@ -93,11 +93,10 @@ contains
       if (layout%row_start(p + 1) - 1 > size(row)) row = [row, row]
       row(layout%row_start(p):layout%row_start(p + 1) - 1) = found(sorted_order(found(:count)))
       seen(found(:count)) = .false.
-      associate (above => layout%parent(p))
-        above = layout%front_of(row(layout%row_start(p)))
-        next(p) = child(above)
-        child(above) = p
-      end associate
+      above = layout%front_of(row(layout%row_start(p)))
+      layout%parent(p) = above
+      next(p) = child(above)
+      child(above) = p
     end do
     layout%row = row(:layout%row_start(size(layout%first)) - 1)
   end subroutine find_rows

@@ -241,13 +241,13 @@ contains
       integer :: nearest
 
       if (run%model%pairs == 0 .or. any(run%answer%contact%touching)) return
-      ! Of gaps that are as good as equal the first: rounding chooses no pair.
       associate (gap => run%answer%contact%gap)
+        ! Of gaps that are as good as equal the first: rounding chooses no pair.
         nearest = findloc(gap <= (1.0_wp + no_effect)*minval(gap), .true., dim=1)
+        call warn('nothing touches: no pair carries a force; nearest is '// &
+                  run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
+                  short_real(gap(nearest))//' away')
       end associate
-      call warn('nothing touches: no pair carries a force; nearest is '// &
-                run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
-                short_real(run%answer%contact%gap(nearest))//' away')
     end subroutine warn_of_contact
 
     !> Elements that are too stiff, strained too far, or unloaded.

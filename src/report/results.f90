@@ -203,10 +203,9 @@ contains
 
       text = run%deck_notes//remark_lines(run%outcome%found, .true.)
       if (len(text) == 0) return
-      associate (deck => run%faults, answer => run%outcome%found)
-        call listing%heading('WARNINGS AND NOTES  ('//plural(deck%warnings + answer%warnings, 'warning')// &
-                             ', '//plural(deck%notes + answer%notes, 'note')//')')
-      end associate
+      call listing%heading('WARNINGS AND NOTES  ('// &
+                           plural(run%faults%warnings + run%outcome%found%warnings, 'warning')//', '// &
+                           plural(run%faults%notes + run%outcome%found%notes, 'note')//')')
       from = 1
       do while (from <= len(text))
         to = from + index(text(from:), newline) - 1

@@ -256,17 +256,16 @@ contains
     !> The first pivots of the simplex: those of the last solve, below the pairs of the listing; in a file, of
     !! all.
     subroutine put_pivots()
-      integer :: before, k
+      integer :: first, k, last
 
       call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
       if (table%listed) call put_pivots_of(0, run%answer%contact%history)
       if (table%listed) return
-      before = 0
+      last = 0
       do k = 1, size(run%answer%history)
-        associate (kept => run%answer%history(k)%kept)
-          call put_pivots_of(k, run%answer%pivot(before + 1:before + kept))
-          before = before + kept
-        end associate
+        first = last + 1
+        last = last + run%answer%history(k)%kept
+        call put_pivots_of(k, run%answer%pivot(first:last))
       end do
     end subroutine put_pivots
 

@@ -44,14 +44,14 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
     real(wp) :: sums(directions, model%bodies)
+    real(wp), allocatable :: nodal(:, :)
     integer :: i
 
     sums = 0.0_wp
-    associate (nodal => pair_forces(model, force))
-      do i = 1, model%nodes
-        sums(:, model%body(i)) = sums(:, model%body(i)) + nodal(:, i)
-      end do
-    end associate
+    nodal = pair_forces(model, force)
+    do i = 1, model%nodes
+      sums(:, model%body(i)) = sums(:, model%body(i)) + nodal(:, i)
+    end do
   end function resultants
 
   !> What a unit force at each pair adds to one component of the resultant on a body [pairs].

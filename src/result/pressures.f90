@@ -65,14 +65,14 @@ contains
     !> Pairs at one place have one pressure.
     subroutine level(pairs)
       integer, intent(in) :: pairs(:)
+      real(wp) :: area
       integer :: i
 
-      associate (area => sum(line%tributary(pairs)), together => sum(force(pairs)))
-        if (size(pairs) == 1 .or. area <= 0.0_wp) return
-        do i = 1, size(pairs)
-          if (force(pairs(i)) > 0.0_wp) pressure(pairs(i)) = together/area
-        end do
-      end associate
+      area = sum(line%tributary(pairs))
+      if (size(pairs) == 1 .or. area <= 0.0_wp) return
+      do i = 1, size(pairs)
+        if (force(pairs(i)) > 0.0_wp) pressure(pairs(i)) = sum(force(pairs))/area
+      end do
     end subroutine level
 
     !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is
@@ -104,16 +104,15 @@ contains
     subroutine find_run(side)
       integer, intent(in) :: side
       integer, allocatable :: chain(:)   !! corners and middles by turns
-      integer :: direction, next
+      integer :: corner, direction, next
 
       chain = [line%neighbour(1, side), side, line%neighbour(2, side)]
       do direction = 1, 2
         do
-          associate (corner => chain(size(chain)))
-            next = sum(line%neighbour(:, corner)) - chain(size(chain) - 1)   ! the other one
-            if (.not. is_whole(next) .or. any(chain == next)) exit
-            chain = [chain, next, sum(line%neighbour(:, next)) - corner]
-          end associate
+          corner = chain(size(chain))
+          next = sum(line%neighbour(:, corner)) - chain(size(chain) - 1)   ! the other one
+          if (.not. is_whole(next) .or. any(chain == next)) exit
+          chain = [chain, next, sum(line%neighbour(:, next)) - corner]
         end do
         chain = chain(size(chain):1:-1)
       end do
