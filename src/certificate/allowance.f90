@@ -182,7 +182,7 @@ contains
     !> By how much the gaps of CGAPs between two bodies differ from those of the coordinates [length] [sides].
     pure function gaps_of_cards() result(gap)
       real(wp) :: gap(size(length)), at_node(model%nodes), gap_drawn
-      integer :: k, s
+      integer :: k, node(3), s
 
       at_node = 0.0_wp
       do k = 1, model%single_pairs()
@@ -193,9 +193,8 @@ contains
         end associate
       end do
       do s = 1, size(gap)
-        associate (node => model%body_outline%node(:, s))
-          gap(s) = maxval(at_node(pack(node, node > 0)))
-        end associate
+        node = model%body_outline%node(:, s)
+        gap(s) = maxval(at_node(pack(node, node > 0)))
       end do
     end function gaps_of_cards
   end function new_allowance

@@ -72,22 +72,21 @@ contains
       real(wp), allocatable :: crossing(:), s(:)
       integer, allocatable :: others(:), parts(:)
       integer :: b, k
-      real(wp) :: h
+      real(wp) :: h, high(directions), low(directions)
 
-      associate (low => search%now%low(:, side), high => search%now%high(:, side), &
-                 part => search%now%outline%part(side))
-        parts = search%now%part_tree%meeting(low, high)
-        do b = 1, size(parts)
-          if (parts(b) == part) cycle
-          crossing = crossings(search%now, side, parts(b))
-          s = [quarters, 0.5_wp*(crossing(:size(crossing) - 1) + crossing(2:))]
-          do k = 1, size(s)
-            call look_at_point(point_on(search, side, s(k)), parts(b))
-          end do
+      low = search%now%low(:, side)
+      high = search%now%high(:, side)
+      parts = search%now%part_tree%meeting(low, high)
+      do b = 1, size(parts)
+        if (parts(b) == search%now%outline%part(side)) cycle
+        crossing = crossings(search%now, side, parts(b))
+        s = [quarters, 0.5_wp*(crossing(:size(crossing) - 1) + crossing(2:))]
+        do k = 1, size(s)
+          call look_at_point(point_on(search, side, s(k)), parts(b))
         end do
-        h = 0.5_wp*norm2(search%now%chord(side))
-        others = sides_meeting(search%now, part, low - h, high + h)
-      end associate
+      end do
+      h = 0.5_wp*norm2(search%now%chord(side))
+      others = sides_meeting(search%now, search%now%outline%part(side), low - h, high + h)
       do b = 1, size(others)
         call look_at_itself(side, others(b))
       end do
@@ -100,12 +99,10 @@ contains
       integer, allocatable :: parts(:)
       integer :: b
 
-      associate (point => search%middle(part))
-        parts = search%now%part_tree%meeting(point%x, point%x)
-        do b = 1, size(parts)
-          if (parts(b) /= part) call look_at_point(point, parts(b))
-        end do
-      end associate
+      parts = search%now%part_tree%meeting(search%middle(part)%x, search%middle(part)%x)
+      do b = 1, size(parts)
+        if (parts(b) /= part) call look_at_point(search%middle(part), parts(b))
+      end do
     end subroutine look_at_middle
 
     !> One point of a body, in another.

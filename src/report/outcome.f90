@@ -203,7 +203,7 @@ contains
   subroutine remark_answer(run, found)
     class(solution_type), intent(in) :: run      !! a scene with its answer
     type(findings), intent(inout) :: found       !! warnings and notes are added
-    integer :: k
+    integer :: k, vague
 
     call warn_of_contact()
     do k = 1, scene_warnings
@@ -217,10 +217,9 @@ contains
       end if
     end do
     call warn_of_material()
-    associate (vague => count(run%answer%contact%indeterminate))
-      if (vague > 0) call warn('the forces of '//plural(vague, 'pair')//' are one choice of many, and so '// &
-        'are their pressures: pairs at one place, or parts that cannot bend (`force not unique` in CONTACT)')
-    end associate
+    vague = count(run%answer%contact%indeterminate)
+    if (vague > 0) call warn('the forces of '//plural(vague, 'pair')//' are one choice of many, and so '// &
+      'are their pressures: pairs at one place, or parts that cannot bend (`force not unique` in CONTACT)')
     do k = 1, run%motions%count
       if (.not. run%answer%contact%motion_free(k)) cycle
       call found%add_note(place_type(), 'approach of '//motion_name(run, k)// &
