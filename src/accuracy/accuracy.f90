@@ -12,6 +12,7 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, no_effect
+  use epcont_element_kinematics, only: directions
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
@@ -35,7 +36,7 @@ module epcont_accuracy_accuracy
     logical, allocatable :: approach_unbounded(:)  !! it grows with every finer mesh [motions]
     !> Error of the total contact force; negative: unknown [force]
     real(wp) :: total_force = -1.0_wp
-    !> Of its resultants on bodies; negative: unknown [force] [2, answer's bodies]
+    !> Of its resultants on bodies; negative: unknown [force] [directions, answer's bodies]
     real(wp), allocatable :: body_force(:, :)
     type(contact_sensitivity) :: sensitivity
     logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
@@ -55,6 +56,7 @@ contains
     type(error_fields) :: field
     type(surface_line) :: surface
     logical :: carried, pressed
+    integer :: motions
 
     pressed = any(answer%contact%force > 0.0_wp)
     carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
@@ -63,10 +65,10 @@ contains
     else
       allocate (loads%force(scene%model%pairs, 0), loads%moved(0))
     end if
-    associate (motions => scene%motions%count)
-      allocate (accuracy%approach(motions), accuracy%body_force(2, size(answer%bodies)), source=-1.0_wp)
-      allocate (accuracy%approach_unbounded(motions), accuracy%weak(scene%model%pairs), source=.false.)
-    end associate
+    motions = scene%motions%count
+    allocate (accuracy%approach(motions), source=-1.0_wp)
+    allocate (accuracy%body_force(directions, size(answer%bodies)), source=-1.0_wp)
+    allocate (accuracy%approach_unbounded(motions), accuracy%weak(scene%model%pairs), source=.false.)
     allocate (accuracy%zone(0))
     call assess_mesh()
     if (pressed) call assess_zones()
@@ -99,17 +101,17 @@ contains
       real(wp) :: energy   !! error of the mesh over all of it, but for that of point loads
       integer :: z
 
-      associate (model => scene%model, element => accuracy%element, zones => answer%zones)
-        surface = new_surface_line(model, line, smooth_pressures(model, linear%materials, field%smooth))
-        energy = 0.0_wp
-        if (accuracy%energy_norm > 0.0_wp) energy = accuracy%energy_norm**2* &
-          max(0.0_wp, sum(element, mask=.not. beside_point_loads())/sum(element))
-        accuracy%zone = [(estimate_zone(model, surface, answer, energy, zones(z)), z=1, size(zones))]
-        do z = 1, size(zones)
-          accuracy%zone(z)%too_near = &
-            too_near(model, surface, answer%contact%force, accuracy%zone(z), zones(z)%pairs)
-        end do
-      end associate
+      surface = new_surface_line(scene%model, line, &
+                                 smooth_pressures(scene%model, linear%materials, field%smooth))
+      energy = 0.0_wp
+      if (accuracy%energy_norm > 0.0_wp) energy = accuracy%energy_norm**2* &
+        max(0.0_wp, sum(accuracy%element, mask=.not. beside_point_loads())/sum(accuracy%element))
+      accuracy%zone = [(estimate_zone(scene%model, surface, answer, energy, answer%zones(z)), &
+                        z=1, size(answer%zones))]
+      do z = 1, size(answer%zones)
+        accuracy%zone(z)%too_near = too_near(scene%model, surface, answer%contact%force, accuracy%zone(z), &
+                                             answer%zones(z)%pairs)
+      end do
     end subroutine assess_zones
 
     !> Approaches and forces, and what errors may do to pairs.
@@ -121,20 +123,19 @@ contains
       real(wp), allocatable :: travel(:)
       integer :: j
 
-      associate (problem => linear%problem)
-        travel = abs(problem%initial_gap) + abs(problem%load_gap) &
-                 + matmul(abs(problem%motion), abs(answer%contact%approach))
-      end associate
+      travel = abs(linear%problem%initial_gap) + abs(linear%problem%load_gap) &
+               + matmul(abs(linear%problem%motion), abs(answer%contact%approach))
       accuracy%sensitivity = find_sensitivity(loads%problem, loads%basis, answer%contact%force, travel, &
                                               answer%condition)
       ! What the last step of refinement has not changed is right.
       accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
       off = errors()
-      associate (motions => scene%motions%count, known => [(any(loads%moved == j), j=1, scene%motions%count)])
-        accuracy%approach = merge(off(:motions), -1.0_wp, known)
-        accuracy%approach_unbounded = known .and. [(is_point_load(j), j=1, motions)]
-        call assess_forces(off(motions + 1:))
-      end associate
+      do j = 1, motions
+        if (all(loads%moved /= j)) cycle
+        accuracy%approach(j) = off(j)
+        accuracy%approach_unbounded(j) = is_point_load(j)
+      end do
+      call assess_forces(off(motions + 1:))
       ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones
       ! nothing else tells.
       relative = accuracy%total_force/sum(answer%contact%force)
@@ -152,11 +153,9 @@ contains
       do j = 1, size(loads%moved)
         off(loads%moved(j)) = error_along(j)
       end do
-      associate (motions => scene%motions)
-        associate (of_motions => matmul(transpose(loads%share), loads%force(:, :motions%count)))
-          off(motions%count + 1:) = off(motions%count + 1:) + &
-            sum(abs(matmul(of_motions, shifted_loads(scene%model, line, motions, answer))), dim=2)
-        end associate
+      associate (of_motions => matmul(transpose(loads%share), loads%force(:, :motions)))
+        off(motions + 1:) = off(motions + 1:) + &
+          sum(abs(matmul(of_motions, shifted_loads(scene%model, line, scene%motions, answer))), dim=2)
       end associate
     end function errors
 
@@ -183,11 +182,9 @@ contains
                                                    + wave_height*zone%wave_height + zone%too_near)
         end associate
       end do
-      associate (signed => field%along(1, j), unsigned => field%along(2, j))
-        short = max(abs(signed - near), uncancelled*unsigned)
-        ! Of what pairs or bodies share no part cancels another.
-        if (loads%moved(j) > max(1, scene%motions%count)) short = of_shares*(unsigned + abs(near))
-      end associate
+      short = max(abs(field%along(1, j) - near), uncancelled*field%along(2, j))
+      ! Of what pairs or bodies share no part cancels another.
+      if (loads%moved(j) > max(1, motions)) short = of_shares*(field%along(2, j) + abs(near))
       ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its
       ! field is too small. Of unlike elements that bear the largest weight counts.
       error = vague*(end_error + maxval(accuracy%zone%weights%product)*short/ &
@@ -197,25 +194,23 @@ contains
     !> The total contact force, and what of it each body bears: nothing is off where loads alone make it.
     subroutine assess_forces(off)
       real(wp), intent(in) :: off(:)   !! errors of sums that come from errors of gaps [force] [any]
-      real(wp) :: turned, turned_on(2, scene%model%bodies)
-      logical :: given(2, scene%model%bodies)
+      real(wp) :: turned, turned_on(directions, scene%model%bodies)
+      logical :: given(directions, scene%model%bodies)
       integer :: c, i
 
-      associate (column => loads%column)
-        given = .false.
-        given(:, answer%bodies%body) = column == 0
-        if (scene%model%has_rings()) given(1, :) = .false.
-        call find_turned(scene%model, line, answer, given, turned, turned_on)
-        where (column == 0) accuracy%body_force = 0.0_wp
-        if (.not. loads%basis%sound) return
-        accuracy%total_force = with_waves(off, 1) + turned
-        do i = 1, size(answer%bodies)
-          do c = 1, 2
-            if (column(c, i) > 0) &
-              accuracy%body_force(c, i) = with_waves(off, column(c, i)) + turned_on(c, answer%bodies(i)%body)
-          end do
+      given = .false.
+      given(:, answer%bodies%body) = loads%column == 0
+      if (scene%model%has_rings()) given(1, :) = .false.
+      call find_turned(scene%model, line, answer, given, turned, turned_on)
+      where (loads%column == 0) accuracy%body_force = 0.0_wp
+      if (.not. loads%basis%sound) return
+      accuracy%total_force = with_waves(off, 1) + turned
+      do i = 1, size(answer%bodies)
+        do c = 1, directions
+          if (loads%column(c, i) > 0) accuracy%body_force(c, i) = &
+            with_waves(off, loads%column(c, i)) + turned_on(c, answer%bodies(i)%body)
         end do
-      end associate
+      end do
     end subroutine assess_forces
 
     !> Where motions are given, waves of the gap that are not pressed flat bear more than what is meant: the
@@ -228,10 +223,9 @@ contains
 
       force = 0.0_wp
       do z = 1, merge(size(accuracy%zone), 0, off(k) > least_difference*sum(answer%contact%force))
-        associate (pairs => answer%zones(z)%pairs)
-          force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)* &
-                          sum(abs(loads%share(pairs, k))*answer%contact%force(pairs))
-        end associate
+        force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)* &
+                        sum(abs(loads%share(answer%zones(z)%pairs, k))* &
+                            answer%contact%force(answer%zones(z)%pairs))
       end do
       force = off(k) + force
     end function with_waves
@@ -240,10 +234,9 @@ contains
     pure logical function is_point_load(j)
       integer, intent(in) :: j
 
-      associate (model => scene%model, motions => scene%motions, node => scene%motions%node(j), &
-                 c => scene%motions%component(j))
+      associate (model => scene%model, node => scene%motions%node(j), c => scene%motions%component(j))
         is_point_load = abs(model%load(c, node)) > &
-                        concentrated*sum(abs(model%load(c, :)), mask=model%body == motions%body(j)) .and. &
+                        concentrated*sum(abs(model%load(c, :)), mask=model%body == model%body(node)) .and. &
                         count(model%leader(c, :) == node) == 1 .and. first_element(model, node) > 0
       end associate
     end function is_point_load
@@ -258,7 +251,7 @@ contains
 
       beside = .false.
       seen = 0
-      do j = 1, scene%motions%count
+      do j = 1, motions
         if (.not. is_point_load(j)) cycle
         call wide_patch(scene%model, table, scene%motions%node(j), seen, patch)
         beside(patch) = .true.
@@ -273,18 +266,18 @@ contains
 
       off = 0.0_wp
       do z = 1, size(accuracy%zone)
-        associate (pairs => answer%zones(z)%pairs, beyond => answer%zones(z)%beyond, &
-                   error => accuracy%zone(z)%pressure)
-          off(pairs) = max(0.0_wp, error)
+        off(answer%zones(z)%pairs) = max(0.0_wp, accuracy%zone(z)%pressure)
+        associate (beyond => answer%zones(z)%beyond)
           do k = 1, size(beyond)
-            off(beyond(k)) = max(off(beyond(k)), error)
+            off(beyond(k)) = max(off(beyond(k)), accuracy%zone(z)%pressure)
           end do
         end associate
       end do
-      associate (contact => answer%contact, stiffest => [(linear%problem%flexibility(k, k), k=1, size(off))])
-        off = off*line%tributary + accuracy%sensitivity%rounding*maxval(contact%force)   ! now of the force
-        weak = merge(contact%force <= off, contact%gap <= stiffest*off, contact%touching)
-      end associate
+      ! Now of the force; what its pair gives way by under it alone is the least.
+      off = off*line%tributary + accuracy%sensitivity%rounding*maxval(answer%contact%force)
+      weak = merge(answer%contact%force <= off, &
+                   answer%contact%gap <= [(linear%problem%flexibility(k, k), k=1, size(off))]*off, &
+                   answer%contact%touching)
     end function find_weak
   end subroutine assess
 

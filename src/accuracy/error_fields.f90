@@ -9,6 +9,7 @@ module epcont_accuracy_error_fields
   use epcont_accuracy_recovery, only: patch_table, recover_strains
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_places
+  use epcont_element_kinematics, only: components
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_scene_state, only: scene_state
@@ -24,7 +25,7 @@ module epcont_accuracy_error_fields
 
   !> Strains less smooth ones are errors: their energies, and their products with those of unit loads.
   type :: error_fields
-    real(wp), allocatable :: smooth(:, :)   !! strains of the answer [4, places of the patches]
+    real(wp), allocatable :: smooth(:, :)   !! strains of the answer [components, places of the patches]
     real(wp), allocatable :: element(:)     !! [energy] [elements]
     real(wp) :: energy = 0.0_wp             !! of the answer
     real(wp), allocatable :: along(:, :)    !! of all elements, of each without its sign [energy] [2, loads]
@@ -48,7 +49,7 @@ contains
     type(patch_table), intent(in) :: table       !! of its elements
     real(wp), intent(in) :: unit_force(:, :)     !! contact forces under each unit load [pairs, loads]
     type(error_fields), intent(out) :: field     !! what is off
-    !> Of the answer, then of some unit loads [4, any, 1 + loads]
+    !> Of the answer, then of some unit loads [components, any, 1 + loads]
     real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)
     type(error_product) :: product
     integer :: first, j, k, loads
@@ -57,7 +58,7 @@ contains
       allocate (field%along(2, size(unit_force, 2)), field%missing(size(unit_force, 2)))
       do first = 1, max(1, size(unit_force, 2)), loads_at_once
         loads = min(loads_at_once, size(unit_force, 2) - first + 1)
-        allocate (strain(4, model%points, 1 + loads))
+        allocate (strain(components, model%points, 1 + loads))
         strain(:, :, 1) = answer%strain
         do j = 1, loads
           strain(:, :, 1 + j) = linear%operator%strains(model, linear%displacements( &
@@ -88,13 +89,14 @@ contains
     type(patch_table), intent(in) :: table                !! of its elements
     type(scene_materials), intent(in) :: materials        !! of its sections
     real(wp), intent(in) :: volume(:)                     !! of the integration points [points]
-    real(wp), contiguous, intent(in) :: strain(:, :, :)   !! [4, points, fields]
-    real(wp), contiguous, intent(in) :: smooth(:, :, :)   !! [4, places, fields]
+    real(wp), contiguous, intent(in) :: strain(:, :, :)   !! [components, points, fields]
+    real(wp), contiguous, intent(in) :: smooth(:, :, :)   !! [components, places, fields]
     !> Of the first field, where anything yields [points]
     type(point_state), allocatable, intent(in) :: state(:)
     type(error_product) :: product
     type(point_state) :: before, after
-    real(wp) :: own(4, most_places), error(4, most_places, size(strain, 3)), part(most_places), cross, one
+    real(wp) :: own(components, most_places), error(components, most_places, size(strain, 3))
+    real(wp) :: part(most_places), cross, one
     real(wp) :: energy(2, size(strain, 3))   !! of each field's error, and of its own strain
     logical :: yielded
     integer :: e, f, fields, k
@@ -148,10 +150,10 @@ contains
   pure subroutine compare(kind, place, strain, smooth, own, error)
     type(element_kind), intent(in) :: kind
     integer, contiguous, intent(in) :: place(:)
-    real(wp), contiguous, intent(in) :: strain(:, :)      !! [4, its points]
-    real(wp), contiguous, intent(in) :: smooth(:, :)      !! [4, places of all]
-    real(wp), intent(inout) :: own(4, most_places), error(4, most_places)
-    real(wp) :: middle(4)
+    real(wp), contiguous, intent(in) :: strain(:, :)      !! [components, its points]
+    real(wp), contiguous, intent(in) :: smooth(:, :)      !! [components, places of all]
+    real(wp), intent(inout) :: own(components, most_places), error(components, most_places)
+    real(wp) :: middle(components)
     integer :: i, k
 
     if (size(place) == 3) then   ! what follows below, for most of all elements
@@ -177,7 +179,7 @@ contains
   !> The stress of one strain, elastic, times another strain; in a sheet their components zz are none.
   pure real(wp) function elastic_product(cross, shear, one, other) result(product)
     real(wp), intent(in) :: cross, shear
-    real(wp), intent(in) :: one(4), other(4)
+    real(wp), intent(in) :: one(components), other(components)
 
     product = cross*(one(1) + one(2) + one(3))*(other(1) + other(2) + other(3)) &
               + shear*(2.0_wp*(one(1)*other(1) + one(2)*other(2) + one(3)*other(3)) + one(4)*other(4))

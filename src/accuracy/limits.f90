@@ -45,16 +45,15 @@ contains
     type(contact_zone), intent(in) :: zone   !! of these pairs
     real(wp), intent(in) :: largest          !! pressure there [stress]
     integer, allocatable :: within(:)
-    integer :: across, i, k
+    integer :: across, ends(2), i, k
     real(wp) :: mirror(2, 2)   !! places of lines of symmetry at the ends, across x and across y [length]
 
     has_tip = .true.
     mirror = nowhere
+    ends = [zone%first, zone%last]
     do k = 1, 2
-      associate (pair => merge(zone%first, zone%last, k == 1))
-        across = merge(1, 2, abs(model%normal(2, pair)) > abs(model%normal(1, pair)))
-        if (line%mirrored(pair)) mirror(across, k) = line%x(across, pair)
-      end associate
+      across = merge(1, 2, abs(model%normal(2, ends(k))) > abs(model%normal(1, ends(k))))
+      if (line%mirrored(ends(k))) mirror(across, k) = line%x(across, ends(k))
     end do
     ! a corner on the axis bears nothing by itself
     within = [zone%pairs, pack(zone%beyond, line%tributary(zone%beyond) == 0.0_wp)]
@@ -123,15 +122,10 @@ contains
       type(turn_type) :: here
       integer :: k
 
-      is_flush = .false.
       here = turn_at(model, node, nowhere)
-      if (here%angle <= corner) return
-      do k = 1, 2
-        associate (pair => merge(zone%first, zone%last, k == 1))
-          is_flush = is_flush .or. corner_inside(model, line%node(pair)) > 0.0_wp .and. &
-                     norm2(line%x(:, pair) - model%x(:, node)) <= flush*here%reach
-        end associate
-      end do
+      is_flush = here%angle > corner .and. &
+                 any([(corner_inside(model, line%node(ends(k))) > 0.0_wp .and. &
+                       norm2(line%x(:, ends(k)) - model%x(:, node)) <= flush*here%reach, k=1, 2)])
     end function is_flush
   end function has_tip
 
@@ -203,8 +197,7 @@ contains
       associate (node => model%row_node(i))
         if (abs(model%row_weight(i)) < least_weight) cycle
         side = merge(1, 2, node == line%node(pair))
-        if (side == 2) rigid = rigid .and. (model%around%start(node) == model%around%start(node + 1) .or. &
-                                            all(model%held(:, node)))
+        if (side == 2) rigid = rigid .and. (size(model%around%of(node)) == 0 .or. all(model%held(:, node)))
         inside(side) = max(inside(side), corner_inside(model, node))
       end associate
     end do
@@ -220,10 +213,9 @@ contains
   pure real(wp) function corner_inside(model, node) result(inside)
     type(model_type), intent(in) :: model
     integer, intent(in) :: node
+    type(turn_type) :: turn
 
-    inside = 0.0_wp
-    associate (turn => turn_at(model, node, nowhere))
-      if (turn%angle > corner) inside = pi - turn%angle
-    end associate
+    turn = turn_at(model, node, nowhere)
+    inside = merge(pi - turn%angle, 0.0_wp, turn%angle > corner)
   end function corner_inside
 end module epcont_accuracy_limits

@@ -6,6 +6,7 @@ module epcont_accuracy_narrow_zone
   use epcont_accuracy_zone_error, only: zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
+  use epcont_element_kinematics, only: directions
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
@@ -50,27 +51,25 @@ contains
       near = [zone%peak, line%neighbour(:, zone%peak)]
       do k = 1, 3
         if (near(k) == 0) cycle
-        associate (angle => line%bend(near(k)), curvature => line%curvature(near(k)))
-          ! beyond, one pair faces a step, or another side
-          if (curvature <= 0.0_wp .or. angle > corner) cycle
-          bulge = max(bulge, angle**2/curvature/8.0_wp)   ! an eighth of angle times spacing
-        end associate
+        ! beyond, one pair faces a step, or another side
+        if (line%curvature(near(k)) <= 0.0_wp .or. line%bend(near(k)) > corner) cycle
+        ! an eighth of angle times spacing
+        bulge = max(bulge, line%bend(near(k))**2/line%curvature(near(k))/8.0_wp)
       end do
     end function bulge
 
     !> Force of the peak over the depth of its elements [force/length].
     pure real(wp) function force_of_depth()
       real(wp) :: depth
-      integer :: element, k
+      integer :: element, k, node
 
       force_of_depth = 0.0_wp
       do k = 1, 2
-        associate (node => model%pair_node(k, zone%peak))
-          element = first_element(model, node)
-          if (element == 0) cycle
-          depth = model%depth(element, model%x(1, node))
-          if (depth > 0.0_wp) force_of_depth = force(zone%peak)/depth
-        end associate
+        node = model%pair_node(k, zone%peak)
+        element = first_element(model, node)
+        if (element == 0) cycle
+        depth = model%depth(element, model%x(1, node))
+        if (depth > 0.0_wp) force_of_depth = force(zone%peak)/depth
       end do
     end function force_of_depth
   end function too_near
@@ -96,7 +95,8 @@ contains
     type(answer_type), intent(in) :: answer      !! with forces and zones
     real(wp) :: load(motions%count, size(answer%zones))
     real(wp) :: aside
-    integer :: bearing, i, k, m, z
+    integer, allocatable :: beside(:)
+    integer :: bearing, body, i, k, m, z
 
     load = 0.0_wp
     do z = 1, size(answer%zones)
@@ -105,17 +105,15 @@ contains
         if (bearing > narrow) cycle
         k = pairs(maxloc(line%tributary(pairs), dim=1, &   ! of equal ones the widest
                          mask=force(pairs) >= (1.0_wp - no_effect)*maxval(force(pairs))))
-        associate (beside => pack(line%neighbour(:, k), line%neighbour(:, k) > 0))
-          aside = maxval([0.0_wp, (0.5_wp*line%distance(k, beside(i))/bearing, i=1, size(beside))])
-        end associate
+        beside = pack(line%neighbour(:, k), line%neighbour(:, k) > 0)
+        aside = maxval([0.0_wp, (0.5_wp*line%distance(k, beside(i))/bearing, i=1, size(beside))])
         do i = 1, 2   ! A is pushed against the normal, B along it
-          associate (node => model%pair_node(i, k))
-            do m = 1, motions%count
-              if (motions%body(m) == model%body(node)) load(m, z) = load(m, z) + &
-                (2*i - 3)*sum(force(pairs))*aside/motions%parts%extent(model%body(node)) &
-                *motions%coefficient(part_motions, motions%parts%of_node(node), m)
-            end do
-          end associate
+          body = model%body(model%pair_node(i, k))
+          do m = 1, motions%count
+            if (motions%body(m) == body) load(m, z) = load(m, z) + &
+              (2*i - 3)*sum(force(pairs))*aside/motions%parts%extent(body) &
+              *motions%coefficient(part_motions, motions%parts%of_node(model%pair_node(i, k)), m)
+          end do
         end do
       end associate
     end do
@@ -130,14 +128,16 @@ contains
     type(model_type), intent(in) :: model               !! the scene
     class(contact_line), intent(in) :: line             !! of its pairs
     type(answer_type), intent(in) :: answer             !! with forces and zones
-    !> Loads make that component of the resultant [2, bodies]
+    !> Loads make that component of the resultant [directions, bodies]
     logical, intent(in) :: given(:, :)
     real(wp), intent(out) :: total                      !! of the total contact force [force]
-    real(wp), intent(out) :: of_body(2, model%bodies)   !! of the resultant on each body [force]
-    real(wp) :: along, change(2), least, more, own(2), on(2)
-    real(wp), dimension(2, model%bodies) :: lean, resultant
+    !> Of the resultant on each body [force]
+    real(wp), intent(out) :: of_body(directions, model%bodies)
+    real(wp) :: along, least, more
+    real(wp), dimension(directions) :: change, own, on
+    real(wp), dimension(directions, model%bodies) :: lean, resultant
     logical :: is_narrow
-    integer :: b, body(2), i, z
+    integer :: b, body(2), i, k, z
 
     total = 0.0_wp
     of_body = 0.0_wp
@@ -149,26 +149,25 @@ contains
       associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
         is_narrow = bearing_pairs(model, force(pairs)) <= narrow
         do i = 1, size(pairs)
-          associate (k => pairs(i), normal => model%normal(:, pairs(i)))
-            body = model%body(model%pair_node(:, k))
-            own = -smooth_normal(k)
-            on = kept(resultant(:, body), given(:, body) .and. abs(resultant(:, body)) > least)
-            if (all(own == 0.0_wp) .or. norm2(on) <= least) cycle
-            ! The pair bears the same along `on`, if it bears anything there.
-            along = 0.0_wp
-            if (is_narrow .or. abs(dot_product(on, own)) >= bears_on*norm2(on)) &
-              along = excess(dot_product(on, normal), dot_product(on, own), no_effect*norm2(on))
-            change = (1.0_wp + along)*own - normal
-            if (is_narrow) total = total + askew*force(k)*abs(along)
-            if (.not. is_narrow) more = more + force(k)*along
-            do b = 1, 2   ! A is pushed against the normal, B along it
-              if (is_narrow) then
-                of_body(:, body(b)) = of_body(:, body(b)) + askew*force(k)*abs(change)
-              else
-                lean(:, body(b)) = lean(:, body(b)) + (2*b - 3)*force(k)*change
-              end if
-            end do
-          end associate
+          k = pairs(i)
+          body = model%body(model%pair_node(:, k))
+          own = -smooth_normal(k)
+          on = kept(resultant(:, body), given(:, body) .and. abs(resultant(:, body)) > least)
+          if (all(own == 0.0_wp) .or. norm2(on) <= least) cycle
+          ! The pair bears the same along `on`, if it bears anything there.
+          along = 0.0_wp
+          if (is_narrow .or. abs(dot_product(on, own)) >= bears_on*norm2(on)) &
+            along = excess(dot_product(on, model%normal(:, k)), dot_product(on, own), no_effect*norm2(on))
+          change = (1.0_wp + along)*own - model%normal(:, k)
+          if (is_narrow) total = total + askew*force(k)*abs(along)
+          if (.not. is_narrow) more = more + force(k)*along
+          do b = 1, 2   ! A is pushed against the normal, B along it
+            if (is_narrow) then
+              of_body(:, body(b)) = of_body(:, body(b)) + askew*force(k)*abs(change)
+            else
+              lean(:, body(b)) = lean(:, body(b)) + (2*b - 3)*force(k)*change
+            end if
+          end do
         end do
       end associate
       total = total + abs(more)
@@ -182,14 +181,13 @@ contains
     !! strongest there does, and on what that presses on.
     subroutine turn_shared_places()
       real(wp) :: way
-      integer :: k
+      integer, allocatable :: pairs(:)
       integer :: strongest(model%pairs)   !! at the place of each
 
-      associate (start => line%at_place%start, force => answer%contact%force)
-        do k = 1, size(start) - 1
-          associate (pairs => line%at_place%group(start(k):start(k + 1) - 1))
-            strongest(pairs) = pairs(maxloc(force(pairs), dim=1))
-          end associate
+      associate (force => answer%contact%force)
+        do k = 1, size(line%at_place%start) - 1
+          pairs = line%at_place%of(k)
+          strongest(pairs) = pairs(maxloc(force(pairs), dim=1))
         end do
         do k = 1, model%pairs
           if (force(k) <= 0.0_wp .or. strongest(k) == k) cycle
@@ -209,7 +207,7 @@ contains
     !! or without lines.
     pure function smooth_normal(pair) result(normal)
       integer, intent(in) :: pair
-      real(wp) :: normal(2)
+      real(wp) :: normal(directions)
       integer :: c
 
       normal = 0.0_wp
@@ -226,9 +224,9 @@ contains
   !> What stays the same of the resultants on two bodies where their contact turns: what loads make, else the
   !! larger one.
   pure function kept(resultant, given) result(on)
-    real(wp), intent(in) :: resultant(2, 2)
-    logical, intent(in) :: given(2, 2)
-    real(wp) :: on(2), of_loads(2, 2)
+    real(wp), intent(in) :: resultant(directions, 2)
+    logical, intent(in) :: given(directions, 2)
+    real(wp) :: on(directions), of_loads(directions, 2)
 
     of_loads = merge(resultant, 0.0_wp, given)
     if (.not. any(given)) of_loads = resultant
@@ -248,7 +246,7 @@ contains
   pure function normal_at(line, node) result(normal)
     class(boundary_line), intent(in) :: line
     integer, intent(in) :: node
-    real(wp) :: normal(2)
+    real(wp) :: normal(directions)
     integer :: at(2)
 
     normal = 0.0_wp

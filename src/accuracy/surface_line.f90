@@ -93,11 +93,10 @@ contains
   pure integer function first_element(model, node) result(element)
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: node             !! any
+    integer, allocatable :: elements(:)
 
-    element = 0
-    associate (first => model%around%start(node), beyond => model%around%start(node + 1))
-      if (beyond > first) element = model%around%group(first)
-    end associate
+    elements = [model%around%of(node), 0]
+    element = elements(1)
   end function first_element
 
   !> The elements at a node that tell how it gives way: those of the section of the first; none where it is
@@ -108,7 +107,7 @@ contains
     integer, allocatable :: elements(:)
     integer :: i
 
-    elements = model%around%group(model%around%start(node):model%around%start(node + 1) - 1)
+    elements = model%around%of(node)
     if (size(elements) == 0) return
     elements = pack(elements, model%section(elements) == model%section(elements(1)))
     if (all(model%is_held([1, 2], node)) .or. &
@@ -126,6 +125,7 @@ contains
     type(point_state) :: state
     real(wp) :: side(2), weight(2)
     logical :: seen(2)
+    integer, allocatable :: elements(:)
     integer :: i, k, n
 
     pressure = 0.0_wp
@@ -133,18 +133,17 @@ contains
       side = 0.0_wp
       weight = 0.0_wp
       do i = model%row_start(k), model%row_start(k + 1) - 1
-        associate (elements => elements_behind(model, model%row_node(i)), normal => model%normal(:, k), &
-                   stress => state%stress)
-          if (size(elements) == 0) cycle
-          associate (section => materials%section(model%section(elements(1))))
-            call section%law%update(smooth(:, model%row_node(i)), point_state(), state)
-          end associate
-          ! the row's first node is one side, the others share the other
-          n = merge(1, 2, i == model%row_start(k))
+        elements = elements_behind(model, model%row_node(i))
+        if (size(elements) == 0) cycle
+        call materials%section(model%section(elements(1)))%law%update(smooth(:, model%row_node(i)), &
+                                                                      point_state(), state)
+        ! the row's first node is one side, the others share the other
+        n = merge(1, 2, i == model%row_start(k))
+        associate (normal => model%normal(:, k), stress => state%stress)
           side(n) = side(n) - model%row_weight(i)*(stress(1)*normal(1)**2 + stress(2)*normal(2)**2 + &
                                                    2.0_wp*stress(4)*normal(1)*normal(2))
-          weight(n) = weight(n) + model%row_weight(i)
         end associate
+        weight(n) = weight(n) + model%row_weight(i)
       end do
       seen = abs(weight) > least_weight
       if (any(seen)) pressure(k) = sum(side/merge(weight, 1.0_wp, seen), mask=seen)/count(seen)
@@ -157,18 +156,17 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: pair             !! which pair
     real(wp) :: nu, side(2)
-    integer :: i, k
+    integer, allocatable :: elements(:)
+    integer :: i, k, section
 
     side = 0.0_wp
     do i = model%row_start(pair), model%row_start(pair + 1) - 1
       k = merge(1, 2, i == model%row_start(pair))
-      associate (elements => elements_behind(model, model%row_node(i)))
-        if (size(elements) == 0) cycle
-        associate (section => model%section(elements(1)))
-          nu = merge(0.0_wp, model%poisson(section), model%kinematics(section) == plane_stress)
-          side(k) = max(side(k), (1.0_wp - nu**2)/model%young(section))
-        end associate
-      end associate
+      elements = elements_behind(model, model%row_node(i))
+      if (size(elements) == 0) cycle
+      section = model%section(elements(1))
+      nu = merge(0.0_wp, model%poisson(section), model%kinematics(section) == plane_stress)
+      side(k) = max(side(k), (1.0_wp - nu**2)/model%young(section))
     end do
     compliance = sum(side)
   end function surface_compliance
@@ -190,9 +188,8 @@ contains
     height = 0.0_wp
     do k = 1, size(pairs)
       call uneven_bend(pairs(k), angle, spacing, alternates(k))
-      associate (compliance => line%compliance(pairs(k)))
-        if (compliance > 0.0_wp) pressure = max(pressure, waves_flattened*angle/compliance)
-      end associate
+      if (line%compliance(pairs(k)) > 0.0_wp) &
+        pressure = max(pressure, waves_flattened*angle/line%compliance(pairs(k)))
       height = height + angle*spacing/8.0_wp/size(pairs)
     end do
     are_waves = count(alternates) >= waves_are_common*size(pairs)

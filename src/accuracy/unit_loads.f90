@@ -11,6 +11,7 @@ module epcont_accuracy_unit_loads
   use epcont_base_tolerances, only: least_difference, solved_to
   use epcont_contact_basis, only: contact_basis, new_basis, respond
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
+  use epcont_element_kinematics, only: directions
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
@@ -44,7 +45,7 @@ module epcont_accuracy_unit_loads
     !! exert on each other is one [pairs, any]
     real(wp), allocatable :: share(:, :)
     !> There, of each component of what contact exerts on each body; 0: loads alone make it; negative: not
-    !! known [2, bodies]
+    !! known [directions, bodies]
     integer, allocatable :: column(:, :)
   end type unit_loads
 
@@ -63,39 +64,36 @@ contains
     call drop_motions(loads%problem, answer%contact%motion_free)
     loads%basis = new_basis(loads%problem, answer%contact%force > 0.0_wp)
     call find_shares()
-    associate (pairs => scene%model%pairs, motions => scene%motions%count)
-      loads%force = reshape([unit_forces(), closing_forces(loads%problem, loads%basis, loads%share)], &
-                            [pairs, motions + size(loads%share, 2)])
-      loads%moved = pack([(j, j=1, size(loads%force, 2))], any(loads%force /= 0.0_wp, dim=1) .and. &
-                         [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))])
-    end associate
+    loads%force = reshape([unit_forces(), closing_forces(loads%problem, loads%basis, loads%share)], &
+                          [scene%model%pairs, scene%motions%count + size(loads%share, 2)])
+    loads%moved = pack([(j, j=1, size(loads%force, 2))], any(loads%force /= 0.0_wp, dim=1) .and. &
+                       [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))])
 
   contains
 
     !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
     subroutine find_shares()
       real(wp), dimension(scene%model%pairs) :: one, other   !! of one component, of the other
-      integer :: c, i, k
+      integer :: body, c, i, k
 
       allocate (loads%share(scene%model%pairs, 1), source=1.0_wp)
-      allocate (loads%column(2, size(answer%bodies)), source=merge(-1, 0, size(answer%bodies) > most_bodies))
+      allocate (loads%column(directions, size(answer%bodies)), &
+                source=merge(-1, 0, size(answer%bodies) > most_bodies))
       if (size(answer%bodies) > most_bodies) return
       do i = 1, size(answer%bodies)
-        do c = merge(2, 1, scene%model%has_rings()), 2
-          associate (body => answer%bodies(i)%body)
-            if (is_free(body, c)) cycle
-            one = shares_of_pairs(scene%model, body, c)
-            other = shares_of_pairs(scene%model, body, 3 - c)
-          end associate
+        body = answer%bodies(i)%body
+        do c = merge(2, 1, scene%model%has_rings()), directions
+          if (is_free(body, c)) cycle
+          one = shares_of_pairs(scene%model, body, c)
+          other = shares_of_pairs(scene%model, body, 3 - c)
           if (any(abs(one) > least_difference) .and. .not. &
               any(abs(one) + abs(other) > least_difference .and. answer%contact%touching)) then
             loads%column(c, i) = -1
             cycle
           end if
           do k = 2, size(loads%share, 2)
-            associate (known => loads%share(:, k))
-              if (min(maxval(abs(known - one)), maxval(abs(known + one))) <= least_difference) exit
-            end associate
+            if (min(maxval(abs(loads%share(:, k) - one)), &
+                    maxval(abs(loads%share(:, k) + one))) <= least_difference) exit
           end do
           if (k > size(loads%share, 2)) loads%share = reshape([loads%share, one], [size(one), k])
           loads%column(c, i) = k
@@ -107,20 +105,21 @@ contains
     !! at SUPORT freedoms: that one may be a sum of some that turn the body.
     pure logical function is_free(body, c)
       integer, intent(in) :: body, c
-      real(wp), allocatable :: basis(:, :), rest(:, :)   !! displacements of its nodes [2, nodes]
-      real(wp), allocatable :: moved(:, :, :)            !! orthonormal ones of its motions [2, nodes, any]
+      real(wp), allocatable :: basis(:, :), rest(:, :)   !! displacements of its nodes [directions, nodes]
+      !> Orthonormal ones of its motions [directions, nodes, any]
+      real(wp), allocatable :: moved(:, :, :)
       integer, allocatable :: nodes(:)
       integer :: i, m
 
       nodes = pack([(i, i=1, scene%model%nodes)], scene%model%body == body)
-      allocate (moved(2, size(nodes), 0))
+      allocate (moved(directions, size(nodes), 0))
       do m = 1, scene%motions%count
         if (scene%motions%body(m) /= body) cycle
         basis = reshape([(scene%motions%displacement(scene%model, nodes(i), m), i=1, size(nodes))], &
-                        [2, size(nodes)])
+                        [directions, size(nodes)])
         rest = across(moved, basis)
         if (norm2(rest) > least_difference*norm2(basis)) &
-          moved = reshape([moved, rest/norm2(rest)], [2, size(nodes), size(moved, 3) + 1])
+          moved = reshape([moved, rest/norm2(rest)], [directions, size(nodes), size(moved, 3) + 1])
       end do
       basis = spread(merge(1.0_wp, 0.0_wp, [1, 2] == c), 2, size(nodes))
       is_free = norm2(across(moved, basis)) <= least_difference*norm2(basis)
@@ -149,13 +148,12 @@ contains
   pure function across(moved, displacement) result(rest)
     real(wp), intent(in) :: moved(:, :, :), displacement(:, :)
     real(wp) :: rest(size(moved, 1), size(moved, 2))
-    integer :: k
+    integer :: k, m
 
     rest = displacement
     do k = 1, 2*size(moved, 3)
-      associate (along => moved(:, :, 1 + mod(k - 1, size(moved, 3))))
-        rest = rest - sum(along*rest)*along
-      end associate
+      m = 1 + mod(k - 1, size(moved, 3))
+      rest = rest - sum(moved(:, :, m)*rest)*moved(:, :, m)
     end do
   end function across
 

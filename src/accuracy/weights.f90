@@ -105,12 +105,10 @@ contains
     integer, intent(in) :: estimated_as   !! as the table of elements says
     logical, intent(in) :: rings          !! the elements are
     logical, intent(in) :: yielded        !! something in the scene has
-    real(wp) :: w(12)
     integer :: kind
 
     kind = estimated_as
     if (rings .and. kind /= by_quadrilaterals) kind = merge(4, 5, kind == by_linear_triangles)
-    w = thousandths(2*kind - merge(0, 1, yielded), :)/1000.0_wp
-    weights = estimate_weights(w(1), w(2), w(3), w(4), w(5), w(6), w(7), w(8), w(9), w(10), w(11), w(12))
+    weights = transfer(thousandths(2*kind - merge(0, 1, yielded), :)/1000.0_wp, weights)
   end function weights_of
 end module epcont_accuracy_weights

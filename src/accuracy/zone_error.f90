@@ -138,10 +138,8 @@ contains
       if (zone%open(e) > 0.0_wp) then
         found%cut_off = n > few .and. peak == first
       else
-        associate (tell => edge_pairs(model, line, zone%pairs(first)), &
-                   high => p([first, second]) >= falls*largest)
-          found%edge = any(high(:tell))
-        end associate
+        found%edge = any(p([first, second]) >= falls*largest .and. &
+                         [1, 2] <= edge_pairs(model, line, zone%pairs(first)))
         if (peak == first) found%short = beyond_mean*(largest - p(second))
       end if
     end function end_at
@@ -166,20 +164,20 @@ contains
     !> How far the elements at the peak that can be strained reach into their bodies; of six-node ones half
     !! [length].
     pure real(wp) function depth_behind() result(depth)
+      real(wp), allocatable :: along(:)
+      integer, allocatable :: elements(:)
       integer :: i, k
 
       depth = 0.0_wp
       do k = 1, 2
-        associate (elements => elements_behind(model, model%pair_node(k, error%peak)))
-          do i = 1, size(elements)
-            associate (corner => model%connectivity(:model%corners(elements(i)), elements(i)))
-              associate (along => matmul(model%normal(:, error%peak), model%x(:, corner)))
-                depth = max(depth, (maxval(along) - minval(along)) &
-                                   /model%kinds(model%kind(elements(i)))%degree)
-              end associate
-            end associate
-          end do
-        end associate
+        elements = elements_behind(model, model%pair_node(k, error%peak))
+        do i = 1, size(elements)
+          associate (e => elements(i))
+            along = matmul(model%normal(:, error%peak), &
+                           model%x(:, model%connectivity(:model%corners(e), e)))
+            depth = max(depth, (maxval(along) - minval(along))/model%kinds(model%kind(e))%degree)
+          end associate
+        end do
       end do
     end function depth_behind
 

@@ -108,8 +108,6 @@ contains
         do i = 1, size(deck)
           if (any(deck(i)%text(max(1, len(deck(i)%text) - 3):) == ['.lst', '.csv', '.vtu'])) &
             call refuse(deck(i)%text//': results are written under such names: a deck is named DECK.dat')
-        end do
-        do i = 2, size(deck)
           do j = 1, i - 1
             if (stem_of(deck(i)%text) == stem_of(deck(j)%text)) &
               call refuse(deck(j)%text//' and '//deck(i)%text// &

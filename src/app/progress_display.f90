@@ -3,7 +3,7 @@
 module epcont_app_progress_display
   use epcont_app_process, only: print_error, terminal_columns
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_text, only: newline, short_real, text_of
+  use epcont_base_text, only: formatted, newline, short_real, text_of
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plasticity_expectation, only: expectation_type, new_expectation
   use epcont_plasticity_observer, only: iteration_record, observer
@@ -124,18 +124,16 @@ contains
   pure function duration(seconds) result(text)
     real(wp), intent(in) :: seconds   !! a time [s]
     character(len=:), allocatable :: text
-    character(len=24) :: buffer
 
     if (seconds < 9.95_wp) then
-      write (buffer, '(f4.1, a)') seconds, ' s'
+      text = formatted('(f4.1)', seconds)//' s'
     else if (seconds < 119.5_wp) then
-      write (buffer, '(i0, a)') nint(seconds), ' s'
+      text = text_of(nint(seconds))//' s'
     else if (seconds < 119.5_wp*60) then
-      write (buffer, '(i0, a)') nint(seconds/60), ' min'
+      text = text_of(nint(seconds/60))//' min'
     else
-      write (buffer, '(f12.1, a)') seconds/3600, ' h'
+      text = formatted('(f12.1)', seconds/3600)//' h'
     end if
-    text = trim(adjustl(buffer))
   end function duration
 
   !> A row a stage; each begins with the name of the deck, so that those of many decks in one file can be told
@@ -150,21 +148,21 @@ contains
 
     text = stem//': stage               wall s  processor s'//newline
     do k = 1, stages
-      text = text//row(stage_name(k), watch%wall(k), watch%processor(k))
+      text = text//row(stage_name(k), watch%spent(:, k))
     end do
-    text = text//row('all          ', sum(watch%wall), sum(watch%processor))
+    text = text//row('all          ', sum(watch%spent, dim=2))
     write (buffer, '(f13.1)') real(peak, wp)/1.0e6_wp
     text = text//stem//': peak memory  '//buffer//' MB'//newline
 
   contains
 
-    pure function row(name, wall, processor)
+    pure function row(name, spent)
       character(len=13), intent(in) :: name
-      real(wp), intent(in) :: wall, processor
+      real(wp), intent(in) :: spent(2)
       character(len=:), allocatable :: row
       character(len=39) :: line
 
-      write (line, '(a13, f13.4, f13.4)') name, wall, processor
+      write (line, '(a13, 2f13.4)') name, spent
       row = stem//': '//line//newline
     end function row
   end function timing_text

@@ -7,6 +7,8 @@ module epcont_base_incidence
   !> Member i belongs to the groups group(start(i):start(i+1)-1), ascending.
   type :: incidence
     integer, allocatable :: start(:), group(:)
+  contains
+    procedure :: of
   end type incidence
 
 contains
@@ -40,4 +42,13 @@ contains
       end do
     end do
   end function new_incidence
+
+  !> The groups that a member belongs to, ascending.
+  pure function of(self, member) result(groups)
+    class(incidence), intent(in) :: self
+    integer, intent(in) :: member   !! by its number
+    integer, allocatable :: groups(:)
+
+    groups = self%group(self%start(member):self%start(member + 1) - 1)
+  end function of
 end module epcont_base_incidence

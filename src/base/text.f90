@@ -3,7 +3,7 @@ module epcont_base_text
   use epcont_base_kinds, only: i8, wp
   implicit none
   private
-  public :: upper, text_of, short_real, plural, shown
+  public :: upper, text_of, formatted, short_real, plural, shown
 
   character(len=1), parameter, public :: newline = new_line('a')
 
@@ -43,25 +43,31 @@ contains
     text = trim(buffer)
   end function text_of_long
 
+  !> A real as a format has it, without blanks around it.
+  pure function formatted(form, number) result(text)
+    character(len=*), intent(in) :: form   !! the format, such as `(f20.3)`
+    real(wp), intent(in) :: number         !! any that it has room for
+    character(len=:), allocatable :: text
+    character(len=24) :: buffer
+
+    write (buffer, form) number
+    text = trim(adjustl(buffer))
+  end function formatted
+
   !> A real with four significant digits, for messages: `0.01250`, `210.0`, `1.250E-07`.
   pure function short_real(number) result(text)
     real(wp), intent(in) :: number   !! any size
     character(len=:), allocatable :: text
-    character(len=24) :: buffer, shape
-    integer :: decimals
 
     if (number == 0.0_wp) then
-      buffer = '0.0'
+      text = '0.0'
     else if (abs(number) >= 1.0e-3_wp .and. abs(number) < 9999.5_wp) then
-      decimals = max(1, 3 - floor(log10(abs(number))))
-      write (shape, '(a, i0, a)') '(f20.', decimals, ')'
-      write (buffer, shape) number
+      text = formatted('(f20.'//text_of(max(1, 3 - floor(log10(abs(number)))))//')', number)
     else if (abs(number) >= 1.0e100_wp .or. abs(number) < 1.0e-99_wp) then
-      write (buffer, '(es12.3e3)') number
+      text = formatted('(es12.3e3)', number)
     else
-      write (buffer, '(es12.3e2)') number
+      text = formatted('(es12.3e2)', number)
     end if
-    text = trim(adjustl(buffer))
   end function short_real
 
   !> A name as it may be printed: control characters, which would move the cursor, colour the screen or feign

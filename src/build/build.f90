@@ -138,9 +138,7 @@ contains
       nodes = 0
       associate (blseg => deck%card(card_blseg))
         do item = blseg%list_start(line), blseg%list_start(line + 1) - 1
-          associate (ids => blseg%list(item))
-            nodes = nodes + (ids%to - ids%from)/ids%step + 1
-          end associate
+          nodes = nodes + (blseg%list(item)%to - blseg%list(item)%from)/blseg%list(item)%step + 1
           if (nodes >= k) return
         end do
       end associate

@@ -20,7 +20,7 @@ contains
   pure type(controls_type) function read_controls(deck) result(controls)
     type(deck_type), intent(in) :: deck   !! its cards
 
-    if (deck%parameter_word('ORIGINAL', 'NO') == 'YES') controls = original_controls
+    if (deck%parameter_word('ORIGINAL') == 'YES') controls = original_controls
     controls%most_iterations = nint(deck%parameter_value('MAXIT', real(controls%most_iterations, wp)))
     controls%search = deck%parameter_value('SEARCH', controls%search)
     controls%corner = deck%parameter_value('CORNER', controls%corner)
@@ -32,8 +32,8 @@ contains
     controls%accuracy = deck%parameter_value('ACCURACY', controls%accuracy)
     controls%tolerance = deck%parameter_value('TOL', controls%tolerance)
     controls%load_steps = nint(deck%parameter_value('NLOAD', real(controls%load_steps, wp)))
-    controls%by_inversion = deck%parameter_word('FLEXIB', 'AUTO') == 'INVERT'
-    controls%paper_ratio = deck%parameter_word('MUP', 'EXACT') == 'PAPER'
+    controls%by_inversion = deck%parameter_word('FLEXIB') == 'INVERT'
+    controls%paper_ratio = deck%parameter_word('MUP') == 'PAPER'
 
   contains
 
@@ -43,7 +43,7 @@ contains
       character(len=*), intent(in) :: parameter, names(:)
       integer, intent(in) :: default
 
-      choice = findloc(names == deck%parameter_word(parameter, ''), .true., dim=1) - 1
+      choice = findloc(names == deck%parameter_word(parameter), .true., dim=1) - 1
       if (choice < 0) choice = default
     end function choice
   end function read_controls

@@ -3,7 +3,7 @@ module epcont_build_conditions
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real, text_of
-  use epcont_build_reference, only: card_index, chosen_set, resolve, resolve_list
+  use epcont_build_reference, only: card_index, chosen_set, resolve
   use epcont_deck_card_kinds, only: card_force, card_grid, card_ploadx1, card_rbe2, card_spc, card_spc1, &
                                     card_suport
   use epcont_deck_deck, only: deck_type
@@ -60,16 +60,23 @@ contains
       end do
     end subroutine read_fields
 
-    !> SPC1 and RBE2: directions, then a list of nodes.
+    !> SPC1 and RBE2: directions, then a list of nodes. Of a range some may be missing.
     subroutine read_lists(card)
       integer, intent(in) :: card   !! which table
+      character(len=:), allocatable :: ids
       integer :: i, item, k
       integer, allocatable :: node(:)
 
       associate (table => deck%card(card))
         do i = 1, table%count
           do item = table%list_start(i), table%list_start(i + 1) - 1
-            call resolve_list(deck, card, i, item, nodes, found, node)
+            associate (from => table%list(item)%from, to => table%list(item)%to)
+              node = nodes%within(from, to)
+              ids = text_of(from)
+              if (to > from) ids = ids//' to '//text_of(to)
+            end associate
+            if (size(node) == 0 .and. nodes%whole) &
+              call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
             do k = 1, size(node)
               call take([card, i, -item], node(k), table%entry%list_slot - 1)
             end do

@@ -31,18 +31,16 @@ contains
       if (deck%card(card_cord2r)%sound(i)) call read_system()
     end do
     call read_pairs()
-    associate (blseg => deck%card(card_blseg), bconp => deck%card(card_bconp))
-      deallocate (model%line, model%couple)
-      allocate (model%line(blseg%count), model%couple(bconp%count))
-      model%line%id = nint(blseg%value(1, :))
-      model%couple%id = nint(bconp%value(1, :))
-      do i = 1, blseg%count
-        call read_line()
-      end do
-      do k = 1, 2
-        call resolve(deck, card_bconp, 1 + k, index_of(deck, card_blseg), found, model%couple%line(k))
-      end do
-    end associate
+    deallocate (model%line, model%couple)
+    allocate (model%line(deck%card(card_blseg)%count), model%couple(deck%card(card_bconp)%count))
+    model%line%id = nint(deck%card(card_blseg)%value(1, :))
+    model%couple%id = nint(deck%card(card_bconp)%value(1, :))
+    do i = 1, deck%card(card_blseg)%count
+      call read_line()
+    end do
+    do k = 1, 2
+      call resolve(deck, card_bconp, 1 + k, index_of(deck, card_blseg), found, model%couple%line(k))
+    end do
 
   contains
 
@@ -91,7 +89,7 @@ contains
         model%pairs = cgap%count
         model%pair_id = nint(cgap%value(1, :))
       end associate
-      call complete_pairs(model, deck%parameter_word('GAPGEOM', 'NO') == 'YES', found)
+      call complete_pairs(model, deck%parameter_word('GAPGEOM') == 'YES', found)
     end subroutine read_pairs
 
     !> The nodes of a BLSEG, ranges and steps written out; none where it is not sound.

@@ -140,27 +140,28 @@ contains
       real(wp), intent(in) :: young
       type(uniaxial_curve), intent(inout) :: curve
       type(curve_fault) :: fault
+      real(wp), allocatable :: strain(:), stress(:)
       real(wp) :: limit
+      integer :: first
 
       associate (tables1 => deck%card(card_tables1))
-        associate (first => tables1%list_start(t), last => tables1%list_start(t + 1) - 1)
-          associate (strain => tables1%list(first:last)%point(1), stress => tables1%list(first:last)%point(2))
-            fault = fault_of_curve(strain, stress, young)
-            if (fault%point > 0) then
-              call found%add_error(card_tables1, t, merge(1 - first - fault%point, 0, &
-                                   fault%point <= size(strain)), ': '//fault%what, fault%remedy)
-              return
-            end if
-            limit = deck%card(card_mats1)%number('LIMIT1', i)
-            if (deck%card(card_mats1)%has('LIMIT1', i) .and. abs(limit - stress(2)) > same_stress*stress(2)) &
-              call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
-                          ', the second stress of '//tables1%identity(t)//' '//short_real(stress(2)), &
-                          'the same stress in both')
-            curve%strain = [0.0_wp, stress(2)/young, strain(3:)]
-            curve%stress = stress
-          end associate
-        end associate
+        first = tables1%list_start(t)
+        strain = tables1%list(first:tables1%list_start(t + 1) - 1)%point(1)
+        stress = tables1%list(first:tables1%list_start(t + 1) - 1)%point(2)
+        fault = fault_of_curve(strain, stress, young)
+        if (fault%point > 0) then
+          call found%add_error(card_tables1, t, merge(1 - first - fault%point, 0, &
+                               fault%point <= size(strain)), ': '//fault%what, fault%remedy)
+          return
+        end if
+        limit = deck%card(card_mats1)%number('LIMIT1', i)
+        if (deck%card(card_mats1)%has('LIMIT1', i) .and. abs(limit - stress(2)) > same_stress*stress(2)) &
+          call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
+                      ', the second stress of '//tables1%identity(t)//' '//short_real(stress(2)), &
+                      'the same stress in both')
       end associate
+      curve%strain = [0.0_wp, stress(2)/young, strain(3:)]
+      curve%stress = stress
     end subroutine read_table
 
     !> A field is at fault.
@@ -208,7 +209,7 @@ contains
       integer, intent(in) :: i
       integer, intent(out) :: kinematics
 
-      kinematics = merge(plane_stress, plane_strain, deck%parameter_word('PLANE', 'STRAIN') == 'STRESS')
+      kinematics = merge(plane_stress, plane_strain, deck%parameter_word('PLANE') == 'STRESS')
       associate (shell => deck%card(card_pshell))
         if (.not. shell%sound(i)) return
         if (shell%has('MID2', i) .and. kinematics == plane_stress) then

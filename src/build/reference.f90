@@ -9,7 +9,7 @@ module epcont_build_reference
   use epcont_model_finding, only: findings, of_scene
   implicit none
   private
-  public :: card_index, index_of, check_unique, resolve, resolve_list, chosen_set
+  public :: card_index, index_of, check_unique, resolve, chosen_set
 
   !> The ids that fields may name, and what they are of.
   type, extends(id_index) :: card_index
@@ -76,26 +76,6 @@ contains
       end do
     end associate
   end subroutine resolve
-
-  !> Positions of the nodes that an item of a card's list names: one, or some of a range; it is a fault if
-  !! there are none.
-  pure subroutine resolve_list(deck, card, i, item, nodes, found, position)
-    type(deck_type), intent(in) :: deck        !! its cards
-    integer, intent(in) :: card, i             !! which table, which card of it
-    integer, intent(in) :: item                !! of all lists of the table
-    type(card_index), intent(in) :: nodes      !! ids of GRID
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
-    integer, allocatable, intent(out) :: position(:)    !! ascending by id [any]
-    character(len=:), allocatable :: ids
-
-    associate (from => deck%card(card)%list(item)%from, to => deck%card(card)%list(item)%to)
-      position = nodes%within(from, to)
-      if (size(position) > 0 .or. .not. nodes%whole) return
-      ids = text_of(from)
-      if (to > from) ids = ids//' to '//text_of(to)
-    end associate
-    call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
-  end subroutine resolve_list
 
   !> The set that SPC = or LOAD = names; without it the only set there is.
   pure subroutine chosen_set(deck, cards, choice, word, found, set)

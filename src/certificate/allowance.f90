@@ -75,10 +75,10 @@ contains
     type(meeting_type), intent(in) :: meeting   !! how it meets another
     real(wp) :: explained   ! by the slide
 
-    associate (slide => meeting%slide, length => self%length(side))
-      explained = slide*self%turn(side) + curve(self, side, meeting)*(0.5_wp*slide**2*self%curvature(side))
-      of_motion = factor*(min(explained, most_by_slide*length) + 0.5_wp*length*self%change(side)**2)
-    end associate
+    explained = meeting%slide*self%turn(side) &
+                + curve(self, side, meeting)*(0.5_wp*meeting%slide**2*self%curvature(side))
+    of_motion = factor*(min(explained, most_by_slide*self%length(side)) &
+                        + 0.5_wp*self%length(side)*self%change(side)**2)
   end function of_motion
 
   !> What of that was there before anything moved, and no more than there was: curves above chords, gaps of
@@ -182,7 +182,7 @@ contains
     !> By how much the gaps of CGAPs between two bodies differ from those of the coordinates [length] [sides].
     pure function gaps_of_cards() result(gap)
       real(wp) :: gap(size(length)), at_node(model%nodes), gap_drawn
-      integer :: k, s
+      integer :: k, node(3), s
 
       at_node = 0.0_wp
       do k = 1, model%single_pairs()
@@ -193,9 +193,8 @@ contains
         end associate
       end do
       do s = 1, size(gap)
-        associate (node => model%body_outline%node(:, s))
-          gap(s) = maxval(at_node(pack(node, node > 0)))
-        end associate
+        node = model%body_outline%node(:, s)
+        gap(s) = maxval(at_node(pack(node, node > 0)))
       end do
     end function gaps_of_cards
   end function new_allowance

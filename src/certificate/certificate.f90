@@ -71,18 +71,18 @@ contains
   !> Of an answer the certificate takes the displacements, with rigid motions and without, the reactions, the
   !! stresses at the points, the contact forces, the part of the loads, and what single precision may have
   !! left.
-  subroutine certify(model, answer, curve_tolerance, certificate)
+  subroutine certify(model, answer, curve_tolerance, found)
     type(model_type), intent(in) :: model   !! the scene
     type(answer_type), intent(in) :: answer   !! what is to be checked
     real(wp), intent(in) :: curve_tolerance   !! how far off its curve the iteration may leave a stress
-    type(certificate_type), intent(out) :: certificate   !! without its scene
+    type(certificate_type), intent(out) :: found   !! the certificate, without its scene
     real(wp), dimension(directions, model%nodes) :: load, residual   ! the latter: out of balance [force]
     real(wp) :: element_force(model%nodes)   ! sum of the sizes of the elements' forces at each node
     real(wp) :: stored, work                 ! work of the stresses, and of the forces
     real(wp) :: terms                        ! sum of the sizes of all that these two are sums of
     real(wp) :: forces, largest_force, largest_stress, length
 
-    certificate%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
+    found%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
     load = answer%load_factor*model%load
     largest_stress = maxval(abs(answer%point_stress))
     residual = 0.0_wp
@@ -98,22 +98,21 @@ contains
       ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there
       ! is.
       if (forces == 0.0_wp) length = maxval(abs(u))
-      certificate%length_scale = max(length, least_length)
+      found%length_scale = max(length, least_length)
       work = sum(load*u) + sum(reaction*u)
       terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(stored)
     end associate
     if (model%pairs > 0) call add_pairs()
     call gather_ties()
     largest_force = max(maxval(element_force), maxval(abs(load)))
-    if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, certificate%force_scale)
-    certificate%equilibrium = ratio(maxval(abs(residual)), largest_force)
+    if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, found%force_scale)
+    found%equilibrium = ratio(maxval(abs(residual)), largest_force)
     ! On its curve no stress does less than no work; as far off it as the iteration may leave it, it can.
-    certificate%energy = ratio(max(abs(work - stored), -stored), terms)
-    certificate%curve_tolerance = max(certificate%tolerance, curve_tolerance)
-    certificate%off_curve_limit = certificate%curve_tolerance &
-                                  + min(several*certificate%lost_stress, certificate%curve_tolerance)
-    certificate%valid = all(within_limits(certificate))
-    certificate%balanced = all(within_limits(certificate) .or. figure_name == off_the_curve)
+    found%energy = ratio(max(abs(work - stored), -stored), terms)
+    found%curve_tolerance = max(found%tolerance, curve_tolerance)
+    found%off_curve_limit = found%curve_tolerance + min(several*found%lost_stress, found%curve_tolerance)
+    found%valid = all(within_limits(found))
+    found%balanced = all(within_limits(found) .or. figure_name == off_the_curve)
 
   contains
 
@@ -173,7 +172,7 @@ contains
         if (.not. moves) cycle
         strain = strain_by(motion(:, :n), unit(:, :, :, p), ring)
         rounding = rounding*maxval(abs(motion(:, :n)) + abs(u(:, :n)))
-        certificate%motion_strain = max(certificate%motion_strain, ratio(maxval(abs(strain)), rounding))
+        found%motion_strain = max(found%motion_strain, ratio(maxval(abs(strain)), rounding))
       end do
     end subroutine check_points
 
@@ -196,15 +195,15 @@ contains
         scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
         off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
       end if
-      certificate%off_curve = max(certificate%off_curve, off)
+      found%off_curve = max(found%off_curve, off)
       ! Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5
       ! far above E.
       associate (young => model%young(section), nu => model%poisson(section))
         stiffest = young
         if (model%kinematics(section) /= plane_stress) &
           stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
-        certificate%lost_stress = max(certificate%lost_stress, ratio(young*rounding, scale), &
-                                      ratio(stiffest*rounding, largest_stress))
+        found%lost_stress = max(found%lost_stress, ratio(young*rounding, scale), &
+                                ratio(stiffest*rounding, largest_stress))
       end associate
     end subroutine check_stress
 
@@ -212,46 +211,44 @@ contains
     !! residual.
     subroutine add_pairs()
       real(wp) :: apart(directions), gap, opening, rounding, travel
-      integer :: i, k
+      integer :: i, k, node
 
-      certificate%smallest_force = minval(answer%contact%force)
-      certificate%smallest_gap = huge(1.0_wp)
-      certificate%force_scale = max(maxval(abs(answer%contact%force)), maxval(abs(load)), tiny(1.0_wp))
+      found%smallest_force = minval(answer%contact%force)
+      found%smallest_gap = huge(1.0_wp)
+      found%force_scale = max(maxval(abs(answer%contact%force)), maxval(abs(load)), tiny(1.0_wp))
       do k = 1, model%pairs
         associate (force => answer%contact%force(k), normal => model%normal(:, k))
           apart = 0.0_wp
           travel = 0.0_wp
           do i = model%row_start(k), model%row_start(k + 1) - 1
-            associate (node => model%row_node(i))
-              apart = apart + model%row_weight(i)*answer%displacement(:, node)
-              travel = max(travel, maxval(abs(answer%displacement(:, node))))
-              residual(:, node) = residual(:, node) - model%row_weight(i)*force*normal
-            end associate
+            node = model%row_node(i)
+            apart = apart + model%row_weight(i)*answer%displacement(:, node)
+            travel = max(travel, maxval(abs(answer%displacement(:, node))))
+            residual(:, node) = residual(:, node) - model%row_weight(i)*force*normal
           end do
           opening = sum(normal*apart)
           work = work + force*opening
           terms = terms + abs(force*opening)
           rounding = roundings*epsilon(1.0_wp)*max(abs(model%initial_gap(k)), travel)
-          if (force > 0.0_wp) certificate%gap_rounding = max(certificate%gap_rounding, rounding)
+          if (force > 0.0_wp) found%gap_rounding = max(found%gap_rounding, rounding)
           gap = model%initial_gap(k) + opening
-          certificate%smallest_gap = min(certificate%smallest_gap, gap)
-          certificate%overlap = max(certificate%overlap, -gap - rounding)
-          certificate%force_gap = max(certificate%force_gap, abs(gap*force))
+          found%smallest_gap = min(found%smallest_gap, gap)
+          found%overlap = max(found%overlap, -gap - rounding)
+          found%force_gap = max(found%force_gap, abs(gap*force))
         end associate
       end do
     end subroutine add_pairs
 
     !> A tied freedom hands its forces to its leader.
     subroutine gather_ties()
-      integer :: c, node
+      integer :: c, leader, node
 
       do node = 1, model%nodes
         do c = 1, directions
-          associate (leader => model%leader(c, node))
-            if (leader == node) cycle
-            residual(c, leader) = residual(c, leader) + residual(c, node)
-            residual(c, node) = 0.0_wp
-          end associate
+          leader = model%leader(c, node)
+          if (leader == node) cycle
+          residual(c, leader) = residual(c, leader) + residual(c, node)
+          residual(c, node) = 0.0_wp
         end do
       end do
     end subroutine gather_ties

@@ -73,10 +73,9 @@ contains
           search%line_length(model%line(k)%side) = search%allowance%length(model%line(k)%side)
         end do
       end if
-      associate (first => outline%first, length => search%allowance%length)
-        search%width = [(sum(length(first(k):first(k + 1) - 1))/acos(-1.0_wp), k=1, outline%parts)]
-        search%middle = [(middle_of(first(k)), k=1, outline%parts)]
-      end associate
+      search%width = [(sum(search%allowance%length(outline%first(k):outline%first(k + 1) - 1)) &
+                       /acos(-1.0_wp), k=1, outline%parts)]
+      search%middle = [(middle_of(outline%first(k)), k=1, outline%parts)]
     end associate
 
   contains
@@ -84,15 +83,15 @@ contains
     !> The middle of the element that a side is of.
     pure type(point_type) function middle_of(side) result(point)
       integer, intent(in) :: side
+      integer, allocatable :: corner(:)
 
       point = point_type(side=side, in_element=.true.)
       associate (element => model%body_outline%element(side))
-        associate (corner => model%connectivity(:model%corners(element), element))
-          point%drawn = sum(model%x(:, corner), dim=2)/size(corner)
-          point%motion = sum(displacement(:, corner), dim=2)/size(corner)
-          point%x = point%drawn + point%motion
-        end associate
+        corner = model%connectivity(:model%corners(element), element)
       end associate
+      point%drawn = sum(model%x(:, corner), dim=2)/size(corner)
+      point%motion = sum(displacement(:, corner), dim=2)/size(corner)
+      point%x = point%drawn + point%motion
     end function middle_of
   end function new_search
 
@@ -137,10 +136,10 @@ contains
     integer, intent(in) :: side                !! of the outlines
     real(wp), intent(in) :: s                  !! where on it, from 0 to 1
     real(wp), intent(in) :: motion(directions)          !! [length]
+    real(wp) :: along(directions)
 
-    associate (along => shape%tangent(side, s))
-      part = abs(dot_product(along, motion))/max(norm2(along), tiny(1.0_wp))
-    end associate
+    along = shape%tangent(side, s)
+    part = abs(dot_product(along, motion))/max(norm2(along), tiny(1.0_wp))
   end function part_along
 
   !> A point at the place of another outline, or of its own, that it is near to, and what is allowed there: by
@@ -260,15 +259,15 @@ contains
       type(near_place) :: near
       integer, allocatable :: others(:)
       integer :: k
+      real(wp) :: within
 
       allowed = search%allowance%of(side, found%meeting)
-      associate (within => about*found%distance)
-        others = sides_meeting(search%now, search%now%outline%part(side), found%x - within, found%x + within)
-        do k = 1, size(others)
-          near = search%now%near_side(others(k), found%x)
-          if (near%distance <= within) allowed = max(allowed, search%allowance%of(others(k), found%meeting))
-        end do
-      end associate
+      within = about*found%distance
+      others = sides_meeting(search%now, search%now%outline%part(side), found%x - within, found%x + within)
+      do k = 1, size(others)
+        near = search%now%near_side(others(k), found%x)
+        if (near%distance <= within) allowed = max(allowed, search%allowance%of(others(k), found%meeting))
+      end do
     end function allowance_about
 
     !> What the bodies overlapped there as drawn, if no pair is to close that; else nothing.

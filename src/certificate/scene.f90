@@ -72,22 +72,21 @@ contains
       real(wp), allocatable :: crossing(:), s(:)
       integer, allocatable :: others(:), parts(:)
       integer :: b, k
-      real(wp) :: h
+      real(wp) :: h, high(directions), low(directions)
 
-      associate (low => search%now%low(:, side), high => search%now%high(:, side), &
-                 part => search%now%outline%part(side))
-        parts = search%now%part_tree%meeting(low, high)
-        do b = 1, size(parts)
-          if (parts(b) == part) cycle
-          crossing = crossings(search%now, side, parts(b))
-          s = [quarters, 0.5_wp*(crossing(:size(crossing) - 1) + crossing(2:))]
-          do k = 1, size(s)
-            call look_at_point(point_on(search, side, s(k)), parts(b))
-          end do
+      low = search%now%low(:, side)
+      high = search%now%high(:, side)
+      parts = search%now%part_tree%meeting(low, high)
+      do b = 1, size(parts)
+        if (parts(b) == search%now%outline%part(side)) cycle
+        crossing = crossings(search%now, side, parts(b))
+        s = [quarters, 0.5_wp*(crossing(:size(crossing) - 1) + crossing(2:))]
+        do k = 1, size(s)
+          call look_at_point(point_on(search, side, s(k)), parts(b))
         end do
-        h = 0.5_wp*norm2(search%now%chord(side))
-        others = sides_meeting(search%now, part, low - h, high + h)
-      end associate
+      end do
+      h = 0.5_wp*norm2(search%now%chord(side))
+      others = sides_meeting(search%now, search%now%outline%part(side), low - h, high + h)
       do b = 1, size(others)
         call look_at_itself(side, others(b))
       end do
@@ -100,12 +99,10 @@ contains
       integer, allocatable :: parts(:)
       integer :: b
 
-      associate (point => search%middle(part))
-        parts = search%now%part_tree%meeting(point%x, point%x)
-        do b = 1, size(parts)
-          if (parts(b) /= part) call look_at_point(point, parts(b))
-        end do
-      end associate
+      parts = search%now%part_tree%meeting(search%middle(part)%x, search%middle(part)%x)
+      do b = 1, size(parts)
+        if (parts(b) /= part) call look_at_point(search%middle(part), parts(b))
+      end do
     end subroutine look_at_middle
 
     !> One point of a body, in another.
@@ -224,6 +221,7 @@ contains
       integer, intent(in) :: part, c, way
       real(wp), allocatable :: u(:), x(:)
       real(wp) :: edge
+      integer :: farthest
 
       associate (first => model%body_outline%first(part), last => model%body_outline%first(part + 1) - 1)
         associate (node => model%body_outline%node(1, first:last), &
@@ -234,9 +232,8 @@ contains
           if (.not. all(x > edge .or. model%is_held(c, node) .and. abs(u) <= search%least)) return
           if (all(x > edge .or. way*model%x(c, next) > edge &
                   .or. model%is_held(3 - c, node) .and. model%is_held(3 - c, next))) return
-          associate (farthest => minloc(x + u, dim=1))
-            place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
-          end associate
+          farthest = minloc(x + u, dim=1)
+          place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
         end associate
       end associate
     end function beyond_end

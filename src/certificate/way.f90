@@ -108,7 +108,7 @@ contains
       end associate
       allocate (time(0))
       do k = 1, size(sides)
-        call cross_side(search, point, sides(k), time)
+        call cross_side(point, sides(k), time)
       end do
       if (size(time) == 0) return
       time = [0.0_wp, time, 1.0_wp]
@@ -117,6 +117,32 @@ contains
           call look_between(point, part, time(k - 1:k), length)
       end do
     end subroutine look_at_way
+
+    !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area
+    !! between the point and a chord is a square function of time; on the chord it vanishes.
+    pure subroutine cross_side(point, side, time)
+      type(point_type), intent(in) :: point
+      integer, intent(in) :: side
+      real(wp), allocatable, intent(inout) :: time(:)   !! ascending
+      real(wp), dimension(directions) :: a, b, da, db
+      real(wp) :: root(2)
+      integer :: chord, ends(3), i
+
+      ends = [1, 2, 0]
+      if (search%now%outline%node(3, side) > 0) ends = [1, 3, 2]
+      do chord = 1, count(ends > 0) - 1
+        a = search%drawn%x(:, ends(chord), side) - point%drawn
+        b = search%drawn%x(:, ends(chord + 1), side) - point%drawn
+        da = search%motion(:, ends(chord), side) - point%motion
+        db = search%motion(:, ends(chord + 1), side) - point%motion
+        root = roots_of_square(cross_product(a, b), cross_product(a, db) + cross_product(da, b), &
+                               cross_product(da, db))
+        do i = 1, 2
+          if (root(i) < 0.0_wp .or. root(i) > 1.0_wp) cycle
+          if (dot_product(a + root(i)*da, b + root(i)*db) <= 0.0_wp) call insert(root(i), time)
+        end do
+      end do
+    end subroutine cross_side
 
     !> Is a point inside a part between two times, deeper than at these, and than is allowed?
     subroutine look_between(point, part, time, length)
@@ -162,9 +188,8 @@ contains
       x_now = x + (1.0_wp - time)*mean(:, part)
       wide = reach + (1.0_wp - time)*spread_of(part)
       near = sides_meeting(search%now, part, x_now - wide, x_now + wide)
-      associate (outline => search%now%outline)
-        sides = [near, outline%before(near), outline%after(near)]   ! at a node both say what is inside
-      end associate
+      ! At a node both sides say what is inside.
+      sides = [near, search%now%outline%before(near), search%now%outline%after(near)]
       between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
       do k = 1, size(near)
         place = between%near_side(near(k), x)
@@ -173,33 +198,6 @@ contains
       if (best%side > 0) best%inside = between%is_inside(best, x)
     end function nearest_place
   end subroutine look_at_ways
-
-  !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area
-  !! between the point and a chord is a square function of time; on the chord it vanishes.
-  pure subroutine cross_side(search, point, side, time)
-    type(search_type), intent(in) :: search
-    type(point_type), intent(in) :: point
-    integer, intent(in) :: side
-    real(wp), allocatable, intent(inout) :: time(:)   !! ascending
-    real(wp), dimension(directions) :: a, b, da, db
-    real(wp) :: root(2)
-    integer :: chord, ends(3), i
-
-    ends = [1, 2, 0]
-    if (search%now%outline%node(3, side) > 0) ends = [1, 3, 2]
-    do chord = 1, count(ends > 0) - 1
-      a = search%drawn%x(:, ends(chord), side) - point%drawn
-      b = search%drawn%x(:, ends(chord + 1), side) - point%drawn
-      da = search%motion(:, ends(chord), side) - point%motion
-      db = search%motion(:, ends(chord + 1), side) - point%motion
-      root = roots_of_square(cross_product(a, b), cross_product(a, db) + cross_product(da, b), &
-                             cross_product(da, db))
-      do i = 1, 2
-        if (root(i) < 0.0_wp .or. root(i) > 1.0_wp) cycle
-        if (dot_product(a + root(i)*da, b + root(i)*db) <= 0.0_wp) call insert(root(i), time)
-      end do
-    end do
-  end subroutine cross_side
 
   !> The real roots of a + b t + c t**2 between -1 and 1; 2 stands for one that is not there.
   pure function roots_of_square(a, b, c) result(root)

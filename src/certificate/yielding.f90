@@ -68,13 +68,12 @@ contains
     !> Is the strain's eps_i (2-2), taken with the mu of a point of the curve, beyond that point?
     pure logical function is_beyond(total)
       real(wp), intent(in) :: total
+      real(wp) :: across, mu
 
-      associate (mu => poisson_ratio(total))
-        associate (across => strain_across(mu))
-          is_beyond = sqrt(0.5_wp*((strain(1) - strain(2))**2 + (strain(2) - across)**2 &
-                                   + (across - strain(1))**2) + 0.75_wp*strain(4)**2)/(1.0_wp + mu) > total
-        end associate
-      end associate
+      mu = poisson_ratio(total)
+      across = strain_across(mu)
+      is_beyond = sqrt(0.5_wp*((strain(1) - strain(2))**2 + (strain(2) - across)**2 &
+                               + (across - strain(1))**2) + 0.75_wp*strain(4)**2)/(1.0_wp + mu) > total
     end function is_beyond
 
     !> Exact for a secant body, or (2-4).

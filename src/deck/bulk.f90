@@ -153,13 +153,11 @@ contains
       integer :: slot
 
       do slot = 1, size(cards%given, 1)
-        associate (filled => count(cards%given(slot, :)))
-          if (cards%entry%field(slot)%used .or. filled == 0) cycle
-          call gather(lines, cards%line(findloc(cards%given(slot, :), .true., dim=1)), card, unheard)
-          call faults%add_note(card%place(slot), trim(cards%entry%name)//': '// &
-                               cards%entry%field_text(slot)//' has no effect (cards with it: '// &
-                               text_of(filled)//')')
-        end associate
+        if (cards%entry%field(slot)%used .or. .not. any(cards%given(slot, :))) cycle
+        call gather(lines, cards%line(findloc(cards%given(slot, :), .true., dim=1)), card, unheard)
+        call faults%add_note(card%place(slot), trim(cards%entry%name)//': '// &
+                             cards%entry%field_text(slot)//' has no effect (cards with it: '// &
+                             text_of(count(cards%given(slot, :)))//')')
       end do
     end subroutine note_fields
   end subroutine read_bulk

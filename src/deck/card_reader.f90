@@ -78,10 +78,8 @@ contains
       character(len=:), allocatable :: remedy
 
       remedy = 'blank'
-      associate (entry => table%entry)
-        if (.not. allocated(entry%list_name)) &
-          remedy = 'blank; '//trim(entry%name)//' ends with field '//text_of(number_of(size(entry%field)))
-      end associate
+      if (.not. allocated(table%entry%list_name)) remedy = 'blank; '//trim(table%entry%name)// &
+        ' ends with field '//text_of(number_of(size(table%entry%field)))
       call refuse(slot, 'must be blank', remedy)
     end subroutine refuse_surplus
 
@@ -119,7 +117,7 @@ contains
       character(len=:), allocatable :: text, what, remedy
       integer :: last
 
-      call read_value(card, slot, entry, value)
+      call read_value(slot, entry, value)
       if (value%outcome == scan_sound) return
       text = card%text(card%slot(slot)%first:card%slot(slot)%last)
       remedy = entry%allowed()
@@ -159,6 +157,48 @@ contains
       call refuse(slot, what, remedy)
     end subroutine read_slot
 
+    !> The value of a field; a blank one is malformed.
+    pure subroutine read_value(slot, entry, value)
+      integer, intent(in) :: slot               !! which field
+      type(field_entry), intent(in) :: entry    !! what it may hold
+      type(field_value), intent(out) :: value   !! what it says
+      integer(i8) :: whole
+
+      value%outcome = scan_sound
+      value%number = 0.0_wp
+      value%word = ''
+      associate (first => card%slot(slot)%first, last => card%slot(slot)%last)
+        select case (entry%kind)
+        case (kind_integer)
+          call scan_integer(card%text(first:last), whole, value%outcome)
+          value%number = real(whole, wp)
+        case (kind_real)
+          call scan_real(card%text(first:last), value%number, value%outcome)
+        case (kind_components)
+          call scan_components(card%text(first:last), whole, value%outcome)
+          value%number = real(whole, wp)
+        case (kind_word)
+          call scan_word(card%text(first:last), value%word, value%outcome)
+        end select
+      end associate
+      if (value%outcome == scan_no_point .and. entry%point_optional) then
+        if (card%is_large(slot)) value%outcome = scan_sound
+      end if
+      if (value%outcome /= scan_sound) return
+      associate (number => value%number)
+        if (entry%kind == kind_word) then
+          if (entry%choices /= '' .and. index(' '//entry%choices//' ', ' '//trim(value%word)//' ') == 0) &
+            value%outcome = out_of_range
+        else if (number < entry%lowest .or. (entry%above_lowest .and. number <= entry%lowest) .or. &
+                 number > entry%highest .or. (entry%below_highest .and. number >= entry%highest)) then
+          value%outcome = out_of_range
+        else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
+          if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) &
+            value%outcome = out_of_reach
+        end if
+      end associate
+    end subroutine read_value
+
     !> Does a slot hold this word?
     logical function is_word(slot, word)
       integer, intent(in) :: slot
@@ -167,7 +207,7 @@ contains
       is_word = .false.
       if (.not. card%filled(slot)) return
       associate (at => card%slot(slot))
-        if (at%last - at%first + 1 == len(word)) is_word = upper(card%text(at%first:at%last)) == word
+        is_word = upper(card%text(at%first:at%last)) == word
       end associate
     end function is_word
 
@@ -260,47 +300,4 @@ contains
       end do
     end subroutine read_points
   end subroutine read_card
-
-  !> The value of a field; a blank one is malformed.
-  pure subroutine read_value(card, slot, entry, value)
-    type(card_fields), intent(in) :: card     !! its fields
-    integer, intent(in) :: slot               !! which field
-    type(field_entry), intent(in) :: entry    !! what it may hold
-    type(field_value), intent(out) :: value   !! what it says
-    integer(i8) :: whole
-
-    value%outcome = scan_sound
-    value%number = 0.0_wp
-    value%word = ''
-    associate (first => card%slot(slot)%first, last => card%slot(slot)%last)
-      select case (entry%kind)
-      case (kind_integer)
-        call scan_integer(card%text(first:last), whole, value%outcome)
-        value%number = real(whole, wp)
-      case (kind_real)
-        call scan_real(card%text(first:last), value%number, value%outcome)
-      case (kind_components)
-        call scan_components(card%text(first:last), whole, value%outcome)
-        value%number = real(whole, wp)
-      case (kind_word)
-        call scan_word(card%text(first:last), value%word, value%outcome)
-      end select
-    end associate
-    if (value%outcome == scan_no_point .and. entry%point_optional) then
-      if (card%is_large(slot)) value%outcome = scan_sound
-    end if
-    if (value%outcome /= scan_sound) return
-    associate (number => value%number)
-      if (entry%kind == kind_word) then
-        if (entry%choices /= '' .and. index(' '//entry%choices//' ', ' '//trim(value%word)//' ') == 0) &
-          value%outcome = out_of_range
-      else if (number < entry%lowest .or. (entry%above_lowest .and. number <= entry%lowest) .or. &
-               number > entry%highest .or. (entry%below_highest .and. number >= entry%highest)) then
-        value%outcome = out_of_range
-      else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
-        if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) &
-          value%outcome = out_of_reach
-      end if
-    end associate
-  end subroutine read_value
 end module epcont_deck_card_reader

@@ -224,32 +224,32 @@ contains
   function catalogue() result(card)
     type(card_entry) :: card(card_kinds)
     type(field_entry) :: field
+    character(len=len(cards)) :: line
     integer :: at, i, k
 
     k = 0
     do i = 1, size(cards)
-      associate (line => cards(i))
-        if (line(1:1) /= ' ') then
-          k = k + 1
-          at = index(line, ':')
-          card(k) = card_entry(line(:at - 1), trim(line(at + 2:)), [field_entry ::])
-        else if (line(:6) == '  like') then
-          read (line(7:9), *) at
-          card(k)%field = card(findloc(card%name == line(10:17), .true., dim=1))%field(:at)
+      line = cards(i)
+      if (line(1:1) /= ' ') then
+        k = k + 1
+        at = index(line, ':')
+        card(k) = card_entry(line(:at - 1), trim(line(at + 2:)), [field_entry ::])
+      else if (line(:6) == '  like') then
+        read (line(7:9), *) at
+        card(k)%field = card(findloc(card%name == line(10:17), .true., dim=1))%field(:at)
+      else
+        field = new_field(trim(line))
+        if (index(line(:12), '; ids') + index(line(:12), '; points') > 0) then
+          card(k)%list_slot = size(card(k)%field) + 1
+          card(k)%list_name = trim(field%name)
+          card(k)%list_meaning = trim(field%meaning)
+          card(k)%has_ranges = index(line, 'ids ranges') > 0
+          card(k)%has_steps = index(line, 'ranges steps') > 0
+          card(k)%has_points = index(line, '; points') > 0
         else
-          field = new_field(trim(line))
-          if (index(line(:12), '; ids') + index(line(:12), '; points') > 0) then
-            card(k)%list_slot = size(card(k)%field) + 1
-            card(k)%list_name = trim(field%name)
-            card(k)%list_meaning = trim(field%meaning)
-            card(k)%has_ranges = index(line, 'ids ranges') > 0
-            card(k)%has_steps = index(line, 'ranges steps') > 0
-            card(k)%has_points = index(line, '; points') > 0
-          else
-            card(k)%field = [card(k)%field, spread(field, 1, field%times)]
-          end if
+          card(k)%field = [card(k)%field, spread(field, 1, field%times)]
         end if
-      end associate
+      end if
     end do
   end function catalogue
 

@@ -82,14 +82,14 @@ contains
     row = findloc(self%card(card_param)%word(1, :) == name, .true., dim=1)
   end function parameter_row
 
-  !> The word that a PARAM says, blank if it is at fault; `default` where there is no such card.
-  pure function parameter_word(self, name, default) result(word)
+  !> The word that a PARAM says; blank if it is at fault, or there is no such card.
+  pure function parameter_word(self, name) result(word)
     class(deck_type), intent(in) :: self
-    character(len=*), intent(in) :: name, default   !! of the parameter
+    character(len=*), intent(in) :: name   !! of the parameter
     character(len=8) :: word
     integer :: row
 
-    word = default
+    word = ''
     row = self%parameter_row(name)
     if (row > 0) word = self%card(card_param)%word(2, row)
   end function parameter_word

@@ -1,7 +1,7 @@
 !> What the catalogue says of a card and of each of its fields.
 module epcont_deck_entry
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: formatted, text_of
   implicit none
   private
   public :: field_entry, card_entry, new_field, number_of
@@ -137,8 +137,10 @@ contains
     !> What a word says of the field.
     subroutine take_word()
       integer :: equals
+      real(wp) :: number   ! behind it
 
       equals = index(word//'=', '=')
+      if (equals < len(word)) read (word(equals + 1:), *) number
       select case (word(:equals - 1))
       case ('id', 'system')
         field%kind = kind_integer
@@ -160,14 +162,14 @@ contains
         field%required = .true.
         form = ''
       case ('from')
-        read (word(equals + 1:), *) field%lowest
+        field%lowest = number
       case ('to', 'below')
-        read (word(equals + 1:), *) field%highest
+        field%highest = number
         field%below_highest = word(:equals - 1) == 'below'
       case ('times')
-        read (word(equals + 1:), *) field%times
+        field%times = nint(number)
       case ('default')
-        read (word(equals + 1:), *) field%default
+        field%default = number
         field%has_default = .true.
       case ('instead')
         field%instead = word(equals + 1:)
@@ -246,10 +248,9 @@ contains
   pure function decimal(number) result(text)
     real(wp), intent(in) :: number
     character(len=:), allocatable :: text
-    character(len=24) :: buffer
 
-    write (buffer, '(f0.4)') number
-    text = buffer(:verify(buffer, ' 0', back=.true.))
+    text = formatted('(f0.4)', number)
+    text = text(:verify(text, '0', back=.true.))
     if (text(len(text):) == '.') text = text//'0'
     if (text(1:1) == '.') text = '0'//text
   end function decimal

@@ -103,13 +103,13 @@ contains
   !> The parameters that PARAM may set.
   function parameter_text() result(text)
     character(len=:), allocatable :: text
+    type(field_entry), allocatable :: field(:)
     integer :: i
 
     text = newline//'NAME      VALUE'//newline
-    associate (field => parameters())
-      do i = 1, size(field)
-        text = text//field(i)%name//'  '//field(i)%allowed()//': '//trim(field(i)%meaning)//newline
-      end do
-    end associate
+    field = parameters()
+    do i = 1, size(field)
+      text = text//field(i)%name//'  '//field(i)%allowed()//': '//trim(field(i)%meaning)//newline
+    end do
   end function parameter_text
 end module epcont_deck_manual

@@ -96,11 +96,35 @@ contains
 
     text = shown(lines%file_name(fault%place%line))//':'
     if (fault%place%line > 0) then
-      text = text//columns(fault%place, lines)//said(fault)//newline//excerpt(fault, lines)
+      text = text//columns(fault%place, lines)//said(fault)//newline//excerpt()
     else
       text = text//' '//said(fault)//newline
       if (len(fault%remedy) > 0) text = text//'  '//fault%remedy//newline
     end if
+
+  contains
+
+    !> The line of the deck, and below it carets under the value (or the whole field, where that is blank).
+    !! Of a line too long to show, the part that holds the place.
+    pure function excerpt() result(text)
+      character(len=:), allocatable :: line, text
+      integer :: first, last, left
+
+      left = 0
+      if (fault%place%last > width) left = max(0, min(fault%place%first - 1, fault%place%last - width))
+      line = printable(lines%whole_line(fault%place%line, left + 1, width))
+      first = fault%place%first - left
+      last = min(fault%place%last - left, width)
+      associate (field => line(first:min(last, len(line))))
+        if (len_trim(field) > 0) then
+          last = first - 1 + len_trim(field)
+          first = first - 1 + verify(field, ' ')
+        end if
+      end associate
+      text = '  '//line//newline//repeat(' ', first + 1)//repeat('^', last - first + 1)
+      if (len(fault%remedy) > 0) text = text//' '//printable(fault%remedy)
+      text = text//newline
+    end function excerpt
   end function paragraph
 
   !> What is wrong, a warning named as such.
@@ -140,28 +164,4 @@ contains
     if (index(text, directory) == 1) text = text(len(directory) + 1:)
     text = shown(text)
   end function included_file
-
-  !> The line of the deck, and below it carets under the value (or the whole field, where that is blank).
-  !! Of a line too long to show, the part that holds the place.
-  pure function excerpt(fault, lines) result(text)
-    type(diagnostic), intent(in) :: fault
-    type(source), intent(in) :: lines
-    character(len=:), allocatable :: line, text
-    integer :: first, last, left
-
-    left = 0
-    if (fault%place%last > width) left = max(0, min(fault%place%first - 1, fault%place%last - width))
-    line = printable(lines%whole_line(fault%place%line, left + 1, width))
-    first = fault%place%first - left
-    last = min(fault%place%last - left, width)
-    associate (field => line(first:min(last, len(line))))
-      if (len_trim(field) > 0) then
-        last = first - 1 + len_trim(field)
-        first = first - 1 + verify(field, ' ')
-      end if
-    end associate
-    text = '  '//line//newline//repeat(' ', first + 1)//repeat('^', last - first + 1)
-    if (len(fault%remedy) > 0) text = text//' '//printable(fault%remedy)
-    text = text//newline
-  end function excerpt
 end module epcont_deck_render

@@ -169,9 +169,8 @@ contains
         return
       end if
       parent = lines%line(line)%file
-      associate (from => lines%files(parent)%name)
-        if (name(1:1) /= '/') name = from(:index(from, '/', back=.true.))//name
-      end associate
+      if (name(1:1) /= '/') &
+        name = lines%files(parent)%name(:index(lines%files(parent)%name, '/', back=.true.))//name
       depth = files_above(parent, name)
       if (depth == 0) then
         trouble = shown(name)//' includes itself'

@@ -1,8 +1,7 @@
 !> Fronts: which equations are eliminated together, and which of the later ones they are then coupled with.
 !>
-!> Front p has the equations first(p) to first(p+1)-1 of its own, and reaches the equations row(row_start(p))
-!> to row(row_start(p+1)-1). All these stand in its parent, the front that the first of them belongs to, or
-!> are reached by it.
+!> Front p has the equations first(p) to first(p+1)-1 of its own, and reaches the equations rows%of(p). All
+!> these stand in its parent, the front that the first of them belongs to, or are reached by it.
 module epcont_linalg_front_layout
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
@@ -15,15 +14,13 @@ module epcont_linalg_front_layout
     integer, allocatable :: first(:)       !! equation of each front [fronts + 1]
     integer, allocatable :: front_of(:)    !! each equation
     integer, allocatable :: parent(:)      !! always a later one; 0: it reaches nothing [fronts]
-    integer, allocatable :: row_start(:)   !! [fronts + 1]
-    integer, allocatable :: row(:)         !! equations reached, ascending in each front
+    type(incidence) :: rows                !! equations that each front reaches, ascending
     integer, allocatable :: own(:)         !! how many equations are a front's own [fronts]
     integer, allocatable :: reached(:)     !! and how many it reaches [fronts]
     logical :: in_sequence = .true.        !! all fronts below one stand right before it
     !> The elements in the order of the first fronts that they have equations of.
     integer, allocatable :: element(:)
   contains
-    procedure :: reached_by
     procedure :: entries
     procedure :: update_starts
     procedure :: operations
@@ -54,7 +51,7 @@ contains
     at = new_incidence(home, size(layout%own))
     layout%element = [at%group, pack([(e, e=1, size(home))], home(1, :) == 0)]
     call find_rows(layout, at, numbers)
-    layout%reached = layout%row_start(2:) - layout%row_start(:size(layout%own))
+    layout%reached = layout%rows%start(2:) - layout%rows%start(:size(layout%own))
     layout%in_sequence = stand_in_sequence(layout%parent)
   end function new_front_layout
 
@@ -69,12 +66,12 @@ contains
     !> The last front below each, and the one before that
     integer, dimension(size(layout%own)) :: child, next
     integer, allocatable :: row(:)
-    integer :: c, count, k, p
+    integer :: start(size(layout%first)), above, c, count, k, p
 
     child = 0
     next = 0
     allocate (layout%parent(size(layout%own)), source=0)
-    allocate (layout%row_start(size(layout%first)), source=1)
+    start = 1
     allocate (row(size(found)))
     seen = .false.
     do p = 1, size(layout%own)
@@ -84,22 +81,20 @@ contains
       end do
       c = child(p)
       do while (c > 0)
-        call add_new(row(layout%row_start(c):layout%row_start(c + 1) - 1), layout%first(p + 1), seen, &
-                     found, count)
+        call add_new(row(start(c):start(c + 1) - 1), layout%first(p + 1), seen, found, count)
         c = next(c)
       end do
-      layout%row_start(p + 1) = layout%row_start(p) + count
+      start(p + 1) = start(p) + count
       if (count == 0) cycle
-      if (layout%row_start(p + 1) - 1 > size(row)) row = [row, row]
-      row(layout%row_start(p):layout%row_start(p + 1) - 1) = found(sorted_order(found(:count)))
+      if (start(p + 1) - 1 > size(row)) row = [row, row]
+      row(start(p):start(p + 1) - 1) = found(sorted_order(found(:count)))
       seen(found(:count)) = .false.
-      associate (above => layout%parent(p))
-        above = layout%front_of(row(layout%row_start(p)))
-        next(p) = child(above)
-        child(above) = p
-      end associate
+      above = layout%front_of(row(start(p)))
+      layout%parent(p) = above
+      next(p) = child(above)
+      child(above) = p
     end do
-    layout%row = row(:layout%row_start(size(layout%first)) - 1)
+    layout%rows = incidence(start, row(:start(size(start)) - 1))
   end subroutine find_rows
 
   !> Put equations from `from` on that are not in the list yet at its end.
@@ -117,15 +112,6 @@ contains
       list(length) = number(i)
     end do
   end subroutine add_new
-
-  !> The equations that a front reaches, ascending.
-  pure function reached_by(self, front) result(row)
-    class(front_layout), intent(in) :: self
-    integer, intent(in) :: front   !! its number
-    integer :: row(self%reached(front))
-
-    row = self%row(self%row_start(front):self%row_start(front + 1) - 1)
-  end function reached_by
 
   !> Entries of the factor, and of what is kept with it.
   pure integer(i8) function entries(self, kept)

@@ -27,7 +27,7 @@ contains
     integer, intent(in) :: profile(:)      !! the last row that each column is coupled with [order]
     type(panel_layout) :: layout
     integer(i8) :: heights
-    integer :: last, p, panels
+    integer :: first, last, next, p, panels
 
     heights = sum([(int(profile(p) - p + 1, i8), p=1, size(profile))])
     associate (width => layout%width)
@@ -39,10 +39,10 @@ contains
     allocate (layout%height(panels))
     last = 0
     do p = 1, panels
-      associate (first => layout%first(p), next => layout%first(p + 1))
-        last = max(next - 1, maxval(profile(first:next - 1)), merge(last, 0, last >= first))
-        layout%height(p) = last - first + 1
-      end associate
+      first = layout%first(p)
+      next = layout%first(p + 1)
+      last = max(next - 1, maxval(profile(first:next - 1)), merge(last, 0, last >= first))
+      layout%height(p) = last - first + 1
     end do
   end function new_panel_layout
 

@@ -64,8 +64,7 @@ contains
     nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
     parts = new_incidence(reshape(motions%parts%body, [1, motions%parts%count]), model%bodies)
     do b = 1, model%bodies
-      call examine_body(model, nodes%group(nodes%start(b):nodes%start(b + 1) - 1), &
-                        parts%group(parts%start(b):parts%start(b + 1) - 1), motions, found)
+      call examine_body(model, nodes%of(b), parts%of(b), motions, found)
     end do
   end subroutine find_free_motions
 

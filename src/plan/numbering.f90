@@ -73,9 +73,9 @@ contains
     elements = new_incidence(reshape(model%body(model%connectivity(1, :)), [1, model%elements]), model%bodies)
     allocate (numbering%body(model%bodies))
     do b = 1, model%bodies
-      own = nodes%group(nodes%start(b):nodes%start(b + 1) - 1)
+      own = nodes%of(b)
       associate (body => numbering%body(b))
-        body%element = elements%group(elements%start(b):elements%start(b + 1) - 1)
+        body%element = elements%of(b)
         body%can_yield = any(model%can_yield(body%element))
         if (size(body%element) == 0) then
           call number_panels(own, body)

@@ -2,7 +2,7 @@
 !> of comma separated values and the manual page all come from that. Rows are values of mixed kind.
 module epcont_report_columns
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: short_real, text_of
+  use epcont_base_text, only: formatted, short_real, text_of
   use epcont_base_tolerances, only: least_difference, rounded_off
   use epcont_report_file, only: text_file
   implicit none
@@ -198,18 +198,18 @@ contains
     end do
   end function full_numbers
 
-  !> A number of a listing's column, six digits in 13 characters.
+  !> A number of a listing's column, six digits in up to 13 characters.
   pure function column_number(value, scale) result(text)
     real(wp), intent(in) :: value
     real(wp), intent(in) :: scale  !! of the column: its largest magnitude
-    character(len=13) :: text
+    character(len=:), allocatable :: text
 
     if (abs(value) <= rounded_off*scale .or. value == 0.0_wp) then
-      text = '          0.0'
+      text = '0.0'
     else if (abs(value) >= 0.999999e100_wp .or. abs(value) < 1.0e-99_wp) then
-      write (text, '(es13.5e3)') value
+      text = formatted('(es13.5e3)', value)
     else
-      write (text, '(es13.5e2)') value
+      text = formatted('(es13.5e2)', value)
     end if
   end function column_number
 
@@ -218,25 +218,18 @@ contains
   pure function rounding_number(value) result(text)
     real(wp), intent(in) :: value   !! the number
     character(len=:), allocatable :: text
-    character(len=12) :: buffer
 
-    if (value < least_difference) then
-      write (buffer, '(a, i0)') '< 1E', ceiling(log10(max(value, 0.999_wp*rounded_off)))
-    else
-      write (buffer, '(es9.1e3)') value
-    end if
-    text = trim(adjustl(buffer))
+    text = formatted('(es9.1e3)', value)
+    if (value < least_difference) text = '< 1E'//text_of(ceiling(log10(max(value, 0.999_wp*rounded_off))))
   end function rounding_number
 
   !> An estimate: two digits.
   pure function estimate_number(value) result(text)
     real(wp), intent(in) :: value   !! the number
     character(len=:), allocatable :: text
-    character(len=12) :: buffer
 
-    write (buffer, '(es9.1e2)') value
-    if (value >= 0.94e100_wp .or. value < 1.0e-99_wp) write (buffer, '(es9.1e3)') value
-    text = trim(adjustl(buffer))
+    text = formatted('(es9.1e2)', value)
+    if (value >= 0.94e100_wp .or. value < 1.0e-99_wp) text = formatted('(es9.1e3)', value)
   end function estimate_number
 
   !> A part in per cent, two digits of it; empty where it is a hundred times the whole.
@@ -244,16 +237,14 @@ contains
     real(wp), intent(in) :: value   !! the number
     real(wp), intent(in) :: of      !! the whole
     character(len=:), allocatable :: text
-    character(len=12) :: buffer
     real(wp) :: hundredths
 
     text = ''
     if (of <= 0.0_wp .or. value >= 100.0_wp*of) return
     hundredths = 100.0_wp*value/of
-    buffer = '< 0.001'
+    text = '< 0.001'
     if (hundredths >= 0.00095_wp) &
-      write (buffer, '(f12.'//text_of(max(0, 1 - floor(log10(1.05_wp*hundredths))))//')') hundredths
-    text = trim(adjustl(buffer))
+      text = formatted('(f12.'//text_of(max(0, 1 - floor(log10(1.05_wp*hundredths))))//')', hundredths)
     if (text(len(text):) == '.') text = text(:len(text) - 1)
     text = text//' %'
   end function percent

@@ -44,18 +44,16 @@ contains
       integer, allocatable :: order(:)
       integer :: i
 
-      associate (cards => deck%card(kind))
-        order = sorted_order(nint(cards%value(1, :cards%count)))
-        do i = 1, cards%count
-          line = cards%line(order(i))
+      order = sorted_order(nint(deck%card(kind)%value(1, :deck%card(kind)%count)))
+      do i = 1, deck%card(kind)%count
+        line = deck%card(kind)%line(order(i))
+        call list_line(line, deck%source%text_of_line(line))
+        do line = line + 1, deck%source%count
+          if (deck%source%blank(line)) cycle
+          if (.not. continues(deck%source%text_of_line(line))) exit
           call list_line(line, deck%source%text_of_line(line))
-          do line = line + 1, deck%source%count
-            if (deck%source%blank(line)) cycle
-            if (.not. continues(deck%source%text_of_line(line))) exit
-            call list_line(line, deck%source%text_of_line(line))
-          end do
         end do
-      end associate
+      end do
     end subroutine list_kind
 
     !> A line with its number in its file, unless it is blank.

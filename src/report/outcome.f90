@@ -203,7 +203,7 @@ contains
   subroutine remark_answer(run, found)
     class(solution_type), intent(in) :: run      !! a scene with its answer
     type(findings), intent(inout) :: found       !! warnings and notes are added
-    integer :: k
+    integer :: k, vague
 
     call warn_of_contact()
     do k = 1, scene_warnings
@@ -217,10 +217,9 @@ contains
       end if
     end do
     call warn_of_material()
-    associate (vague => count(run%answer%contact%indeterminate))
-      if (vague > 0) call warn('the forces of '//plural(vague, 'pair')//' are one choice of many, and so '// &
-        'are their pressures: pairs at one place, or parts that cannot bend (`force not unique` in CONTACT)')
-    end associate
+    vague = count(run%answer%contact%indeterminate)
+    if (vague > 0) call warn('the forces of '//plural(vague, 'pair')//' are one choice of many, and so '// &
+      'are their pressures: pairs at one place, or parts that cannot bend (`force not unique` in CONTACT)')
     do k = 1, run%motions%count
       if (.not. run%answer%contact%motion_free(k)) cycle
       call found%add_note(place_type(), 'approach of '//motion_name(run, k)// &
@@ -241,13 +240,13 @@ contains
       integer :: nearest
 
       if (run%model%pairs == 0 .or. any(run%answer%contact%touching)) return
-      ! Of gaps that are as good as equal the first: rounding chooses no pair.
       associate (gap => run%answer%contact%gap)
+        ! Of gaps that are as good as equal the first: rounding chooses no pair.
         nearest = findloc(gap <= (1.0_wp + no_effect)*minval(gap), .true., dim=1)
+        call warn('nothing touches: no pair carries a force; nearest is '// &
+                  run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
+                  short_real(gap(nearest))//' away')
       end associate
-      call warn('nothing touches: no pair carries a force; nearest is '// &
-                run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
-                short_real(run%answer%contact%gap(nearest))//' away')
     end subroutine warn_of_contact
 
     !> Elements that are too stiff, strained too far, or unloaded.

@@ -7,7 +7,7 @@ module epcont_report_plan_text
                                    precision_name, precision_open, precision_single, solver_auto, &
                                    solver_band, solver_frontal, solver_name
   use epcont_model_model, only: line_contact
-  use epcont_plan_iteration_plan, only: many_pairs
+  use epcont_plan_iteration_plan, only: iteration_plan, many_pairs
   use epcont_plan_numbering, only: many_operations
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_report_columns, only: column, state, table_type, whole, word
@@ -39,15 +39,17 @@ contains
     type(planned_scene), intent(in) :: scene   !! what is to be solved, and how
     character(len=:), allocatable :: text
     logical :: in_double
+    type(iteration_plan) :: iteration
     type(table_type) :: plan
     integer :: k
 
-    in_double = scene%iteration%precision == precision_double
+    iteration = scene%iteration
+    in_double = iteration%precision == precision_double
     plan%text = ''
     call plan%heading('PLAN')
     call say(plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
              plural(scene%model%pairs, 'pair')//'; bodies: '//text_of(scene%model%bodies))
-    if (scene%iteration%from_first_pivot) &
+    if (iteration%from_first_pivot) &
       call say('ORIGINAL: as the program of about 1980, each contact from its first pivot on')
     call say_iteration()
     call say_rule()
@@ -65,7 +67,7 @@ contains
     call plan%line('')
     call say('memory '//megabytes(scene%expected%bytes)// &
              when(.not. in_double, ' (in double '//megabytes(scene%expected%double_bytes)//')')// &
-             ', operations '//short_real(scene%expected%operations)//when(scene%iteration%yields, ' a solve'))
+             ', operations '//short_real(scene%expected%operations)//when(iteration%yields, ' a solve'))
     text = plan%text
 
   contains
@@ -87,23 +89,22 @@ contains
 
     !> Whether the scene can yield, and how that is iterated.
     subroutine say_iteration()
-      if (.not. scene%iteration%yields) then
+      if (.not. iteration%yields) then
         call say('elastic material only: one solve, no iteration')
         return
       end if
       call say('total theory of plasticity; bodies that can yield: '// &
                text_of(count(scene%numbering%body%can_yield)))
-      call say('iteration '//trim(method_name(scene%iteration%method))//': '// &
-               method_text(scene%iteration%method))
-      if (scene%iteration%chosen_here) call say('  chosen here (AUTO): '// &
-        when(scene%iteration%method == method_newton, 'it needs the fewest factorizations', &
+      call say('iteration '//trim(method_name(iteration%method))//': '//method_text(iteration%method))
+      if (iteration%chosen_here) call say('  chosen here (AUTO): '// &
+        when(iteration%method == method_newton, 'it needs the fewest factorizations', &
              'the method of the paper, as MUP PAPER has no tangent for NEWTON'))
       call say('  until no displacement changes, or is estimated to be off, by more than '// &
-               short_real(scene%iteration%tolerance)//' of the largest,')
-      call say('  and no stress is off its curve by more than '//short_real(scene%iteration%off_curve)// &
+               short_real(iteration%tolerance)//' of the largest,')
+      call say('  and no stress is off its curve by more than '//short_real(iteration%off_curve)// &
                ' of the stress there; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
-      if (scene%iteration%load_steps > 1) &
-        call say(plural(scene%iteration%load_steps, 'load step')//'; elastic unloading is not modelled')
+      if (iteration%load_steps > 1) &
+        call say(plural(iteration%load_steps, 'load step')//'; elastic unloading is not modelled')
       if (scene%model%controls%paper_ratio) call say('MUP PAPER: Poisson''s ratio in the equivalent '// &
         'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
     end subroutine say_iteration
@@ -112,11 +113,11 @@ contains
     subroutine say_rule()
       if (scene%model%pairs == 0) then
         call say('no pairs: no flexibility, no simplex')
-      else if (.not. scene%iteration%by_blocks) then
+      else if (.not. iteration%by_blocks) then
         call say('contact by the simplex with contact entry rule (CONRY)')
       else
         call say('contact by block pivoting of the contacts (BLOCK)')
-        if (scene%iteration%rule_chosen_here) &
+        if (iteration%rule_chosen_here) &
           call say('  chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on')
       end if
     end subroutine say_rule
@@ -170,8 +171,8 @@ contains
                    short_real(many_operations)//' operations')
       end if
       if (.not. in_double) call say('factors in single precision, '// &
-        when(scene%iteration%precision == precision_single, 'not refined', 'refined to double')// &
-        ' ('//trim(precision_name(scene%iteration%precision))// &
+        when(iteration%precision == precision_single, 'not refined', 'refined to double')// &
+        ' ('//trim(precision_name(iteration%precision))// &
         '); where that fails, all is solved anew in double')
     end subroutine say_factors
 
@@ -179,12 +180,12 @@ contains
     subroutine say_choices()
       character(len=:), allocatable :: chosen
 
-      chosen = when(scene%iteration%yields .and. scene%model%controls%tolerance == 0.0_wp, &
-                    ', TOL '//short_real(scene%iteration%tolerance))// &
-               when(scene%iteration%yields .and. scene%iteration%chosen_here, &
-                    ', METHOD '//trim(method_name(scene%iteration%method)))// &
+      chosen = when(iteration%yields .and. scene%model%controls%tolerance == 0.0_wp, &
+                    ', TOL '//short_real(iteration%tolerance))// &
+               when(iteration%yields .and. iteration%chosen_here, &
+                    ', METHOD '//trim(method_name(iteration%method)))// &
                when(scene%model%controls%precision == precision_open, &
-                    ', PRECIS '//trim(precision_name(scene%iteration%precision)))
+                    ', PRECIS '//trim(precision_name(iteration%precision)))
       if (len(chosen) == 0) chosen = ', nothing: the deck sets all itself'
       call say('ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
     end subroutine say_choices
@@ -202,7 +203,7 @@ contains
           width = text_of(body%half_bandwidth)
           if (body%solver /= solver_band) width = solver_name(body%solver)
           times = '1'
-          if (body%can_yield .and. scene%iteration%method /= method_inistr) times = 'each iteration'
+          if (body%can_yield .and. iteration%method /= method_inistr) times = 'each iteration'
           if (body%equations == 0) times = '0'
           way = '-'
           if (body%contact_equations > 0) way = merge('inversion   ', 'substitution', body%contact_last)

@@ -186,7 +186,7 @@ contains
       if (len(run%deck%title) > 0) call say(printable(run%deck%title))
       if (len(run%deck%subtitle) > 0) call say(printable(run%deck%subtitle))
       if (len(run%deck%label) > 0) call say(printable(run%deck%label))
-      units = run%deck%parameter_word('UNITS', '')
+      units = run%deck%parameter_word('UNITS')
       if (units == '') units = 'as the deck has them'
       call say('units: '//units)
       call listing%heading('DECK')
@@ -203,10 +203,9 @@ contains
 
       text = run%deck_notes//remark_lines(run%outcome%found, .true.)
       if (len(text) == 0) return
-      associate (deck => run%faults, answer => run%outcome%found)
-        call listing%heading('WARNINGS AND NOTES  ('//plural(deck%warnings + answer%warnings, 'warning')// &
-                             ', '//plural(deck%notes + answer%notes, 'note')//')')
-      end associate
+      call listing%heading('WARNINGS AND NOTES  ('// &
+                           plural(run%faults%warnings + run%outcome%found%warnings, 'warning')//', '// &
+                           plural(run%faults%notes + run%outcome%found%notes, 'note')//')')
       from = 1
       do while (from <= len(text))
         to = from + index(text(from:), newline) - 1

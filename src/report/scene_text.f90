@@ -195,15 +195,13 @@ contains
       integer :: k, line(2)
 
       do k = size(model%line_contact), 1, -1
-        associate (contact => model%line_contact(k))
-          of_slave = are_of(contact%slave, side)
-          of_master = are_of(contact%master, side)
-          if (.not. any(of_slave .and. of_master([2, 1]))) cycle
-          text = 'shorter sides of both lines there'
-          if (of_master(1)) &
-            text = 'SLAVE and MASTER of BCONP '//text_of(contact%bconp(1))//' exchanged, or '//text
-          return
-        end associate
+        of_slave = are_of(model%line_contact(k)%slave, side)
+        of_master = are_of(model%line_contact(k)%master, side)
+        if (.not. any(of_slave .and. of_master([2, 1]))) cycle
+        text = 'shorter sides of both lines there'
+        if (of_master(1)) text = 'SLAVE and MASTER of BCONP '//text_of(model%line_contact(k)%bconp(1))// &
+                                 ' exchanged, or '//text
+        return
       end do
       line = 0
       do k = 1, size(model%line)

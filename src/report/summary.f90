@@ -154,11 +154,10 @@ contains
                        run%accuracy%zone(k)%half_width, run%answer%zones(k)%half_width, '')
       end do
       do k = 1, run%motions%count
-        associate (endless => run%accuracy%approach_unbounded(k))
-          call put_error('approach_'//motion_key(), length, 'approach of '//motion_name(run, k), &
-                         merge(-1.0_wp, run%accuracy%approach(k), endless), &
-                         abs(run%answer%contact%approach(k)), when(endless, unbounded))
-        end associate
+        call put_error('approach_'//motion_key(), length, 'approach of '//motion_name(run, k), &
+                       merge(-1.0_wp, run%accuracy%approach(k), run%accuracy%approach_unbounded(k)), &
+                       abs(run%answer%contact%approach(k)), &
+                       when(run%accuracy%approach_unbounded(k), unbounded))
       end do
       if (run%model%pairs > 0) call put_error('total_contact_force', force, 'total contact force', &
                                               run%accuracy%total_force, sum(run%answer%contact%force), '')

@@ -203,10 +203,9 @@ contains
                          'estimated of up to '//text_of(most_bodies)//' bodies)', &
                          columns, spread(maxval([(abs(bodies(k)%resultant), k=1, size(bodies))]), 1, 5))
         do k = 1, size(bodies)
-          associate (force => bodies(k)%resultant, error => run%accuracy%body_force(:, k))
-            call table%row([bodies(k)%body, run%model%node_id(bodies(k)%node)], &
-                           [force(1), error(1), force(2), error], [character ::])
-          end associate
+          call table%row([bodies(k)%body, run%model%node_id(bodies(k)%node)], &
+                         [bodies(k)%resultant(1), run%accuracy%body_force(1, k), &
+                          bodies(k)%resultant(2), run%accuracy%body_force(:, k)], [character ::])
         end do
       end associate
     end subroutine put_bodies
@@ -230,15 +229,13 @@ contains
                        [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%stress)), 1, 6), 0.0_wp, 0.0_wp, &
                         maxval(run%answer%equivalent_strain), 0.0_wp])
       do k = 1, run%model%elements
-        associate (model => run%model, answer => run%answer)
-          call table%row([model%element_id(k)], &
-                         [sum(model%coordinates(k), dim=2)/model%node_count(k), answer%stress(:, k), &
-                          answer%equivalent_stress(k), &
-                          answer%largest_stress(k), place_of_point(model, answer%largest_at(k)), &
-                          answer%equivalent_strain(k), answer%secant_modulus(k)], &
-                         [nearest_grid(answer%largest_at(k)), &
-                          merge('plastic ', 'elastic ', answer%plastic(k))])
-        end associate
+        call table%row([run%model%element_id(k)], &
+                       [sum(run%model%coordinates(k), dim=2)/run%model%node_count(k), &
+                        run%answer%stress(:, k), run%answer%equivalent_stress(k), &
+                        run%answer%largest_stress(k), place_of_point(run%model, run%answer%largest_at(k)), &
+                        run%answer%equivalent_strain(k), run%answer%secant_modulus(k)], &
+                       [nearest_grid(run%answer%largest_at(k)), &
+                        merge('plastic ', 'elastic ', run%answer%plastic(k))])
       end do
     end subroutine put_elements
 
@@ -256,17 +253,16 @@ contains
     !> The first pivots of the simplex: those of the last solve, below the pairs of the listing; in a file, of
     !! all.
     subroutine put_pivots()
-      integer :: before, k
+      integer :: first, k, last
 
       call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
       if (table%listed) call put_pivots_of(0, run%answer%contact%history)
       if (table%listed) return
-      before = 0
+      last = 0
       do k = 1, size(run%answer%history)
-        associate (kept => run%answer%history(k)%kept)
-          call put_pivots_of(k, run%answer%pivot(before + 1:before + kept))
-          before = before + kept
-        end associate
+        first = last + 1
+        last = last + run%answer%history(k)%kept
+        call put_pivots_of(k, run%answer%pivot(first:last))
       end do
     end subroutine put_pivots
 

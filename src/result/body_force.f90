@@ -44,14 +44,14 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
     real(wp) :: sums(directions, model%bodies)
+    real(wp), allocatable :: nodal(:, :)
     integer :: i
 
     sums = 0.0_wp
-    associate (nodal => pair_forces(model, force))
-      do i = 1, model%nodes
-        sums(:, model%body(i)) = sums(:, model%body(i)) + nodal(:, i)
-      end do
-    end associate
+    nodal = pair_forces(model, force)
+    do i = 1, model%nodes
+      sums(:, model%body(i)) = sums(:, model%body(i)) + nodal(:, i)
+    end do
   end function resultants
 
   !> What a unit force at each pair adds to one component of the resultant on a body [pairs].
@@ -59,13 +59,13 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: body, c          !! the body, the component
     real(wp) :: share(model%pairs)
-    integer :: k
+    integer :: first, k, last
 
     do k = 1, model%pairs
-      associate (first => model%row_start(k), last => model%row_start(k + 1) - 1)
-        share(k) = model%normal(c, k)*sum(model%row_weight(first:last), &
-                                          mask=model%body(model%row_node(first:last)) == body)
-      end associate
+      first = model%row_start(k)
+      last = model%row_start(k + 1) - 1
+      share(k) = model%normal(c, k)*sum(model%row_weight(first:last), &
+                                        mask=model%body(model%row_node(first:last)) == body)
     end do
   end function shares_of_pairs
 end module epcont_result_body_force

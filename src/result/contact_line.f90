@@ -163,25 +163,23 @@ contains
     integer :: i, k, side(3)
 
     allocate (sides(4, 0))
-    do i = model%around%start(node), model%around%start(node + 1) - 1
-      associate (element => model%around%group(i))
-        do k = 1, model%corners(element)
-          side = model%edge(element, k)
+    associate (elements => model%around%of(node))
+      do i = 1, size(elements)
+        do k = 1, model%corners(elements(i))
+          side = model%edge(elements(i), k)
           if (.not. any(side == node) .or. elements_at(side(1), side(2)) > 1) cycle
-          sides = reshape([sides, side, element], [4, size(sides, 2) + 1])
+          sides = reshape([sides, side, elements(i)], [4, size(sides, 2) + 1])
         end do
-      end associate
-    end do
+      end do
+    end associate
 
   contains
 
     !> How many elements have both of two nodes.
     pure integer function elements_at(a, b)
       integer, intent(in) :: a, b
-      integer :: i
 
-      elements_at = count([(any(model%connectivity(:, model%around%group(i)) == b), &
-                            i=model%around%start(a), model%around%start(a + 1) - 1)])
+      elements_at = count(any(model%connectivity(:, model%around%of(a)) == b, dim=1))
     end function elements_at
   end function outer_sides
 
@@ -222,15 +220,13 @@ contains
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: at      !! pairs at each node
     integer, intent(in) :: side(3), node   !! 0: none
+    integer, allocatable :: there(:)
 
     pair = 0
     if (node == 0) return
-    associate (there => at%group(at%start(node):at%start(node + 1) - 1))
-      if (size(there) == 0) return
-      associate (along => model%x(:, side(2)) - model%x(:, side(1)))
-        pair = there(minloc(abs(matmul(along, model%normal(:, there))), dim=1))
-      end associate
-    end associate
+    there = at%of(node)
+    if (size(there) > 0) pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), &
+                                                        model%normal(:, there))), dim=1))
   end function pair_of_side
 
   !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
@@ -242,16 +238,15 @@ contains
     type(contact_line), intent(inout) :: line
     type(partition), intent(inout) :: places
     type(incidence) :: on_side
+    integer, allocatable :: masters(:)
     integer :: side
 
     if (contact%last < contact%first_of_master) return
     on_side = new_incidence(reshape(contact%stands_on, [1, size(contact%stands_on)]), &
                             size(contact%slave%element))
     do side = 1, size(contact%slave%element)
-      associate (masters => on_side%group(on_side%start(side):on_side%start(side + 1) - 1))
-        if (size(masters) > 0) &
-          call link(side, run_on(side, contact%first_of_master - 1 + masters))
-      end associate
+      masters = contact%first_of_master - 1 + on_side%of(side)
+      if (size(masters) > 0) call link(side, run_on(side, masters))
     end do
 
   contains
@@ -295,25 +290,24 @@ contains
       integer, intent(in) :: segment   !! the side
       integer, intent(in) :: run(:)
       real(wp) :: apart, share(3), width
-      integer :: i, k
+      integer :: i, k, pair
 
       associate (element => contact%slave%element(segment), side => contact%slave%segment(:, segment), &
                  chord => contact%slave%chord_length(segment))
         i = findloc(run >= contact%first_of_master, .true., dim=1)   ! whose normal is the side's
         width = sum(shares_of_nodes(model, element, side, model%normal(:, run(i))))/chord
         do i = 1, size(run)
-          associate (pair => run(i))
-            if (pair >= contact%first_of_master) cycle
-            share = shares_of_nodes(model, element, side, model%normal(:, pair))
-            if (is_along(model, side, model%normal(:, pair))) &
-              line%tributary(pair) = line%tributary(pair) - sum(share, mask=side == line%node(pair))
-            do k = 1, 2
-              if (.not. (line%middle(pair) .or. any(run == line%neighbour(k, pair)))) cycle
-              line%neighbour(k, pair) = 0
-              line%part(k, pair) = 0.0_wp
-            end do
-            line%middle(pair) = .false.   ! no node between two others any more
-          end associate
+          pair = run(i)
+          if (pair >= contact%first_of_master) cycle
+          share = shares_of_nodes(model, element, side, model%normal(:, pair))
+          if (is_along(model, side, model%normal(:, pair))) &
+            line%tributary(pair) = line%tributary(pair) - sum(share, mask=side == line%node(pair))
+          do k = 1, 2
+            if (.not. (line%middle(pair) .or. any(run == line%neighbour(k, pair)))) cycle
+            line%neighbour(k, pair) = 0
+            line%part(k, pair) = 0.0_wp
+          end do
+          line%middle(pair) = .false.   ! no node between two others any more
         end do
         do i = 1, size(run) - 1
           apart = norm2(foot_of(run(i + 1)) - foot_of(run(i)))
@@ -329,17 +323,16 @@ contains
     integer, intent(in) :: pairs(2)
     real(wp), intent(in) :: piece   !! of either [length**2]
     type(contact_line), intent(inout) :: line
-    integer :: i, k
+    integer :: i, k, pair
 
     do i = 1, 2
-      associate (pair => pairs(i), towards => pairs(3 - i))
-        k = findloc(line%neighbour(:, pair), towards, dim=1)
-        if (k == 0) k = findloc(line%neighbour(:, pair), 0, dim=1)
-        if (k == 0) k = 2
-        line%neighbour(k, pair) = towards
-        line%part(k, pair) = line%part(k, pair) + piece
-        line%tributary(pair) = line%tributary(pair) + piece
-      end associate
+      pair = pairs(i)
+      k = findloc(line%neighbour(:, pair), pairs(3 - i), dim=1)
+      if (k == 0) k = findloc(line%neighbour(:, pair), 0, dim=1)
+      if (k == 0) k = 2
+      line%neighbour(k, pair) = pairs(3 - i)
+      line%part(k, pair) = line%part(k, pair) + piece
+      line%tributary(pair) = line%tributary(pair) + piece
     end do
   end subroutine add_piece
 
@@ -361,10 +354,8 @@ contains
 
     within = touching
     do pair = 1, size(touching)
-      associate (beside => self%neighbour(:, pair))
-        if (self%tributary(pair) <= 0.0_wp) &
-          within(pair) = within(pair) .or. any(touching(pack(beside, beside > 0)))
-      end associate
+      if (self%tributary(pair) <= 0.0_wp) within(pair) = within(pair) .or. &
+        any(touching(pack(self%neighbour(:, pair), self%neighbour(:, pair) > 0)))
     end do
   end function in_contact
 end module epcont_result_contact_line

@@ -53,10 +53,8 @@ contains
       n = model%corners(e)
       associate (node => model%connectivity(:n, e), x => model%x, u => displacement)
         ! In a quadrilateral along its diagonals, in a triangle along two sides: gradient (s t) = (p q).
-        associate (from => node(max(1, n - 3)), to => node(n - 1))
-          t = x(:, to) - x(:, from)
-          q = u(:, to) - u(:, from)
-        end associate
+        t = x(:, node(n - 1)) - x(:, node(max(1, n - 3)))
+        q = u(:, node(n - 1)) - u(:, node(max(1, n - 3)))
         s = x(:, node(n)) - x(:, node(n - 2))
         p = u(:, node(n)) - u(:, node(n - 2))
         norm = sqrt(sum((p*t(2) - q*s(2))**2) + sum((q*s(1) - p*t(1))**2))/abs(s(1)*t(2) - s(2)*t(1))

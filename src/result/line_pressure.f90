@@ -60,11 +60,9 @@ contains
           where (area(corner) == 0.0_wp) received(corner) = received(middle)
         end associate
       end do
-      associate (first => contact%first, last => contact%last)
-        found%touching = count(touching(first:last))
-        found%force = sum(force(first:last))
-        found%on_slave = max(0.0_wp, maxval(pressure(first:last)))
-      end associate
+      found%touching = count(touching(contact%first:contact%last))
+      found%force = sum(force(contact%first:contact%last))
+      found%on_slave = max(0.0_wp, maxval(pressure(contact%first:contact%last)))
       found%on_master = max(0.0_wp, maxval(received, mask=area > 0.0_wp))
       if (found%on_slave == 0.0_wp) return
       do k = contact%first, contact%first_of_master - 1

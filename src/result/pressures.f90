@@ -48,12 +48,13 @@ contains
     done = .false.
     do k = 1, model%pairs
       if (done(k) .or. .not. is_whole(k)) cycle
-      run = run_of(k)
+      call find_run(k)
+      call sum_up()
+      call derive()
       done(run%middle) = .true.
-      call derive(run)
     end do
     do k = 1, size(line%at_place%start) - 1
-      call level(line%at_place%group(line%at_place%start(k):line%at_place%start(k + 1) - 1))
+      call level(line%at_place%of(k))
     end do
     do k = 1, model%pairs
       if (line%tributary(k) <= 0.0_wp) call complete(k, maxval(line%neighbour(:, k)))
@@ -64,14 +65,14 @@ contains
     !> Pairs at one place have one pressure.
     subroutine level(pairs)
       integer, intent(in) :: pairs(:)
+      real(wp) :: area
       integer :: i
 
-      associate (area => sum(line%tributary(pairs)), together => sum(force(pairs)))
-        if (size(pairs) == 1 .or. area <= 0.0_wp) return
-        do i = 1, size(pairs)
-          if (force(pairs(i)) > 0.0_wp) pressure(pairs(i)) = together/area
-        end do
-      end associate
+      area = sum(line%tributary(pairs))
+      if (size(pairs) == 1 .or. area <= 0.0_wp) return
+      do i = 1, size(pairs)
+        if (force(pairs(i)) > 0.0_wp) pressure(pairs(i)) = sum(force(pairs))/area
+      end do
     end subroutine level
 
     !> The pressure at a corner on the axis that has none of its own: that of the middle beside it. So it is
@@ -100,32 +101,28 @@ contains
     end function is_whole
 
     !> The run that a side belongs to, given by its middle.
-    pure function run_of(side) result(run)
+    subroutine find_run(side)
       integer, intent(in) :: side
-      type(run_type) :: run
       integer, allocatable :: chain(:)   !! corners and middles by turns
-      integer :: direction, next
+      integer :: corner, direction, next
 
       chain = [line%neighbour(1, side), side, line%neighbour(2, side)]
       do direction = 1, 2
         do
-          associate (corner => chain(size(chain)))
-            next = sum(line%neighbour(:, corner)) - chain(size(chain) - 1)   ! the other one
-            if (.not. is_whole(next) .or. any(chain == next)) exit
-            chain = [chain, next, sum(line%neighbour(:, next)) - corner]
-          end associate
+          corner = chain(size(chain))
+          next = sum(line%neighbour(:, corner)) - chain(size(chain) - 1)   ! the other one
+          if (.not. is_whole(next) .or. any(chain == next)) exit
+          chain = [chain, next, sum(line%neighbour(:, next)) - corner]
         end do
         chain = chain(size(chain):1:-1)
       end do
       run%corner = chain(1::2)
       run%middle = chain(2::2)
-      call sum_up(run)
-    end function run_of
+    end subroutine find_run
 
     !> Area and force from the first corner on. What a corner bears goes to the sides that touch as its area
     !! does.
-    pure subroutine sum_up(run)
-      type(run_type), intent(inout) :: run
+    subroutine sum_up()
       integer :: beyond(2), end, k, n
       logical :: closed, mirrored(2)
 
@@ -137,6 +134,7 @@ contains
         mirrored = run%even .and. .not. closed .and. .not. (model%has_rings() .and. line%x(1, ends) == 0.0_wp)
       end associate
       beyond = merge(min(n, before), 0, mirrored .or. closed)
+      if (allocated(run%total)) deallocate (run%total)
       allocate (run%total(2, 1 - beyond(1):n + 1 + beyond(2)), source=0.0_wp)
       associate (total => run%total)
         do k = 1, n
@@ -169,31 +167,29 @@ contains
 
     !> Pressures of a run. At an end where contact ends, the last side's own are left: there the pressure has
     !! no polynomial.
-    subroutine derive(run)
-      type(run_type), intent(in) :: run
+    subroutine derive()
       integer :: first, k, last
 
       if (size(run%total, 2) < least_corners) then
         if (size(run%total, 2) < least_at_axis) return
         do k = 1, size(run%corner), size(run%middle)
           if (line%tributary(run%corner(k)) <= 0.0_wp) &
-            pressure(run%corner(k)) = slope(run, 1, least_at_axis, run%total(1, k))
+            pressure(run%corner(k)) = slope(1, least_at_axis, run%total(1, k))
         end do
         return
       end if
       first = merge(1, 2, run%even(1))
       last = size(run%middle) - merge(0, 1, run%even(2))
       do k = first, last
-        pressure(run%middle(k)) = slope(run, k - 1, around_middle, area_at_middle(run, k))
+        pressure(run%middle(k)) = slope(k - 1, around_middle, area_at_middle(k))
       end do
       do k = first, last + 1
-        pressure(run%corner(k)) = slope(run, k - before, around_corner, run%total(1, k))
+        pressure(run%corner(k)) = slope(k - before, around_corner, run%total(1, k))
       end do
     end subroutine derive
 
     !> Area up to the middle node of a side.
-    pure real(wp) function area_at_middle(run, k) result(area)
-      type(run_type), intent(in) :: run
+    pure real(wp) function area_at_middle(k) result(area)
       integer, intent(in) :: k
       real(wp) :: half(2)
 
@@ -203,33 +199,33 @@ contains
       end associate
       area = run%total(1, k) + (run%total(1, k + 1) - run%total(1, k))*half(1)/sum(half)
     end function area_at_middle
+
+    !> Derivative of force by area: of the polynomial through some corners, from one of them on if the run has
+    !! so many.
+    pure real(wp) function slope(from, many, at)
+      integer, intent(in) :: from, many
+      real(wp), intent(in) :: at   !! this area
+      integer :: first, i, j, k, last
+      real(wp) :: product, total
+
+      first = max(lbound(run%total, 2), min(from, ubound(run%total, 2) - many + 1))
+      last = min(ubound(run%total, 2), first + many - 1)
+      slope = 0.0_wp
+      associate (area => run%total(1, first:last), force => run%total(2, first:last))
+        do k = 1, size(area)
+          total = 0.0_wp
+          do j = 1, size(area)
+            if (j == k) cycle
+            product = 1.0_wp/(area(k) - area(j))
+            do i = 1, size(area)
+              if (i /= k .and. i /= j) product = product*(at - area(i))/(area(k) - area(i))
+            end do
+            total = total + product
+          end do
+          slope = slope + force(k)*total
+        end do
+      end associate
+    end function slope
   end function pair_pressures
 
-  !> Derivative of force by area: of the polynomial through some corners, from one of them on if the run has
-  !! so many.
-  pure real(wp) function slope(run, from, many, at)
-    type(run_type), intent(in) :: run
-    integer, intent(in) :: from, many
-    real(wp), intent(in) :: at   !! this area
-    integer :: first, i, j, k, last
-    real(wp) :: product, total
-
-    first = max(lbound(run%total, 2), min(from, ubound(run%total, 2) - many + 1))
-    last = min(ubound(run%total, 2), first + many - 1)
-    slope = 0.0_wp
-    associate (area => run%total(1, first:last), force => run%total(2, first:last))
-      do k = 1, size(area)
-        total = 0.0_wp
-        do j = 1, size(area)
-          if (j == k) cycle
-          product = 1.0_wp/(area(k) - area(j))
-          do i = 1, size(area)
-            if (i /= k .and. i /= j) product = product*(at - area(i))/(area(k) - area(i))
-          end do
-          total = total + product
-        end do
-        slope = slope + force(k)*total
-      end do
-    end associate
-  end function slope
 end module epcont_result_pressures

@@ -26,7 +26,7 @@ contains
     real(wp) :: mises(model%points), nothing(model%elements)
     real(wp), allocatable :: force(:, :)   ! that the elements need at the nodes [force] [2, nodes]
     real(wp) :: modulus, share, whole
-    integer :: c, e, node, p
+    integer :: c, e, leader, node, p
 
     nothing = 0.0_wp
     answer%stress = spread(nothing, 1, components)
@@ -72,10 +72,9 @@ contains
     answer%reaction = spread([0.0_wp, 0.0_wp], 2, model%nodes)
     do node = 1, model%nodes
       do c = 1, directions
-        associate (leader => model%leader(c, node))
-          if (model%held(c, leader)) &
-            answer%reaction(c, leader) = answer%reaction(c, leader) + force(c, node) - applied(c, node)
-        end associate
+        leader = model%leader(c, node)
+        if (model%held(c, leader)) &
+          answer%reaction(c, leader) = answer%reaction(c, leader) + force(c, node) - applied(c, node)
       end do
     end do
   end subroutine recover_stresses

@@ -37,16 +37,16 @@ contains
     type(contact_zone), allocatable :: zones(:)
     type(partition) :: sets
     integer, allocatable :: number(:), start(:)   !! set of each pair; first pair of each zone
+    integer, allocatable :: next(:)
     integer :: count, k, pair, z
 
     sets = new_partition(size(touching))
     do pair = 1, size(touching)
       if (.not. touching(pair)) cycle
-      associate (next => beside(pair, .true.))
-        do k = 1, size(next)
-          call sets%join(pair, next(k))
-        end do
-      end associate
+      next = beside(pair, .true.)
+      do k = 1, size(next)
+        call sets%join(pair, next(k))
+      end do
     end do
     call sets%numbers(number, count)
     start = [(findloc(number, z, dim=1), z=1, count)]
@@ -106,14 +106,13 @@ contains
     pure function run_from(start) result(run)
       integer, intent(in) :: start
       integer, allocatable :: next(:), run(:)
-      integer :: k
+      integer :: k, last
 
       run = [start]
       do
-        associate (last => run(size(run)))
-          next = pack([(k, k=1, size(number))], number == number(last) .and. line%node == line%node(last))
-          next = [next, beside(last, .true.)]
-        end associate
+        last = run(size(run))
+        next = pack([(k, k=1, size(number))], number == number(last) .and. line%node == line%node(last))
+        next = [next, beside(last, .true.)]
         next = pack(next, [(.not. any(run == next(k)), k=1, size(next))])
         if (size(next) == 0) return
         run = [run, next(1)]

@@ -21,19 +21,19 @@ module epcont_system_large_pages
   interface
     integer(c_int) function madvise(address, length, advice) bind(c)
       import
-      integer(c_intptr_t), value, intent(in) :: address
-      integer(c_size_t), value, intent(in) :: length
-      integer(c_int), value, intent(in) :: advice
+      integer(c_intptr_t), value :: address
+      integer(c_size_t), value :: length
+      integer(c_int), value :: advice
     end function madvise
 
     integer(c_int) function mallopt(parameter, value) bind(c)
       import
-      integer(c_int), value, intent(in) :: parameter, value
+      integer(c_int), value :: parameter, value
     end function mallopt
 
     integer(c_intptr_t) function sbrk(increment) bind(c)
       import
-      integer(c_intptr_t), value, intent(in) :: increment
+      integer(c_intptr_t), value :: increment
     end function sbrk
   end interface
 

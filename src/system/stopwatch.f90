@@ -28,9 +28,9 @@ module epcont_system_stopwatch
     'displacements', 'yielding', 'stresses', 'certificate', 'accuracy', 'writing']
 
   type :: stopwatch
-    real(wp) :: wall(stages) = 0.0_wp        !! [s]
-    real(wp) :: processor(stages) = 0.0_wp   !! of all threads, the system's part included [s]
-    real(wp), private :: lap_began(2) = 0.0_wp   !! on the wall and on the processor [s]
+    !> On the wall; on the processor, of all threads, the system's part included [s] [2, stages]
+    real(wp) :: spent(2, stages) = 0.0_wp
+    real(wp), private :: lap_began(2) = 0.0_wp   !! on both [s]
   contains
     procedure :: start
     procedure :: lap
@@ -43,8 +43,7 @@ contains
   subroutine start(self)
     class(stopwatch), intent(inout) :: self
 
-    self%wall = 0.0_wp
-    self%processor = 0.0_wp
+    self%spent = 0.0_wp
     self%lap_began = now()
   end subroutine start
 
@@ -55,8 +54,7 @@ contains
     real(wp) :: ended(2)
 
     ended = now()
-    self%wall(stage) = self%wall(stage) + (ended(1) - self%lap_began(1))
-    self%processor(stage) = self%processor(stage) + (ended(2) - self%lap_began(2))
+    self%spent(:, stage) = self%spent(:, stage) + (ended - self%lap_began)
     self%lap_began = ended
   end subroutine lap
 
@@ -64,7 +62,7 @@ contains
   pure real(wp) function elapsed(self)
     class(stopwatch), intent(in) :: self
 
-    elapsed = sum(self%wall)
+    elapsed = sum(self%spent(1, :))
   end function elapsed
 
   function now() result(seconds)

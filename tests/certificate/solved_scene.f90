@@ -1,5 +1,6 @@
 !> Scenes solved from decks that are written in a line.
 module solved_scene
+  use deck_texts, only: write_lines
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_deck_deck, only: deck_type, read_deck
@@ -10,10 +11,9 @@ module solved_scene
   use epcont_solution, only: scene => solution_type
   implicit none
   private
-  public :: scene, solve, solve_file
+  public :: outward, scene, solve, solve_file
 
   character(len=*), parameter :: path = 'scene.dat'
-
 
 contains
 
@@ -21,16 +21,8 @@ contains
   subroutine solve(cards, solved)
     character(len=*), intent(in) :: cards
     type(scene), intent(out) :: solved
-    character(len=:), allocatable :: text
-    integer :: i, unit
 
-    text = cards//'ENDDATA|'
-    do i = 1, len(text)
-      if (text(i:i) == '|') text(i:i) = new_line('a')
-    end do
-    open (newunit=unit, file=path, access='stream', form='unformatted', status='replace')
-    write (unit) text
-    close (unit)
+    call write_lines(path, cards//'ENDDATA|')
     call solve_file(path, solved)
   end subroutine solve
 
@@ -52,4 +44,16 @@ contains
     call solved%make_plan(watch)
     call solved%solve(huge(1.0_wp), watch, error)
   end subroutine solve_file
+
+  !> Mean displacement outwards of the nodes at a radius.
+  real(wp) function outward(solved, radius)
+    type(scene), intent(in) :: solved
+    real(wp), intent(in) :: radius
+    real(wp), allocatable :: r(:)
+    logical, allocatable :: there(:)
+
+    r = norm2(solved%model%x, dim=1)
+    there = abs(r - radius) < 1.0e-6_wp*radius
+    outward = sum(sum(solved%model%x*solved%answer%displacement, dim=1)/r, mask=there)/count(there)
+  end function outward
 end module solved_scene

@@ -21,14 +21,8 @@ import tempfile
 
 import numpy as np
 
-from deck import DeckError
+from deck import KINDS, DeckError
 from solve import NoEquilibrium, solve
-
-KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
-                     "place": ["x", "y"]},
-         "nodes": {"length": ["ux", "uy"], "force": ["rx", "ry"], "place": ["x", "y"]},
-         "elements": {"stress": ["sx", "sy", "sz", "txy", "equivalent_stress"], "strain": ["equivalent_strain"],
-                      "modulus": ["secant_modulus"], "place": ["x", "y"]}}
 
 
 def read(path):

@@ -10,6 +10,12 @@ from dataclasses import dataclass, field
 KNOWN = {"GRID", "CTRIA3", "CTRIA6", "CQUAD4", "CQUAD8", "CTRAX3", "CTRAX6", "PSHELL", "PSOLID", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1",
          "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP"}
 
+#: Columns of the tables, by what their largest is the measure of.
+KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
+                     "place": ["x", "y"]},
+         "nodes": {"length": ["ux", "uy"], "force": ["rx", "ry"], "place": ["x", "y"]},
+         "elements": {"stress": ["sx", "sy", "sz", "txy", "equivalent_stress"], "strain": ["equivalent_strain"],
+                      "modulus": ["secant_modulus"], "place": ["x", "y"]}}
 
 LONGEST = 1000000   # range of ids
 

@@ -10,18 +10,12 @@ from pyNastran.bdf.bdf import BDF
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tests" / "independent"), str(TOP / "tools")]
 from cards import written  # noqa: E402
-from deck import ids, real  # noqa: E402
+from deck import KINDS, ids, real  # noqa: E402
 from deck import read as read_cards  # noqa: E402
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 #: What pyNastran writes: small fields, large fields, large fields with D exponents.
 FORMS = {"small": {"size": 8}, "large": {"size": 16}, "double": {"size": 16, "is_double": True}}
-#: Columns by what their largest is the measure of.
-KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
-                     "place": ["x", "y"]},
-         "nodes": {"length": ["ux", "uy"], "force": ["rx", "ry"], "place": ["x", "y"]},
-         "elements": {"stress": ["sx", "sy", "sz", "txy", "equivalent_stress"], "strain": ["equivalent_strain"],
-                      "modulus": ["secant_modulus"], "place": ["x", "y"]}}
 
 
 def read_bdf(path, punch=False, xref=True):
