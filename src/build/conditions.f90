@@ -72,11 +72,12 @@ contains
           do item = table%list_start(i), table%list_start(i + 1) - 1
             associate (from => table%list(item)%from, to => table%list(item)%to)
               node = nodes%within(from, to)
-              ids = text_of(from)
-              if (to > from) ids = ids//' to '//text_of(to)
+              if (size(node) == 0 .and. nodes%whole) then
+                ids = text_of(from)
+                if (to > from) ids = ids//' to '//text_of(to)
+                call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
+              end if
             end associate
-            if (size(node) == 0 .and. nodes%whole) &
-              call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
             do k = 1, size(node)
               call take([card, i, -item], node(k), table%entry%list_slot - 1)
             end do
@@ -99,7 +100,7 @@ contains
         if (any(card(1) == [card_spc, card_spc1]) .and. nint(value(1)) /= support_set) return
         if (card(1) == card_spc) displacement = value(digits + 1)
         do c = 1, 2
-          if (index(text_of(nint(value(digits))), text_of(c)) == 0) cycle
+          if (all(mod(nint(value(digits))/10**[0, 1, 2, 3, 4, 5], 10) /= c)) cycle
           select case (card(1))
           case (card_rbe2)
             if (leader(card(2)) > 0) call tie(model, c, node, leader(card(2)), card, found)

@@ -10,7 +10,7 @@
 !>                          is zero in the mean
 !>     k = d w + d**2 c/2   sliding by d along a side, as drawn, that turns by w, and where s counts has the
 !>                          curvature c: up to h/10, however far it slides
-!>         + h e**2/2       e the larger of its turn and its stretch: where these are not small no shape is
+!>         + h e**2/2       e the larger of its turn and its stretch, at most 1: beyond it no shape is
 !>                          left to speak of
 module epcont_certificate_allowance
   use epcont_base_kinds, only: wp
@@ -78,7 +78,7 @@ contains
     explained = meeting%slide*self%turn(side) &
                 + curve(self, side, meeting)*(0.5_wp*meeting%slide**2*self%curvature(side))
     of_motion = factor*(min(explained, most_by_slide*self%length(side)) &
-                        + 0.5_wp*self%length(side)*self%change(side)**2)
+                        + 0.5_wp*self%length(side)*min(1.0_wp, self%change(side))**2)
   end function of_motion
 
   !> What of that was there before anything moved, and no more than there was: curves above chords, gaps of

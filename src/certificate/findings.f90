@@ -48,7 +48,6 @@ module epcont_certificate_findings
     type(overlap_place) :: wide            !! the same of a gap across which a pair presses
     type(beyond_place) :: axis, mirror     !! farthest beyond the axis of rings, beyond a line of symmetry
     real(wp) :: moved = 0.0_wp             !! largest displacement [length]
-    type(overlap_place) :: drawn           !! overlap as drawn, which no pair is to close: no fault, but told
     real(wp) :: change = 0.0_wp            !! largest turn [rad] or stretch of a side
     integer :: changed_side = 0            !! which one
   contains

@@ -219,13 +219,12 @@ contains
 
   !> Keep a place if it is the worst by what is allowed, the deepest, or the worst by what is not told.
   !! Allowed is what sides about it allow, where more was found than the nearest two do. Where bodies may have
-  !! overlapped as drawn, that is taken off, if no pair is to close it, and the deepest such overlap kept too.
-  pure subroutine keep(search, found, worst, deepest, not_told, drawn)
+  !! overlapped as drawn, that is taken off, if no pair is to close it.
+  pure subroutine keep(search, found, worst, deepest, not_told)
     type(search_type), intent(in) :: search                          !! the outlines
     type(overlap_place), intent(in) :: found                         !! from `meet`; its depth may be another
     type(overlap_place), intent(inout) :: worst, deepest, not_told   !! those kept so far
-    type(overlap_place), intent(inout), optional :: drawn            !! the deepest as drawn
-    type(overlap_place) :: place, telling, was
+    type(overlap_place) :: place, telling
 
     place = found
     telling = found
@@ -237,13 +236,9 @@ contains
       if (.not. (is_worse(found, worst) .or. is_deeper(found, deepest) .or. &
                  is_worse(telling, not_told))) return
       if (found%depth > found%allowed) place%allowed = search%least + allowance_about(a) + allowance_about(b)
-      if (present(drawn)) then
-        if (found%distance > min(place%allowed, telling%allowed)) then
-          was = overlap_as_drawn()
-          if (was%depth > was%allowed .and. is_deeper(was, drawn)) drawn = rated(was)
-          place%depth = found%depth - was%depth
-          telling%depth = place%depth
-        end if
+      if (found%distance > min(place%allowed, telling%allowed)) then
+        place%depth = found%depth - overlap_as_drawn()
+        telling%depth = place%depth
       end if
     end associate
     if (is_worse(place, worst)) worst = rated(place)
@@ -270,14 +265,14 @@ contains
       end do
     end function allowance_about
 
-    !> What the bodies overlapped there as drawn, if no pair is to close that; else nothing.
-    pure type(overlap_place) function overlap_as_drawn() result(overlap)
+    !> What the bodies overlapped there as drawn, if no pair is to close that; else nothing [length].
+    pure real(wp) function overlap_as_drawn() result(overlap)
       type(near_place) :: before
 
+      overlap = 0.0_wp
       if (is_paired(search, found%side, found%other)) return
       before = search%drawn%nearest_place(search%drawn%outline%part(found%other), found%drawn)
-      if (before%inside) overlap = overlap_place(depth=before%distance, allowed=place%allowed, &
-                                                 x=found%drawn, side=found%side, other=before%side)
+      if (before%inside) overlap = before%distance
     end function overlap_as_drawn
   end subroutine keep
 

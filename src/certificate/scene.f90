@@ -115,7 +115,7 @@ contains
       place = search%now%nearest_place(part, point%x, near)
       near = place%side
       if (place%inside) &
-        call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep, scene%drawn)
+        call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep)
     end subroutine look_at_point
 
     !> The points of a side, behind another side of its own body, before which they were drawn.

@@ -11,7 +11,7 @@ module epcont_contact_geometry_complete
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
   use epcont_model_arrays, only: scene_type
   use epcont_model_controls, only: method_newton
-  use epcont_model_element_shapes, only: check_axis, complete_elements, warn_of_elements_twice
+  use epcont_model_element_shapes, only: check_axis, complete_elements
   use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_scene, of_section
   use epcont_model_freedoms, only: find_travels, follow_to_the_end, set_reference, tie
   use epcont_model_given, only: check_given, number_parts
@@ -88,7 +88,6 @@ contains
     type(outline_shape) :: drawn
 
     call check_pairs(model, found)
-    call warn_of_elements_twice(model, found)
     call find_travels(model)
     drawn = new_outline_shape(model%body_outline, model%x)
     call warn_of_hanging_nodes(model, drawn, found)

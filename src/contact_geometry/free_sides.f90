@@ -2,6 +2,8 @@
 module epcont_contact_geometry_free_sides
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_geometry_outline_shape, only: outline_type
+  use epcont_model_element_shapes, only: check_overlaps
+  use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
   use epcont_model_freedoms, only: join_nodes
   implicit none
@@ -12,8 +14,9 @@ contains
 
   !> The outlines of a scene: all sides that one element alone has, part by part, and in each the one behind
   !! the other that begins where that ended.
-  function find_outline(model) result(outline)
-    type(model_type), intent(in) :: model   !! the scene
+  function find_outline(model, found) result(outline)
+    type(model_type), intent(in) :: model    !! the scene
+    type(findings), intent(inout) :: found   !! elements that overlap are added
     type(outline_type) :: outline
     !> Free sides as they are found, and those before them: which one of which element
     integer, dimension(2, size(model%around%group)) :: free, former
@@ -23,14 +26,17 @@ contains
     !> Of the sides of each element; 0: not free
     integer :: number(maxval(model%kinds%corners), model%elements)
     integer, allocatable :: after(:), before(:), chain(:), order(:), place(:)
+    integer :: over(model%elements)   ! an element with a side of it the same way round; 0: there is none
     type(incidence) :: by_part
     integer :: k, node, sides
 
+    over = 0
     number = 0
     sides = 0
     do node = 1, model%nodes
       call look_around()
     end do
+    call check_overlaps(model, over, found)
     before = [(number(former(1, k), former(2, k)), k=1, sides)]
     ! Only where elements lie on each other, and share a side the same way round, is there none: it begins
     ! anew.
@@ -58,7 +64,7 @@ contains
   contains
 
     !> Free sides that begin at a node. The elements' sides to the next and from the former corner are
-    !! compared: a side is shared where it is met both ways.
+    !! compared: a side is shared where it is met both ways; where it is met twice one way, elements overlap.
     subroutine look_around()
       integer :: corners, i, k, n
 
@@ -76,6 +82,8 @@ contains
         end associate
       end do
       do i = 1, n
+        k = place_of(next(i), next(:i - 1))
+        if (k > 0) over(element(i)) = element(k)
         if (place_of(next(i), last(:n)) > 0) cycle
         k = fan_end(last(:n), next(:n), i)
         corners = model%corners(element(k))

@@ -42,7 +42,7 @@ contains
 
     if (found%errors == 0) then   ! only sound elements have outlines
       call join_nodes(model, .true., model%body, model%bodies)
-      model%body_outline = find_outline(model)
+      model%body_outline = find_outline(model, found)
     end if
     call find_line_sides(model, found)
     used = .false.

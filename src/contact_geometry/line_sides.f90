@@ -90,6 +90,10 @@ contains
       if (.not. sound .or. sides == 0) return
       if (model%boundary%segment(1, side(1)) /= node(1)) side(:sides) = side(sides:1:-1)
       model%line(i)%side = side(:sides)
+      k = model%body_outline%after(side(sides))
+      if (sides > 3 .and. model%body_outline%after(k) == side(1)) &
+        call found%add_warning(of_line, i, -size(node), ': it leaves out only the side back to its first'// &
+                               ' node', 'that node once more at its end: a closed line')
       model%line(i)%box = reshape([minval(model%x(:, node), dim=2), maxval(model%x(:, node), dim=2)], [2, 2])
     end subroutine walk
 
@@ -102,7 +106,7 @@ contains
       ends = model%name_of(of_node, node(1))//' and '//text_of(model%node_id(node(2)))
       if (size(element) == 0) then
         call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
-                             'nodes in the order of the boundary')
+                             'nodes in the order of the boundary, from corner to corner')
       else
         call found%add_error(of_line, i, -k - 1, ': the side between '//ends// &
                              ' lies inside a body, between '//model%name_of(of_element, element(1))// &

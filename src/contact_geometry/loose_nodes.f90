@@ -1,11 +1,11 @@
 !> Nodes that lie where something else of the scene does, as drawn, and are not joined with it: on a side of
 !> an element of their own body, whose ends elements share (meshes of unlike fineness, or six-node elements
-!> beside others, put together), or at a node of another body, with neither a pair nor RBE2 (a contact, or a
-!> common node, that was forgotten).
+!> beside others, put together), or at a node of another body or in it, with neither a pair nor RBE2 (a
+!> contact, or a common node, that was forgotten).
 module epcont_contact_geometry_loose_nodes
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
+  use epcont_base_text, only: short_real, text_of
   use epcont_base_tolerances, only: coincident
   use epcont_contact_geometry_line_sides, only: find_between
   use epcont_contact_geometry_mates, only: find_mates, is_mate
@@ -15,6 +15,9 @@ module epcont_contact_geometry_loose_nodes
   implicit none
   private
   public :: warn_of_hanging_nodes, warn_of_lying_together
+
+  !> An overlap of less than this part of a side may be that of a curve with its chord.
+  real(wp), parameter :: deep = 0.1_wp
 
 contains
 
@@ -118,7 +121,8 @@ contains
   end subroutine warn_of_hanging_nodes
 
   !> One warning for each two bodies with nodes at one place: those of sides that lie against each other from
-  !! end to end, and single ones that are in no pair at all. Of two the one of the earlier body is named.
+  !! end to end, and single ones that are in no pair at all. Of two the one of the earlier body is named. And
+  !! one warning of the node that lies deepest in another body.
   subroutine warn_of_lying_together(model, drawn, found)
     type(model_type), intent(in) :: model       !! the scene
     type(outline_shape), intent(in) :: drawn    !! its outlines
@@ -126,10 +130,13 @@ contains
     !> Of one body with each later one: how many nodes lie together, and the first of them
     integer :: twins(model%body_outline%parts), first(2, model%body_outline%parts)
     integer, allocatable :: mate(:), met(:), near(:)
-    integer :: i, part, side, twin
+    type(near_place) :: deepest   ! of the nodes that lie in another body
+    integer :: at, i, part, side, twin
 
     if (model%body_outline%parts < 2) return
     mate = find_mates(model)
+    at = 0
+    deepest%distance = 0.0_wp
     twins = 0
     do part = 1, model%body_outline%parts
       met = [integer ::]
@@ -138,7 +145,9 @@ contains
           near = drawn%part_tree%meeting(drawn%low(:, side) - within, drawn%high(:, side) + within)
         end associate
         do i = 1, size(near)
-          if (near(i) <= part) cycle
+          if (near(i) == part) cycle
+          call look_inside(near(i))
+          if (near(i) < part) cycle
           twin = twin_that_counts(side, near(i))
           if (twin == 0) cycle
           if (twins(near(i)) == 0) then
@@ -157,8 +166,26 @@ contains
       end do
       twins(met) = 0
     end do
+    if (at > 0) call found%add_warning(of_node, at, 1, ': lies '//short_real(deepest%distance)// &
+      ' deep in the body of '//model%name_of(of_element, model%body_outline%element(deepest%side))// &
+      ', with no pair there', 'bodies side by side, or a contact between them')
 
   contains
+
+    !> Keep the node where a side begins, if it lies deepest in a part as drawn, and no pair is to close that.
+    subroutine look_inside(part)
+      integer, intent(in) :: part
+      type(near_place) :: place
+      integer :: node(1)
+
+      node = model%body_outline%node(1, side)
+      if (is_mate(mate, node, part)) return
+      place = drawn%nearest_place(part, model%x(:, node(1)))
+      if (.not. place%inside .or. &
+          place%distance <= max(deepest%distance, deep*norm2(drawn%chord(place%side)))) return
+      deepest = place
+      at = node(1)
+    end subroutine look_inside
 
     !> The twin, in another part, of the node where a side begins: neither is in a pair, or the side that
     !! begins or the one that ends there lies against that part, its other end a twin too. 0: none.

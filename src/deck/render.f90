@@ -8,8 +8,8 @@ module epcont_deck_render
   private
   public :: render, render_notes, included_file, printable
 
-  !> Errors shown, and as many warnings; of the others only the number.
-  integer, parameter :: most_shown = 50
+  !> Errors shown, and as many warnings, and of those that say the same; of the others only the number.
+  integer, parameter :: most_shown = 50, most_alike = 5
   !> Columns shown of a line of the deck.
   integer, parameter :: width = 132
 
@@ -21,21 +21,33 @@ contains
     type(diagnostics), intent(in) :: faults   !! of the deck
     type(source), intent(in) :: lines   !! its lines
     character(len=:), allocatable :: text
-    integer, allocatable :: order(:)
-    integer :: found(3)   !! of each severity
-    integer :: i
+    integer, allocatable :: order(:), told(:)
+    integer :: i, k, n(3)   ! those told of each severity
 
     text = ''
     order = faults%in_deck_order()
-    found = 0
+    told = [integer ::]
+    n = 0
     do i = 1, size(order)
       associate (fault => faults%list(order(i)))
-        found(fault%severity) = found(fault%severity) + 1
-        if (fault%severity /= severity_note .and. found(fault%severity) <= most_shown) &
-          text = text//paragraph(fault, lines)
+        if (fault%severity == severity_note .or. n(fault%severity) == most_shown) cycle
+        if (count([(are_alike(faults%list(told(k)), fault), k=1, size(told))]) == most_alike) cycle
+        n(fault%severity) = n(fault%severity) + 1
+        told = [told, order(i)]
+        text = text//paragraph(fault, lines)
       end associate
     end do
-    if (len(text) > 0) text = text//shown(lines%file_name(0))//': '//tally(found(:2))//newline
+    if (len(text) > 0) &
+      text = text//shown(lines%file_name(0))//': '//tally([faults%errors, faults%warnings], n(:2))//newline
+
+  contains
+
+    !> Is the same said of both, behind the names of their cards?
+    pure logical function are_alike(one, other)
+      type(diagnostic), intent(in) :: one, other
+
+      are_alike = one%what(index(one%what, ': ') + 1:) == other%what(index(other%what, ': ') + 1:)
+    end function are_alike
   end function render
 
   !> Warnings and notes in deck order, one line each, for the listing: without the name of the deck, and of
@@ -72,8 +84,8 @@ contains
   end function printable
 
   !> `63 errors (50 shown), 1 warning`.
-  pure function tally(count) result(text)
-    integer, intent(in) :: count(2)  !! errors, warnings
+  pure function tally(count, told) result(text)
+    integer, dimension(2), intent(in) :: count, told   !! errors, warnings: all, and those shown
     character(len=:), allocatable :: text
     character(len=*), parameter :: noun(2) = ['error  ', 'warning']
     integer :: i
@@ -83,7 +95,7 @@ contains
       if (count(i) == 0) cycle
       if (len(text) > 0) text = text//', '
       text = text//plural(count(i), trim(noun(i)))
-      if (count(i) > most_shown) text = text//' ('//text_of(most_shown)//' shown)'
+      if (count(i) > told(i)) text = text//' ('//text_of(told(i))//' shown)'
     end do
   end function tally
 

@@ -9,7 +9,7 @@ module epcont_model_element_shapes
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: complete_elements, check_axis, warn_of_elements_twice
+  public :: complete_elements, check_axis, check_overlaps
 
   !> Shorter sides have areas and stiffnesses that are hardly numbers.
   real(wp), parameter :: shortest_side = 1.0e-30_wp
@@ -49,29 +49,27 @@ contains
     !> Turn the element counter-clockwise; a shape that is none is a fault.
     subroutine check_shape()
       integer :: k
-      logical :: too_short
+      real(wp) :: extent   ! from its first corner [length]
 
       n = model%corners(e)
       associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)))
-        do k = 1, most_nodes
-          x(:, k) = model%x(:, node(merge(k, 1, k <= size(node))))
-        end do
-        straight = x
+        x(:, :size(node)) = model%x(:, node)
+        straight(:, :n) = x(:, :n)
         do k = 1, n
           straight(:, n + k) = 0.5_wp*(x(:, k) + x(:, mod(k, n) + 1))
         end do
         turn = kind%turn(x)
-        associate (half_side => straight(:, n + 1:2*n) - x(:, :n))
-          too_short = any(half_side /= 0.0_wp) .and. all(abs(half_side) < 0.5_wp*shortest_side)
-        end associate
-        if (too_short) then
+        extent = max(maxval(abs(x(1, 2:n) - x(1, 1))), maxval(abs(x(2, 2:n) - x(2, 1))))
+        if (extent > 0.0_wp .and. extent < shortest_side) then
           call found%add_error(of_element, e, -node(1), ': its sides are shorter than '// &
                                short_real(shortest_side), 'other units')
         else if (turn /= 0 .or. kind%turn(straight) /= 0) then
           if (size(node) > n) call check_middles()
           if (turn < 0) then
-            node(2:n) = node(n:2:-1)
-            node(n + 1:) = node(size(node):n + 1:-1)
+            k = node(2)   ! the first one stays, and the third of four
+            node(2) = node(n)
+            node(n) = k
+            if (size(node) > n) node(n + 1:) = node(size(node):n + 1:-1)
           end if
         else if (n == 3) then
           call found%add_error(of_element, e, -node(2), ': its corners '//ids(node(:n))//' lie on one line', &
@@ -160,40 +158,39 @@ contains
     found%list(found%count)%node = pack([(i, i=1, model%nodes)], loose)
   end subroutine check_axis
 
-  !> Two elements on the same corners are as stiff as both: meant for laminae, and else a mesh read twice.
-  pure subroutine warn_of_elements_twice(model, found)
-    type(model_type), intent(in) :: model   !! the scene
+  !> Two elements on the same corners are as stiff as both: meant for laminae, and else a mesh read twice. Of
+  !! others that have a side the same way round, one lies over the other: a node, or an element's corner, is
+  !! not where it should be.
+  pure subroutine check_overlaps(model, over, found)
+    type(model_type), intent(in) :: model    !! the scene
+    integer, intent(in) :: over(:)          !! which element before it each lies over; 0: none [elements]
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer :: e, like(model%elements), twice
+    logical :: twice(model%elements)
+    integer :: e
 
-    like = [(element_like(e, model%corners(e)), e=1, model%elements)]
-    twice = count(like > 0)
-    if (twice == 0) return
-    e = findloc(like > 0, .true., dim=1)
-    call found%add_warning(of_element, e, 1, ' has the nodes of '//model%name_of(of_element, like(e))// &
-      ': both count, one upon the other'// &
-      and_more(twice, '; so it is with ', trim(merge(' more elements', ' more element ', twice > 2))), &
-      'one element, unless two laminae are meant')
+    twice = [(on_the_same_corners(e), e=1, model%elements)]
+    e = findloc(twice, .true., dim=1)
+    if (e > 0) call found%add_warning(of_element, e, 1, ' has the nodes of '// &
+      model%name_of(of_element, over(e))//': both count, one upon the other'// &
+      and_more(count(twice), '; so it is with ', ' more'), 'one element, unless two laminae are meant')
+    e = findloc(over > 0 .and. .not. twice, .true., dim=1)
+    if (e > 0) call found%add_error(of_element, e, 1, ': overlaps '//model%name_of(of_element, over(e))// &
+      ': both lie the same way from the side that they share'// &
+      and_more(count(over > 0) - count(twice), '; so it is with ', ' more'), &
+      'elements side by side, or laminae on the same corners')
 
   contains
 
-    !> The first element before one that has its corners; 0: none. Looked for where the fewest elements meet.
-    pure integer function element_like(element, corners) result(other)
-      integer, intent(in) :: element, corners
-      integer :: i, k, least
+    pure logical function on_the_same_corners(element) result(same)
+      integer, intent(in) :: element
+      integer :: k
 
-      associate (corner => model%connectivity(:corners, element), start => model%around%start)
-        least = corner(minloc(start(corner + 1) - start(corner), dim=1))
-        do i = start(least), start(least + 1) - 1
-          other = model%around%group(i)
-          if (other == element) exit
-          do k = 1, corners
-            if (.not. any(model%connectivity(:corners, other) == corner(k))) exit
-          end do
-          if (k > corners .and. model%corners(other) == corners) return
-        end do
+      same = .false.
+      if (over(element) == 0) return
+      associate (other => model%connectivity(:model%corners(over(element)), over(element)))
+        same = all([(any(model%connectivity(k, element) == other), k=1, model%corners(element))]) &
+               .and. size(other) == model%corners(element)
       end associate
-      other = 0
-    end function element_like
-  end subroutine warn_of_elements_twice
+    end function on_the_same_corners
+  end subroutine check_overlaps
 end module epcont_model_element_shapes

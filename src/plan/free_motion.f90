@@ -216,6 +216,7 @@ contains
           if (j /= k) motion(:, j) = motion(:, j) - motion(i, j)*motion(:, k)
         end do
       end do
+      if (size(nodes) == 1) body = model%name_of(of_node, moving)//', which no element has,'
       call found%add_error(of_body, moving, 0, body//' is free to move: '//text(3:), &
                            'hold it by SPC1, or solve for the motion by SUPORT'//card)
     end subroutine add_loose_body

@@ -17,12 +17,11 @@ module epcont_report_scene_text
     unsound = 0, &
     body_in_itself = 1, &   !! a body passes through itself
     beyond_mirror = 2, &    !! a body passes a line at which it ends and is held
-    overlap_drawn = 3, &    !! bodies overlap as drawn, with no pair to close that
-    much_overlap = 4, &     !! bodies lie in each other by much, but allowed
-    much_gap = 5, &         !! a pair presses across as wide a gap
-    side_changed = 6, &     !! a side turns or stretches too far
-    sides_slid = 7, &       !! sides slide too far along each other where they press
-    scene_warnings = 7
+    much_overlap = 3, &     !! bodies lie in each other by much, but allowed
+    much_gap = 4, &         !! a pair presses across as wide a gap
+    side_changed = 5, &     !! a side turns or stretches too far
+    sides_slid = 6, &       !! sides slide too far along each other where they press
+    scene_warnings = 6
 
   !> Depths that differ by less than this part are not told apart.
   real(wp), parameter, public :: deeper = 1.1_wp
@@ -40,7 +39,6 @@ module epcont_report_scene_text
     '{allowed} is allowed', &
     'a body passes through its mirror image: {beyond}, to which its body is held; '// &
     'no harm where that is no line of symmetry', &
-    'bodies overlap as drawn, with no pair between them there: '//lies_in, &
     'bodies lie in each other by '//by_much//lies_in//'{finer}', &
     'a pair presses across a gap of '//by_much//is_off//'{finer}', &
     'displacements are not small: {changed side} is turned or stretched by {change}', &
@@ -81,7 +79,7 @@ contains
       text = told(fault(merge(5, worst, scene%axis%node > 0)))
       return
     end if
-    warned = [scene%itself, overlap_place(), scene%drawn, scene%deep, scene%wide, overlap_place(), scene%slid]
+    warned = [scene%itself, overlap_place(), scene%deep, scene%wide, overlap_place(), scene%slid]
     speaks = warned%ratio > 1.0_wp
     if (.not. scene%sound()) speaks([much_overlap, much_gap]) = .false.
     speaks(beyond_mirror) = scene%mirror%node > 0
