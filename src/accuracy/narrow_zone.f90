@@ -153,6 +153,9 @@ contains
           body = model%body(model%pair_node(:, k))
           own = -smooth_normal(k)
           on = kept(resultant(:, body), given(:, body) .and. abs(resultant(:, body)) > least)
+          ! Of a ring that is free along its axis contacts may balance each other: each bears its part.
+          if (model%has_rings() .and. any(given(2, body)) .and. force(k)*abs(model%normal(2, k)) > least) &
+            on = [0.0_wp, force(k)*model%normal(2, k)]
           if (all(own == 0.0_wp) .or. norm2(on) <= least) cycle
           ! The pair bears the same along `on`, if it bears anything there.
           along = 0.0_wp

@@ -8,10 +8,11 @@
 !> are few, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_accuracy_unit_loads
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: least_difference, solved_to
+  use epcont_base_tolerances, only: least_difference, null_component, solved_to
   use epcont_contact_basis, only: contact_basis, new_basis, respond
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_element_kinematics, only: directions
+  use epcont_linalg_dense, only: null_space, pivoted_cholesky
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
@@ -60,8 +61,7 @@ contains
     integer :: j
 
     loads%problem = scale_problem(linear%problem)
-    ! Motions that no pressed pair resists are where they are: held so, they say nothing of the others.
-    call drop_motions(loads%problem, answer%contact%motion_free)
+    if (any(answer%contact%motion_free)) call drop_neutral()
     loads%basis = new_basis(loads%problem, answer%contact%force > 0.0_wp)
     call find_shares()
     loads%force = reshape([unit_forces(), closing_forces(loads%problem, loads%basis, loads%share)], &
@@ -70,6 +70,20 @@ contains
                        [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))])
 
   contains
+
+    !> Of motions that no pressed pair resists as many are held as are independent, which says nothing of the
+    !! others.
+    subroutine drop_neutral()
+      real(wp), allocatable :: part(:, :)   ! of each motion what such ones are of it [motions, motions]
+      integer, allocatable :: order(:)
+      integer :: rank
+
+      part = null_space(loads%problem%motion(pack([(j, j=1, scene%model%pairs)], &
+                                                  answer%contact%force > 0.0_wp), :), null_component)
+      part = matmul(part, transpose(part))
+      call pivoted_cholesky(part, null_component, order, rank)
+      call drop_motions(loads%problem, [(any(order(:rank) == j), j=1, scene%motions%count)])
+    end subroutine drop_neutral
 
     !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
     subroutine find_shares()
@@ -101,28 +115,22 @@ contains
       end do
     end subroutine find_shares
 
-    !> Is a body free to move along a component? Then contact bears its loads that way. Motions are measured
-    !! at SUPORT freedoms: that one may be a sum of some that turn the body.
+    !> Is a body free to move along a component? Then contact bears its loads that way. Motions are one at their
+    !! own SUPORT freedom and zero at the others: it is the sum of those measured along it that does so.
     pure logical function is_free(body, c)
       integer, intent(in) :: body, c
-      real(wp), allocatable :: basis(:, :), rest(:, :)   !! displacements of its nodes [directions, nodes]
-      !> Orthonormal ones of its motions [directions, nodes, any]
-      real(wp), allocatable :: moved(:, :, :)
-      integer, allocatable :: nodes(:)
+      real(wp) :: rest(directions)   !! of the movement of a node
       integer :: i, m
 
-      nodes = pack([(i, i=1, scene%model%nodes)], scene%model%body == body)
-      allocate (moved(directions, size(nodes), 0))
-      do m = 1, scene%motions%count
-        if (scene%motions%body(m) /= body) cycle
-        basis = reshape([(scene%motions%displacement(scene%model, nodes(i), m), i=1, size(nodes))], &
-                        [directions, size(nodes)])
-        rest = across(moved, basis)
-        if (norm2(rest) > least_difference*norm2(basis)) &
-          moved = reshape([moved, rest/norm2(rest)], [directions, size(nodes), size(moved, 3) + 1])
+      is_free = .true.
+      do i = 1, scene%model%nodes
+        if (scene%model%body(i) /= body) cycle
+        rest = merge(1.0_wp, 0.0_wp, [1, 2] == c)
+        do m = 1, scene%motions%count
+          if (scene%motions%component(m) == c) rest = rest - scene%motions%displacement(scene%model, i, m)
+        end do
+        is_free = is_free .and. norm2(rest) <= least_difference
       end do
-      basis = spread(merge(1.0_wp, 0.0_wp, [1, 2] == c), 2, size(nodes))
-      is_free = norm2(across(moved, basis)) <= least_difference*norm2(basis)
     end function is_free
 
     !> Contact forces under unit loads; zero for motions that are not kept [pairs, motions].
@@ -143,19 +151,6 @@ contains
       end associate
     end function unit_forces
   end function find_unit_loads
-
-  !> What none of some orthonormal motions makes of a displacement; twice, for rounding.
-  pure function across(moved, displacement) result(rest)
-    real(wp), intent(in) :: moved(:, :, :), displacement(:, :)
-    real(wp) :: rest(size(moved, 1), size(moved, 2))
-    integer :: k, m
-
-    rest = displacement
-    do k = 1, 2*size(moved, 3)
-      m = 1 + mod(k - 1, size(moved, 3))
-      rest = rest - sum(moved(:, :, m)*rest)*moved(:, :, m)
-    end do
-  end function across
 
   !> Contact forces when the gap of each pair shrinks by its weight; none where motions give way to that
   !! [force/length] [pairs, any].

@@ -8,7 +8,7 @@
 !> the second, bounded since g^ >= 0, the statically determinate set of pairs that closes first.
 module epcont_contact_equilibrium
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: dependent, negligible
+  use epcont_base_tolerances, only: dependent, negligible, null_component
   implicit none
   private
   public :: rigid_start, find_rigid_start, can_carry
@@ -109,7 +109,7 @@ contains
 
       row = 0
       least = huge(least)
-      zero = negligible*maxval([abs(entry(:, column)), 1.0_wp])
+      zero = null_component*maxval([abs(entry(:, column)), 1.0_wp])
       do i = 1, size(basic)
         if (entry(i, column) <= zero) cycle
         ratio = value(i)/entry(i, column)
@@ -152,7 +152,7 @@ contains
       do i = 1, size(basic)
         if (basic(i) <= n) cycle
         value(i) = 0.0_wp
-        column = first_largest(abs(entry(i, :n)), dependent)
+        column = first_largest(abs(entry(i, :n)), null_component*maxval(abs(entry(i, n + 1:))))
         if (column > 0) then
           call exchange(i, column)
         else

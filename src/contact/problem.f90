@@ -47,8 +47,11 @@ module epcont_contact_problem
     real(wp), allocatable :: gap(:)          !! w [length] [n]
     real(wp), allocatable :: approach(:)     !! q [m]
     logical, allocatable :: touching(:)      !! closed pairs, pressed or not [n]
-    real(wp), allocatable :: escape(:)       !! y with P'y > 0 and A y <= 0, if there is no equilibrium [m]
-    logical, allocatable :: overlapping(:)   !! pairs that overlap and cannot give way [n]
+    !> y with P'y > 0 and A y <= 0, if there is no equilibrium; if no set passed, with A y hardly more than zero,
+    !! where that is the cause [m]
+    real(wp), allocatable :: escape(:)
+    !> Pairs that overlap and cannot give way; or that alone resist such a y [n]
+    logical, allocatable :: overlapping(:)
     !> Pairs whose force is not unique: `force` is one choice of many [n]
     logical, allocatable :: indeterminate(:)
     !> Motions that nothing determines; `approach` is one choice of many [m]

@@ -2,34 +2,39 @@
 !> units.
 module epcont_contact_solver
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component
+  use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component, &
+    solved_to
   use epcont_contact_basis, only: contact_state, gaps_under, new_basis, solve_set, terms_of_gaps
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
-    contact_solution, contact_stalled
+    contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
+  use epcont_linalg_dense, only: null_space
   implicit none
   private
   public :: solve_contact
 
 contains
 
-  !> Find forces, gaps and motions of a contact problem, or why there are none.
-  subroutine solve_contact(problem, solution, start, by_blocks)
+  !> Find forces, gaps and motions of a contact problem, or why there are none. Where motions are neutral, so
+  !! that nothing tells their values, they are those nearest to zero that leave no gap below it.
+  recursive subroutine solve_contact(problem, solution, start, by_blocks)
     type(contact_problem), intent(in) :: problem   !! in the deck's units
     type(contact_solution), intent(out) :: solution   !! its state says whether there is one
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
     logical, intent(in), optional :: by_blocks  !! RULE BLOCK; not given: CONRY
     type(scaled_problem) :: scaled
     type(rigid_start) :: rigid
+    real(wp), allocatable :: motion(:, :)   ! A of all motions, scaled [n, m]
 
     scaled = scale_problem(problem)
+    motion = scaled%motion
     if (present(start)) scaled%guess = start
     call clear()
-    call find_rigid_start(scaled%motion, scaled%resultant, scaled%unloaded_gap, rigid)
+    call find_rigid_start(motion, scaled%resultant, scaled%unloaded_gap, rigid)
     if (.not. rigid%balanced) then
       solution%state = contact_no_equilibrium
       solution%escape = rigid%escape/scaled%motion_size
@@ -37,7 +42,6 @@ contains
     end if
     scaled%first_touching = rigid%touching
     call drop_motions(scaled, rigid%redundant)
-    solution%motion_free = rigid%redundant
     if (present(by_blocks)) then
       if (by_blocks) call solve_by_blocks()
     end if
@@ -50,17 +54,13 @@ contains
     subroutine solve_by_blocks()
       type(contact_solution) :: trial
       type(contact_state) :: state
-      logical, allocatable :: pressed(:)
 
       trial = solution
       call find_by_blocks(scaled, trial, state, trial%by_blocks)
       solution%block_steps = trial%block_steps
       if (.not. trial%by_blocks) return
       call settle(state, trial)
-      ! Motions that only touching pairs without force hold back may stand elsewhere too.
-      pressed = trial%force > negligible*maxval([trial%force, 0.0_wp])
-      if (any(trial%indeterminate) .or. any(find_free_motions(scaled, pressed, pressed))) return
-      solution = trial
+      if (.not. any(trial%indeterminate)) solution = trial
     end subroutine solve_by_blocks
 
     !> RULE CONRY. Where ties may have led the path round in a circle blocks are tried, which know of no path.
@@ -74,12 +74,28 @@ contains
       if (trial%state == contact_stalled) call solve_by_blocks()
       if (solution%by_blocks) return
       solution = trial
-      if (solution%state == contact_overlap) then
+      select case (solution%state)
+      case (contact_overlap)
         solution%overlapping = ray > null_component*maxval(ray)
-      else
+      case (contact_stalled)
+        call find_hardly_held()
+      case default
         call settle(state, solution)
-      end if
+      end select
     end subroutine solve_by_simplex
+
+    !> Of no answer the cause, where pairs hold a motion by so little that rounding of the loads along it is too
+    !! large a force.
+    subroutine find_hardly_held()
+      real(wp), allocatable :: loose(:, :)
+      real(wp) :: closing(size(scaled%gap))
+
+      loose = null_space(motion, cancelled/solved_to)
+      if (size(loose, 2) == 0) return
+      solution%escape = loose(:, 1)/scaled%motion_size
+      closing = abs(matmul(motion, loose(:, 1)))
+      solution%overlapping = closing > 0.5_wp*maxval(closing)
+    end subroutine find_hardly_held
 
     !> An answer of no contact at all, to be filled in.
     subroutine clear()
@@ -105,19 +121,56 @@ contains
 
       zero = negligible*maxval([state%force, 1.0_wp])
       call cut_rounding(state, terms)
-      where (state%force > 0.0_wp) state%gap = 0.0_wp
-      solution%touching = state%gap <= negligible*max(terms, maxval([terms(state%pairs), 0.0_wp]))
-      where (solution%touching) state%gap = 0.0_wp
+      solution%approach(scaled%kept) = state%approach
+      call find_touching(state, terms, solution%touching)
+      solution%motion_free = find_free_motions(motion, solution%touching, &
+                                               state%force > lost_digits*maxval([state%force, 1.0_wp]))
+      if (any(solution%motion_free)) then
+        where (state%force <= zero) state%force = 0.0_wp
+        call choose_neutral(state, solution%approach)
+        call find_touching(state, terms, solution%touching)
+      end if
       pressed = state%force > zero
       solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
       call share_equally(scaled, solution%indeterminate, state%force)
-      pressed = state%force > lost_digits*maxval([state%force, 1.0_wp])
-      solution%motion_free(scaled%kept) = find_free_motions(scaled, solution%touching, pressed)
-      ! In the deck's units; dropped motions stay at zero.
+      ! In the deck's units.
       solution%force = state%force*scaled%force_unit
       solution%gap = state%gap*scaled%gap_unit
-      solution%approach(scaled%kept) = state%approach*scaled%gap_unit/scaled%motion_size(scaled%kept)
+      solution%approach = solution%approach*scaled%gap_unit/scaled%motion_size
     end subroutine settle
+
+    !> Which pairs touch: no gap is left of theirs.
+    pure subroutine find_touching(state, terms, touching)
+      type(contact_state), intent(inout) :: state
+      real(wp), intent(in) :: terms(:)        !! what gaps are the sum of [n]
+      logical, intent(out) :: touching(:)     !! [n]
+
+      where (state%force > 0.0_wp) state%gap = 0.0_wp
+      touching = state%gap <= negligible*max(terms, maxval([terms(state%pairs), 0.0_wp]))
+      where (touching) state%gap = 0.0_wp
+    end subroutine find_touching
+
+    !> Move the bodies, with the pressed pairs closed, to where no gap is below none and the motions are least
+    !! (squares, each over its scaled unit): where springs, all alike, would hold them. That is a contact problem.
+    subroutine choose_neutral(state, approach)
+      type(contact_state), intent(inout) :: state
+      real(wp), intent(inout) :: approach(:)   !! scaled [m]
+      type(contact_solution) :: held
+      real(wp), allocatable :: loose(:, :), opening(:, :)   ! neutral motions, and the gaps that they open
+      real(wp), allocatable :: change(:)                    ! of these motions
+      integer :: k
+
+      loose = null_space(motion(pack([(k, k=1, size(state%gap))], state%force > 0.0_wp), :), negligible)
+      opening = -matmul(motion, loose)
+      where (abs(opening) <= negligible) opening = 0.0_wp
+      change = -matmul(approach, loose)
+      call solve_contact(contact_problem(matmul(opening, transpose(opening)), motion(:, :0), state%gap + &
+                                         matmul(opening, change), 0*state%gap, [real(wp) ::]), held)
+      if (held%state /= contact_solved) return
+      change = change + matmul(held%force, opening)
+      approach = approach + matmul(loose, change)
+      state%gap = state%gap + matmul(opening, change)
+    end subroutine choose_neutral
 
     !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
     !! than none: its pair need not be closed. Where rigid stops take the load, gaps may be far below the size

@@ -100,19 +100,19 @@ contains
 
   !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions:
   !! they do where their forces, none of them a pull, would carry a load along the motion either way.
-  function find_free_motions(problem, touching, pressed) result(free)
-    type(scaled_problem), intent(in) :: problem   !! in its own units
+  function find_free_motions(motion, touching, pressed) result(free)
+    real(wp), intent(in) :: motion(:, :)   !! A, largest entry of each column one [n, m]
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]
     real(wp), allocatable :: closing(:, :), loose(:, :)
     integer, allocatable :: holding(:), idle(:)
     integer :: j, k
 
-    allocate (free(size(problem%resultant)), source=.false.)
+    allocate (free(size(motion, 2)), source=.false.)
     holding = pack([(k, k=1, size(pressed))], pressed)
     idle = pack([(k, k=1, size(pressed))], touching .and. .not. pressed)
-    loose = null_space(problem%motion(holding, :), null_component)
-    closing = matmul(problem%motion(idle, :), loose)
+    loose = null_space(motion(holding, :), null_component)
+    closing = matmul(motion(idle, :), loose)
     do j = 1, size(free)
       if (all(abs(loose(j, :)) <= null_component)) cycle
       free(j) = .not. can_carry(closing, loose(j, :))

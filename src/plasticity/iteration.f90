@@ -30,11 +30,15 @@ module epcont_plasticity_iteration
   real(wp), parameter :: slow = 3.0_wp
   !> A tangent step that shows more than so many times what was estimated is no measure of it.
   real(wp), parameter :: most_doubt = 1.0e2_wp
+  !> Parts of the secant matrix mixed into a tangent that could not be factored, tried one after the other.
+  real(wp), parameter :: blends(4) = [1.0e-6_wp, 1.0e-4_wp, 1.0e-2_wp, 1.0_wp]
   !> A tangent with this part of the secant matrix in it, or more, tests nothing.
   real(wp), parameter :: too_stiff = 1.0e-3_wp
   !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, it has lost
   !! the answer.
   real(wp), parameter :: stagnant = 1.0e-3_wp
+  !> So many solves without a change less than those before.
+  integer, parameter :: long = 5
   !> A strain that falls by less than this part of it stays.
   real(wp), parameter :: least_fall = 1.0e-6_wp
 
@@ -158,7 +162,7 @@ contains
         if (iteration == 1) farthest = far_away*travel
         ! A state far away is none to show: its numbers may be at the end of their range.
         answer%runs_away = .not. converged .and. scene%model%has_flat_curve() .and. travel > farthest
-        if (answer%runs_away) return
+        if (answer%runs_away .or. plan%precision == precision_single .and. changes_are_rounding()) return
         if (.not. plan%from_first_pivot) touching = found%contact%touching
         force = found%contact%force
         yielded = now%yielded
@@ -181,7 +185,7 @@ contains
     subroutine set_law(method, failed_body)
       class(secant_method), intent(inout) :: method
       integer, intent(out) :: failed_body
-      logical :: may_stay, possible
+      logical :: may_stay
       integer :: p
 
       failed_body = 0
@@ -197,8 +201,9 @@ contains
         call linear%set_stiffness(scene, failed_body, watch)
         stiff = .true.
         if (failed_body == 0 .or. any(linear%body%lacks_memory)) return
-        call method%stiffen(possible)
-        if (.not. possible) return
+        ! A flat curve makes a tangent semidefinite: a part of the secant matrix is mixed into it.
+        if (.not. same_type_as(method, newton_method()) .or. method%blend >= blends(4)) return
+        method%blend = minval(blends, mask=blends > method%blend)
       end do
     end subroutine set_law
 
@@ -309,6 +314,14 @@ contains
       if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
         is_over = is_over .or. now%change >= answer%history(n - 2)%change
     end function is_over
+
+    !> Have changes at this load fallen no more for long? In single precision they are rounding then.
+    pure logical function changes_are_rounding() result(are)
+      associate (history => answer%history)
+        are = .not. converged .and. now%iteration - &
+              minloc(history(size(history) - now%iteration + 1:)%change, dim=1) >= long
+      end associate
+    end function changes_are_rounding
 
     !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
     pure logical function wants_test()

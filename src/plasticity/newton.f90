@@ -15,8 +15,6 @@ module epcont_plasticity_newton
   private
   public :: newton_method
 
-  !> Parts of the secant matrix mixed into a tangent that could not be factored, tried one after the other.
-  real(wp), parameter :: blends(4) = [1.0e-6_wp, 1.0e-4_wp, 1.0e-2_wp, 1.0_wp]
   !> A step serves in full when the slope at its end is at most this part of that at its beginning.
   real(wp), parameter :: flat_enough = 0.5_wp
   !> The search ends when the slope is at most this part of that at the beginning.
@@ -30,7 +28,6 @@ module epcont_plasticity_newton
   contains
     procedure :: restart
     procedure :: linearise
-    procedure :: stiffen
     procedure :: advance
   end type newton_method
 
@@ -63,15 +60,6 @@ contains
       call linear%law%set_matrix(p, matrix)
     end associate
   end subroutine linearise
-
-  !> The next of `blends`.
-  pure subroutine stiffen(self, possible)
-    class(newton_method), intent(inout) :: self
-    logical, intent(out) :: possible                 !! there is one
-
-    possible = self%blend < maxval(blends)
-    if (possible) self%blend = minval(blends, mask=blends > self%blend)
-  end subroutine stiffen
 
   !> Go along the step as far as the energy falls.
   subroutine advance(self, model, linear, load_factor, found, about)

@@ -67,7 +67,7 @@ contains
                     joined(pack(run%model%pair_id, run%answer%contact%overlapping), ' ', most_pairs))
     else if (run%answer%contact%state /= contact_solved) then
       call conclude(status_numerical, 'contact not found', 'no set of touching pairs passed the test: '// &
-                    'inconclusive because of rounding (condition of the stiffness)')
+                    'inconclusive because of rounding ('//cause_of_rounding()//')')
     else
       call judge_answer()
       outcome%has_answer = .true.
@@ -114,6 +114,19 @@ contains
              run%model%name_of(of_node, run%motions%node(k))//' moves along '// &
              merge('-', '+', run%answer%contact%escape(k) < 0)//merge('x', 'y', run%motions%component(k) == 1)
     end function escaping
+
+    !> Why no set of pairs passed the test.
+    pure function cause_of_rounding() result(text)
+      character(len=:), allocatable :: text
+
+      text = 'condition of the stiffness'
+      associate (contact => run%answer%contact)
+        if (any(contact%overlapping)) text = &
+          'CGAP '//joined(pack(run%model%pair_id, contact%overlapping), ' ', most_pairs)//' alone hold '// &
+          motion_name(run, findloc(abs(contact%escape) > 0.5_wp*maxval(abs(contact%escape)), .true., dim=1))// &
+          ', and hardly: hold it by SPC1'
+      end associate
+    end function cause_of_rounding
 
     !> What speaks against an answer: the figure of the certificate that is farthest beyond its tolerance, and
     !! lost digits.
