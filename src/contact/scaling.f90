@@ -109,11 +109,9 @@ contains
     integer :: k, n
 
     n = size(scaled%gap)
-    associate (softest => scaled%softest)
-      softest = or_else(largest_of([(scaled%flexibility(k, k), k=1, n)]), 1.0_wp)
-      scaled%gamma = softest/or_else(largest_of(sum(scaled%motion**2, dim=2)), 1.0_wp)
-      scaled%rank_tolerance = max(negligible/100, 4*n*epsilon(1.0_wp))*softest
-    end associate
+    scaled%softest = or_else(largest_of([(scaled%flexibility(k, k), k=1, n)]), 1.0_wp)
+    scaled%gamma = scaled%softest/or_else(largest_of(sum(scaled%motion**2, dim=2)), 1.0_wp)
+    scaled%rank_tolerance = max(negligible/100, 4*n*epsilon(1.0_wp))*scaled%softest
   end subroutine measure
 
   !> Largest absolute value; 0 of none.

@@ -63,39 +63,26 @@ contains
       if (.not. any(trial%indeterminate)) solution = trial
     end subroutine solve_by_blocks
 
-    !> RULE CONRY. Where ties may have led the path round in a circle blocks are tried, which know of no path.
+    !> RULE CONRY. Of no answer the cause may be that pairs hold a motion by so little that rounding of the loads
+    !! along it is too large a force.
     subroutine solve_by_simplex()
-      type(contact_solution) :: trial
       type(contact_state) :: state
-      real(wp), allocatable :: ray(:)
+      real(wp), allocatable :: loose(:, :), ray(:)
 
-      trial = solution
-      call find_contacts(scaled, trial, state, ray)
-      if (trial%state == contact_stalled) call solve_by_blocks()
-      if (solution%by_blocks) return
-      solution = trial
+      call find_contacts(scaled, solution, state, ray)
       select case (solution%state)
       case (contact_overlap)
         solution%overlapping = ray > null_component*maxval(ray)
       case (contact_stalled)
-        call find_hardly_held()
+        loose = null_space(motion, cancelled/solved_to)
+        if (size(loose, 2) == 0) return
+        solution%escape = loose(:, 1)/scaled%motion_size
+        ray = abs(matmul(motion, loose(:, 1)))
+        solution%overlapping = ray > 0.5_wp*maxval(ray)
       case default
         call settle(state, solution)
       end select
     end subroutine solve_by_simplex
-
-    !> Of no answer the cause, where pairs hold a motion by so little that rounding of the loads along it is too
-    !! large a force.
-    subroutine find_hardly_held()
-      real(wp), allocatable :: loose(:, :)
-      real(wp) :: closing(size(scaled%gap))
-
-      loose = null_space(motion, cancelled/solved_to)
-      if (size(loose, 2) == 0) return
-      solution%escape = loose(:, 1)/scaled%motion_size
-      closing = abs(matmul(motion, loose(:, 1)))
-      solution%overlapping = closing > 0.5_wp*maxval(closing)
-    end subroutine find_hardly_held
 
     !> An answer of no contact at all, to be filled in.
     subroutine clear()

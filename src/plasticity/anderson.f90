@@ -70,20 +70,18 @@ contains
 
     !> Add the step from the last x to this one.
     subroutine remember()
-      associate (last => self%last)
-        if (self%mixed .and. product_of(now%rest, now%rest) > product_of(last%rest, last%rest)) then
-          self%steps = 0
-          self%penalty = max(1, 2*self%penalty)
-          self%plain = self%penalty
-          return
-        end if
-        self%steps = min(memory, self%steps + 1)
-        do k = self%steps, 2, -1
-          self%change(k) = self%change(k - 1)
-        end do
-        self%change(1) = step_type(now%rest - last%rest, now%strain - last%strain, &
-                                   now%displacement - last%displacement)
-      end associate
+      if (self%mixed .and. product_of(now%rest, now%rest) > product_of(self%last%rest, self%last%rest)) then
+        self%steps = 0
+        self%penalty = max(1, 2*self%penalty)
+        self%plain = self%penalty
+        return
+      end if
+      self%steps = min(memory, self%steps + 1)
+      do k = self%steps, 2, -1
+        self%change(k) = self%change(k - 1)
+      end do
+      self%change(1) = step_type(now%rest - self%last%rest, now%strain - self%last%strain, &
+                                 now%displacement - self%last%displacement)
     end subroutine remember
 
     !> Shares of the steps that make the last g - x least: least squares by Gram and Schmidt.

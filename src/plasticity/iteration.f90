@@ -120,11 +120,9 @@ contains
       if (any(plan%method == [method_modsec, method_inistr])) allocate (method%mixer)
       allocate (linear)
       call new_linear_problem(scene, plan, linear)
-      associate (model => scene%model)
-        allocate (about%displacement(directions, model%nodes), source=0.0_wp)
-        allocate (about%strain(components, model%points), source=0.0_wp)
-        allocate (force(model%pairs), strained(model%points), source=0.0_wp)
-      end associate
+      allocate (about%displacement(directions, scene%model%nodes), source=0.0_wp)
+      allocate (about%strain(components, scene%model%points), source=0.0_wp)
+      allocate (force(scene%model%pairs), strained(scene%model%points), source=0.0_wp)
       if (linear%materials%yields) about%point = linear%materials%states(about%strain)
       allocate (answer%history(0), answer%pivot(0))
       yielded = 0
@@ -162,7 +160,12 @@ contains
         if (iteration == 1) farthest = far_away*travel
         ! A state far away is none to show: its numbers may be at the end of their range.
         answer%runs_away = .not. converged .and. scene%model%has_flat_curve() .and. travel > farthest
-        if (answer%runs_away .or. plan%precision == precision_single .and. changes_are_rounding()) return
+        if (answer%runs_away) return
+        ! In single precision changes that fall no more are rounding.
+        associate (change => answer%history(size(answer%history) - iteration + 1:)%change)
+          if (plan%precision == precision_single .and. .not. converged .and. &
+              iteration - minloc(change, dim=1) >= long) return
+        end associate
         if (.not. plan%from_first_pivot) touching = found%contact%touching
         force = found%contact%force
         yielded = now%yielded
@@ -314,14 +317,6 @@ contains
       if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
         is_over = is_over .or. now%change >= answer%history(n - 2)%change
     end function is_over
-
-    !> Have changes at this load fallen no more for long? In single precision they are rounding then.
-    pure logical function changes_are_rounding() result(are)
-      associate (history => answer%history)
-        are = .not. converged .and. now%iteration - &
-              minloc(history(size(history) - now%iteration + 1:)%change, dim=1) >= long
-      end associate
-    end function changes_are_rounding
 
     !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
     pure logical function wants_test()

@@ -37,9 +37,8 @@ contains
     type(scene_state), intent(in) :: about           !! its strain, and its points
     type(linear_problem), intent(inout) :: linear    !! its law is set
 
-    associate (material => linear%materials%section(linear%materials%of_point(p))%law)
-      call linear%law%set_matrix(p, material%secant_matrix(about%point(p)))
-    end associate
+    call linear%law%set_matrix( &
+      p, linear%materials%section(linear%materials%of_point(p))%law%secant_matrix(about%point(p)))
   end subroutine linearise
 
   !> The state to linearise about next, when the law about `about` has led to `found`.
