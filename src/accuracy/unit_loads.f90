@@ -8,11 +8,11 @@
 !> are few, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_accuracy_unit_loads
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: least_difference, null_component, solved_to
+  use epcont_base_tolerances, only: least_difference, solved_to
   use epcont_contact_basis, only: contact_basis, new_basis, respond
+  use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_element_kinematics, only: directions
-  use epcont_linalg_dense, only: null_space, pivoted_cholesky
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
@@ -58,10 +58,19 @@ contains
     type(linear_problem), intent(in) :: linear   !! of the last solve
     type(answer_type), intent(in) :: answer      !! with some contact
     type(unit_loads) :: loads
+    type(rigid_start) :: start
+    integer, allocatable :: pressed(:)
     integer :: j
 
     loads%problem = scale_problem(linear%problem)
-    if (any(answer%contact%motion_free)) call drop_neutral()
+    if (any(answer%contact%motion_free)) then
+      ! Of motions that no pressed pair resists as many are held as are independent, which says nothing of the
+      ! others.
+      pressed = pack([(j, j=1, scene%model%pairs)], answer%contact%force > 0.0_wp)
+      call find_rigid_start(loads%problem%motion(pressed, :), 0*loads%problem%resultant, &
+                            0*loads%problem%gap(pressed), start)
+      call drop_motions(loads%problem, start%redundant)
+    end if
     loads%basis = new_basis(loads%problem, answer%contact%force > 0.0_wp)
     call find_shares()
     loads%force = reshape([unit_forces(), closing_forces(loads%problem, loads%basis, loads%share)], &
@@ -70,20 +79,6 @@ contains
                        [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))])
 
   contains
-
-    !> Of motions that no pressed pair resists as many are held as are independent, which says nothing of the
-    !! others.
-    subroutine drop_neutral()
-      real(wp), allocatable :: part(:, :)   ! of each motion what such ones are of it [motions, motions]
-      integer, allocatable :: order(:)
-      integer :: rank
-
-      part = null_space(loads%problem%motion(pack([(j, j=1, scene%model%pairs)], &
-                                                  answer%contact%force > 0.0_wp), :), null_component)
-      part = matmul(part, transpose(part))
-      call pivoted_cholesky(part, null_component, order, rank)
-      call drop_motions(loads%problem, [(any(order(:rank) == j), j=1, scene%motions%count)])
-    end subroutine drop_neutral
 
     !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
     subroutine find_shares()

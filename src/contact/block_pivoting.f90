@@ -30,8 +30,6 @@ module epcont_contact_block_pivoting
   !> Steps from a guess, and from nothing where that fails. A full step costs less than 1/50 of what RULE
   !! CONRY takes.
   integer, parameter :: step_limit = 100
-  !> Sets that do not hold the motions before the problem is given up.
-  integer, parameter :: repair_limit = 3
   !> Candidates of the first sets, at least.
   integer, parameter :: fewest_candidates = 32
 
@@ -83,13 +81,11 @@ contains
       real(wp), intent(in) :: tolerance   !! of the test
       type(contact_state) :: trial
       real(wp) :: firmness(size(closed))
-      integer :: repairs, step
+      integer :: step
 
       fewest = huge(fewest)
       firmness = 0.0_wp
-      repairs = 0
       do step = 1, step_limit
-        if (repairs > repair_limit) exit
         solution%block_steps = solution%block_steps + 1
         call change_set(trial%contact_basis, scaled, closed, firmness)
         if (trial%sound) then
@@ -102,11 +98,11 @@ contains
           closed = closed .neqv. wrong
         else
           ! More pairs may hold the motions; forces that depend on each other they do not mend.
-          repairs = merge(repair_limit, repairs, all(closed .or. .not. scaled%first_touching)) + 1
+          if (all(closed .or. .not. scaled%first_touching)) return
           closed = closed .or. scaled%first_touching
         end if
       end do
-      if (repairs <= repair_limit) call test_afresh(tolerance)
+      call test_afresh(tolerance)
     end subroutine exchange_blocks
 
     !> The wrong pairs among the candidates; where there is none, among more of them.

@@ -115,8 +115,7 @@ contains
     closing = matmul(motion(idle, :), loose)
     do j = 1, size(free)
       if (all(abs(loose(j, :)) <= null_component)) cycle
-      free(j) = .not. can_carry(closing, loose(j, :))
-      if (.not. free(j)) free(j) = .not. can_carry(closing, -loose(j, :))
+      free(j) = .not. (can_carry(closing, loose(j, :)) .and. can_carry(closing, -loose(j, :)))
     end do
   end function find_free_motions
 end module epcont_contact_uniqueness
