@@ -30,6 +30,8 @@ module epcont_contact_block_pivoting
   !> Steps from a guess, and from nothing where that fails. A full step costs less than 1/50 of what RULE
   !! CONRY takes.
   integer, parameter :: step_limit = 100
+  !> Sets that do not hold the motions before the problem is given up.
+  integer, parameter :: repair_limit = 3
   !> Candidates of the first sets, at least.
   integer, parameter :: fewest_candidates = 32
 
@@ -81,10 +83,11 @@ contains
       real(wp), intent(in) :: tolerance   !! of the test
       type(contact_state) :: trial
       real(wp) :: firmness(size(closed))
-      integer :: step
+      integer :: repairs, step
 
       fewest = huge(fewest)
       firmness = 0.0_wp
+      repairs = 0
       do step = 1, step_limit
         solution%block_steps = solution%block_steps + 1
         call change_set(trial%contact_basis, scaled, closed, firmness)
@@ -98,7 +101,8 @@ contains
           closed = closed .neqv. wrong
         else
           ! More pairs may hold the motions; forces that depend on each other they do not mend.
-          if (all(closed .or. .not. scaled%first_touching)) return
+          if (repairs == repair_limit .or. all(closed .or. .not. scaled%first_touching)) return
+          repairs = repairs + 1
           closed = closed .or. scaled%first_touching
         end if
       end do
