@@ -49,8 +49,8 @@ contains
 
   contains
 
-    !> RULE BLOCK, where it finds an answer that is the only one; else nothing but the count of steps is left
-    !! of it.
+    !> RULE BLOCK, where it finds forces that are the only ones; else nothing but the count of steps is left of
+    !! it.
     subroutine solve_by_blocks()
       type(contact_solution) :: trial
       type(contact_state) :: state
