@@ -110,8 +110,8 @@ contains
       end do
     end subroutine find_shares
 
-    !> Is a body free to move along a component? Then contact bears its loads that way. Motions are one at their
-    !! own SUPORT freedom and zero at the others: it is the sum of those measured along it that does so.
+    !> Is a body free to move along a component? Then contact bears its loads that way. Motions are one at
+    !! their own SUPORT freedom and zero at the others: it is the sum of those measured along it that does so.
     pure logical function is_free(body, c)
       integer, intent(in) :: body, c
       real(wp) :: rest(directions)   !! of the movement of a node

@@ -47,8 +47,8 @@ module epcont_contact_problem
     real(wp), allocatable :: gap(:)          !! w [length] [n]
     real(wp), allocatable :: approach(:)     !! q [m]
     logical, allocatable :: touching(:)      !! closed pairs, pressed or not [n]
-    !> y with P'y > 0 and A y <= 0, if there is no equilibrium; if no set passed, with A y hardly more than zero,
-    !! where that is the cause [m]
+    !> y with P'y > 0 and A y <= 0, if there is no equilibrium; if no set passed, with A y hardly more than
+    !! zero, where that is the cause [m]
     real(wp), allocatable :: escape(:)
     !> Pairs that overlap and cannot give way; or that alone resist such a y [n]
     logical, allocatable :: overlapping(:)

@@ -49,8 +49,8 @@ contains
 
   contains
 
-    !> RULE BLOCK, where it finds forces that are the only ones; else nothing but the count of steps is left of
-    !! it.
+    !> RULE BLOCK, where it finds forces that are the only ones; else nothing but the count of steps is left
+    !! of it.
     subroutine solve_by_blocks()
       type(contact_solution) :: trial
       type(contact_state) :: state
@@ -63,8 +63,8 @@ contains
       if (.not. any(trial%indeterminate)) solution = trial
     end subroutine solve_by_blocks
 
-    !> RULE CONRY. Of no answer the cause may be that pairs hold a motion by so little that rounding of the loads
-    !! along it is too large a force.
+    !> RULE CONRY. Of no answer the cause may be that pairs hold a motion by so little that rounding of the
+    !! loads along it is too large a force.
     subroutine solve_by_simplex()
       type(contact_state) :: state
       real(wp), allocatable :: loose(:, :), ray(:)
@@ -138,7 +138,8 @@ contains
     end subroutine find_touching
 
     !> Move the bodies, with the pressed pairs closed, to where no gap is below none and the motions are least
-    !! (squares, each over its scaled unit): where springs, all alike, would hold them. That is a contact problem.
+    !! (squares, each over its scaled unit): where springs, all alike, would hold them. That is a contact
+    !! problem.
     subroutine choose_neutral(state, approach)
       type(contact_state), intent(inout) :: state
       real(wp), intent(inout) :: approach(:)   !! scaled [m]

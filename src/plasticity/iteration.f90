@@ -13,7 +13,7 @@ module epcont_plasticity_iteration
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_initial_stress, only: initial_stress_method
-  use epcont_plasticity_newton, only: newton_method
+  use epcont_plasticity_newton, only: blends, newton_method
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_secant, only: secant_method
   use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
@@ -30,12 +30,9 @@ module epcont_plasticity_iteration
   real(wp), parameter :: slow = 3.0_wp
   !> A tangent step that shows more than so many times what was estimated is no measure of it.
   real(wp), parameter :: most_doubt = 1.0e2_wp
-  !> Parts of the secant matrix mixed into a tangent that could not be factored, tried one after the other.
-  real(wp), parameter :: blends(4) = [1.0e-6_wp, 1.0e-4_wp, 1.0e-2_wp, 1.0_wp]
   !> A tangent with this part of the secant matrix in it, or more, tests nothing.
   real(wp), parameter :: too_stiff = 1.0e-3_wp
-  !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, it has lost
-  !! the answer.
+  !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, all is lost.
   real(wp), parameter :: stagnant = 1.0e-3_wp
   !> So many solves without a change less than those before.
   integer, parameter :: long = 5
@@ -162,10 +159,8 @@ contains
         answer%runs_away = .not. converged .and. scene%model%has_flat_curve() .and. travel > farthest
         if (answer%runs_away) return
         ! In single precision changes that fall no more are rounding.
-        associate (change => answer%history(size(answer%history) - iteration + 1:)%change)
-          if (plan%precision == precision_single .and. .not. converged .and. &
-              iteration - minloc(change, dim=1) >= long) return
-        end associate
+        if (plan%precision == precision_single .and. .not. converged .and. iteration - minloc( &
+            answer%history(size(answer%history) - iteration + 1:)%change, dim=1) >= long) return
         if (.not. plan%from_first_pivot) touching = found%contact%touching
         force = found%contact%force
         yielded = now%yielded
@@ -188,7 +183,6 @@ contains
     subroutine set_law(method, failed_body)
       class(secant_method), intent(inout) :: method
       integer, intent(out) :: failed_body
-      logical :: may_stay
       integer :: p
 
       failed_body = 0
@@ -198,8 +192,8 @@ contains
           if (linear%materials%can_yield(p)) call method%linearise(p, about, linear)
         end do
         call watch%lap(stage_yielding)
-        may_stay = plan%method == method_inistr .or. elastic .and. yielded == 0
-        if (failed_body == 0 .and. stiff .and. may_stay) return
+        if (failed_body == 0 .and. stiff .and. &
+            (plan%method == method_inistr .or. elastic .and. yielded == 0)) return
         elastic = yielded == 0
         call linear%set_stiffness(scene, failed_body, watch)
         stiff = .true.
@@ -401,7 +395,6 @@ contains
   pure real(wp) function ratio(a, b)
     real(wp), intent(in) :: a, b
 
-    ratio = 0.0_wp
-    if (a > 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
+    ratio = max(a, 0.0_wp)/max(b, tiny(b)*max(a, 1.0_wp))
   end function ratio
 end module epcont_plasticity_iteration

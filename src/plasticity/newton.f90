@@ -13,8 +13,10 @@ module epcont_plasticity_newton
   use epcont_plasticity_secant, only: secant_method
   implicit none
   private
-  public :: newton_method
+  public :: blends, newton_method
 
+  !> Parts of the secant matrix mixed into a tangent that could not be factored, tried one after the other.
+  real(wp), parameter :: blends(4) = [1.0e-6_wp, 1.0e-4_wp, 1.0e-2_wp, 1.0_wp]
   !> A step serves in full when the slope at its end is at most this part of that at its beginning.
   real(wp), parameter :: flat_enough = 0.5_wp
   !> The search ends when the slope is at most this part of that at the beginning.

@@ -120,11 +120,11 @@ contains
       character(len=:), allocatable :: text
 
       text = 'condition of the stiffness'
-      associate (contact => run%answer%contact)
-        if (any(contact%overlapping)) text = &
-          'CGAP '//joined(pack(run%model%pair_id, contact%overlapping), ' ', most_pairs)//' alone hold '// &
-          motion_name(run, findloc(abs(contact%escape) > 0.5_wp*maxval(abs(contact%escape)), .true., dim=1))// &
-          ', and hardly: hold it by SPC1'
+      if (.not. any(run%answer%contact%overlapping)) return
+      associate (turn => abs(run%answer%contact%escape))
+        text = 'CGAP '//joined(pack(run%model%pair_id, run%answer%contact%overlapping), ' ', most_pairs)// &
+               ' alone hold '//motion_name(run, findloc(turn > 0.5_wp*maxval(turn), .true., dim=1))// &
+               ', and hardly: hold it by SPC1'
       end associate
     end function cause_of_rounding
 
