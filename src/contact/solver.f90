@@ -101,7 +101,6 @@ contains
     subroutine settle(state, solution)
       type(contact_state), intent(inout) :: state
       type(contact_solution), intent(inout) :: solution
-      logical, allocatable :: pressed(:)
       !> What gaps are the sum of; the motions have the rounding of those that hold them [n]
       real(wp), allocatable :: terms(:)
       real(wp) :: zero                    !! force that rounding leaves of none
@@ -117,8 +116,7 @@ contains
         call choose_neutral(state, solution%approach)
         call find_touching(state, terms, solution%touching)
       end if
-      pressed = state%force > zero
-      solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, pressed)
+      solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, state%force > zero)
       call share_equally(scaled, solution%indeterminate, state%force)
       ! In the deck's units.
       solution%force = state%force*scaled%force_unit

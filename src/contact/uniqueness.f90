@@ -105,14 +105,11 @@ contains
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]
     real(wp), allocatable :: closing(:, :), loose(:, :)
-    integer, allocatable :: holding(:), idle(:)
     integer :: j, k
 
     allocate (free(size(motion, 2)), source=.false.)
-    holding = pack([(k, k=1, size(pressed))], pressed)
-    idle = pack([(k, k=1, size(pressed))], touching .and. .not. pressed)
-    loose = null_space(motion(holding, :), null_component)
-    closing = matmul(motion(idle, :), loose)
+    loose = null_space(motion(pack([(k, k=1, size(pressed))], pressed), :), null_component)
+    closing = matmul(motion(pack([(k, k=1, size(pressed))], touching .and. .not. pressed), :), loose)
     do j = 1, size(free)
       if (all(abs(loose(j, :)) <= null_component)) cycle
       free(j) = .not. (can_carry(closing, loose(j, :)) .and. can_carry(closing, -loose(j, :)))
