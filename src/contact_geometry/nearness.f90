@@ -237,7 +237,7 @@ contains
           turn = max(turn, abs(rotation(line, i) - rotation(line, side)))
           if (covered + line%chord_length(i) > over) exit
         end do
-        theta = theta + turn
+        theta = max(theta, turn)   ! as in the certificate
       end do
       bend = max(line%chord_length(side), over)*theta/8.0_wp
     end function bend
