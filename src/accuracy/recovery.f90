@@ -37,28 +37,23 @@ contains
   pure function new_patch_table(model) result(table)
     type(model_type), intent(in) :: model   !! the scene
     type(patch_table) :: table
-    integer, allocatable :: turn(:)
-    integer :: corners, e, k
+    logical :: free(0:model%nodes)   ! on an outline
+    integer :: p
 
     call split_places(table%place, table%node)
     table%places = size(table%node)
     table%around = new_incidence(table%place, table%places)
-    ! Around a place inside, the corner after it in one element is the corner before it in another.
-    allocate (turn(table%places), source=0)
-    do e = 1, model%elements
-      corners = model%corners(e)
-      associate (place => table%place(:, e))
-        do k = 1, corners
-          turn(place(k)) = turn(place(k)) + place(mod(k, corners) + 1) &
-                                          - place(mod(k + corners - 2, corners) + 1)
-        end do
-      end associate
-    end do
-    table%inside = turn == 0
+    free = .false.
+    free([model%body_outline%node]) = .true.
+    associate (full => model%around%start, own => table%around%start, node => table%node)
+      table%inside = [(.not. free(node(p)) .and. own(p + 1) - own(p) == full(node(p) + 1) - full(node(p)), &
+                       p=1, table%places)]
+    end associate
 
   contains
 
-    !> A node has one place for each section that it belongs to, the first of which is the node's own number.
+    !> A node has one place for each section that it belongs to; that of the first section is the node's own
+    !! number.
     pure subroutine split_places(place, node)
       integer, allocatable, intent(out) :: place(:, :), node(:)   !! of each element, of each place
       integer, allocatable :: next(:), section(:)   !! of each place the next place of its node, its section
@@ -68,12 +63,12 @@ contains
       node = [(k, k=1, model%nodes)]
       if (all(model%section == model%section(1))) return
       node = [node, spread(0, 1, size(place))]
-      allocate (next(size(node)), section(size(node)), source=0)
+      allocate (next(size(node)), source=0)
       places = model%nodes
+      section = [(minval(model%section(model%around%of(k))), k=1, places), node(places + 1:)]
       do e = 1, model%elements
         do k = 1, model%node_count(e)
           at = place(k, e)
-          if (section(at) == 0) section(at) = model%section(e)
           do while (section(at) /= model%section(e))
             if (next(at) == 0) then
               places = places + 1
@@ -98,26 +93,19 @@ contains
     !> The last place that each element was taken for [elements]
     integer, intent(inout) :: seen(:)
     integer, allocatable, intent(out) :: patch(:)     !! elements
-    integer :: count, i, j, k
+    integer :: i, k
 
-    count = 0
-    associate (start => table%around%start, group => table%around%group)
-      allocate (patch(8*(start(place + 1) - start(place))))
-      do i = start(place), start(place + 1) - 1
-        do k = 1, model%corners(group(i))
-          associate (corner => table%place(k, group(i)))
-            do j = start(corner), start(corner + 1) - 1
-              if (seen(group(j)) == place) cycle
-              seen(group(j)) = place
-              if (count == size(patch)) patch = [patch, patch]
-              count = count + 1
-              patch(count) = group(j)
-            end do
+    allocate (patch(0))
+    associate (near => table%around%of(place))
+      do i = 1, size(near)
+        do k = 1, model%corners(near(i))
+          associate (there => table%around%of(table%place(k, near(i))))
+            patch = [patch, pack(there, seen(there) /= place)]
+            seen(there) = place
           end associate
         end do
       end do
     end associate
-    patch = patch(:count)
   end subroutine wide_patch
 
   !> Strains at the places of a table, of several fields at once [4, places, fields].
@@ -143,9 +131,9 @@ contains
     end do
     seen = 0
     do p = 1, table%places
-      patch = table%around%group(table%around%start(p):table%around%start(p + 1) - 1)
+      patch = table%around%of(p)
       if (size(patch) == 0 .or. fits(p) >= 0) cycle
-      associate (curved => model%kinds(model%kind(patch(1)))%degree > 1)
+      associate (curved => any(model%kinds(model%kind(patch))%degree > 1))
         if (.not. table%inside(p) .or. size(patch) < merge(least_quadratic/3, least_linear, curved)) &
           call wide_patch(model, table, p, seen, patch)
         if (curved) then
@@ -241,14 +229,18 @@ contains
       integer, intent(in) :: p
       real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic)
       real(wp) :: at(2), reach, weight
-      integer :: e, f, i, j, k, s
+      integer :: e, f, i, j, k, s, samples
 
       at = model%x(:, table%node(p))
       reach = 0.0_wp
-      do i = 1, size(patch)
-        ! in any direction: a scene may be turned
-        reach = max(reach, norm2(x(:, model%first_point(patch(i))) - at))
+      samples = 0
+      do i = 1, size(patch)   ! in any direction, all samples alike: scenes and elements may be turned
+        associate (first => model%first_point(patch(i)), own => model%kinds(model%kind(patch(i)))%samples)
+          reach = reach + sum((x(:, first:first + own - 1) - spread(at, 2, own))**2)
+          samples = samples + own
+        end associate
       end do
+      reach = sqrt(reach/samples)
       matrix = 0.0_wp
       coefficient = 0.0_wp
       do i = 1, size(patch)
@@ -263,6 +255,7 @@ contains
           end do
         end associate
       end do
+      if (samples < least_quadratic) matrix(:, 4:) = 0.0_wp   ! linear
       call solve(matrix, size(coefficient, 1)*size(coefficient, 2), coefficient)
       smooth(:, p, :) = coefficient(:, :, 1)
       do i = table%around%start(p), table%around%start(p + 1) - 1

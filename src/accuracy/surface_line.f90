@@ -89,14 +89,16 @@ contains
     end associate
   end function beyond
 
-  !> The first element at a node; 0: none.
+  !> An element at a node: of the first section there, and of the first kind in it; 0: none.
   pure integer function first_element(model, node) result(element)
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: node             !! any
-    integer, allocatable :: elements(:)
+    integer, allocatable :: there(:)
 
-    elements = [model%around%of(node), 0]
-    element = elements(1)
+    element = 0
+    there = model%around%of(node)
+    if (size(there) > 0) &
+      element = there(minloc(model%section(there)*size(model%kinds) + model%kind(there), dim=1))
   end function first_element
 
   !> The elements at a node that tell how it gives way: those of the section of the first; none where it is
@@ -109,7 +111,7 @@ contains
 
     elements = model%around%of(node)
     if (size(elements) == 0) return
-    elements = pack(elements, model%section(elements) == model%section(elements(1)))
+    elements = pack(elements, model%section(elements) == model%section(first_element(model, node)))
     if (all(model%is_held([1, 2], node)) .or. &
         all([(model%is_rigid(model%connectivity(:model%node_count(elements(i)), elements(i))), &
               i=1, size(elements))])) elements = [integer ::]

@@ -167,20 +167,13 @@ contains
       do i = 1, size(elements)
         do k = 1, model%corners(elements(i))
           side = model%edge(elements(i), k)
-          if (.not. any(side == node) .or. elements_at(side(1), side(2)) > 1) cycle
+          if (.not. any(side == node)) cycle
+          ! Elements that have both of its ends
+          if (count(model%connectivity(:, model%around%of(side(1))) == side(2)) > 1) cycle
           sides = reshape([sides, side, elements(i)], [4, size(sides, 2) + 1])
         end do
       end do
     end associate
-
-  contains
-
-    !> How many elements have both of two nodes.
-    pure integer function elements_at(a, b)
-      integer, intent(in) :: a, b
-
-      elements_at = count(any(model%connectivity(:, model%around%of(a)) == b, dim=1))
-    end function elements_at
   end function outer_sides
 
   !> Does a side lie along the tangent?

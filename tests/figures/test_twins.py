@@ -90,6 +90,13 @@ class Twins(unittest.TestCase):
                         with self.subTest(family=family, number=number, finer=bool(fine), twin=twin.name, once=why):
                             self.near(base[key], other[key], key)
 
+    def test_order_of_elements(self):
+        """Every other element of another section: which of a node's is the first tells nothing."""
+        cards = re.sub(r"(CQUAD4,\d*[13579]),1", r"\1,2", beam_on_posts(1.0)).replace("PSHELL", "MAT1,2,1.+11,,0.3\nPSHELL,2,2,1.0\nPSHELL")
+        elements, other = ([card for card in cards.split("\n") if card.startswith("CQ") == these] for these in (True, False))
+        self.near(*solved(["\n".join(other[:1] + some + other[1:]) for some in (elements, elements[::-1])],
+                          lambda folder, name: figures(folder, name)["mesh_error_approach"]), "mesh_error_approach")
+
     def test_motion_that_nothing_drives(self):
         """A press fit that is free along its axis has the errors of one that is held there: they were 0.0."""
         free = (pathlib.Path(__file__).resolve().parents[1] / "found/free_along_its_axis.dat").read_text(encoding="ascii")

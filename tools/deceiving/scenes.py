@@ -212,6 +212,10 @@ def deck(scene, twin):
         for nodes in body.elements:
             element += 1
             named = [numbers[k] for k in nodes]
+            if twin.mix:
+                corners = 4 if body.kind == "CQUAD4" else 3
+                turn = twin.mix.randrange(corners)
+                named = [part[(k + turn) % corners] for part in (named[:corners], named[corners:]) for k in range(len(part))]
             if body.kind == "CTRAX6":
                 named = [k for two in zip(named[:3], named[3:]) for k in two]
             cards.append(card(body.kind, element, number, *named))
