@@ -73,6 +73,8 @@ contains
         solution%model%pair_id = [(k, k=1, solution%model%pairs)]   ! those of lines have numbers of nodes
         outcome = judge(solution)
         outcome%sentence = in_array_words(outcome%sentence)
+        outcome%has_answer = outcome%has_answer .and. solution%answer%carried
+        if (.not. outcome%has_answer) solution%answer%load_factor = 0.0_wp
       end if
     end if
     call use_threads(before)

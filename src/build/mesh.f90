@@ -13,7 +13,7 @@ module epcont_build_mesh
   use epcont_model_finding, only: findings
   use epcont_model_given, only: number_parts
   use epcont_model_model, only: model_type
-  use epcont_model_yield_curve, only: bilinear_curve, curve_fault, fault_of_curve
+  use epcont_model_yield_curve, only: bilinear_curve, curve_fault, straighten
   implicit none
   private
   public :: build_mesh, element_cards
@@ -140,28 +140,27 @@ contains
       real(wp), intent(in) :: young
       type(uniaxial_curve), intent(inout) :: curve
       type(curve_fault) :: fault
-      real(wp), allocatable :: strain(:), stress(:)
       real(wp) :: limit
       integer :: first
 
       associate (tables1 => deck%card(card_tables1))
         first = tables1%list_start(t)
-        strain = tables1%list(first:tables1%list_start(t + 1) - 1)%point(1)
-        stress = tables1%list(first:tables1%list_start(t + 1) - 1)%point(2)
-        fault = fault_of_curve(strain, stress, young)
+        curve%strain = tables1%list(first:tables1%list_start(t + 1) - 1)%point(1)
+        curve%stress = tables1%list(first:tables1%list_start(t + 1) - 1)%point(2)
+        call straighten(curve, young, fault)
         if (fault%point > 0) then
           call found%add_error(card_tables1, t, merge(1 - first - fault%point, 0, &
-                               fault%point <= size(strain)), ': '//fault%what, fault%remedy)
+                               fault%point <= size(curve%strain)), ': '//fault%what, fault%remedy)
           return
         end if
         limit = deck%card(card_mats1)%number('LIMIT1', i)
-        if (deck%card(card_mats1)%has('LIMIT1', i) .and. abs(limit - stress(2)) > same_stress*stress(2)) &
-          call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
-                      ', the second stress of '//tables1%identity(t)//' '//short_real(stress(2)), &
-                      'the same stress in both')
+        associate (stress => curve%stress(2))
+          if (deck%card(card_mats1)%has('LIMIT1', i) .and. abs(limit - stress) > same_stress*stress) &
+            call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
+                        ', the second stress of '//tables1%identity(t)//' '//short_real(stress), &
+                        'the same stress in both')
+        end associate
       end associate
-      curve%strain = [0.0_wp, stress(2)/young, strain(3:)]
-      curve%stress = stress
     end subroutine read_table
 
     !> A field is at fault.
@@ -208,14 +207,16 @@ contains
     subroutine choose_kinematics(i, kinematics)
       integer, intent(in) :: i
       integer, intent(out) :: kinematics
+      logical :: strain
 
       kinematics = merge(plane_stress, plane_strain, deck%parameter_word('PLANE') == 'STRESS')
       associate (shell => deck%card(card_pshell))
         if (.not. shell%sound(i)) return
-        if (shell%has('MID2', i) .and. kinematics == plane_stress) then
+        strain = shell%number('MID2', i) < 0.0_wp
+        if (strain .and. kinematics == plane_stress) then
           call refuse(card_pshell, i, 'MID2', ': field 5 (MID2) says plane strain, PARAM PLANE says STRESS', &
                       'one of the two only')
-        else if (.not. shell%has('MID2', i) .and. deck%parameter_row('PLANE') == 0) then
+        else if (.not. strain .and. deck%parameter_row('PLANE') == 0) then
           call refuse(card_pshell, i, 'MID2', ': neither plane strain nor plane stress is chosen', &
                       '-1 here for plane strain, or PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS')
         end if

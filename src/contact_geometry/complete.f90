@@ -29,25 +29,17 @@ contains
     type(scene_type), intent(in) :: given      !! what is given
     type(model_type), intent(out) :: model     !! what comes of it
     type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
-    type(scene_type) :: scene
-    integer :: behind, i, s
+    integer, allocatable :: leader(:, :)       ! that is given
+    integer :: behind, i
 
-    call check_given(given, scene, found)
+    call check_given(given, model%scene_type, found)
     if (found%errors > 0) return
-    model%scene_type = scene
-    do s = 1, size(model%curve)   ! the elastic part is that of E
-      associate (curve => model%curve(s))
-        if (.not. allocated(curve%strain)) cycle
-        if (curve%strain(3) /= 2.0_wp*curve%strain(2)) curve%ends = .true.   ! not that of bilinear_curve
-        curve%strain(2) = curve%stress(2)/model%young(s)
-      end associate
-    end do
     model%normal = model%normal/spread(max(norm2(model%normal, dim=1), 0.5_wp), 1, directions)   ! 0 stays 0
     call number_parts(model)
     call complete_elements(model, found)
     if (found%errors == 0) then
-      do i = 1, size(scene%pressure)   ! loads of the nodes beside them
-        call add_pressure(model, scene%pressure(i), behind)
+      do i = 1, size(model%pressure)   ! loads of the nodes beside them
+        call add_pressure(model, model%pressure(i), behind)
         if (behind /= 0) &
           call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner is of no side of the'// &
                                ' boundary', 'two neighbouring corners of a side that its element alone has')
@@ -66,10 +58,11 @@ contains
     subroutine complete_freedoms()
       integer :: c
 
+      call move_alloc(model%leader, leader)
       model%leader = spread([(i, i=1, model%nodes)], 1, directions)
       do i = 1, model%nodes
         do c = 1, directions
-          if (scene%leader(c, i) /= i) call tie(model, c, i, scene%leader(c, i), [of_node, i, 0], found)
+          if (leader(c, i) /= i) call tie(model, c, i, leader(c, i), [of_node, i, 0], found)
         end do
       end do
       call follow_to_the_end(model%leader)

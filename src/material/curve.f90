@@ -50,8 +50,8 @@ contains
     curve%elastic = elastic
     if (.not. allocated(uniaxial%strain)) return
     curve%paper_ratio = paper_ratio
-    curve%ends = uniaxial%ends
     n = size(uniaxial%strain)
+    curve%ends = any(uniaxial%endless /= [uniaxial%strain(n), uniaxial%stress(n)])
     curve%total = uniaxial%strain(2:)
     curve%stress = uniaxial%stress(2:)
     rise = curve%stress(2:) - curve%stress(:n - 2)

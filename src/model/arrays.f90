@@ -6,7 +6,7 @@ module epcont_model_arrays
   use epcont_model_controls, only: controls_type, uniaxial_curve
   implicit none
   private
-  public :: scene_type, new_scene, set_sections, add_elements, set_pairs, counted_from_one
+  public :: scene_type, new_scene, set_sections, add_elements, set_pairs, count_from_one
   public :: element_block, line_couple, named_line, side_pressure
 
   !> Elements of one kind.
@@ -139,9 +139,9 @@ contains
 
   !> The same scene with all its arrays counted from 1, which those of a caller need not be, and of lines
   !! nothing but what is given.
-  function counted_from_one(given) result(scene)
-    type(scene_type), intent(in) :: given   !! its arrays are allocated, and of the shapes that they must have
-    type(scene_type) :: scene
+  subroutine count_from_one(given, scene)
+    type(scene_type), intent(in) :: given    !! its arrays are there, and of the shapes that they must have
+    type(scene_type), intent(out) :: scene   !! with them
 
     scene = new_scene(given%x)   ! of arrays counted from 1, which stay so where the shape is the same
     scene%held = given%held
@@ -176,11 +176,11 @@ contains
       do i = 1, size(curve)
         if (allocated(curve(i)%strain)) scene%curve(i)%strain = curve(i)%strain(:)
         if (allocated(curve(i)%stress)) scene%curve(i)%stress = curve(i)%stress(:)
-        scene%curve(i)%ends = curve(i)%ends
+        scene%curve(i)%endless = curve(i)%endless
       end do
       do i = 1, size(line)
         if (allocated(line(i)%node)) scene%line(i)%node = line(i)%node(:)
       end do
     end subroutine copy_lists
-  end function counted_from_one
+  end subroutine count_from_one
 end module epcont_model_arrays

@@ -55,6 +55,7 @@ module epcont_model_controls
   type :: uniaxial_curve
     real(wp), allocatable :: strain(:)   !! [points]
     real(wp), allocatable :: stress(:)   !! [stress] [points]
-    logical :: ends = .true.             !! the last point is the end of a table, not of a line without end
+    !> The last point, where it is not the end of a table but of a line without end: strain, stress
+    real(wp) :: endless(2) = -1.0_wp
   end type uniaxial_curve
 end module epcont_model_controls

@@ -7,14 +7,13 @@ module epcont_model_given
   use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, directions
-  use epcont_model_arrays, only: counted_from_one, element_block, scene_type
+  use epcont_model_arrays, only: count_from_one, element_block, scene_type
   use epcont_model_finding, only: findings, of_scene
   use epcont_model_model, only: model_type
-  use epcont_model_yield_curve, only: curve_fault, fault_of_curve
+  use epcont_model_yield_curve, only: curve_fault, straighten
   implicit none
   private
   public :: check_given, number_parts
-
 contains
 
   !> Arrays that are there and go together, numbers in their ranges; of each array the first fault. What a
@@ -25,13 +24,13 @@ contains
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     character(len=:), allocatable :: a_node, above_zero, any_size
     type(element_kind), allocatable :: kinds(:)
-    integer :: elements, i, nodes
+    integer :: any_shape(0), elements, i, nodes
 
     any_size = '0.0, or a size of '//short_real(least_cause)//' to '//short_real(farthest)
     above_zero = short_real(least_divisor)//' to '//short_real(farthest)
     call check_shapes()
     if (found%errors > 0) return
-    scene = counted_from_one(given)
+    call count_from_one(given, scene)
     nodes = size(scene%x, 2)
     a_node = '1 to '//text_of(nodes)
     call need(scene%young >= least_divisor .and. scene%young <= farthest, 'young(#) is no stiffness', &
@@ -68,11 +67,9 @@ contains
     call need(has_size(scene%pressure%pressure(1)) .and. has_size(scene%pressure%pressure(2)) .and. &
               has_size(scene%pressure%theta), 'pressure(#) is no pressure', any_size)
     do i = 1, size(scene%line)
-      if (allocated(scene%line(i)%node)) then
+      call fit('line('//text_of(i)//')%node', any_shape, scene%line(i)%node)
+      if (allocated(scene%line(i)%node)) &
         call need(within(scene%line(i)%node, nodes), 'line('//text_of(i)//')%node(#) is no node', a_node)
-      else
-        call need([.false.], 'line('//text_of(i)//')%node is not allocated', 'nodes')
-      end if
     end do
     call need(within(scene%couple%line(1), size(scene%line)) .and. &
               within(scene%couple%line(2), size(scene%line)), 'couple(#)%line is no line', &
@@ -83,52 +80,62 @@ contains
 
     !> Arrays are allocated, with one column for each node, section or pair.
     subroutine check_shapes()
-      character(len=*), parameter :: name(*) = [character(len=20) :: &
-        'x(2, nodes)', 'held(2, nodes)', 'prescribed(2, nodes)', 'reference(2, nodes)', 'leader(2, nodes)', &
-        'load(2, nodes)', 'young(sections)', 'poisson(sections)', 'kinematics(sections)', &
-        'thickness(sections)', 'curve(sections)', 'pair_node(2, pairs)', 'normal(2, pairs)', &
-        'initial_gap(pairs)', 'block(:)', 'pressure(:)', 'line(:)', 'couple(:)']
-      logical :: fits(size(name))
-      integer :: k, of_nodes(2), of_pairs(2)
+      integer :: nodes(2), pairs(2), sections(1)
 
-      fits = [allocated(given%x), allocated(given%held), allocated(given%prescribed), &
-              allocated(given%reference), allocated(given%leader), allocated(given%load), &
-              allocated(given%young), allocated(given%poisson), allocated(given%kinematics), &
-              allocated(given%thickness), allocated(given%curve), allocated(given%pair_node), &
-              allocated(given%normal), allocated(given%initial_gap), allocated(given%block), &
-              allocated(given%pressure), allocated(given%line), allocated(given%couple)]
-      if (all(fits)) then
-        of_nodes = [directions, size(given%x, 2)]
-        of_pairs = [2, size(given%initial_gap)]
-        fits(:13) = [all(shape(given%x) == of_nodes), all(shape(given%held) == of_nodes), &
-                     all(shape(given%prescribed) == of_nodes), all(shape(given%reference) == of_nodes), &
-                     all(shape(given%leader) == of_nodes), all(shape(given%load) == of_nodes), .true., &
-                     [size(given%poisson), size(given%kinematics), size(given%thickness), &
-                      size(given%curve)] == size(given%young), &
-                     all(shape(given%pair_node) == of_pairs), all(shape(given%normal) == of_pairs)]
-      end if
-      do k = 1, size(name)
-        call need(fits(k:k), trim(name(k))//' is not allocated, or of another shape', &
-                  'nodes as of x, sections as of young, pairs as of initial_gap')
-      end do
+      call fit('x', any_shape, given%x)
+      call fit('young', any_shape, given%young)
+      call fit('initial_gap', any_shape, given%initial_gap)
+      call fit('block', any_shape, given%block)
+      call fit('pressure', any_shape, given%pressure)
+      call fit('line', any_shape, given%line)
+      call fit('couple', any_shape, given%couple)
+      if (found%errors > 0) return
+      nodes = [directions, size(given%x, 2)]
+      sections = size(given%young)
+      pairs = [2, size(given%initial_gap)]
+      call fit('x(2, nodes)', nodes, given%x)
+      call fit('held(2, nodes)', nodes, given%held)
+      call fit('prescribed(2, nodes)', nodes, given%prescribed)
+      call fit('reference(2, nodes)', nodes, given%reference)
+      call fit('leader(2, nodes)', nodes, given%leader)
+      call fit('load(2, nodes)', nodes, given%load)
+      call fit('poisson(sections)', sections, given%poisson)
+      call fit('kinematics(sections)', sections, given%kinematics)
+      call fit('thickness(sections)', sections, given%thickness)
+      call fit('curve(sections)', sections, given%curve)
+      call fit('pair_node(2, pairs)', pairs, given%pair_node)
+      call fit('normal(2, pairs)', pairs, given%normal)
     end subroutine check_shapes
+
+    !> An array is there, and of the shape that is wanted.
+    subroutine fit(name, wanted, array)
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: wanted(:)
+      type(*), intent(in), optional :: array(..)   !! absent: it is not allocated
+
+      if (.not. present(array)) then
+        call need([.false.], name//' is not allocated', 'an array, empty where there are none')
+      else if (size(wanted) > 0) then
+        call need([all(shape(array) == wanted)], name//' has the shape '//text_of_shape(shape(array)), &
+                  text_of_shape(wanted))
+      end if
+    end subroutine fit
 
     !> A curve that can be.
     subroutine check_curve()
       type(curve_fault) :: fault
       character(len=:), allocatable :: name
-      logical :: fits
 
       name = 'curve('//text_of(i)//')'
       associate (curve => scene%curve(i))
-        fits = allocated(curve%strain) .eqv. allocated(curve%stress)
-        if (fits .and. .not. allocated(curve%strain)) return
-        if (fits) fits = size(curve%strain) == size(curve%stress)
-        if (fits) fits = all(abs([curve%strain, curve%stress]) <= farthest)
-        call need([fits], name//' has strain or stress alone, or points that are none', &
-                  'a number of both for each point')
-        if (.not. fits) return
-        fault = fault_of_curve(curve%strain, curve%stress, scene%young(i))
+        if (.not. (allocated(curve%strain) .or. allocated(curve%stress))) return
+        call fit(name//'%strain', any_shape, curve%strain)
+        if (found%errors == 0) call fit(name//'%stress', shape(curve%strain), curve%stress)
+        if (found%errors > 0) return
+        call need(abs(curve%strain) <= farthest, name//'%strain(#) is no strain', any_size)
+        call need(abs(curve%stress) <= farthest, name//'%stress(#) is no stress', any_size)
+        if (found%errors > 0) return
+        call straighten(curve, scene%young(i), fault)
         if (fault%point > 0) call need([.false.], name//': '//fault%what, fault%remedy)
       end associate
     end subroutine check_curve
@@ -138,17 +145,15 @@ contains
       character(len=*), intent(in) :: name
       type(element_block), intent(in) :: block
       integer :: row
-      logical :: fits
 
       row = kind_of(kinds, block%name)
       call need([row > 0], name//'name is '''//trim(block%name)//'''', &
                 'the card of a kind of elements: CTRIA3, say')
       if (row == 0) return
-      fits = allocated(block%node) .and. allocated(block%section)
-      if (fits) fits = all(shape(block%node) == [kinds(row)%nodes, size(block%section)])
-      call need([fits], name//'node and section are not allocated, or of other shapes', &
-                '('//text_of(kinds(row)%nodes)//', elements) and (elements)')
-      if (.not. fits) return
+      call fit(name//'section', any_shape, block%section)
+      if (found%errors == 0) &
+        call fit(name//'node', [kinds(row)%nodes, size(block%section)], block%node)
+      if (found%errors > 0) return
       elements = elements + size(block%section)
       call need(all(within(block%node, nodes), dim=1), name//'node(:, #) is no node', a_node)
       call need(within(block%section, size(scene%young)), name//'section(#) is no section', &
@@ -194,6 +199,16 @@ contains
       call found%add_error(of_scene, 0, 0, text, remedy)
     end subroutine need
   end subroutine check_given
+
+  !> A shape in parentheses.
+  pure function text_of_shape(extent) result(text)
+    integer, intent(in) :: extent(:)
+    character(len=:), allocatable :: text
+    character(len=30) :: number
+
+    write (number, '(*(i0, :, ", "))') extent
+    text = '('//trim(number)//')'
+  end function text_of_shape
 
   !> Is what loads a scene none, or of a size?
   elemental logical function has_size(cause)

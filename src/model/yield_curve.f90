@@ -2,12 +2,12 @@
 module epcont_model_yield_curve
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
-  use epcont_base_tolerances, only: no_effect
+  use epcont_base_tolerances, only: no_effect, rounded_off
   use epcont_deck_entry, only: farthest, least_divisor
   use epcont_model_controls, only: uniaxial_curve
   implicit none
   private
-  public :: bilinear_curve, curve_fault, fault_of_curve
+  public :: bilinear_curve, curve_fault, straighten
 
   !> The strain of the yield point and its stress over E may differ by this part; the stress over E is used.
   real(wp), parameter :: same_strain = 1.0e-2_wp
@@ -21,59 +21,61 @@ module epcont_model_yield_curve
 contains
 
   !> The curve of a yield stress and a slope over plastic strain: E H/(E + H) over total strain. Where
-  !! there is no such curve, it has strains alone, and so is refused.
+  !! there is no such curve, it has points that are refused.
   pure type(uniaxial_curve) function bilinear_curve(young, yield_stress, hardening) result(curve)
     real(wp), intent(in) :: young          !! E [stress]
     real(wp), intent(in) :: yield_stress   !! [stress]
     real(wp), intent(in) :: hardening      !! H [stress]
-    real(wp) :: slope, yield_strain
+    real(wp) :: yield_strain
 
-    allocate (curve%strain(0))
-    if (young < least_divisor .or. hardening <= -young .or. &
-        max(young, abs(yield_stress), hardening) > farthest) return
-    slope = young*(hardening/(young + hardening))
+    curve%strain = [0.0_wp, 0.0_wp, 0.0_wp]
+    curve%stress = [0.0_wp, yield_stress, hardening]
+    if (young < least_divisor .or. abs(yield_stress) > farthest) return
     yield_strain = yield_stress/young
     curve%strain = [0.0_wp, yield_strain, 2.0_wp*yield_strain]
-    curve%stress = [0.0_wp, yield_stress, yield_stress + slope*yield_strain]
-    curve%ends = .false.
+    if (hardening <= -young .or. hardening > farthest) return
+    curve%stress(3) = yield_stress + young*(hardening/(young + hardening))*yield_strain
+    curve%endless = [curve%strain(3), curve%stress(3)]
   end function bilinear_curve
 
-  !> The first point of a curve that cannot be, if there is one.
-  pure type(curve_fault) function fault_of_curve(strain, stress, young) result(fault)
-    real(wp), intent(in) :: strain(:)      !! total [points]
-    real(wp), intent(in) :: stress(:)      !! [stress] [points]
-    real(wp), intent(in) :: young          !! E [stress]
+  !> A curve as it is meant: its elastic part is that of E, and what falls by rounding is level; or its first
+  !! point that cannot be.
+  pure subroutine straighten(curve, young, fault)
+    type(uniaxial_curve), intent(inout) :: curve   !! of as many strains as stresses
+    real(wp), intent(in) :: young                  !! E [stress]
+    type(curve_fault), intent(out) :: fault        !! if there is one
     character(len=:), allocatable :: remedy
-    real(wp) :: before   ! the strain of the point before
     integer :: k
 
-    if (size(strain) < 3) then
-      fault = curve_fault(size(strain) + 1, 'has '//plural(size(strain), 'point'), &
-                          'at least 3: 0.0 0.0, the yield point, and one beyond it')
-    else if (strain(1) /= 0.0_wp .or. stress(1) /= 0.0_wp) then
-      fault = curve_fault(1, 'the first point is not 0.0, 0.0', 'a curve from the origin')
-    else if (stress(2) <= 0.0_wp .or. abs(strain(2) - stress(2)/young) > &
-             same_strain*abs(stress(2)/young)) then
-      remedy = 'strain = stress/E within 1 %'
-      if (stress(2) > 0.0_wp) remedy = 'strain '//short_real(stress(2)/young)//', stress/E, within 1 %'
-      fault = curve_fault(2, 'the yield point (the second one) is not on the elastic line of the MAT1', &
-                          remedy)
-    else
-      before = stress(2)/young
-      do k = 3, size(strain)
-        if (strain(k) <= before) then
-          fault = curve_fault(k, 'the strain does not rise', 'more than '//short_real(before))
-        else if (stress(k) < stress(k - 1)) then
-          fault = curve_fault(k, 'the stress falls (softening)', 'at least '//short_real(stress(k - 1)))
-        else if (stress(k) - stress(k - 1) > young*(strain(k) - before)*(1.0_wp + no_effect)) then
-          fault = curve_fault(k, 'steeper than the elastic line of the MAT1', 'a slope of at most E')
-        end if
-        if (fault%point > 0) then
-          fault%what = 'point '//text_of(k)//': '//fault%what
-          return
-        end if
-        before = strain(k)
-      end do
-    end if
-  end function fault_of_curve
+    associate (strain => curve%strain, stress => curve%stress)
+      if (size(strain) < 3) then
+        fault = curve_fault(size(strain) + 1, 'has '//plural(size(strain), 'point'), &
+                            'at least 3: 0.0 0.0, the yield point, and one beyond it')
+      else if (strain(1) /= 0.0_wp .or. stress(1) /= 0.0_wp) then
+        fault = curve_fault(1, 'the first point is not 0.0, 0.0', 'a curve from the origin')
+      else if (stress(2) <= 0.0_wp .or. abs(strain(2) - stress(2)/young) > &
+               same_strain*abs(stress(2)/young)) then
+        remedy = 'strain = stress/E within 1 %'
+        if (stress(2) > 0.0_wp) remedy = 'strain '//short_real(stress(2)/young)//', stress/E, within 1 %'
+        fault = curve_fault(2, 'the yield point (the second one) is not on the elastic line of the MAT1', &
+                            remedy)
+      else
+        strain(2) = stress(2)/young
+        do k = 3, size(strain)
+          if (strain(k) <= strain(k - 1)) then
+            fault = curve_fault(k, 'the strain does not rise', 'more than '//short_real(strain(k - 1)))
+          else if (stress(k) < (1.0_wp - rounded_off)*stress(k - 1)) then
+            fault = curve_fault(k, 'the stress falls (softening)', 'at least '//short_real(stress(k - 1)))
+          else if (stress(k) - stress(k - 1) > young*(strain(k) - strain(k - 1))*(1.0_wp + no_effect)) then
+            fault = curve_fault(k, 'steeper than the elastic line of the MAT1', 'a slope of at most E')
+          end if
+          if (fault%point > 0) then
+            fault%what = 'point '//text_of(k)//': '//fault%what
+            return
+          end if
+          stress(k) = max(stress(k), stress(k - 1))
+        end do
+      end if
+    end associate
+  end subroutine straighten
 end module epcont_model_yield_curve

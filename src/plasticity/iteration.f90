@@ -43,6 +43,7 @@ module epcont_plasticity_iteration
   type, extends(scene_state) :: followed_loads
     real(wp) :: load_factor = 0.0_wp       !! part of the loads for which the state is
     logical :: converged = .false.         !! all loads, to the tolerance of the iteration
+    logical :: carried = .false.           !! a part of them, to that tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
     integer :: failed_body = 0             !! body that could not be factored
     logical :: lacks_memory = .false.      !! that was for want of memory
@@ -97,6 +98,7 @@ contains
       if (answer%contact%state /= contact_solved) return
       if (converged .or. step == 1) call estimate_rounding()
       if (.not. converged) exit
+      answer%carried = .true.
       if (plan%load_steps > 1) call find_unloaded()
       call watch%lap(stage_yielding)
     end do
@@ -204,8 +206,7 @@ contains
       end do
     end subroutine set_law
 
-    !> Add a solve to the history: what it has changed and left, and whether it was the last; that may be a
-    !! further one, by the tangent.
+    !> Add a solve to the history, what it has changed and left. Was it the last, or a further one by tangent?
     subroutine judge(iteration, found)
       integer, intent(in) :: iteration
       type(scene_state), allocatable, intent(inout) :: found

@@ -18,7 +18,7 @@ module epcont_report_array_words
     'PARAM MUP', 'controls%paper_ratio', ' (MUP PAPER)', '', &
     'MUP EXACT (ORIGINAL takes PAPER)', '.false.', 'MUP EXACT', '.false.', &
     'PARAM MAXIT', 'controls%most_iterations', 'METHOD', 'controls%method', '--memory', 'memory', &
-    '`force not unique` in CONTACT', 'answer%contact%indeterminate']
+    'what follows is', 'the answer is', '`force not unique` in CONTACT', 'answer%contact%indeterminate']
 
 contains
 

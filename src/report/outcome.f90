@@ -171,7 +171,7 @@ contains
                     short_real(last%change)// &
                     ' of the largest (PARAM MAXIT: more of them; '// &
                     when(run%model%controls%original, 'no ORIGINAL', 'METHOD')//': another way)')// &
-               when(run%answer%load_factor < last%load_factor, '; what follows is for load factor '// &
+               when(run%answer%carried, '; what follows is for load factor '// &
                     short_real(run%answer%load_factor)//', the largest that converged')
       end associate
     end function unconverged

@@ -5,6 +5,7 @@ module yielding_model
   use epcont_material_material_law, only: point_state
   use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
+  use epcont_model_yield_curve, only: bilinear_curve
   implicit none
   private
   public :: new_yielding_model, state_at, strain_path
@@ -28,9 +29,7 @@ contains
       model%curve(s)%stress = [0.0_wp, 1.0_wp, 1.4_wp, 1.6_wp, 1.9_wp]
     end do
     do s = 3, 5
-      model%curve(s)%strain = [0.0_wp, 0.005_wp, 0.01_wp]
-      model%curve(s)%stress = [0.0_wp, 1.0_wp, 1.0_wp]
-      model%curve(s)%ends = .false.
+      model%curve(s) = bilinear_curve(200.0_wp, 1.0_wp, 0.0_wp)
     end do
     model%controls%paper_ratio = paper_ratio
   end function new_yielding_model
