@@ -139,6 +139,9 @@ contains
       if (i > 0) then
         value_entry = parameter_entry(i)
         value_entry%name = 'VALUE'
+        value_entry%used = .true.
+        if (.not. parameter_entry(i)%used) &
+          call faults%add_note(card%place(1), 'PARAM '//trim(word)//' has no effect')
       else
         call faults%add_error(card%place(1), 'unknown parameter '//trim(word), &
                               suggestion(word, parameter_entry%name, &
@@ -150,14 +153,18 @@ contains
     subroutine note_fields(cards)
       type(card_table), intent(in) :: cards
       type(diagnostics) :: unheard
+      logical, allocatable :: noted(:)
       integer :: slot
 
       do slot = 1, size(cards%given, 1)
-        if (cards%entry%field(slot)%used .or. .not. any(cards%given(slot, :))) cycle
-        call gather(lines, cards%line(findloc(cards%given(slot, :), .true., dim=1)), card, unheard)
+        associate (field => cards%entry%field(slot))
+          noted = cards%given(slot, :) .and. (.not. field%used .or. cards%value(slot, :) > field%heard_to)
+        end associate
+        if (.not. any(noted)) cycle
+        call gather(lines, cards%line(findloc(noted, .true., dim=1)), card, unheard)
         call faults%add_note(card%place(slot), trim(cards%entry%name)//': '// &
                              cards%entry%field_text(slot)//' has no effect (cards with it: '// &
-                             text_of(count(cards%given(slot, :)))//')')
+                             text_of(count(noted))//')')
       end do
     end subroutine note_fields
   end subroutine read_bulk

@@ -30,7 +30,8 @@ module epcont_deck_catalogue
     '  PID; id; property', &
     '  MID1; id; its MAT1', &
     '  T; real needed positive; thickness [length]', &
-    '  MID2; whole from=-1 to=-1; -1: plane strain; blank: as PARAM PLANE says', &
+    '  MID2; whole from=-1 to=99999999 heard_to=-1; -1: plane strain; else as PARAM PLANE says', &
+    '  ; any noted times=7; bending, mass', &
     'MAT1: isotropic elastic material; two of E, G, NU', &
     '  MID; id; material', &
     '  E; real positive; Young''s modulus [stress]', &
@@ -216,7 +217,13 @@ module epcont_deck_catalogue
     'ACCURACY; real positive below=1; wanted relative error of contact pressures: sets TOL, METHOD'// &
     ' and PRECIS where they are left out', &
     'CORNER; real positive to=180; sides of a boundary line that turn by more than this meet at a'// &
-    ' corner; default: decided from the turns beside it [degree]']
+    ' corner; default: decided from the turns beside it [degree]', &
+    'LGDISP; whole from=-1 to=-1 noted; no effect | displacements are small', &
+    'INREL; whole only_zero noted; no effect | supports and contact hold bodies']
+  !> PARAMs of other programs that have no effect here.
+  character(len=*), parameter :: unheard(*) = [character(len=8) :: &
+    'AUTOSPC', 'BAILOUT', 'COUPMASS', 'GRDPNT', 'K6ROT', 'MAXRATIO', 'NOCOMPS', 'OGEOM', 'POST', 'PRGPST', &
+    'PRTMAXIM', 'WTMASS']
 
 contains
 
@@ -255,11 +262,14 @@ contains
 
   !> All PARAMs.
   function parameters() result(field)
-    type(field_entry) :: field(size(choices))
+    type(field_entry) :: field(size(choices) + size(unheard))
     integer :: i
 
     do i = 1, size(choices)
       field(i) = new_field(trim(choices(i)))
+    end do
+    do i = 1, size(unheard)
+      field(size(choices) + i) = new_field(unheard(i)//'; any noted; no effect')
     end do
     field%required = .true.
     where (field%name == 'SOLVER') field%withdrawn = 'SPARSE'

@@ -27,6 +27,7 @@ module epcont_deck_entry
     character(len=120) :: meaning = ''
     character(len=8) :: unit = ''
     logical :: used = .true.           !! false: noted, that is accepted without effect
+    real(wp) :: heard_to = huge(1.0_wp)   !! larger values are noted too
     logical :: required = .false.      !! may not be blank
     integer :: with = 0                !! may not be blank where the next (1), the last (-1) field is filled
     integer :: same_as = 0             !! a blank means the value of the last field (-1)
@@ -103,9 +104,10 @@ contains
   !! to 6), a `word`, where some are listed one of these, or `any`thing; or it is `blank`. Behind that may
   !! stand, in any order: limits (`from=`, `to=`, or `below=`, in place of which `instead=` would do),
   !! `positive`, `only_zero` (0 or blank), `cause` (it loads the scene), `noted` (checked, without effect),
-  !! `point_optional`; what a blank means: `zero`, `default=`, or `as_last`, its neighbour; and whether it
-  !! may be blank: ids and digits may if they are `optional`, or where their neighbour (`with_next`,
-  !! `with_last`) is, numbers if they are not `needed`. So many like it follow each other as `times=` says.
+  !! or so above `heard_to=`, `point_optional`; what a blank means: `zero`, `default=`, or `as_last`, its
+  !! neighbour; and whether it may be blank: ids and digits may if they are `optional`, or where their
+  !! neighbour (`with_next`, `with_last`) is, numbers if they are not `needed`. So many like it follow each
+  !! other as `times=` says.
   type(field_entry) function new_field(line) result(field)
     character(len=*), intent(in) :: line   !! as above
     character(len=48) :: form   ! its words that are still to be read
@@ -187,6 +189,8 @@ contains
         field%least = least_cause
       case ('noted')
         field%used = .false.
+      case ('heard_to')
+        read (word(equals + 1:), *) field%heard_to
       case ('point_optional')
         field%point_optional = .true.
       case ('as_last')

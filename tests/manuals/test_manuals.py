@@ -32,8 +32,9 @@ def cards():
     return [line.split()[0] for line in catalogue().splitlines()]
 
 
-def parameters():
-    return [line.split()[0] for line in catalogue("PARAM").partition("NAME      VALUE\n")[2].splitlines()]
+def parameters(unheard=False):
+    lines = catalogue("PARAM").partition("NAME      VALUE\n")[2].splitlines()
+    return [line.split()[0] for line in lines if line.endswith(": no effect") == unheard]
 
 
 def examples():
@@ -74,6 +75,8 @@ class Manual(unittest.TestCase):
         self.assertEqual(sorted(row for row in rows if row != "card"), sorted(set(cards()) - {"PARAM"}))
 
     def test_every_parameter_has_an_example(self):
+        for name in parameters(unheard=True):
+            self.assertIn(name, MANUAL)
         for name in parameters():
             self.assertRegex(MANUAL, rf"(?m)^\| {name} \| `PARAM(   |,){name}( +|,)\S+` \| ")
 
