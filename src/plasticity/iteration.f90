@@ -180,8 +180,7 @@ contains
       end do
     end subroutine iterate
 
-    !> The law about the last state, and the stiffness for it. `failed_body` is a body without any that can be
-    !! factored.
+    !> The law about the last state, and the stiffness for it; `failed_body` has none that can be factored.
     subroutine set_law(method, failed_body)
       class(secant_method), intent(inout) :: method
       integer, intent(out) :: failed_body
