@@ -222,7 +222,8 @@ contains
       integer :: z
 
       force = 0.0_wp
-      do z = 1, merge(size(accuracy%zone), 0, off(k) > least_difference*sum(answer%contact%force))
+      if (off(k) <= least_difference*sum(answer%contact%force)) return   ! that is rounding
+      do z = 1, size(accuracy%zone)
         force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)* &
                         sum(abs(loads%share(answer%zones(z)%pairs, k))* &
                             answer%contact%force(answer%zones(z)%pairs))

@@ -175,7 +175,7 @@ contains
       end associate
       total = total + abs(more)
     end do
-    of_body = of_body + abs(lean)
+    where (abs(lean) > least) of_body = of_body + abs(lean)   ! less is what sums leave
     call turn_shared_places()
 
   contains
