@@ -191,12 +191,11 @@ contains
 
     if (.not. basis%sound .or. size(basis%pairs) == 0) return
     found%known = .true.
-    associate (pairs => basis%pairs)
-      opening = matmul(abs(problem%flexibility(pairs, pairs)), abs(force(pairs)))/problem%force_unit
-      rounding = epsilon(1.0_wp)*(condition*opening + travel(pairs)/problem%gap_unit)
-      found%amplification = largest_change(basis, opening)*problem%force_unit/maxval(force)
-      found%rounding = min(1.0_wp, largest_change(basis, rounding)*problem%force_unit/maxval(force))
-    end associate
+    opening = matmul(abs(problem%flexibility(basis%pairs, basis%pairs)), abs(force(basis%pairs))) &
+              /problem%force_unit
+    rounding = epsilon(1.0_wp)*(condition*opening + travel(basis%pairs)/problem%gap_unit)
+    found%amplification = largest_change(basis, opening)*problem%force_unit/maxval(force)
+    found%rounding = min(1.0_wp, largest_change(basis, rounding)*problem%force_unit/maxval(force))
   end function find_sensitivity
 
   !> 1-norm of D M.

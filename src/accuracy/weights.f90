@@ -48,55 +48,56 @@ module epcont_accuracy_weights
 
   ! Weights that all kinds have.
 
-  !> Largest pressure: an element so many times deeper than its side is wide is not graded
-  !! (score_curved.py, elements that grow by a power).
-  real(wp), parameter, public :: stretched = 1.8_wp
-  !> At the last candidate: of what it is above the next pair. The last has half a side, and its own is the
-  !! mean over that, short of the pressure at the end: of a straight rise by half of it, of a steeper one by
-  !! more (columns pressed at a corner: score_by_chance.py, "stack").
-  real(wp), parameter, public :: beyond_mean = 0.625_wp
-  !> What flattens waves of the gap, over E* r: waves 2 d long take a pressure of pi E* a/(2 d). Theory
-  !! (Westergaard 1939); tests/accuracy/test_waves.
-  real(wp), parameter, public :: waves_flattened = acos(-1.0_wp)/16.0_wp
-  !> Approach: height of waves from the gap that is meant. They are as high above as below it
-  !! (score_curved.py, sides of chords).
-  real(wp), parameter, public :: wave_height = 2.0_wp
-  !> Part of the products of elements that may not be trusted to cancel (set with that of the total
-  !! contact force; no measurement on record).
-  real(wp), parameter, public :: uncancelled = 1.0_wp/3.0_wp
-  !> Errors are so much larger where a zone has too few pairs to see its pressures (no measurement on
-  !! record).
-  real(wp), parameter, public :: unresolved = 1.4_wp
-  !> Force on one pair, a contact narrower than a side: by each three times finer mesh the bodies come nearer
-  !! by this times the force over depth and modulus. Theory: (2/pi) log 3 of the half-plane.
-  real(wp), parameter, public :: finer = 0.7_wp
-  !> Forces that pairs or bodies share, over an approach of the same products (no measurement on record).
-  real(wp), parameter, public :: of_shares = 1.3_wp
-  !> Force that turns with the node's own normal: the place where the bodies touch is farther from a pair than
-  !! the normals there tell, by this at most (tests/accuracy/test_narrow_zone).
-  real(wp), parameter, public :: askew = 1.25_wp
+  real(wp), parameter, public :: &
+    !> Largest pressure: an element so many times deeper than its side is wide is not graded
+    !! (score_curved.py, elements that grow by a power).
+    stretched = 1.8_wp, &
+    !> At the last candidate: of what it is above the next pair. The last has half a side, and its own is the
+    !! mean over that, short of the pressure at the end: of a straight rise by half of it, of a steeper one by
+    !! more (columns pressed at a corner: score_by_chance.py, "stack").
+    beyond_mean = 0.625_wp, &
+    !> What flattens waves of the gap, over E* r: waves 2 d long take a pressure of pi E* a/(2 d). Theory
+    !! (Westergaard 1939); tests/accuracy/test_waves.
+    waves_flattened = acos(-1.0_wp)/16.0_wp, &
+    !> Approach: height of waves from the gap that is meant. They are as high above as below it
+    !! (score_curved.py, sides of chords).
+    wave_height = 2.0_wp, &
+    !> Part of the products of elements that may not be trusted to cancel (set with that of the total
+    !! contact force; no measurement on record).
+    uncancelled = 1.0_wp/3.0_wp, &
+    !> Errors are so much larger where a zone has too few pairs to see its pressures (no measurement on
+    !! record).
+    unresolved = 1.4_wp, &
+    !> Force on one pair, a contact narrower than a side: by each three times finer mesh the bodies come
+    !! nearer by this times the force over depth and modulus. Theory: (2/pi) log 3 of the half-plane.
+    finer = 0.7_wp, &
+    !> Forces that pairs or bodies share, over an approach of the same products (no measurement on record).
+    of_shares = 1.3_wp, &
+    !> Force that turns with the node's own normal: the place where the bodies touch is farther from a pair
+    !! than the normals there tell, by this at most (tests/accuracy/test_narrow_zone).
+    askew = 1.25_wp, &
 
-  ! From where on something counts.
+    ! From where on something counts.
 
-  !> Part of the energy that a mesh has at least for its errors to be measured by it (a choice).
-  real(wp), parameter, public :: least_energy = 0.5_wp
-  !> Part of the resultant at one node of the mesh from which on it is a point load (a choice; not a half,
-  !! which the node between two sides under pressure has).
-  real(wp), parameter, public :: concentrated = 0.51_wp
-  !> A tip's curvature is so many times that of the nodes around it (test_limits.py).
-  real(wp), parameter, public :: tip_stands_out = 4.0_wp
-  !> The pressure that its bend adds, E* times its angle, is at least this part of the largest
-  !! (test_limits.py).
-  real(wp), parameter, public :: tip_matters = 0.1_wp
-  !> Part of a zone's pairs at which the gap bends by turns from which on that is waves
-  !! (tests/accuracy/test_waves).
-  real(wp), parameter, public :: waves_are_common = 1.0_wp/3.0_wp
-  !> Part of the largest pressure from which on that is one of the waves (score_curved.py,
-  !! polygons of unlike divisions).
-  real(wp), parameter, public :: waves_alone = 0.5_wp
-  !> A zone whose normals are across what stays the same, but for this part, does not bear it (a disc in a V,
-  !! beams on posts).
-  real(wp), parameter, public :: bears_on = 0.3_wp
+    !> Part of the energy that a mesh has at least for its errors to be measured by it (a choice).
+    least_energy = 0.5_wp, &
+    !> Part of the resultant at one node of the mesh from which on it is a point load (a choice; not a half,
+    !! which the node between two sides under pressure has).
+    concentrated = 0.51_wp, &
+    !> A tip's curvature is so many times that of the nodes around it (test_limits.py).
+    tip_stands_out = 4.0_wp, &
+    !> The pressure that its bend adds, E* times its angle, is at least this part of the largest
+    !! (test_limits.py).
+    tip_matters = 0.1_wp, &
+    !> Part of a zone's pairs at which the gap bends by turns from which on that is waves
+    !! (tests/accuracy/test_waves).
+    waves_are_common = 1.0_wp/3.0_wp, &
+    !> Part of the largest pressure from which on that is one of the waves (score_curved.py,
+    !! polygons of unlike divisions).
+    waves_alone = 0.5_wp, &
+    !> A zone whose normals are across what stays the same, but for this part, does not bear it (a disc in
+    !! a V, beams on posts).
+    bears_on = 0.3_wp
 
 contains
 

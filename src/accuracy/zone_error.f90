@@ -18,13 +18,14 @@ module epcont_accuracy_zone_error
   private
   public :: zone_error, estimate_zone
 
-  !> Pairs that the parabola goes through.
-  integer, parameter :: around_peak = 7
-  !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved.
-  integer, parameter :: few = 3
-  !> Pairs of a side with a middle node: a zone on one, mirrored or not, follows the pressure no better than
-  !! one parabola.
-  integer, parameter :: one_side = 3
+  integer, parameter :: &
+    !> Pairs that the parabola goes through.
+    around_peak = 7, &
+    !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved.
+    few = 3, &
+    !> Pairs of a side with a middle node: a zone on one, mirrored or not, follows the pressure no better than
+    !! one parabola.
+    one_side = 3
 
   type :: zone_error
     integer :: peak = 0                  !! pair of the largest pressure

@@ -23,11 +23,12 @@ module epcont_certificate_allowance
   private
   public :: allowance_type, meeting_type, new_allowance
 
-  real(wp), parameter :: factor = 3.0_wp
-  !> Where no line says more, sides that turn by more than this meet at a corner.
-  real(wp), parameter :: corner_angle = 35.0_wp*acos(-1.0_wp)/180.0_wp
-  !> Of a side's length: more than this a slide does not explain, however far it goes.
-  real(wp), parameter :: most_by_slide = 0.1_wp
+  real(wp), parameter :: &
+    factor = 3.0_wp, &
+    !> Where no line says more, sides that turn by more than this meet at a corner.
+    corner_angle = 35.0_wp*acos(-1.0_wp)/180.0_wp, &
+    !> Of a side's length: more than this a slide does not explain, however far it goes.
+    most_by_slide = 0.1_wp
 
   !> How two sides meet.
   type :: meeting_type
@@ -140,27 +141,26 @@ contains
     real(wp) :: own_arch
     integer :: s
 
-    associate (before => drawn%outline%before, after => drawn%outline%after)
-      do s = 1, size(length)
-        length(s) = norm2(drawn%chord(s))
-        turn(s) = abs(angle(drawn%chord(s), now%chord(s)))
-        change(s) = max(turn(s), abs(norm2(now%chord(s))/length(s) - 1.0_wp))
-        own_arch = angle(drawn%tangent(s, 0.0_wp), drawn%tangent(s, 1.0_wp))
-        curvature(s) = abs(own_arch)/length(s)
-        arch(s) = angle(now%tangent(s, 0.0_wp), now%tangent(s, 1.0_wp)) - own_arch
-        joint(s) = angle(drawn%tangent(s, 1.0_wp), drawn%tangent(after(s), 0.0_wp))
-        bend(s) = angle(now%tangent(s, 1.0_wp), now%tangent(after(s), 0.0_wp)) - joint(s)
-      end do
-      smooth = abs(joint) <= corner_angle
-      joint = merge(joint, 0.0_wp, smooth)
-      bend = merge(bend, 0.0_wp, smooth)
-      sag = length*max(abs(joint), abs(joint(before)))/8.0_wp
-      if (allocated(model%boundary%element)) sag = length*turns_of_lines()/8.0_wp
-      curvature = curvature + 8.0_wp*sag/length**2
-      allowance = allowance_type(length, sag, gaps_of_cards(), min(joint, joint(before)) < 0.0_wp, smooth, &
-                                 bend, arch, turn, change, curvature)
-      allowance%beside = transpose(reshape([before, after], [size(length), 2]))
-    end associate
+    do s = 1, size(length)
+      length(s) = norm2(drawn%chord(s))
+      turn(s) = abs(angle(drawn%chord(s), now%chord(s)))
+      change(s) = max(turn(s), abs(norm2(now%chord(s))/length(s) - 1.0_wp))
+      own_arch = angle(drawn%tangent(s, 0.0_wp), drawn%tangent(s, 1.0_wp))
+      curvature(s) = abs(own_arch)/length(s)
+      arch(s) = angle(now%tangent(s, 0.0_wp), now%tangent(s, 1.0_wp)) - own_arch
+      joint(s) = angle(drawn%tangent(s, 1.0_wp), drawn%tangent(drawn%outline%after(s), 0.0_wp))
+      bend(s) = angle(now%tangent(s, 1.0_wp), now%tangent(drawn%outline%after(s), 0.0_wp)) - joint(s)
+    end do
+    smooth = abs(joint) <= corner_angle
+    joint = merge(joint, 0.0_wp, smooth)
+    bend = merge(bend, 0.0_wp, smooth)
+    sag = length*max(abs(joint), abs(joint(drawn%outline%before)))/8.0_wp
+    if (allocated(model%boundary%element)) sag = length*turns_of_lines()/8.0_wp
+    curvature = curvature + 8.0_wp*sag/length**2
+    allowance = allowance_type(length, sag, gaps_of_cards(), &
+                               min(joint, joint(drawn%outline%before)) < 0.0_wp, smooth, bend, arch, turn, &
+                               change, curvature)
+    allowance%beside = transpose(reshape([drawn%outline%before, drawn%outline%after], [size(length), 2]))
 
   contains
 

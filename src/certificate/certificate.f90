@@ -17,16 +17,17 @@ module epcont_certificate_certificate
   private
   public :: certificate_type, certify
 
-  !> The same where factors of single precision have left an error, as a part of that.
-  real(wp), parameter :: rounding_errors = 10.0_wp
+  real(wp), parameter :: &
+    !> The same where factors of single precision have left an error, as a part of that.
+    rounding_errors = 10.0_wp, &
 
-  !> Roundings that a gap is the sum of.
-  real(wp), parameter :: roundings = 8.0_wp
-  !> Stresses are off by as many times `lost_stress`: an element has several nodes.
-  real(wp), parameter :: several = 4.0_wp
-  !> Largest part of the bodies' give that the rounding of the gaps may be: a travel far beyond it leaves no
-  !! digits.
-  real(wp), parameter :: largest_rounding = 1.0e-6_wp
+    !> Roundings that a gap is the sum of.
+    roundings = 8.0_wp, &
+    !> Stresses are off by as many times `lost_stress`: an element has several nodes.
+    several = 4.0_wp, &
+    !> Largest part of the bodies' give that the rounding of the gaps may be: a travel far beyond it leaves no
+    !! digits.
+    largest_rounding = 1.0e-6_wp
 
   !> A rigid motion strains an element by so many roundings of its displacements, at most: motions of a chain
   !! of 40 hinges, sums that cancel, were seen to leave 750.

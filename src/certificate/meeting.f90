@@ -14,14 +14,15 @@ module epcont_certificate_meeting
   public :: point_type, search_type, new_search, point_on, sides_meeting, motion_at, &
             part_along, meet, keep, insert
 
-  !> Bodies deeper in each other, or farther apart where they press, than this part of the largest
-  !! displacement: that is told, though it be allowed.
-  real(wp), parameter :: told = 0.1_wp
-  !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths
-  !! off the largest allowance counts.
-  real(wp), parameter :: about = 1.5_wp
-  !> The least that is allowed, beside `same_place`, in roundings of the coordinates.
-  real(wp), parameter :: roundings = 16.0_wp
+  real(wp), parameter :: &
+    !> Bodies deeper in each other, or farther apart where they press, than this part of the largest
+    !! displacement: that is told, though it be allowed.
+    told = 0.1_wp, &
+    !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths
+    !! off the largest allowance counts.
+    about = 1.5_wp, &
+    !> The least that is allowed, beside `same_place`, in roundings of the coordinates.
+    roundings = 16.0_wp
 
   !> A point of a body.
   type :: point_type

@@ -9,7 +9,7 @@ module epcont_report_vtk
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: newline, text_of
-  use epcont_element_kinematics, only: components, directions
+  use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_report_file, only: new_text_file, text_file
   use epcont_report_names, only: when
@@ -94,37 +94,37 @@ contains
       real(wp) :: force(directions, run%model%pairs)
       integer :: k
 
-      associate (model => run%model, answer => run%answer, contact => run%answer%contact)
-        line = find_contact_line(model)
-        cells = cells_along(line)
-        call begin('.contact.vtu', model%x(:, line%node), cells)
-        if (allocated(error)) return
-        do k = 1, model%pairs
-          force(:, k) = contact%force(k)*model%normal(:, k)
-          if (line%node(k) /= model%pair_node(2, k)) force(:, k) = -force(:, k)
-        end do
-        zone = 0
-        do k = 1, size(answer%zones)
-          zone(answer%zones(k)%pairs) = k
-        end do
-        bconp = 0
-        do k = 1, size(model%line_contact)
-          bconp(model%line_contact(k)%first:model%line_contact(k)%last) = model%line_contact(k)%bconp(1)
-        end do
-        call file%line('<PointData Scalars="pressure" Vectors="displacement">')
-        call put('pair_id', model%pair_id)
-        call put('node_a', model%node_id(model%pair_node(1, :)))
-        call put('node_b', model%node_id(model%pair_node(2, :)))
-        call put('displacement', answer%displacement(:, line%node))
-        call put('contact_force', force)
-        call put('pressure', max(0.0_wp, answer%pressure))
-        call put('has_pressure', merge(1, 0, answer%pressure >= 0.0_wp))
-        call put('gap', contact%gap)
-        call put('touching', merge(1, 0, contact%touching))
-        call put('zone', zone)
-        call file%line('</PointData>'//newline//'<CellData Scalars="bconp">')
-        call put('bconp', bconp(cells%point(cells%last)))
-      end associate
+      line = find_contact_line(run%model)
+      cells = cells_along(line)
+      call begin('.contact.vtu', run%model%x(:, line%node), cells)
+      if (allocated(error)) return
+      do k = 1, run%model%pairs
+        force(:, k) = run%answer%contact%force(k)*run%model%normal(:, k)
+        if (line%node(k) /= run%model%pair_node(2, k)) force(:, k) = -force(:, k)
+      end do
+      zone = 0
+      do k = 1, size(run%answer%zones)
+        zone(run%answer%zones(k)%pairs) = k
+      end do
+      bconp = 0
+      do k = 1, size(run%model%line_contact)
+        associate (contact => run%model%line_contact(k))
+          bconp(contact%first:contact%last) = contact%bconp(1)
+        end associate
+      end do
+      call file%line('<PointData Scalars="pressure" Vectors="displacement">')
+      call put('pair_id', run%model%pair_id)
+      call put('node_a', run%model%node_id(run%model%pair_node(1, :)))
+      call put('node_b', run%model%node_id(run%model%pair_node(2, :)))
+      call put('displacement', run%answer%displacement(:, line%node))
+      call put('contact_force', force)
+      call put('pressure', max(0.0_wp, run%answer%pressure))
+      call put('has_pressure', merge(1, 0, run%answer%pressure >= 0.0_wp))
+      call put('gap', run%answer%contact%gap)
+      call put('touching', merge(1, 0, run%answer%contact%touching))
+      call put('zone', zone)
+      call file%line('</PointData>'//newline//'<CellData Scalars="bconp">')
+      call put('bconp', bconp(cells%point(cells%last)))
       call end_grid()
     end subroutine write_contact
 
@@ -184,7 +184,7 @@ contains
       real(wp), allocatable :: space(:, :)
       logical :: is_vector
 
-      is_vector = size(values, 1) == 2
+      is_vector = size(values, 1) == directions
       allocate (space(merge(3, 6, is_vector), size(values, 2)), source=0.0_wp)
       space(:size(values, 1), :) = values
       call put_bytes('Float64', name, when(is_vector, ' NumberOfComponents="3"', tensor), &

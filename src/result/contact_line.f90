@@ -12,18 +12,19 @@ module epcont_result_contact_line
   private
   public :: contact_line, find_contact_line, outer_sides, shares_of_nodes
 
-  !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's
-  !! corner's too.
-  real(wp), parameter :: along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp)
+  real(wp), parameter :: &
+    !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's
+    !! corner's too.
+    along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp), &
 
-  !> A normal is across a line of symmetry where this part of it, or more, is along the line.
-  real(wp), parameter :: along_line = 0.9_wp
-  !> A node of the other body is on the same line of symmetry within this part of a side.
-  real(wp), parameter :: beside_line = 1.0e-3_wp
+    !> A normal is across a line of symmetry where this part of it, or more, is along the line.
+    along_line = 0.9_wp, &
+    !> A node of the other body is on the same line of symmetry within this part of a side.
+    beside_line = 1.0e-3_wp, &
 
-  !> A pair of the master stands at the place of one that is nearer than this part of the way from node to
-  !! node.
-  real(wp), parameter :: close = 0.22_wp
+    !> A pair of the master stands at the place of one that is nearer than this part of the way from node to
+    !! node.
+    close = 0.22_wp
 
   !> The pairs as a line along the boundary.
   type :: contact_line

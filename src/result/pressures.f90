@@ -13,13 +13,14 @@ module epcont_result_pressures
   private
   public :: pair_pressures
 
-  !> Corners around a middle, and around a corner, that the polynomial goes through.
-  integer, parameter :: around_middle = 4, around_corner = 5
-  !> Of the latter, those before it.
-  integer, parameter :: before = 2
-  !> Corners of the least run of sides for which this is done; for a corner without an area, of which force
-  !! over area says nothing.
-  integer, parameter :: least_corners = 4, least_at_axis = 3
+  integer, parameter :: &
+    !> Corners around a middle, and around a corner, that the polynomial goes through.
+    around_middle = 4, around_corner = 5, &
+    !> Of the latter, those before it.
+    before = 2, &
+    !> Corners of the least run of sides for which this is done; for a corner without an area, of which force
+    !! over area says nothing.
+    least_corners = 4, least_at_axis = 3
 
   !> A run of sides that touch all along, in their order.
   type :: run_type
