@@ -167,17 +167,16 @@ contains
     pure real(wp) function depth_behind() result(depth)
       real(wp), allocatable :: along(:)
       integer, allocatable :: elements(:)
-      integer :: i, k
+      integer :: e, i, k
 
       depth = 0.0_wp
       do k = 1, 2
         elements = elements_behind(model, model%pair_node(k, error%peak))
         do i = 1, size(elements)
-          associate (e => elements(i))
-            along = matmul(model%normal(:, error%peak), &
-                           model%x(:, model%connectivity(:model%corners(e), e)))
-            depth = max(depth, (maxval(along) - minval(along))/model%kinds(model%kind(e))%degree)
-          end associate
+          e = elements(i)
+          along = matmul(model%normal(:, error%peak), &
+                         model%x(:, model%connectivity(:model%corners(e), e)))
+          depth = max(depth, (maxval(along) - minval(along))/model%kinds(model%kind(e))%degree)
         end do
       end do
     end function depth_behind

@@ -72,13 +72,13 @@ contains
     type(planned_scene), intent(in) :: scene        !! that has them
     real(wp), intent(in) :: load_factor             !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
-    integer :: c, node
+    integer :: c, leader, node
 
     do node = 1, scene%model%nodes
       do c = 1, directions
-        associate (model => scene%model, leader => scene%model%leader(c, node))
-          if (model%held(c, leader)) displacement(c, node) = load_factor*model%beyond_travel(c, leader)
-        end associate
+        leader = scene%model%leader(c, node)
+        if (scene%model%held(c, leader)) &
+          displacement(c, node) = load_factor*scene%model%beyond_travel(c, leader)
       end do
     end do
   end subroutine prescribe

@@ -138,17 +138,15 @@ contains
     pure real(wp) function unit_of(element)
       integer, intent(in) :: element(:)
       real(wp) :: largest
-      integer :: e, p
+      integer :: columns, e, p
 
       largest = 0.0_wp
       do e = 1, size(element)
-        associate (columns => directions*scene%model%node_count(element(e)), &
-                   first => scene%model%first_point(element(e):))
-          do p = first(1), first(2) - 1
-            largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
-                          *maxval(abs(operator%b(:, operator%column(p) + 1:operator%column(p) + columns)))**2)
-          end do
-        end associate
+        columns = directions*scene%model%node_count(element(e))
+        do p = scene%model%first_point(element(e)), scene%model%first_point(element(e) + 1) - 1
+          largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
+                        *maxval(abs(operator%b(:, operator%column(p) + 1:operator%column(p) + columns)))**2)
+        end do
       end do
       unit_of = scale(1.0_wp, exponent(largest)/2*2)
     end function unit_of

@@ -37,18 +37,18 @@ contains
     integer, intent(in) :: cards(:)          !! which tables
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: id(:), order(:), row(:), table(:)
-    integer :: c, i, k
+    integer :: c, earlier, i, k
 
     id = [(int(deck%card(cards(c))%value(1, :)), c=1, size(cards))]
     table = [(spread(cards(c), 1, deck%card(cards(c))%count), c=1, size(cards))]
     row = [((i, i=1, deck%card(cards(c))%count), c=1, size(cards))]
     order = sorted_order(id)
     do k = 2, size(id)
-      associate (i => order(k), earlier => order(k - 1))
-        if (id(i) == id(earlier) .and. deck%card(table(i))%given(1, row(i))) &
-          call found%add_error(table(i), row(i), 1, ': the id is taken by '// &
-                               deck%card(table(earlier))%identity(row(earlier)), 'an id of its own')
-      end associate
+      i = order(k)
+      earlier = order(k - 1)
+      if (id(i) == id(earlier) .and. deck%card(table(i))%given(1, row(i))) &
+        call found%add_error(table(i), row(i), 1, ': the id is taken by '// &
+                             deck%card(table(earlier))%identity(row(earlier)), 'an id of its own')
     end do
   end subroutine check_unique
 

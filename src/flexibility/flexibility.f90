@@ -45,7 +45,7 @@ contains
     pure subroutine find_rows(pair, rows)
       integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
       type(sparse_rows), intent(out) :: rows
-      integer :: c, found, i, k, last
+      integer :: c, found, i, k, last, number
 
       allocate (pair(model%pairs), rows%start(model%pairs + 1), source=1)
       allocate (rows%equation(directions*size(model%row_node)), rows%weight(directions*size(model%row_node)))
@@ -55,12 +55,11 @@ contains
         do i = model%row_start(k), model%row_start(k + 1) - 1
           if (model%body(model%row_node(i)) /= b) cycle
           do c = 1, directions
-            associate (number => numbering%equation(c, model%row_node(i)))
-              if (number == 0 .or. model%normal(c, k) == 0.0_wp) cycle
-              last = last + 1
-              rows%equation(last) = number
-              rows%weight(last) = model%row_weight(i)*model%normal(c, k)
-            end associate
+            number = numbering%equation(c, model%row_node(i))
+            if (number == 0 .or. model%normal(c, k) == 0.0_wp) cycle
+            last = last + 1
+            rows%equation(last) = number
+            rows%weight(last) = model%row_weight(i)*model%normal(c, k)
           end do
         end do
         if (last < rows%start(found + 1)) cycle
@@ -76,18 +75,17 @@ contains
     pure function border_part() result(flexibility)
       real(wp), allocatable :: flexibility(:, :), solved(:, :)
       real(wp) :: response(size(part%pair), size(stiffness%schur, 1))
-      integer :: i, k
+      integer :: equation, i, k
 
       response = 0.0_wp
       do k = 1, size(part%pair)
         do i = rows%start(k), rows%start(k + 1) - 1
-          associate (equation => rows%equation(i))
-            if (equation > 0) then
-              response(k, :) = response(k, :) + rows%weight(i)*stiffness%coupling(equation, :)
-            else
-              response(k, -equation) = response(k, -equation) - rows%weight(i)
-            end if
-          end associate
+          equation = rows%equation(i)
+          if (equation > 0) then
+            response(k, :) = response(k, :) + rows%weight(i)*stiffness%coupling(equation, :)
+          else
+            response(k, -equation) = response(k, -equation) - rows%weight(i)
+          end if
         end do
       end do
       solved = transpose(response)
@@ -117,9 +115,8 @@ contains
     integer :: k
 
     do k = 1, model%pairs
-      associate (node => model%row_node(model%row_start(k):model%row_start(k + 1) - 1))
-        opening(k) = model%opening(k, displacement(:, node))
-      end associate
+      opening(k) = model%opening(k, displacement(:, model%row_node(model%row_start(k): &
+                                                                   model%row_start(k + 1) - 1)))
     end do
   end function gap_opening
 
@@ -128,14 +125,13 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     real(wp), intent(in) :: force(:)  !! [pairs]
     real(wp) :: nodal(directions, model%nodes)
-    integer :: i, k
+    integer :: i, k, node
 
     nodal = 0.0_wp
     do k = 1, model%pairs
       do i = model%row_start(k), model%row_start(k + 1) - 1
-        associate (node => model%row_node(i))
-          nodal(:, node) = nodal(:, node) + force(k)*model%row_weight(i)*model%normal(:, k)
-        end associate
+        node = model%row_node(i)
+        nodal(:, node) = nodal(:, node) + force(k)*model%row_weight(i)*model%normal(:, k)
       end do
     end do
   end function pair_forces
@@ -150,7 +146,7 @@ contains
     real(wp), allocatable, intent(out) :: closing(:, :)   !! A [pairs, motions]
     real(wp), allocatable, intent(out) :: resultant(:)    !! P [motions]
     real(wp) :: all_loads, load(directions), moved(directions, model%nodes)
-    integer :: c, i, k, m
+    integer :: c, first, i, k, last, m
 
     allocate (closing(model%pairs, motions%count), resultant(motions%count))
     do m = 1, motions%count
@@ -159,11 +155,10 @@ contains
       end do
       closing(:, m) = -gap_opening(model, moved)
       do k = 1, model%pairs
-        associate (node => model%row_node(model%row_start(k):model%row_start(k + 1) - 1), &
-                   weight => model%row_weight(model%row_start(k):model%row_start(k + 1) - 1))
-          if (abs(closing(k, m)) <= cancelled*sum(abs(weight)*norm2(moved(:, node), dim=1))) &
-            closing(k, m) = 0.0_wp
-        end associate
+        first = model%row_start(k)
+        last = model%row_start(k + 1) - 1
+        if (abs(closing(k, m)) <= cancelled*sum(abs(model%row_weight(first:last))* &
+          norm2(moved(:, model%row_node(first:last)), dim=1))) closing(k, m) = 0.0_wp
       end do
       resultant(m) = 0.0_wp
       all_loads = 0.0_wp

@@ -93,19 +93,17 @@ contains
       integer, allocatable :: body(:)
       integer :: i, threads
 
-      associate (numbered => scene%numbering%body)
-        body = pack([(i, i=1, size(chosen))], chosen)
-        operations = numbered(body)%operations
-        body = body(heaviest_first(operations))
-        threads = threads_for(operations, self%plan%threads)
-        !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
-        do i = 1, size(body)
-          call self%body(body(i))%assemble(scene, self%operator, self%law, body(i))
-          call self%body(body(i))%factor()
-        end do
-        !$omp end parallel do
-        self%factorizations = self%factorizations + count(chosen .and. numbered%equations > 0)
-      end associate
+      body = pack([(i, i=1, size(chosen))], chosen)
+      operations = scene%numbering%body(body)%operations
+      body = body(heaviest_first(operations))
+      threads = threads_for(operations, self%plan%threads)
+      !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
+      do i = 1, size(body)
+        call self%body(body(i))%assemble(scene, self%operator, self%law, body(i))
+        call self%body(body(i))%factor()
+      end do
+      !$omp end parallel do
+      self%factorizations = self%factorizations + count(chosen .and. scene%numbering%body%equations > 0)
       failed_body = findloc([(chosen(i) .and. .not. self%body(i)%is_sound(), i=1, size(chosen))], &
                             .true., dim=1)
     end subroutine factor_bodies

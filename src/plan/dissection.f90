@@ -112,6 +112,7 @@ contains
       integer, parameter :: bit(axes) = [0, 2, 4]   ! of `side`: the first of two for each coordinate
       integer, allocatable :: some(:)
       real(wp) :: median(axes)
+      logical :: is_below(axes)
       integer :: below(axes), cut(axes), i, k
 
       do k = 1, axes
@@ -121,10 +122,9 @@ contains
       end do
       below = 0
       do i = 1, size(node)
-        associate (is_below => coordinate(:, node(i)) <= median)
-          below = below + merge(1, 0, is_below)
-          side(node(i)) = sum(shiftl(merge(left, right, is_below), bit))
-        end associate
+        is_below = coordinate(:, node(i)) <= median
+        below = below + merge(1, 0, is_below)
+        side(node(i)) = sum(shiftl(merge(left, right, is_below), bit))
       end do
       sides = sides_of(element)
       cut = [(count(ibits(sides, bit(k), 2) == both), k=1, axes)]

@@ -60,6 +60,7 @@ contains
   pure function plan_iteration(model) result(plan)
     type(model_type), intent(in) :: model   !! the scene
     type(iteration_plan) :: plan
+    logical :: by_newton
     integer :: e
 
     associate (asked => model%controls)
@@ -75,18 +76,17 @@ contains
       plan%method = asked%method
       ! NEWTON has no tangent for MUP PAPER, which is there to follow the paper: by its own method, then.
       if (plan%chosen_here) plan%method = merge(method_secant, method_newton, asked%paper_ratio)
-      associate (by_newton => plan%method == method_newton)
-        if (asked%tolerance /= 0.0_wp) then
-          plan%tolerance = asked%tolerance
-        else if (asked%accuracy > 0.0_wp) then
-          plan%tolerance = asked%accuracy*merge(newton_part, secant_part, by_newton)
-        else if (.not. by_newton) then
-          plan%tolerance = secant_tolerance
-        else
-          plan%tolerance = merge(single_tolerance, newton_tolerance, plan%precision == precision_single)
-        end if
-        if (plan%yields) plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, by_newton)
-      end associate
+      by_newton = plan%method == method_newton
+      if (asked%tolerance /= 0.0_wp) then
+        plan%tolerance = asked%tolerance
+      else if (asked%accuracy > 0.0_wp) then
+        plan%tolerance = asked%accuracy*merge(newton_part, secant_part, by_newton)
+      else if (.not. by_newton) then
+        plan%tolerance = secant_tolerance
+      else
+        plan%tolerance = merge(single_tolerance, newton_tolerance, plan%precision == precision_single)
+      end if
+      if (plan%yields) plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, by_newton)
     end associate
   end function plan_iteration
 

@@ -115,9 +115,8 @@ contains
       ! A front's equations follow on one another, and some fronts have none.
       allocate (first(size(found%first)), source=1)
       do i = 2, size(first)
-        associate (equation => numbering%equation(:, found%node(found%first(i - 1):found%first(i) - 1)))
-          first(i) = max(first(i - 1), maxval(equation) + 1)
-        end associate
+        first(i) = max(first(i - 1), 1 + &
+                       maxval(numbering%equation(:, found%node(found%first(i - 1):found%first(i) - 1))))
       end do
       allocate (numbers(directions*maxval(model%node_count(body%element)), size(body%element)))
       do i = 1, size(body%element)
@@ -221,9 +220,8 @@ contains
         end do
         if (filled > first) then
           found = order%node(first:filled)
-          associate (elements => model%around%start(found + 1) - model%around%start(found))
-            order%node(first:filled) = found(sorted_order(elements))
-          end associate
+          order%node(first:filled) = found(sorted_order(model%around%start(found + 1) - &
+                                                        model%around%start(found)))
         end if
       end do
     end function sweep
@@ -233,37 +231,35 @@ contains
     subroutine number_nodes(order, body)
       integer, intent(in) :: order(:)
       type(body_numbering), intent(inout) :: body
-      integer :: c, i
+      integer :: c, i, leader
 
       body%node = order
       body%equations = 0
       body%contact_equations = 0
       body%border = 0
-      associate (equation => numbering%equation)
-        equation(:, order) = 0
-        do i = 1, size(order)
-          do c = 1, directions
-            associate (leader => model%leader(c, order(i)))
-              if (leader == order(i) .or. fixed(c, leader) .or. equation(c, leader) < 0) cycle
-              body%border = body%border + 1
-              equation(c, leader) = -body%border
-            end associate
-          end do
+      numbering%equation(:, order) = 0
+      do i = 1, size(order)
+        do c = 1, directions
+          leader = model%leader(c, order(i))
+          if (leader == order(i) .or. fixed(c, leader) .or. numbering%equation(c, leader) < 0) cycle
+          body%border = body%border + 1
+          numbering%equation(c, leader) = -body%border
         end do
-        do i = 1, size(order)
-          do c = 1, directions
-            associate (leader => model%leader(c, order(i)), own => equation(c, order(i)))
-              own = equation(c, leader)
-              if (leader /= order(i) .or. own < 0 .or. fixed(c, leader)) cycle
-              body%equations = body%equations + 1
-              own = body%equations
-              if (.not. numbering%at_contact(leader)) cycle
-              body%contact_equations = body%contact_equations + 1
-              if (body%contact_equations == 1) body%first_contact = own
-            end associate
-          end do
+      end do
+      do i = 1, size(order)
+        do c = 1, directions
+          leader = model%leader(c, order(i))
+          associate (own => numbering%equation(c, order(i)))
+            own = numbering%equation(c, leader)
+            if (leader /= order(i) .or. own < 0 .or. fixed(c, leader)) cycle
+            body%equations = body%equations + 1
+            own = body%equations
+          end associate
+          if (.not. numbering%at_contact(leader)) cycle
+          body%contact_equations = body%contact_equations + 1
+          if (body%contact_equations == 1) body%first_contact = body%equations
         end do
-      end associate
+      end do
       if (body%contact_equations == 0) body%first_contact = body%equations + 1
     end subroutine number_nodes
 
@@ -271,16 +267,15 @@ contains
     subroutine number_panels(order, body)
       integer, intent(in) :: order(:)
       type(body_numbering), intent(inout) :: body
-      integer, allocatable :: profile(:)
+      integer, allocatable :: coupled(:), profile(:)
       integer :: e, i, number(most_freedoms)
 
       call number_nodes(order, body)
       profile = [(i, i=1, body%equations)]
       do e = 1, size(body%element)
         number = numbering%of_element(model, body%element(e))
-        associate (coupled => pack(number, number > 0))
-          profile(coupled) = max(profile(coupled), maxval(number))
-        end associate
+        coupled = pack(number, number > 0)
+        profile(coupled) = max(profile(coupled), maxval(number))
       end do
       body%half_bandwidth = maxval([profile - [(i, i=1, body%equations)], 0])
       body%panels = new_panel_layout(profile)

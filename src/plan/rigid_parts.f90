@@ -66,21 +66,19 @@ contains
     subroutine join_elements()
       type(partition) :: sets
       integer, allocatable :: met_by(:)   ! the last element with which each was found to share a node
-      integer :: j, k
+      integer :: j, k, neighbour, node
 
       sets = new_partition(model%elements)
       allocate (met_by(model%elements), source=0)
       do e = 1, model%elements
         do k = 1, model%node_count(e)
-          associate (node => model%connectivity(k, e))
-            do j = model%around%start(node), model%around%start(node + 1) - 1
-              associate (neighbour => model%around%group(j))
-                if (neighbour >= e) exit
-                if (met_by(neighbour) == e) call sets%join(e, neighbour)
-                met_by(neighbour) = e
-              end associate
-            end do
-          end associate
+          node = model%connectivity(k, e)
+          do j = model%around%start(node), model%around%start(node + 1) - 1
+            neighbour = model%around%group(j)
+            if (neighbour >= e) exit
+            if (met_by(neighbour) == e) call sets%join(e, neighbour)
+            met_by(neighbour) = e
+          end do
         end do
       end do
       call sets%numbers(of_element, solid)
@@ -88,21 +86,19 @@ contains
 
     !> Where parts share a single node.
     subroutine find_hinges()
-      integer :: hinges, k
+      integer :: here, hinges, k
+      integer, allocatable :: met(:)   ! parts of the elements at a node
 
       allocate (parts%hinge(3, size(model%around%group)))
       hinges = 0
       do i = 1, model%nodes
-        associate (first => model%around%start(i), here => parts%of_node(i))
-          do k = first, model%around%start(i + 1) - 1
-            associate (other => of_element(model%around%group(k)))
-              if (other == here) cycle
-              if (any(of_element(model%around%group(first:k - 1)) == other)) cycle
-              hinges = hinges + 1
-              parts%hinge(:, hinges) = [i, here, other]
-            end associate
-          end do
-        end associate
+        here = parts%of_node(i)
+        met = of_element(model%around%of(i))
+        do k = 1, size(met)
+          if (met(k) == here .or. any(met(:k - 1) == met(k))) cycle
+          hinges = hinges + 1
+          parts%hinge(:, hinges) = [i, here, met(k)]
+        end do
       end do
       parts%hinge = parts%hinge(:, :hinges)
     end subroutine find_hinges

@@ -39,7 +39,7 @@ contains
       !> By the nodes of the master, over their area in the end
       real(wp), allocatable :: area(:), received(:)
       real(wp) :: there
-      integer :: i, k
+      integer :: corner(2), first, i, k, last, middle
 
       area = node_areas(contact%master)
       allocate (received(model%nodes), source=0.0_wp)
@@ -55,10 +55,10 @@ contains
       do i = 1, size(contact%master%element)
         ! Corners on the axis of rings, which no boundary belongs to, have the pressure of the middle beside
         ! them.
-        associate (corner => contact%master%segment(:2, i), middle => contact%master%segment(3, i))
-          if (middle == 0) cycle
-          where (area(corner) == 0.0_wp) received(corner) = received(middle)
-        end associate
+        corner = contact%master%segment(:2, i)
+        middle = contact%master%segment(3, i)
+        if (middle == 0) cycle
+        where (area(corner) == 0.0_wp) received(corner) = received(middle)
       end do
       found%touching = count(touching(contact%first:contact%last))
       found%force = sum(force(contact%first:contact%last))
@@ -67,9 +67,9 @@ contains
       if (found%on_slave == 0.0_wp) return
       do k = contact%first, contact%first_of_master - 1
         if (.not. touching(k)) cycle
-        associate (first => model%row_start(k) + 1, last => model%row_start(k + 1) - 1)
-          there = -dot_product(model%row_weight(first:last), received(model%row_node(first:last)))
-        end associate
+        first = model%row_start(k) + 1
+        last = model%row_start(k + 1) - 1
+        there = -dot_product(model%row_weight(first:last), received(model%row_node(first:last)))
         found%difference = max(found%difference, abs(there - pressure(k))/found%on_slave)
       end do
     end function compared

@@ -90,15 +90,15 @@ contains
     !> Is the pair at the middle of a side that touches all along?
     pure logical function is_whole(pair)
       integer, intent(in) :: pair
+      integer :: corners(2)
 
       is_whole = .false.
       if (pair == 0) return
-      associate (corners => line%neighbour(:, pair))
-        if (.not. line%middle(pair) .or. any(corners == 0)) return
-        ! Where a line turns a corner, the corner's pair may belong to the other side alone.
-        is_whole = touching(pair) .and. all(touching(corners)) .and. &
-                   all(any(line%neighbour(:, corners) == pair, dim=1))
-      end associate
+      corners = line%neighbour(:, pair)
+      if (.not. line%middle(pair) .or. any(corners == 0)) return
+      ! Where a line turns a corner, the corner's pair may belong to the other side alone.
+      is_whole = touching(pair) .and. all(touching(corners)) .and. &
+                 all(any(line%neighbour(:, corners) == pair, dim=1))
     end function is_whole
 
     !> The run that a side belongs to, given by its middle.
