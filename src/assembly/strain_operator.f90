@@ -30,7 +30,7 @@ contains
     type(strain_operator) :: operator
     type(integration_point) :: point(most_points)
     real(wp) :: x(directions, most_nodes)
-    integer :: column, e, k, points
+    integer :: column, columns, e, k, points
 
     allocate (operator%column(model%points), operator%volume(model%points))
     allocate (operator%b(components, directions*sum(model%node_count(model%point_element))))
@@ -40,17 +40,16 @@ contains
       do k = 1, model%node_count(e)
         x(:, k) = model%x(:, model%connectivity(k, e))
       end do
-      associate (section => model%section(e), columns => directions*model%node_count(e))
-        call evaluate_points(model%kinds(model%kind(e)), x(:, :model%node_count(e)), &
-                             model%kinematics(section), &
-                             model%thickness(section), point(:points))
-        do k = 1, points
-          operator%b(:, column + 1:column + columns) = point(k)%b(:, :columns)
-          operator%volume(model%first_point(e) + k - 1) = point(k)%volume
-          operator%column(model%first_point(e) + k - 1) = column
-          column = column + columns
-        end do
-      end associate
+      columns = directions*model%node_count(e)
+      call evaluate_points(model%kinds(model%kind(e)), x(:, :model%node_count(e)), &
+                           model%kinematics(model%section(e)), model%thickness(model%section(e)), &
+                           point(:points))
+      do k = 1, points
+        operator%b(:, column + 1:column + columns) = point(k)%b(:, :columns)
+        operator%volume(model%first_point(e) + k - 1) = point(k)%volume
+        operator%column(model%first_point(e) + k - 1) = column
+        column = column + columns
+      end do
     end do
   end function new_strain_operator
 

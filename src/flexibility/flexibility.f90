@@ -101,9 +101,7 @@ contains
     integer :: k
 
     do k = 1, size(part%pair)
-      associate (column => flexibility(:, part%pair(k)))
-        column(part%pair) = column(part%pair) + part%matrix(:, k)
-      end associate
+      flexibility(part%pair, part%pair(k)) = flexibility(part%pair, part%pair(k)) + part%matrix(:, k)
     end do
   end subroutine add_flexibility
 

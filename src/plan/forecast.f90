@@ -142,10 +142,8 @@ contains
       bytes = of_process + (of_node + load_of_node*loads)*model%nodes + &
               (of_point + load_of_point*loads)*model%points
       do p = 1, model%points
-        associate (e => model%point_element(p))
-          bytes = bytes + of_node_of_point*model%node_count(e) + &
-                  merge(of_yielding_point, 0_i8, model%can_yield(e))
-        end associate
+        bytes = bytes + of_node_of_point*model%node_count(model%point_element(p)) + &
+                merge(of_yielding_point, 0_i8, model%can_yield(model%point_element(p)))
       end do
     end function beside_matrices
   end function forecast

@@ -192,7 +192,7 @@ contains
       integer, intent(in) :: roots(:)
       integer, allocatable :: found(:)
       logical :: seen(model%nodes)
-      integer :: at, end_of_level, filled, first, k, next
+      integer :: at, e, end_of_level, filled, first, k, next
 
       allocate (order%node(size(own)))
       seen = .false.
@@ -214,9 +214,8 @@ contains
         end if
         first = filled + 1
         do k = model%around%start(order%node(at)), model%around%start(order%node(at) + 1) - 1
-          associate (e => model%around%group(k))
-            call add_new(model%connectivity(:model%node_count(e), e), seen, order%node, filled)
-          end associate
+          e = model%around%group(k)
+          call add_new(model%connectivity(:model%node_count(e), e), seen, order%node, filled)
         end do
         if (filled > first) then
           found = order%node(first:filled)
