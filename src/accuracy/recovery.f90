@@ -12,6 +12,7 @@ module epcont_accuracy_recovery
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits
+  use epcont_element_kinematics, only: components
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -108,21 +109,22 @@ contains
     end associate
   end subroutine wide_patch
 
-  !> Strains at the places of a table, of several fields at once [4, places, fields].
+  !> Strains at the places of a table, of several fields at once [components, places, fields].
   function recover_strains(model, table, volume, strain) result(smooth)
     type(model_type), intent(in) :: model    !! the scene
     type(patch_table), intent(in) :: table   !! of its elements
     real(wp), intent(in) :: volume(:)        !! of the integration points [points]
-    real(wp), intent(in) :: strain(:, :, :)  !! xx, yy, zz, xy [4, points, fields]
+    real(wp), intent(in) :: strain(:, :, :)  !! xx, yy, zz, xy [components, points, fields]
     real(wp), allocatable :: smooth(:, :, :)
-    real(wp), allocatable :: x(:, :), sample(:, :, :)   !! samples: [length] [2, points], [4, points, fields]
+    !> Samples: [length] [2, points], [components, points, fields]
+    real(wp), allocatable :: x(:, :), sample(:, :, :)
     integer, allocatable :: patch(:)
     integer :: seen(model%elements), e, k, p
     !> Of a node between corners: polynomials that reach it; of others -1
     integer :: fits(table%places)
 
     call take_samples()
-    allocate (smooth(4, table%places, size(strain, 3)), source=0.0_wp)
+    allocate (smooth(components, table%places, size(strain, 3)), source=0.0_wp)
     fits = -1
     do e = 1, model%elements
       do k = model%corners(e) + 1, model%node_count(e)
@@ -183,7 +185,8 @@ contains
     !! spread is constant.
     subroutine fit_linear(p)
       integer, intent(in) :: p
-      real(wp) :: at(2), mean(4), along(4), across(4), d(2), determinant
+      real(wp) :: at(2), d(2), determinant
+      real(wp), dimension(components) :: mean, along, across
       real(wp) :: m(2), xx, xy, yy   !! moments of the samples about the place, then about their middle
       integer :: f, i, s
 
@@ -227,7 +230,8 @@ contains
     !! meet there.
     subroutine fit_quadratic(p)
       integer, intent(in) :: p
-      real(wp) :: matrix(quadratic, quadratic), coefficient(4, size(sample, 3), quadratic), term(quadratic)
+      real(wp) :: matrix(quadratic, quadratic), term(quadratic)
+      real(wp) :: coefficient(components, size(sample, 3), quadratic)
       real(wp) :: at(2), reach, weight
       integer :: e, f, i, j, k, s, samples
 

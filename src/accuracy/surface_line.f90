@@ -122,7 +122,7 @@ contains
   pure function smooth_pressures(model, materials, smooth) result(pressure)
     type(model_type), intent(in) :: model              !! the scene
     type(scene_materials), intent(in) :: materials     !! of its sections
-    real(wp), intent(in) :: smooth(:, :)               !! strains [4, places: first those of the nodes]
+    real(wp), intent(in) :: smooth(:, :)               !! strains [components, places: first the nodes']
     real(wp) :: pressure(model%pairs)
     type(point_state) :: state
     real(wp) :: side(2), weight(2)
