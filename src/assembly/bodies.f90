@@ -59,12 +59,11 @@ contains
     type(planned_scene), intent(in) :: scene   !! that they are of
     real(wp), allocatable :: prescribed(:, :)
 
-    associate (operator => self%operator, model => scene%model)
-      if (all(model%beyond_travel == 0.0_wp)) return
-      allocate (prescribed(directions, model%nodes), source=0.0_wp)
-      call prescribe(scene, 1.0_wp, prescribed)
-      self%settlement = -operator%nodal_forces(model, self%law%increment(operator%strains(model, prescribed)))
-    end associate
+    if (all(scene%model%beyond_travel == 0.0_wp)) return
+    allocate (prescribed(directions, scene%model%nodes), source=0.0_wp)
+    call prescribe(scene, 1.0_wp, prescribed)
+    self%settlement = -self%operator%nodal_forces( &
+                      scene%model, self%law%increment(self%operator%strains(scene%model, prescribed)))
   end subroutine settle
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.

@@ -100,13 +100,11 @@ contains
     subroutine take_value()
       type(field_value) :: value
 
-      associate (entry => table%entry%field(slot), i => table%count)
-        call read_slot(slot, entry, value)
-        if (value%outcome /= scan_sound) return
-        table%value(slot, i) = value%number
-        if (entry%kind == kind_word) table%word(slot, i) = value%word
-        table%given(slot, i) = .true.
-      end associate
+      call read_slot(slot, table%entry%field(slot), value)
+      if (value%outcome /= scan_sound) return
+      table%value(slot, table%count) = value%number
+      if (table%entry%field(slot)%kind == kind_word) table%word(slot, table%count) = value%word
+      table%given(slot, table%count) = .true.
     end subroutine take_value
 
     !> Read a field; where it is blank, or cannot be taken, say why.

@@ -118,11 +118,9 @@ contains
         control%stress = says_all()
       case ('SPCFORCES')
         control%spcforces = says_all()
-      case ('SUBCASE')
+      case ('SUBCASE', 'NLPARM')
         call take_number(unused)
-      case ('NLPARM')
-        call take_number(unused)
-        call faults%add_note(parts%word_place, 'NLPARM has no effect')
+        if (parts%word == 'NLPARM') call faults%add_note(parts%word_place, 'NLPARM has no effect')
       end select
     end subroutine take_statement
 

@@ -328,21 +328,20 @@ contains
     end do
     opening = gap_opening(scene%model, state%deformation)
     travel = load_factor*self%travel_gap
-    associate (contact => state%contact, model => scene%model, problem => self%problem)
-      do k = 1, model%pairs
-        if (contact%force(k) > 0.0_wp) cycle
-        ! Where a rigid stop takes the load, what the flexibility says of this gap is rounding of two
-        ! deformations that cancel: a pair that seemed to touch may be open, as the displacements have it.
-        moved = problem%motion(k, :)*contact%approach
-        gap = problem%initial_gap(k) + (opening(k) + travel(k)) - sum(moved)
-        terms = abs(problem%initial_gap(k)) + abs(travel(k)) + sum(abs(moved))
-        do i = model%row_start(k), model%row_start(k + 1) - 1
-          terms = terms + abs(model%row_weight(i))*maxval(abs(state%deformation(:, model%row_node(i))))
-        end do
-        if (contact%touching(k) .and. gap <= no_effect*terms) cycle
-        contact%touching(k) = .false.
-        contact%gap(k) = max(gap, 0.0_wp)
+    do k = 1, scene%model%pairs
+      if (state%contact%force(k) > 0.0_wp) cycle
+      ! Where a rigid stop takes the load, what the flexibility says of this gap is rounding of two
+      ! deformations that cancel: a pair that seemed to touch may be open, as the displacements have it.
+      moved = self%problem%motion(k, :)*state%contact%approach
+      gap = self%problem%initial_gap(k) + (opening(k) + travel(k)) - sum(moved)
+      terms = abs(self%problem%initial_gap(k)) + abs(travel(k)) + sum(abs(moved))
+      do i = scene%model%row_start(k), scene%model%row_start(k + 1) - 1
+        terms = terms + abs(scene%model%row_weight(i)) &
+                        *maxval(abs(state%deformation(:, scene%model%row_node(i))))
       end do
-    end associate
+      if (state%contact%touching(k) .and. gap <= no_effect*terms) cycle
+      state%contact%touching(k) = .false.
+      state%contact%gap(k) = max(gap, 0.0_wp)
+    end do
   end subroutine complete
 end module epcont_linear_linear_problem

@@ -218,9 +218,7 @@ contains
         do i = 1, size(model%connectivity, 1)
           associate (other => model%connectivity(i, model%around%group(j)))
             if (side(other) /= left .and. side(other) /= right) cycle
-            associate (known => beside(side(other)))
-              known = merge(other, several, known == none .or. known == other)
-            end associate
+            beside(side(other)) = merge(other, several, any(beside(side(other)) == [none, other]))
           end associate
         end do
       end do
