@@ -198,18 +198,18 @@ contains
     end do
   end function full_numbers
 
-  !> A number of a listing's column, six digits in up to 13 characters.
+  !> A number of a listing's column, six digits in 13 characters: there are many.
   pure function column_number(value, scale) result(text)
     real(wp), intent(in) :: value
     real(wp), intent(in) :: scale  !! of the column: its largest magnitude
-    character(len=:), allocatable :: text
+    character(len=13) :: text
 
     if (abs(value) <= rounded_off*scale .or. value == 0.0_wp) then
-      text = '0.0'
+      text = '          0.0'
     else if (abs(value) >= 0.999999e100_wp .or. abs(value) < 1.0e-99_wp) then
-      text = formatted('(es13.5e3)', value)
+      write (text, '(es13.5e3)') value
     else
-      text = formatted('(es13.5e2)', value)
+      write (text, '(es13.5e2)') value
     end if
   end function column_number
 
