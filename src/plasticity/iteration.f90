@@ -13,7 +13,7 @@ module epcont_plasticity_iteration
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_initial_stress, only: initial_stress_method
-  use epcont_plasticity_newton, only: blends, newton_method
+  use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_secant, only: secant_method
   use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
@@ -184,6 +184,7 @@ contains
     subroutine set_law(method, failed_body)
       class(secant_method), intent(inout) :: method
       integer, intent(out) :: failed_body
+      logical :: possible
       integer :: p
 
       failed_body = 0
@@ -199,9 +200,8 @@ contains
         call linear%set_stiffness(scene, failed_body, watch)
         stiff = .true.
         if (failed_body == 0 .or. any(linear%body%lacks_memory)) return
-        ! A flat curve makes a tangent semidefinite: a part of the secant matrix is mixed into it.
-        if (.not. same_type_as(method, newton_method()) .or. method%blend >= blends(4)) return
-        method%blend = minval(blends, mask=blends > method%blend)
+        call method%stiffen(possible)
+        if (.not. possible) return
       end do
     end subroutine set_law
 

@@ -13,7 +13,7 @@ module epcont_plasticity_newton
   use epcont_plasticity_secant, only: secant_method
   implicit none
   private
-  public :: blends, newton_method
+  public :: newton_method
 
   !> Parts of the secant matrix mixed into a tangent that could not be factored, tried one after the other.
   real(wp), parameter :: blends(4) = [1.0e-6_wp, 1.0e-4_wp, 1.0e-2_wp, 1.0_wp]
@@ -30,6 +30,7 @@ module epcont_plasticity_newton
   contains
     procedure :: restart
     procedure :: linearise
+    procedure :: stiffen
     procedure :: advance
   end type newton_method
 
@@ -62,6 +63,15 @@ contains
       call linear%law%set_matrix(p, matrix)
     end associate
   end subroutine linearise
+
+  !> The next of `blends`.
+  pure subroutine stiffen(self, possible)
+    class(newton_method), intent(inout) :: self
+    logical, intent(out) :: possible                 !! there is one
+
+    possible = self%blend < maxval(blends)
+    if (possible) self%blend = minval(blends, mask=blends > self%blend)
+  end subroutine stiffen
 
   !> Go along the step as far as the energy falls.
   subroutine advance(self, model, linear, load_factor, found, about)

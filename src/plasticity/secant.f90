@@ -18,6 +18,7 @@ module epcont_plasticity_secant
   contains
     procedure :: restart
     procedure :: linearise
+    procedure :: stiffen
     procedure :: advance
   end type secant_method
 
@@ -40,6 +41,15 @@ contains
     call linear%law%set_matrix( &
       p, linear%materials%section(linear%materials%of_point(p))%law%secant_matrix(about%point(p)))
   end subroutine linearise
+
+  !> Make the next law a stiffer one, where a stiffness made of the last could not be factored. Most methods
+  !! have none.
+  pure subroutine stiffen(self, possible)
+    class(secant_method), intent(inout) :: self
+    logical, intent(out) :: possible                 !! there is one
+
+    possible = .false.
+  end subroutine stiffen
 
   !> The state to linearise about next, when the law about `about` has led to `found`.
   subroutine advance(self, model, linear, load_factor, found, about)
