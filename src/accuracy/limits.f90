@@ -9,7 +9,7 @@ module epcont_accuracy_limits
   use epcont_accuracy_weights, only: tip_matters, tip_stands_out
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: coincident
-  use epcont_geometry_plane, only: cross_product
+  use epcont_geometry_plane, only: angle_between
   use epcont_model_model, only: model_type
   use epcont_result_contact_line, only: contact_line, outer_sides
   use epcont_result_zones, only: contact_zone
@@ -159,7 +159,7 @@ contains
         piece(:, k) = merge(piece(:, 3 - k), -piece(:, 3 - k), [1, 2] == c)
       end do
     end do
-    turn%angle = atan2(cross_product(piece(:, 1), piece(:, 2)), dot_product(piece(:, 1), piece(:, 2)))
+    turn%angle = angle_between(piece(:, 1), piece(:, 2))
     turn%curvature = 2.0_wp*turn%angle/(norm2(piece(:, 1)) + norm2(piece(:, 2)))
 
   contains

@@ -15,9 +15,8 @@
 module epcont_certificate_allowance
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: coincident
-  use epcont_element_kinematics, only: directions
   use epcont_geometry_outline_shape, only: outline_shape
-  use epcont_geometry_plane, only: cross_product
+  use epcont_geometry_plane, only: angle => angle_between, right_of
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -167,14 +166,14 @@ contains
     !> Where lines are in contact: over its chord each side has the curve with the normals of contact at its
     !! ends. The angle between normal and side is half the turn [rad] [sides].
     pure function turns_of_lines() result(turn)
-      real(wp) :: turn(size(length)), along(directions)
+      real(wp) :: turn(size(length))
       integer :: k, s
 
       turn = 0.0_wp
       do s = 1, size(turn)
         do k = 1, 2
-          along = drawn%tangent(s, real(k - 1, wp))
-          turn(s) = max(turn(s), 2.0_wp*abs(angle([along(2), -along(1)], model%boundary%normal(:, k, s))))
+          turn(s) = max(turn(s), 2.0_wp*abs(angle(right_of(drawn%tangent(s, real(k - 1, wp))), &
+                                                  model%boundary%normal(:, k, s))))
         end do
       end do
     end function turns_of_lines
@@ -198,11 +197,4 @@ contains
       end do
     end function gaps_of_cards
   end function new_allowance
-
-  !> From one direction to another, counter-clockwise [rad].
-  pure real(wp) function angle(from, to)
-    real(wp), intent(in) :: from(directions), to(directions)
-
-    angle = atan2(cross_product(from, to), dot_product(from, to))
-  end function angle
 end module epcont_certificate_allowance

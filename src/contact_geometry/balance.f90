@@ -7,8 +7,7 @@
 module epcont_contact_geometry_balance
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: coincident, rounded_off
-  use epcont_geometry_boundary_line, only: unit
-  use epcont_geometry_plane, only: cross_product
+  use epcont_geometry_plane, only: cross_product, unit
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -25,19 +24,14 @@ contains
     type(model_type), intent(inout) :: model   !! the scene, with all its pairs
     real(wp) :: centre(2, size(model%line_contact))   ! of those that are round [length]
     logical :: cut(model%nodes)
-    integer :: c, centres, end, i, k
+    integer :: c, centres, i, k
 
     if (size(model%line_contact) == 0) return
     cut = .false.
     associate (line => model%boundary)
-      do i = 1, size(line%element)
-        do end = 1, 2
-          associate (node => line%segment(end, i))
-            if (line%mirrored(end, i) .or. line%corner(end, i)) &
-              cut(node) = any([(model%is_held(k, node), k=1, 2)])
-          end associate
-        end do
-      end do
+      associate (node => pack(line%segment(:2, :), line%mirrored .or. line%corner))
+        cut(node) = model%is_held(1, node) .or. model%is_held(2, node)
+      end associate
     end associate
     centres = 0
     do c = 1, size(model%line_contact)

@@ -146,7 +146,8 @@ contains
   !> All sides of the bodies, numbered as those of the outlines.
   type(boundary_line) function find_boundary(model) result(line)
     type(model_type), intent(in) :: model
-    integer :: held(2, model%body_outline%sides), i, k
+    integer :: held(2, model%body_outline%sides)   ! the direction: 0 none, 3 both
+    integer :: i
 
     associate (outline => model%body_outline, sides => model%body_outline%sides)
       line%segment = outline%node
@@ -158,18 +159,9 @@ contains
           line%x(:, :merge(3, 2, node(3) > 0), i) = model%edge_coordinates(node)
         end associate
       end do
-      held = reshape([((held_direction(outline%node(k, i)), k=1, 2), i=1, sides)], [2, sides])
+      held = merge(1, 0, model%is_held(1, outline%node(:2, :))) + &
+             merge(2, 0, model%is_held(2, outline%node(:2, :)))
     end associate
     call find_normals(line, held, model%controls%corner)
-
-  contains
-
-    !> The direction in which a node, or what it is tied to, is held: 0 none, 3 both.
-    pure integer function held_direction(node)
-      integer, intent(in) :: node
-      integer :: c
-
-      held_direction = sum([(merge(c, 0, model%is_held(c, node)), c=1, 2)])
-    end function held_direction
   end function find_boundary
 end module epcont_contact_geometry_line_sides

@@ -5,8 +5,7 @@ module epcont_contact_geometry_pair_checks
   use epcont_base_text, only: plural, short_real
   use epcont_base_tolerances, only: least_difference, no_effect, rounded_off
   use epcont_element_kinematics, only: directions
-  use epcont_geometry_boundary_line, only: unit
-  use epcont_geometry_plane, only: cross_product
+  use epcont_geometry_plane, only: cross_product, right_of, unit
   use epcont_model_finding, only: and_more, findings, of_couple, of_element, of_node, of_pair
   use epcont_model_model, only: model_type
   implicit none
@@ -133,7 +132,7 @@ contains
           do k = 1, merge(3, 2, node(3) > 0)
             longest(node(k)) = max(longest(node(k)), norm2(chord))
             length(node(k)) = length(node(k)) + norm2(chord)
-            outward(:, node(k)) = outward(:, node(k)) + [chord(2), -chord(1)]
+            outward(:, node(k)) = outward(:, node(k)) + right_of(chord)
           end do
         end associate
       end do

@@ -11,10 +11,10 @@ module epcont_geometry_boundary_line
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_geometry_box_tree, only: box_tree, new_box_tree
-  use epcont_geometry_plane, only: cross_product
+  use epcont_geometry_plane, only: cross_product, right_of, unit
   implicit none
   private
-  public :: boundary_line, facing_type, unit
+  public :: boundary_line, facing_type
 
   !> Part of a side by which a point may stand beyond its end, more than the rounding of coordinates in eight
   !! columns.
@@ -125,10 +125,9 @@ contains
     class(boundary_line), intent(in) :: self
     integer, intent(in) :: segment   !! which side
     real(wp), intent(in) :: s   !! from 0 to 1
-    real(wp) :: normal(2), tangent(2)
+    real(wp) :: normal(2)
 
-    tangent = tangent_at(side_of(self, segment), s)
-    normal = unit([tangent(2), -tangent(1)])
+    normal = unit(right_of(tangent_at(side_of(self, segment), s)))
   end function own_normal
 
   !> Where a point faces a side: the place whose normal leads to it.
@@ -270,12 +269,4 @@ contains
 
     tangent = matmul(self%x, slopes(self, s))
   end function tangent_at
-
-  !> Zero of zero: a side without length, which its element is refused for.
-  pure function unit(vector)
-    real(wp), intent(in) :: vector(2)   !! any length
-    real(wp) :: unit(2)
-
-    unit = vector/max(norm2(vector), tiny(1.0_wp))
-  end function unit
 end module epcont_geometry_boundary_line

@@ -8,8 +8,8 @@
 !> corners
 module epcont_geometry_corners
   use epcont_base_kinds, only: wp
-  use epcont_geometry_boundary_line, only: boundary_line, unit
-  use epcont_geometry_plane, only: cross_product
+  use epcont_geometry_boundary_line, only: boundary_line
+  use epcont_geometry_plane, only: angle_between, right_of, unit
   implicit none
   private
   public :: find_normals
@@ -184,19 +184,4 @@ contains
 
     mirror_of = 2.0_wp*dot_product(normal, chord)*chord - normal
   end function mirror_of
-
-  !> A vector turned by a right angle, clockwise.
-  pure function right_of(vector)
-    real(wp), intent(in) :: vector(2)
-    real(wp) :: right_of(2)
-
-    right_of = [vector(2), -vector(1)]
-  end function right_of
-
-  !> Counter-clockwise from one vector to another.
-  pure real(wp) function angle_between(a, b)
-    real(wp), intent(in) :: a(2), b(2)
-
-    angle_between = atan2(cross_product(a, b), dot_product(a, b))
-  end function angle_between
 end module epcont_geometry_corners

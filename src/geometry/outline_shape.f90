@@ -4,6 +4,7 @@ module epcont_geometry_outline_shape
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
   use epcont_geometry_box_tree, only: box_tree, most_waiting, new_box_tree
+  use epcont_geometry_plane, only: right_of, unit
   implicit none
   private
   public :: outline_type, outline_shape, near_place, new_outline_shape
@@ -239,10 +240,9 @@ contains
     pure function normal(side, s)
       integer, intent(in) :: side
       real(wp), intent(in) :: s
-      real(wp) :: along(2), normal(2)
+      real(wp) :: normal(2)
 
-      along = self%tangent(side, s)
-      normal = [along(2), -along(1)]/max(norm2(along), tiny(1.0_wp))
+      normal = unit(right_of(self%tangent(side, s)))
     end function normal
   end function is_inside
 end module epcont_geometry_outline_shape

@@ -3,7 +3,7 @@ module epcont_geometry_plane
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: cross_product, turned
+  public :: angle_between, cross_product, right_of, turned, unit
 
 contains
 
@@ -13,6 +13,29 @@ contains
 
     cross_product = a(1)*b(2) - a(2)*b(1)
   end function cross_product
+
+  !> Counter-clockwise from one vector to another [rad].
+  pure real(wp) function angle_between(a, b)
+    real(wp), intent(in) :: a(2), b(2)   !! any unit
+
+    angle_between = atan2(cross_product(a, b), dot_product(a, b))
+  end function angle_between
+
+  !> A vector turned by a right angle, clockwise.
+  pure function right_of(vector)
+    real(wp), intent(in) :: vector(2)   !! any length
+    real(wp) :: right_of(2)
+
+    right_of = [vector(2), -vector(1)]
+  end function right_of
+
+  !> A vector of length 1 along another; zero of zero: a side without length, which its element is refused for.
+  pure function unit(vector)
+    real(wp), intent(in) :: vector(2)   !! any length
+    real(wp) :: unit(2)
+
+    unit = vector/max(norm2(vector), tiny(1.0_wp))
+  end function unit
 
   !> A vector turned counter-clockwise: exactly by quarter turns, and as well after any number of full ones.
   pure function turned(vector, angle)
