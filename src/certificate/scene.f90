@@ -17,7 +17,7 @@ module epcont_certificate_scene
   use epcont_certificate_way, only: look_at_ways
   use epcont_element_kinematics, only: directions
   use epcont_geometry_outline_shape, only: near_place, outline_shape
-  use epcont_geometry_plane, only: cross_product
+  use epcont_geometry_plane, only: cross_product, crossing
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -240,26 +240,19 @@ contains
   end function look_through
 
   !> Where the chord of a side crosses those of another part, ascending.
-  pure function crossings(now, side, part) result(crossing)
+  pure function crossings(now, side, other) result(place)
     type(outline_shape), intent(in) :: now
-    integer, intent(in) :: side, part
-    real(wp), allocatable :: crossing(:)
-    real(wp), dimension(directions) :: along, from, other
-    real(wp) :: across, s, t
+    integer, intent(in) :: side, other
+    real(wp), allocatable :: place(:)   !! along the side
+    real(wp) :: part(2)   ! of both chords
     integer, allocatable :: near(:)
     integer :: k
 
-    allocate (crossing(0))
-    near = sides_meeting(now, part, now%low(:, side), now%high(:, side))
-    along = now%chord(side)
+    allocate (place(0))
+    near = sides_meeting(now, other, now%low(:, side), now%high(:, side))
     do k = 1, size(near)
-      other = now%chord(near(k))
-      across = cross_product(along, other)
-      if (across == 0.0_wp) cycle
-      from = now%x(:, 1, near(k)) - now%x(:, 1, side)
-      s = cross_product(from, other)/across
-      t = cross_product(from, along)/across
-      if (min(s, t) >= 0.0_wp .and. max(s, t) <= 1.0_wp) call insert(s, crossing)
+      part = crossing(now%x(:, 1, side), now%chord(side), now%x(:, 1, near(k)), now%chord(near(k)))
+      if (all(part >= 0.0_wp .and. part <= 1.0_wp)) call insert(part(1), place)
     end do
   end function crossings
 end module epcont_certificate_scene

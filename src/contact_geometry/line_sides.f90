@@ -9,7 +9,7 @@ module epcont_contact_geometry_line_sides
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: find_between, find_line_sides
+  public :: find_line_sides
 
 contains
 
@@ -71,9 +71,9 @@ contains
       sides = 0
       k = 1
       do while (k < size(node))
-        call find_between(model, node(k), node(k + 1), element, edge)
+        call find_between(node(k), node(k + 1), element, edge)
         if (size(element) == 0 .and. k + 2 <= size(node)) then
-          call find_between(model, node(k), node(k + 2), over, edge)
+          call find_between(node(k), node(k + 2), over, edge)
           if (edge(3) == node(k + 1)) then
             k = k + 1
             element = over
@@ -96,6 +96,18 @@ contains
                                ' node', 'that node once more at its end: a closed line')
       model%line(i)%box = reshape([minval(model%x(:, node), dim=2), maxval(model%x(:, node), dim=2)], [2, 2])
     end subroutine walk
+
+    !> Elements that have a side between two corners, and its nodes as the first of them turns; 0: there is
+    !! none.
+    subroutine find_between(a, b, element, edge)
+      integer, intent(in) :: a, b
+      integer, allocatable, intent(out) :: element(:)
+      integer, intent(out) :: edge(3)
+
+      element = model%with_side(a, b)
+      edge = 0
+      if (size(element) > 0) edge = model%edge_between(element(1), a, b)
+    end subroutine find_between
 
     !> No side, or no free one, between the k-th and the next node of a line.
     subroutine add_no_side(element, k, node)
@@ -127,21 +139,6 @@ contains
       end associate
     end function side_of_outline
   end subroutine find_line_sides
-
-  !> Elements that have a side between two corners, and the nodes of that side as the first of them turns.
-  pure subroutine find_between(model, a, b, element, edge)
-    type(model_type), intent(in) :: model              !! the scene
-    integer, intent(in) :: a, b                        !! the corners
-    integer, allocatable, intent(out) :: element(:)    !! [any]
-    integer, intent(out) :: edge(3)                    !! see model%edge; 0: there is none
-    integer :: k
-
-    associate (near => model%around%group(model%around%start(a):model%around%start(a + 1) - 1))
-      element = pack(near, [(model%side_between(near(k), a, b) > 0, k=1, size(near))])
-    end associate
-    edge = 0
-    if (size(element) > 0) edge = model%edge(element(1), model%side_between(element(1), a, b))
-  end subroutine find_between
 
   !> All sides of the bodies, numbered as those of the outlines.
   type(boundary_line) function find_boundary(model) result(line)

@@ -7,7 +7,6 @@ module epcont_contact_geometry_loose_nodes
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
   use epcont_base_tolerances, only: coincident
-  use epcont_contact_geometry_line_sides, only: find_between
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_model_finding, only: and_more, findings, of_element, of_node
@@ -50,7 +49,7 @@ contains
     !! nowhere.
     subroutine find_middles()
       integer, allocatable :: near(:)
-      integer :: i, s, own(3), side(3)
+      integer :: i, s, side(3)
 
       do i = 1, model%nodes
         if (model%around%start(i + 1) - model%around%start(i) /= 1 .or. model%is_tied([i])) cycle
@@ -58,7 +57,7 @@ contains
           do s = 1, model%corners(e)
             side = model%edge(e, s)
             if (side(3) /= i) cycle
-            call find_between(model, side(1), side(2), near, own)
+            near = model%with_side(side(1), side(2))
             associate (other => [pack(near, near /= e), 0])
               edge(:, i) = [side(:2), other(1)]
             end associate
@@ -70,13 +69,15 @@ contains
     !> Sides of the outline that go back along a longer one, from its end to its start.
     subroutine find_chains()
       type(incidence) :: beginning   ! the sides that begin at each node
+      integer, allocatable :: beside(:)
       integer :: k, s
 
       associate (node => model%body_outline%node)
         beginning = new_incidence(node(:1, :), model%nodes)
         do s = 1, model%body_outline%sides
-          do k = beginning%start(node(2, s)), beginning%start(node(2, s) + 1) - 1
-            if (goes_back(s, beginning%group(k))) call follow(s, beginning%group(k))
+          beside = beginning%of(node(2, s))
+          do k = 1, size(beside)
+            if (goes_back(s, beside(k))) call follow(s, beside(k))
           end do
         end do
       end associate

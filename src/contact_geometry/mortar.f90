@@ -81,10 +81,7 @@ contains
     covered = points%covered
     alone = .not. area > 0.0_wp
     where (alone) area = area + 1.0_wp
-    allocate (rows(size(area)))
-    do row = 1, size(rows)
-      allocate (rows(row)%node(0), rows(row)%weight(0))
-    end do
+    rows = [(mortar_row([integer ::], [real(wp) ::]), row=1, size(area))]
     do s = 1, size(points)
       call add_side()
     end do

@@ -107,9 +107,9 @@ contains
       integer :: i, which
 
       do which = 1, 2
-        associate (node => model%pair_node(which, k), other => model%pair_node(3 - which, k))
-          do i = lines%start(node), lines%start(node + 1) - 1
-            pair = cgaps + lines%group(i)
+        associate (near => lines%of(model%pair_node(which, k)), other => model%pair_node(3 - which, k))
+          do i = 1, size(near)
+            pair = cgaps + near(i)
             if (all(model%row_node(model%row_start(pair) + 1:model%row_start(pair + 1) - 1) /= other)) cycle
             if (dot_product(model%normal(:, pair), model%normal(:, k))*merge(1, -1, which == 2) >= one_face) &
               return
@@ -269,7 +269,7 @@ contains
       along = model%x(:, node(2)) - model%x(:, node(1))
       across = [along(2), -along(1)]/norm2(along)
       do k = 1, 3
-        associate (pairs => around%group(around%start(node(k)):around%start(node(k) + 1) - 1))
+        associate (pairs => around%of(node(k)))
           has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))) >= same_way, &
                               i=1, size(pairs))])
         end associate

@@ -53,9 +53,10 @@ contains
         turn(1, next) = turn(2, i)
       end associate
     end do
-    line%mirrored = reshape([((is_mirrored(end, i), end=1, 2), i=1, n)], [2, n])
+    allocate (line%mirrored(2, n))
     do i = 1, n
       do end = 1, 2
+        line%mirrored(end, i) = is_mirrored(end, i)
         if (line%mirrored(end, i)) call reflect()
       end do
     end do

@@ -7,7 +7,7 @@ module epcont_geometry_facing
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, least_difference
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
-  use epcont_geometry_plane, only: cross_product
+  use epcont_geometry_plane, only: crossing
   implicit none
   private
   public :: find_facing, looking_point, node_of, rise_of
@@ -220,15 +220,10 @@ contains
   pure logical function crosses(a, b, near, side)
     real(wp), intent(in) :: a(2), b(2), side(2, 2)
     real(wp), intent(in) :: near(2)   !! part of the way that does not count at a, at b
-    real(wp) :: area, s, t
+    real(wp) :: part(2)
 
-    associate (along => side(:, 2) - side(:, 1))
-      area = cross_product(b - a, along)
-      crosses = .false.
-      if (area == 0.0_wp) return
-      t = cross_product(side(:, 1) - a, along)/area
-      s = cross_product(side(:, 1) - a, b - a)/area
-    end associate
-    crosses = s >= 0.0_wp .and. s <= 1.0_wp .and. t > near(1) .and. t < 1.0_wp - near(2)
+    part = crossing(a, b - a, side(:, 1), side(:, 2) - side(:, 1))
+    crosses = part(2) >= 0.0_wp .and. part(2) <= 1.0_wp .and. &
+              part(1) > near(1) .and. part(1) < 1.0_wp - near(2)
   end function crosses
 end module epcont_geometry_facing

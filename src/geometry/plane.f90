@@ -3,7 +3,7 @@ module epcont_geometry_plane
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: angle_between, cross_product, right_of, turned, unit
+  public :: angle_between, cross_product, crossing, right_of, turned, unit
 
 contains
 
@@ -21,6 +21,18 @@ contains
     angle_between = atan2(cross_product(a, b), dot_product(a, b))
   end function angle_between
 
+  !> Where two straight ways cross: parts of either from where it begins; far beyond both where they are
+  !! parallel.
+  pure function crossing(a, along, b, other) result(part)
+    real(wp), intent(in) :: a(2), along(2)   !! the beginning of the one, all of it [length]
+    real(wp), intent(in) :: b(2), other(2)   !! of the other
+    real(wp) :: area, part(2)
+
+    area = cross_product(along, other)
+    part = huge(area)
+    if (area /= 0.0_wp) part = [cross_product(b - a, other), cross_product(b - a, along)]/area
+  end function crossing
+
   !> A vector turned by a right angle, clockwise.
   pure function right_of(vector)
     real(wp), intent(in) :: vector(2)   !! any length
@@ -29,7 +41,8 @@ contains
     right_of = [vector(2), -vector(1)]
   end function right_of
 
-  !> A vector of length 1 along another; zero of zero: a side without length, which its element is refused for.
+  !> A vector of length 1 along another; zero of zero: a side without length, which its element is refused
+  !! for.
   pure function unit(vector)
     real(wp), intent(in) :: vector(2)   !! any length
     real(wp) :: unit(2)

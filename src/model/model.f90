@@ -71,7 +71,8 @@ module epcont_model_model
     procedure :: coordinates
     procedure :: corners
     procedure :: edge
-    procedure :: side_between
+    procedure :: edge_between
+    procedure :: with_side
     procedure :: edge_coordinates
     procedure :: depth
     procedure :: is_ring
@@ -118,18 +119,31 @@ contains
     end associate
   end function edge
 
-  !> The side of an element that ends at two corners, in either order; 0: it has none.
-  pure integer function side_between(self, element, a, b) result(side)
+  !> Nodes of the side of an element that ends at two corners, in either order, as `edge` has them; 0: it has
+  !! none.
+  pure function edge_between(self, element, a, b) result(node)
     class(model_type), intent(in) :: self
     integer, intent(in) :: element   !! which element
     integer, intent(in) :: a, b      !! the corners
-    integer :: ends(3)
+    integer :: node(3), side
 
     do side = self%corners(element), 1, -1
-      ends = self%edge(element, side)
-      if (all(ends(:2) == [a, b]) .or. all(ends(:2) == [b, a])) return
+      node = self%edge(element, side)
+      if (all(node(:2) == [a, b]) .or. all(node(:2) == [b, a])) return
     end do
-  end function side_between
+    node = 0
+  end function edge_between
+
+  !> Elements that have a side between two corners.
+  pure function with_side(self, a, b) result(element)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: a, b      !! the corners
+    integer, allocatable :: element(:)
+    integer :: k
+
+    element = self%around%of(a)
+    element = pack(element, [(any(self%edge_between(element(k), a, b) > 0), k=1, size(element))])
+  end function with_side
 
   !> Coordinates of the nodes of a side [length] [2, 2 or 3].
   pure function edge_coordinates(self, edge) result(x)

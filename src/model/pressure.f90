@@ -19,13 +19,16 @@ contains
     integer, intent(out) :: behind   !! the element that has the side too; 0: none; -1: there is no such side
     type(edge_point) :: point(edge_point_count)
     real(wp) :: depth, direction(directions), at_ends(2), value
-    integer :: ends(3), k, p, side
+    integer, allocatable :: beside(:)
+    integer :: ends(3), k, p
 
-    side = model%side_between(given%element, given%corner(1), given%corner(2))
-    behind = merge(-1, 0, side == 0)
-    if (side == 0 .or. model%section(given%element) == 0) return
-    ends = model%edge(given%element, side)
-    behind = element_behind()
+    ends = model%edge_between(given%element, given%corner(1), given%corner(2))
+    behind = merge(-1, 0, ends(1) == 0)
+    if (ends(1) == 0 .or. model%section(given%element) == 0) return
+    beside = model%with_side(ends(1), ends(2))
+    do k = size(beside), 1, -1   ! the element behind goes the other way along the side
+      if (all(model%edge_between(beside(k), ends(1), ends(2)) == ends([2, 1, 3]))) behind = beside(k)
+    end do
     at_ends = merge(given%pressure, given%pressure([2, 1]), ends(1) == given%corner(1))
     point = edge_points(model%edge_coordinates(ends))
     do p = 1, edge_point_count
@@ -38,21 +41,5 @@ contains
                                                   value*depth*point(p)%values(k)*direction
       end do
     end do
-
-  contains
-
-    !> The element on the other side of a side; 0: it is of the boundary.
-    pure integer function element_behind() result(other)
-      integer :: i, k, there(3)
-
-      do i = model%around%start(ends(1)), model%around%start(ends(1) + 1) - 1
-        other = model%around%group(i)
-        k = model%side_between(other, ends(1), ends(2))
-        if (k == 0) cycle
-        there = model%edge(other, k)
-        if (there(1) == ends(2)) return
-      end do
-      other = 0
-    end function element_behind
   end subroutine add_pressure
 end module epcont_model_pressure

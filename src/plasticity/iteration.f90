@@ -106,17 +106,8 @@ contains
 
   contains
 
-    !> The state without loads, and the method.
+    !> The state without loads.
     subroutine begin()
-      select case (plan%method)
-      case (method_newton)
-        allocate (newton_method :: method)
-      case (method_inistr)
-        allocate (initial_stress_method :: method)
-      case default
-        allocate (secant_method :: method)
-      end select
-      if (any(plan%method == [method_modsec, method_inistr])) allocate (method%mixer)
       allocate (linear)
       call new_linear_problem(scene, plan, linear)
       allocate (about%displacement(directions, scene%model%nodes), source=0.0_wp)
@@ -129,6 +120,20 @@ contains
       elastic = .false.
     end subroutine begin
 
+    !> The method, which knows nothing yet: so it begins at each load.
+    subroutine choose_method()
+      if (allocated(method)) deallocate (method)
+      select case (plan%method)
+      case (method_newton)
+        allocate (newton_method :: method)
+      case (method_inistr)
+        allocate (initial_stress_method :: method)
+      case default
+        allocate (secant_method :: method)
+      end select
+      if (any(plan%method == [method_modsec, method_inistr])) allocate (method%mixer)
+    end subroutine choose_method
+
     !> Iterate at one load. `state` is the last, or if that is not converged the one nearest to equilibrium.
     subroutine iterate()
       type(scene_state), allocatable :: found
@@ -140,7 +145,7 @@ contains
       if (allocated(state)) deallocate (state)
       allocate (state, found)
       if (.not. stiff) linear%law = elastic_law(linear%materials)   ! it may be a last step's tangent
-      call method%restart()
+      call choose_method()
       gain = [real(wp) ::]
       force_gain = [real(wp) ::]
       doubt = 1.0_wp

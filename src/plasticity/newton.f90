@@ -28,20 +28,12 @@ module epcont_plasticity_newton
     !> Prescribed displacements and overlaps go in with the first step
     logical, private :: takes_full_step = .true.
   contains
-    procedure :: restart
     procedure :: linearise
     procedure :: stiffen
     procedure :: advance
   end type newton_method
 
 contains
-
-  !> Another load step begins.
-  pure subroutine restart(self)
-    class(newton_method), intent(inout) :: self
-
-    self%takes_full_step = .true.
-  end subroutine restart
 
   !> Tangent: stress(strain) + D (d strain), D = D_t + blend (D_secant - D_t): a flat curve makes D_t
   !! semidefinite.

@@ -16,20 +16,12 @@ module epcont_plasticity_secant
     type(anderson_mixer), allocatable :: mixer   !! not allocated: what was found is taken as it is
     real(wp) :: blend = 0.0_wp                   !! part of the secant matrix in a tangent
   contains
-    procedure :: restart
     procedure :: linearise
     procedure :: stiffen
     procedure :: advance
   end type secant_method
 
 contains
-
-  !> Forget what was learnt: another load step begins.
-  pure subroutine restart(self)
-    class(secant_method), intent(inout) :: self
-
-    if (allocated(self%mixer)) self%mixer = anderson_mixer()
-  end subroutine restart
 
   !> The law about a state, at a point that can yield. Secant matrix (2-8).
   pure subroutine linearise(self, p, about, linear)
