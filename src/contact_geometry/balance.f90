@@ -40,7 +40,7 @@ contains
                                  .not. cut(b(contact%first:contact%last))))
           call turn_normals(pairs)
           do i = 1, size(pairs)
-            call move_weights(model, pairs(i))
+            call move_weights(pairs(i))
           end do
         end associate
       end associate
@@ -66,6 +66,30 @@ contains
         model%normal(:, pairs(i)) = sign(1.0_wp, dot_product(model%normal(:, pairs(i)), away))*unit(away)
       end do
     end subroutine turn_normals
+
+    !> The master's nodes share in a gap so that the counterforce lies on the line of the force: where they do
+    !! not, some of their weights go along the boundary from one to the other.
+    subroutine move_weights(pair)
+      integer, intent(in) :: pair
+      real(wp), allocatable :: along(:), much(:)   ! of the master's nodes: places along the boundary; weights
+      real(wp) :: lever, width
+      integer :: k
+
+      associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1, &
+                 normal => model%normal(:, pair))
+        associate (weight => model%row_weight(first:last), node => model%row_node(first:last))
+          along = [(cross_product(normal, model%x(:, node(k)) - model%x(:, model%pair_node(2, pair))), &
+                    k=1, size(node))]
+          lever = dot_product(weight, along)
+          much = abs(weight)/sum(abs(weight))
+          along = along - dot_product(much, along)
+          width = dot_product(much, along**2)
+          if (width <= 0.0_wp .or. abs(lever) <= rounded_off*sqrt(width)) return
+          weight = weight - lever/width*much*along
+          model%pair_node(1, pair) = node(minloc(weight, dim=1))
+        end associate
+      end associate
+    end subroutine move_weights
   end subroutine balance_pairs
 
   !> The place where lines meet, but for what places on a line may differ by, and how far from there their own
@@ -97,28 +121,4 @@ contains
     end function levers_about
   end subroutine find_centre
 
-  !> The master's nodes share in a gap so that the counterforce lies on the line of the force: where they do
-  !! not, some of their weights go along the boundary from one to the other.
-  pure subroutine move_weights(model, pair)
-    type(model_type), intent(inout) :: model
-    integer, intent(in) :: pair
-    real(wp), allocatable :: along(:), much(:)   ! of the master's nodes: places along the boundary; weights
-    real(wp) :: lever, width
-    integer :: k
-
-    associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1, &
-               normal => model%normal(:, pair))
-      associate (weight => model%row_weight(first:last), node => model%row_node(first:last))
-        along = [(cross_product(normal, model%x(:, node(k)) - model%x(:, model%pair_node(2, pair))), &
-                  k=1, size(node))]
-        lever = dot_product(weight, along)
-        much = abs(weight)/sum(abs(weight))
-        along = along - dot_product(much, along)
-        width = dot_product(much, along**2)
-        if (width <= 0.0_wp .or. abs(lever) <= rounded_off*sqrt(width)) return
-        weight = weight - lever/width*much*along
-        model%pair_node(1, pair) = node(minloc(weight, dim=1))
-      end associate
-    end associate
-  end subroutine move_weights
 end module epcont_contact_geometry_balance

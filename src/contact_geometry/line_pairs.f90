@@ -38,8 +38,8 @@ contains
                                                   k=1, size(contact%came_near))])
     contact%first = model%pairs + 1
     contact%first_of_master = contact%first + size(faces%row)
-    call append_pairs(faces%row, rows, model)
-    call append_pairs(tips, rows_of_tips(), model)
+    call append_pairs(faces%row, rows)
+    call append_pairs(tips, rows_of_tips())
     contact%last = model%pairs
     without = .false.
     associate (side => contact%left_out(1, :), which => contact%left_out(2, :))
@@ -98,31 +98,31 @@ contains
         end associate
       end do
     end function rows_of_tips
+
+    !> Pairs behind those that count so far. In their rows of N node B has weight 1, the others have theirs,
+    !! less than zero; of these the largest is A.
+    subroutine append_pairs(b, row)
+      type(node_face), intent(in) :: b(:)      !! and what it faces [rows]
+      type(mortar_row), intent(in) :: row(:)
+      integer :: a(size(b)), start(size(b) + 1), i, n
+
+      start(1) = model%row_start(model%pairs + 1)
+      do i = 1, size(b)
+        a(i) = row(i)%node(maxloc(row(i)%weight, dim=1))
+        start(i + 1) = start(i) + size(row(i)%node) + 1
+      end do
+      associate (before => model%pairs, entries => start(1) - 1)
+        n = before + size(b)
+        model%row_start = [model%row_start(:before), start]
+        model%row_node = [model%row_node(:entries), (b(i)%node, row(i)%node, i=1, size(b))]
+        model%row_weight = [model%row_weight(:entries), (1.0_wp, -row(i)%weight, i=1, size(b))]
+        model%pair_id = [model%pair_id(:before), model%node_id(b%node)]
+        model%pair_node = reshape([model%pair_node(:, :before), (a(i), b(i)%node, i=1, size(b))], [2, n])
+        model%normal = reshape([model%normal(:, :before), (b(i)%normal, i=1, size(b))], [2, n])
+        model%initial_gap = [model%initial_gap(:before), b%gap]
+      end associate
+      model%pairs = n
+    end subroutine append_pairs
   end subroutine add_pairs
 
-  !> Pairs behind those that count so far. In their rows of N node B has weight 1, the others have theirs,
-  !! less than zero; of these the largest is A.
-  pure subroutine append_pairs(b, row, model)
-    type(node_face), intent(in) :: b(:)      !! and what it faces [rows]
-    type(mortar_row), intent(in) :: row(:)
-    type(model_type), intent(inout) :: model
-    integer :: a(size(b)), start(size(b) + 1), i, n
-
-    start(1) = model%row_start(model%pairs + 1)
-    do i = 1, size(b)
-      a(i) = row(i)%node(maxloc(row(i)%weight, dim=1))
-      start(i + 1) = start(i) + size(row(i)%node) + 1
-    end do
-    associate (before => model%pairs, entries => start(1) - 1)
-      n = before + size(b)
-      model%row_start = [model%row_start(:before), start]
-      model%row_node = [model%row_node(:entries), (b(i)%node, row(i)%node, i=1, size(b))]
-      model%row_weight = [model%row_weight(:entries), (1.0_wp, -row(i)%weight, i=1, size(b))]
-      model%pair_id = [model%pair_id(:before), model%node_id(b%node)]
-      model%pair_node = reshape([model%pair_node(:, :before), (a(i), b(i)%node, i=1, size(b))], [2, n])
-      model%normal = reshape([model%normal(:, :before), (b(i)%normal, i=1, size(b))], [2, n])
-      model%initial_gap = [model%initial_gap(:before), b%gap]
-    end associate
-    model%pairs = n
-  end subroutine append_pairs
 end module epcont_contact_geometry_line_pairs

@@ -73,7 +73,7 @@ contains
     do s = 1, size(points)
       points(s) = cut_side()
       points(s)%covered = points(s)%covered .and. is_even()
-      call set_integrals(points(s), contact%slave%segment(3, s) > 0)
+      call set_integrals()
       associate (own => pack(faces%row_of(:, s), faces%row_of(:, s) > 0))
         area(own) = area(own) + pack(points(s)%integral, faces%row_of(:, s) > 0)
       end associate
@@ -178,6 +178,26 @@ contains
       end associate
     end function is_even
 
+    !> Integrals of the shape functions of a side's nodes, and where it is covered the dual functions.
+    subroutine set_integrals()
+      real(wp) :: dual(3, 3), mass(3, 3)
+      integer :: j, k, p
+
+      associate (own => points(s), n => points(s)%share, w => points(s)%weight, &
+                 integral => points(s)%integral)
+        integral = [(sum(w*n(k, :)), k=1, 3)]
+        if (.not. own%covered) return
+        mass = reshape([((sum(w*n(j, :)*n(k, :)), j=1, 3), k=1, 3)], [3, 3])
+        if (contact%slave%segment(3, s) == 0) mass(3, 3) = sum(integral)
+        integral = max(integral, no_area*sum(integral))
+        dual = spread(integral, 2, 3)*inverse(mass)
+        allocate (own%dual(3, size(w)))
+        do p = 1, size(w)
+          own%dual(:, p) = w(p)*matmul(dual, n(:, p))
+        end do
+      end associate
+    end subroutine set_integrals
+
     !> Add what a side makes of the rows of its nodes: one that is covered by its points, others at the nodes.
     subroutine add_side()
       integer :: k, p
@@ -216,27 +236,6 @@ contains
       end associate
     end subroutine add
   end subroutine find_mortar_rows
-
-  !> Integrals of the shape functions of a side's nodes, and where it is covered the dual functions.
-  pure subroutine set_integrals(points, curved)
-    type(side_points), intent(inout) :: points
-    logical, intent(in) :: curved              !! the side has a middle node
-    real(wp) :: dual(3, 3), mass(3, 3)
-    integer :: j, k, p
-
-    associate (n => points%share, w => points%weight, integral => points%integral)
-      integral = [(sum(w*n(k, :)), k=1, 3)]
-      if (.not. points%covered) return
-      mass = reshape([((sum(w*n(j, :)*n(k, :)), j=1, 3), k=1, 3)], [3, 3])
-      if (.not. curved) mass(3, 3) = sum(integral)
-      integral = max(integral, no_area*sum(integral))
-      dual = spread(integral, 2, 3)*inverse(mass)
-      allocate (points%dual(3, size(w)))
-      do p = 1, size(w)
-        points%dual(:, p) = w(p)*matmul(dual, n(:, p))
-      end do
-    end associate
-  end subroutine set_integrals
 
   !> By cofactors.
   pure function inverse(a) result(b)

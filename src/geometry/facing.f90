@@ -130,7 +130,8 @@ contains
     !> Does a body stand between the point and what it faces?
     pure logical function is_blocked(face)
       type(facing_type), intent(in) :: face
-      real(wp) :: near(2), place(2)
+      ! Parts of the way that do not count at its ends; of the way and of a side, where they cross
+      real(wp) :: near(2), part(2), place(2)
       integer, allocatable :: between(:)
       integer :: i
 
@@ -141,7 +142,11 @@ contains
       place = ahead - face%gap*face%normal
       between = obstacles%in_box(min(ahead, place), max(ahead, place))
       do i = 1, size(between)
-        is_blocked = crosses(ahead, place, near, obstacles%x(:, :2, between(i)))
+        associate (side => obstacles%x(:, :2, between(i)))
+          part = crossing(ahead, place - ahead, side(:, 1), side(:, 2) - side(:, 1))
+        end associate
+        is_blocked = part(1) > near(1) .and. part(1) < 1.0_wp - near(2) .and. &
+                     part(2) >= 0.0_wp .and. part(2) <= 1.0_wp
         if (is_blocked) return
       end do
     end function is_blocked
@@ -215,15 +220,4 @@ contains
 
     rise_of = rise*line%chord_length(side)*norm2(line%normal(:, 2, side) - line%normal(:, 1, side))
   end function rise_of
-
-  !> Does a side cross the way from a to b, not near its ends?
-  pure logical function crosses(a, b, near, side)
-    real(wp), intent(in) :: a(2), b(2), side(2, 2)
-    real(wp), intent(in) :: near(2)   !! part of the way that does not count at a, at b
-    real(wp) :: part(2)
-
-    part = crossing(a, b - a, side(:, 1), side(:, 2) - side(:, 1))
-    crosses = part(2) >= 0.0_wp .and. part(2) <= 1.0_wp .and. &
-              part(1) > near(1) .and. part(1) < 1.0_wp - near(2)
-  end function crosses
 end module epcont_geometry_facing

@@ -31,29 +31,59 @@ contains
     real(wp), intent(in) :: strain(components)      !! xx, yy, zz, xy
     type(point_state), intent(in) :: committed      !! without effect
     type(point_state), intent(out) :: trial         !! found
-
     real(wp) :: in_space(components)
 
     in_space = strain
-    if (self%sheet) in_space(3) = strain_across(self, strain)
-    trial = state_in_space(self, in_space)
+    if (self%sheet) in_space(3) = strain_across()
+    trial = state_in_space(in_space)
     if (self%sheet) trial%stress(3) = 0.0_wp
+
+  contains
+
+    !> The state with the strain zz as it is given.
+    pure function state_in_space(strain) result(state)
+      real(wp), intent(in) :: strain(components)
+      type(point_state) :: state
+      real(wp) :: deviator(components)
+
+      deviator = deviator_of(strain)
+      state%across = strain(3)
+      state%deviatoric = sqrt((sum(deviator**2) + deviator(4)**2)*2.0_wp/3.0_wp)
+      state%curve_value = self%curve%at_strain(state%deviatoric)
+      state%stress = 2.0_wp/3.0_wp*state%modulus*deviator
+      state%stress(:3) = state%stress(:3) + 3.0_wp*self%bulk*(sum(strain(:3))/3.0_wp)
+    end function state_in_space
+
+    !> The strain across a sheet in plane stress, where the stress across vanishes. That stress rises with the
+    !! strain, and has its zero between that of the elastic sheet and that of constant volume.
+    pure real(wp) function strain_across() result(across)
+      type(point_state) :: state
+      real(wp) :: deviator(components), elastic, low, high, next, rate
+      integer :: step
+
+      elastic = -(self%bulk - 2.0_wp*self%shear/3.0_wp)/(self%bulk + 4.0_wp*self%shear/3.0_wp)
+      across = elastic*(strain(1) + strain(2))
+      if (.not. self%yields) return
+      low = min(across, -(strain(1) + strain(2)))
+      high = max(across, -(strain(1) + strain(2)))
+      do step = 1, most_steps
+        state = state_in_space([strain(:2), across, strain(4)])
+        if (.not. state%yielded .and. step == 1) return
+        if (state%stress(3) == 0.0_wp) return
+        if (state%stress(3) > 0.0_wp) high = across
+        if (state%stress(3) < 0.0_wp) low = across
+        rate = self%bulk + 4.0_wp/9.0_wp*state%modulus
+        if (.not. self%curve%paper_ratio) then
+          deviator = deviator_of([strain(:2), across, strain(4)])
+          rate = rate + radial_stiffness(state)*deviator(3)**2
+        end if
+        next = across - state%stress(3)/rate
+        if (next <= low .or. next >= high) next = 0.5_wp*(low + high)
+        if (abs(next - across) <= epsilon(1.0_wp)*abs(next)) return
+        across = next
+      end do
+    end function strain_across
   end subroutine update
-
-  !> The state with the strain zz as it is given.
-  pure function state_in_space(self, strain) result(state)
-    class(total_theory), intent(in) :: self
-    real(wp), intent(in) :: strain(components)
-    type(point_state) :: state
-    real(wp) :: deviator(components)
-
-    deviator = deviator_of(strain)
-    state%across = strain(3)
-    state%deviatoric = sqrt((sum(deviator**2) + deviator(4)**2)*2.0_wp/3.0_wp)
-    state%curve_value = self%curve%at_strain(state%deviatoric)
-    state%stress = 2.0_wp/3.0_wp*state%modulus*deviator
-    state%stress(:3) = state%stress(:3) + 3.0_wp*self%bulk*(sum(strain(:3))/3.0_wp)
-  end function state_in_space
 
   !> Deviator of a strain, with the tensor's shear strain.
   pure function deviator_of(strain) result(deviator)
@@ -62,38 +92,6 @@ contains
 
     deviator = [strain(:3) - sum(strain(:3))/3.0_wp, 0.5_wp*strain(4)]
   end function deviator_of
-
-  !> The strain across a sheet in plane stress, where the stress across vanishes. That stress rises with the
-  !! strain, and has its zero between that of the elastic sheet and that of constant volume.
-  pure real(wp) function strain_across(self, strain) result(across)
-    class(total_theory), intent(in) :: self
-    real(wp), intent(in) :: strain(components)
-    type(point_state) :: state
-    real(wp) :: deviator(components), elastic, low, high, next, rate
-    integer :: step
-
-    elastic = -(self%bulk - 2.0_wp*self%shear/3.0_wp)/(self%bulk + 4.0_wp*self%shear/3.0_wp)
-    across = elastic*(strain(1) + strain(2))
-    if (.not. self%yields) return
-    low = min(across, -(strain(1) + strain(2)))
-    high = max(across, -(strain(1) + strain(2)))
-    do step = 1, most_steps
-      state = state_in_space(self, [strain(:2), across, strain(4)])
-      if (.not. state%yielded .and. step == 1) return
-      if (state%stress(3) == 0.0_wp) return
-      if (state%stress(3) > 0.0_wp) high = across
-      if (state%stress(3) < 0.0_wp) low = across
-      rate = self%bulk + 4.0_wp/9.0_wp*state%modulus
-      if (.not. self%curve%paper_ratio) then
-        deviator = deviator_of([strain(:2), across, strain(4)])
-        rate = rate + radial_stiffness(state)*deviator(3)**2
-      end if
-      next = across - state%stress(3)/rate
-      if (next <= low .or. next >= high) next = 0.5_wp*(low + high)
-      if (abs(next - across) <= epsilon(1.0_wp)*abs(next)) return
-      across = next
-    end do
-  end function strain_across
 
   !> What the tangent has less than the secant along the deviator: (4/9) (h - E_D)/e**2 [stress].
   pure real(wp) function radial_stiffness(state)
