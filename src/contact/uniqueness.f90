@@ -105,11 +105,12 @@ contains
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]
     real(wp), allocatable :: closing(:, :), loose(:, :)
-    integer :: j, k
+    integer :: j, pair(size(pressed))
 
     allocate (free(size(motion, 2)), source=.false.)
-    loose = null_space(motion(pack([(k, k=1, size(pressed))], pressed), :), null_component)
-    closing = matmul(motion(pack([(k, k=1, size(pressed))], touching .and. .not. pressed), :), loose)
+    pair = [(j, j=1, size(pair))]
+    loose = null_space(motion(pack(pair, pressed), :), null_component)
+    closing = matmul(motion(pack(pair, touching .and. .not. pressed), :), loose)
     do j = 1, size(free)
       if (all(abs(loose(j, :)) <= null_component)) cycle
       free(j) = .not. (can_carry(closing, loose(j, :)) .and. can_carry(closing, -loose(j, :)))

@@ -45,7 +45,7 @@ contains
     do k = 1, sides
       if (before(k) /= k) after(before(k)) = k
     end do
-    chain = chained(after)
+    chain = chained()
     call find_parts()
     outline%sides = sides
     outline%node = reshape([(model%edge(free(2, k), free(1, k)), k=1, sides)], [3, sides])
@@ -115,6 +115,24 @@ contains
         outline%part_of(i) = part(set(i))
       end do
     end subroutine find_parts
+
+    !> The sides, each behind the one before it, as the first of them come.
+    pure function chained() result(chain)
+      integer :: chain(sides), k, n, s
+      logical :: done(sides)
+
+      done = .false.
+      n = 0
+      do s = 1, sides
+        k = s
+        do while (.not. done(k))
+          done(k) = .true.
+          n = n + 1
+          chain(n) = k
+          k = after(k)
+        end do
+      end do
+    end function chained
   end function find_outline
 
   !> Where in a list a node stands; 0: nowhere.
@@ -140,24 +158,4 @@ contains
       last = beside
     end do
   end function fan_end
-
-  !> The sides, each behind the one before it, as the first of them come.
-  pure function chained(after) result(chain)
-    integer, intent(in) :: after(:)
-    integer :: chain(size(after))
-    logical :: done(size(after))
-    integer :: k, n, s
-
-    done = .false.
-    n = 0
-    do s = 1, size(after)
-      k = s
-      do while (.not. done(k))
-        done(k) = .true.
-        n = n + 1
-        chain(n) = k
-        k = after(k)
-      end do
-    end do
-  end function chained
 end module epcont_contact_geometry_free_sides

@@ -13,7 +13,7 @@ module epcont_contact_geometry_mortar
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_geometry_boundary_line, only: beyond, boundary_line, facing_type
   use epcont_geometry_facing, only: find_facing, looking_point, rise_of
-  use epcont_geometry_plane, only: right_of
+  use epcont_geometry_plane, only: right_of, unit
   use epcont_model_model, only: line_contact
   implicit none
   private
@@ -116,7 +116,7 @@ contains
         points%weight(p) = points%weight(p)*norm2(tangent)
         if (ring) &
           points%weight(p) = points%weight(p)*dot_product(points%share(:, p), contact%slave%x(1, :, s))
-        from%outward = right_of(tangent)/norm2(tangent)
+        from%outward = unit(right_of(tangent))
         from%along = 0.5_wp*tangent
         face = find_facing(contact%master, obstacles, from, contact%search)
         points%facing(p) = face(1)

@@ -261,13 +261,12 @@ contains
     pure function has_pair(node)
       integer, intent(in) :: node(3)
       logical :: has_pair(3)
-      real(wp) :: along(2), across(2)
+      real(wp) :: across(2)
       integer :: i, k
 
       has_pair = .false.
       if (node(3) == 0) return
-      along = model%x(:, node(2)) - model%x(:, node(1))
-      across = [along(2), -along(1)]/norm2(along)
+      across = unit(right_of(model%x(:, node(2)) - model%x(:, node(1))))
       do k = 1, 3
         associate (pairs => around%of(node(k)))
           has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))) >= same_way, &

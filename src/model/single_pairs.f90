@@ -63,7 +63,7 @@ contains
 
     !> Shortest edge at each node; 0 at nodes without elements, which say nothing of the mesh's size.
     pure function shortest_edge() result(edge)
-      real(wp) :: edge(model%nodes), length
+      real(wp) :: edge(model%nodes)
       integer :: e, k, side(3)
 
       edge = huge(1.0_wp)
@@ -72,8 +72,7 @@ contains
         do k = 1, model%corners(e)
           side = model%edge(e, k)
           associate (node => side(:merge(3, 2, side(3) > 0)))
-            length = norm2(model%x(:, side(1)) - model%x(:, side(2)))/(size(node) - 1)
-            edge(node) = min(edge(node), length)
+            edge(node) = min(edge(node), norm2(model%x(:, side(1)) - model%x(:, side(2)))/(size(node) - 1))
           end associate
         end do
       end do

@@ -50,11 +50,8 @@ contains
     real(wp), intent(in) :: begun            !! [s]
     type(expectation_type) :: expected
 
-    expected%plan = plan
-    expected%most_iterations = most_iterations
-    expected%begun = begun
-    expected%solved_at = begun
-    expected%first_solve = begun + operations/likely_rate
+    expected = expectation_type(first_solve=begun + operations/likely_rate, plan=plan, &
+                                most_iterations=most_iterations, begun=begun, solved_at=begun)
     if (.not. plan%yields) expected%seconds = expected%first_solve + end_part*begun
   end function new_expectation
 
