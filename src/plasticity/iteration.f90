@@ -159,7 +159,8 @@ contains
           if (iteration == 1 .or. found%contact%state /= contact_stalled) call move_alloc(found, state)
           return
         end if
-        call judge(iteration, found)
+        now = iteration_record(iteration=iteration)
+        call judge(found)
         travel = maxval(abs(found%displacement))
         if (iteration == 1) farthest = far_away*travel
         ! A state far away is none to show: its numbers may be at the end of their range.
@@ -211,17 +212,14 @@ contains
     end subroutine set_law
 
     !> Add a solve to the history, what it has changed and left. Was it the last, or a further one by tangent?
-    subroutine judge(iteration, found)
-      integer, intent(in) :: iteration
+    subroutine judge(found)
       type(scene_state), allocatable, intent(inout) :: found
 
-      now = iteration_record(iteration=iteration)
       call measure(found)
       call estimate_errors(found)
       if (now%yielded + yielded == 0 .or. now%residual <= solved_to .and. now%error < 0.0_wp) then
-        ! What changes is rounding, if anything.
-        now%error = merge(now%change, 0.0_wp, iteration > 1)
-        now%force_error = merge(now%force_change, 0.0_wp, iteration > 1)
+        now%error = merge(now%change, 0.0_wp, now%iteration > 1)   ! what changes is rounding, if anything
+        now%force_error = merge(now%force_change, 0.0_wp, now%iteration > 1)
       end if
       call keep(found)
       converged = is_over()
@@ -307,14 +305,11 @@ contains
     !! the tolerance. Where nothing has yielded, the first solve was exact; and where stresses are on their
     !! curves to rounding while the changes fall no more, rounding allows no smaller ones.
     pure logical function is_over()
-      integer :: n
-
-      n = size(answer%history)
       is_over = now%yielded + yielded == 0
       if (now%change <= plan%tolerance .and. now%residual <= plan%off_curve) is_over = is_over .or. &
         now%residual <= solved_to .or. now%error >= 0.0_wp .and. doubt*now%error <= plan%tolerance
       if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
-        is_over = is_over .or. now%change >= answer%history(n - 2)%change
+        is_over = is_over .or. now%change >= answer%history(size(answer%history) - 2)%change
     end function is_over
 
     !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
