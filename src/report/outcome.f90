@@ -10,6 +10,7 @@ module epcont_report_outcome
   use epcont_base_tolerances, only: lost_digits, no_effect
   use epcont_certificate_certificate, only: figure_name
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
+  use epcont_element_kinematics, only: directions
   use epcont_model_controls, only: precision_name
   use epcont_model_finding, only: findings, of_node, of_scene
   use epcont_report_columns, only: percent
@@ -37,7 +38,10 @@ module epcont_report_outcome
 
   !> Pairs that are named.
   integer, parameter, public :: most_pairs = 8
-  character(len=*), parameter :: reason = &
+  !> A component of the force on a body is warned of where its error is as large, but for a tenth, and it is
+  !! some of the total contact force.
+  real(wp), parameter :: as_much = 0.9_wp, of_total = 0.01_wp
+  character(len=*), parameter :: axis_name(2) = ['x', 'y'], reason = &
     'elements differ too much in size or stiffness, hardly anything resists a motion, '// &
     'a body is too slender, or a Poisson''s ratio is too near 0.5'
 
@@ -112,7 +116,7 @@ contains
       k = maxloc(abs(run%answer%contact%escape), dim=1)
       text = body_name(run%motions%body(k))//' moves off and no contact holds it: '// &
              run%model%name_of(of_node, run%motions%node(k))//' moves along '// &
-             merge('-', '+', run%answer%contact%escape(k) < 0)//merge('x', 'y', run%motions%component(k) == 1)
+             merge('-', '+', run%answer%contact%escape(k) < 0)//axis_name(run%motions%component(k))
     end function escaping
 
     !> Why no set of pairs passed the test.
@@ -219,6 +223,7 @@ contains
     integer :: k, vague
 
     call warn_of_contact()
+    call warn_of_forces()
     do k = 1, scene_warnings
       if (k == side_changed .and. run%answer%gradient%part > 0.0_wp) then
         call warn('displacements are not small: '//text_of(nint(100.0_wp*run%answer%gradient%part))// &
@@ -261,6 +266,24 @@ contains
                   short_real(gap(nearest))//' away')
       end associate
     end subroutine warn_of_contact
+
+    !> A component that narrow contact has by how its normals lean alone, and that may hold a body.
+    subroutine warn_of_forces()
+      real(wp) :: error, force
+      integer :: c, i
+
+      if (.not. allocated(run%accuracy%body_force)) return
+      do i = 1, size(run%answer%bodies)
+        do c = 1, directions
+          force = abs(run%answer%bodies(i)%resultant(c))
+          error = run%accuracy%body_force(c, i)
+          if (error < as_much*force .or. force < of_total*sum(run%answer%contact%force)) cycle
+          call warn('contact may not bear '//short_real(force)//' along '//axis_name(c)// &
+                    ' on the body of '//first_grid(run%model, run%model%body == run%answer%bodies(i)%body)// &
+                    ': its error is as large, normals lean there; what rests on it may slide')
+        end do
+      end do
+    end subroutine warn_of_forces
 
     !> Elements that are too stiff, strained too far, or unloaded.
     subroutine warn_of_material()
