@@ -35,7 +35,7 @@ contains
     allocate (model%line(deck%card(card_blseg)%count), model%couple(deck%card(card_bconp)%count))
     model%line%id = nint(deck%card(card_blseg)%value(1, :))
     model%couple%id = nint(deck%card(card_bconp)%value(1, :))
-    do i = 1, deck%card(card_blseg)%count
+    do i = 1, size(model%line)
       call read_line()
     end do
     do k = 1, 2

@@ -217,8 +217,7 @@ contains
     do at = 1, min(width, len(text))
       if (iachar(text(at:at)) > iachar(' ')) exit
     end do
-    continues = at > width
-    if (.not. continues) continues = text(at:at) == ','
+    continues = at > width .or. text(at:at) == ','
   end function continues
 
   !> The name of a card in its first line; a `*` behind it means large fields.

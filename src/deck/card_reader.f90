@@ -85,14 +85,12 @@ contains
 
     !> A blank field has its default, or the value of another; some may not be blank.
     subroutine take_blank()
-      logical :: needed
 
       associate (field => table%entry%field(slot), i => table%count)
         table%value(slot, i) = field%default
         if (field%same_as /= 0) table%value(slot, i) = table%value(slot + field%same_as, i)
-        needed = field%required
-        if (field%with /= 0) needed = needed .or. card%filled(slot + field%with)
-        if (needed) call refuse(slot, 'is blank', field%allowed())
+        if (field%required .or. card%filled(slot + field%with)) &
+          call refuse(slot, 'is blank', field%allowed())
       end associate
     end subroutine take_blank
 

@@ -165,11 +165,9 @@ contains
 
     bulk = 1
     do line = 1, lines%count
-      if (lines%blank(line)) cycle
       if (scan(lines%text(lines%line(line)%first:lines%line(line)%first), 'Bb ') == 0) cycle
       text = upper(adjustl(lines%text_of_line(line)))
-      if (index(text, 'BEGIN ') /= 1) cycle
-      if (adjustl(text(6:)) == 'BULK') then
+      if (index(text, 'BEGIN ') == 1 .and. adjustl(text(6:)) == 'BULK') then
         bulk = line + 1
         return
       end if

@@ -190,7 +190,7 @@ contains
       case ('noted')
         field%used = .false.
       case ('heard_to')
-        read (word(equals + 1:), *) field%heard_to
+        field%heard_to = number
       case ('point_optional')
         field%point_optional = .true.
       case ('as_last')

@@ -137,7 +137,7 @@ contains
     type(decimal), intent(out) :: parts
     integer, intent(out) :: outcome
     integer :: at, first
-    integer(i8) :: digit
+    integer(i8) :: digit, exponent
 
     outcome = scan_malformed
     if (len(text) == 0) return
@@ -160,27 +160,13 @@ contains
     parts%mantissa_last = at - 1
     if (at - first == merge(1, 0, parts%point > 0)) return   ! without a digit
     if (at <= len(text)) then
-      call take_exponent(text(at:), parts%exponent, outcome)
-      if (outcome /= scan_sound) return
+      first = at + merge(1, 0, scan(text(at:at), 'EeDd') == 1)
+      if (first > at .or. is_sign(text(at:at))) call scan_integer(text(first:), exponent, outcome)
+      if (outcome == scan_malformed) return
+      parts%exponent = int(max(-endless_exponent, min(exponent, endless_exponent)))
     end if
     outcome = merge(scan_sound, scan_no_point, parts%point > 0)
   end subroutine take_apart
-
-  !> The exponent of a real, from its letter or sign to the end of the field.
-  pure subroutine take_exponent(text, exponent, outcome)
-    character(len=*), intent(in) :: text
-    integer, intent(out) :: exponent
-    integer, intent(out) :: outcome
-    integer(i8) :: number
-    integer :: first
-
-    number = 0
-    outcome = scan_malformed
-    first = merge(2, 1, scan(text(1:1), 'EeDd') == 1)
-    if (first == 2 .or. is_sign(text(1:1))) call scan_integer(text(first:), number, outcome)
-    if (outcome == scan_too_large) outcome = scan_sound
-    exponent = int(max(-endless_exponent, min(number, endless_exponent)))
-  end subroutine take_exponent
 
   !> Directions: digits from 1 to 6, each at most once, such as `12`.
   pure subroutine scan_components(text, number, outcome)
@@ -202,9 +188,7 @@ contains
     character(len=8), intent(out) :: word   !! in capitals, cut at eight characters
     integer, intent(out) :: outcome   !! one of the outcomes above
 
-    word = ''
     outcome = scan_malformed
-    if (len(text) == 0) return
     word = upper(text(:min(8, len(text))))
     if (word(1:1) < 'A' .or. word(1:1) > 'Z' .or. index(text, ' ') > 0) return
     outcome = merge(scan_too_long, scan_sound, len(text) > 8)

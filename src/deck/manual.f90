@@ -43,12 +43,9 @@ contains
 
     text = trim(entry%name)//': '//entry%meaning//newline//newline// &
            'field  columns  name   kind     default  use    meaning [unit], range'//newline
-    if (allocated(entry%list_name)) then
-      field = entry%field
-    else   ! the rest of its last line must be blank
-      field = [entry%field, (field_entry(), slot=size(entry%field) + 1, &
-                             fields_a_line*((size(entry%field) + fields_a_line - 1)/fields_a_line))]
-    end if
+    field = entry%field
+    if (.not. allocated(entry%list_name)) &   ! the rest of its last line must be blank
+      field = [field, (field_entry(), slot=1, modulo(-size(field), fields_a_line))]
     do slot = 1, size(field)
       if (field(slot)%kind == kind_blank) then
         call add_row('', '', '', '', 'blank', 'must be blank')

@@ -122,8 +122,7 @@ contains
       character(len=:), allocatable :: line, text
       integer :: first, last, left
 
-      left = 0
-      if (fault%place%last > width) left = max(0, min(fault%place%first - 1, fault%place%last - width))
+      left = max(0, min(fault%place%first - 1, fault%place%last - width))
       line = printable(lines%whole_line(fault%place%line, left + 1, width))
       first = fault%place%first - left
       last = min(fault%place%last - left, width)
