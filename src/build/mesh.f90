@@ -72,7 +72,7 @@ contains
       associate (mat1 => deck%card(card_mat1), mats1 => deck%card(card_mats1))
         allocate (material(mat1%count))
         do i = 1, mat1%count
-          if (mat1%sound(i)) call read_elasticity(i, material(i)%young, material(i)%poisson)
+          if (mat1%sound(i)) call read_elasticity(i)
         end do
         call resolve(deck, card_mats1, 1, index_of(deck, card_mat1), found, m)
         call resolve(deck, card_mats1, mats1%column('TID'), index_of(deck, card_tables1), found, table)
@@ -84,12 +84,11 @@ contains
     end subroutine read_materials
 
     !> MAT1: E and NU from two of E, G, NU.
-    subroutine read_elasticity(i, young, poisson)
+    subroutine read_elasticity(i)
       integer, intent(in) :: i
-      real(wp), intent(out) :: young, poisson
       real(wp) :: shear
 
-      associate (mat1 => deck%card(card_mat1))
+      associate (mat1 => deck%card(card_mat1), young => material(i)%young, poisson => material(i)%poisson)
         young = mat1%number('E', i)
         shear = mat1%number('G', i)
         poisson = mat1%number('NU', i)

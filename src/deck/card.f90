@@ -170,7 +170,7 @@ contains
     subroutine cut_fixed()
       integer :: slot, step, left, from, to
 
-      step = merge(width, 2*width, fields == fields_a_line)
+      step = width*fields_a_line/fields
       left = width
       do slot = first_slot, first_slot + fields - 1
         from = before + left + 1

@@ -253,12 +253,11 @@ contains
     word = ''
     if (len(line) == 0) return
     if (.not. any(line(1:1) == ['I', 'i', 'E', 'e', ' '])) return
-    at = max(verify(line, ' '), 1)
+    at = verify(line, ' ')
     if (len(line) < at + 6) return
     word = upper(line(at:at + 6))
-    if (word /= 'ENDDATA' .and. word /= 'INCLUDE') word = ''
-    if (word == '' .or. len(line) == at + 6) return
-    if (scan(upper(line(at + 7:at + 7)), 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789*') > 0) word = ''
+    if (all(word /= ['ENDDATA', 'INCLUDE']) .or. scan(upper(line(at + 7:min(at + 7, len(line)))), &
+        'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789*') > 0) word = ''   ! no such word, or a longer one
   end function statement
 
   !> The name between the quotes of an INCLUDE line; not allocated where there is none.

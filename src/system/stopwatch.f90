@@ -43,6 +43,7 @@ contains
   subroutine start(self)
     class(stopwatch), intent(inout) :: self
 
+    self%spent = 0.0_wp
     self%lap_began = now()
   end subroutine start
 
