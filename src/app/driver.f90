@@ -90,7 +90,7 @@ contains
       if (allocated(error)) return
       call say_lines(remark_lines(run%outcome%found, .false.))
       if (len(run%outcome%sentence) > 0) call say_lines(run%outcome%sentence//newline)
-      call say(one_line(name, run))
+      call say(one_line())
     end subroutine solve_deck
 
     !> Read and check.
@@ -125,23 +125,21 @@ contains
 
       if (.not. arguments%asks('--quiet')) call print_text(text, status)
     end subroutine say
+
+    !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh
+    !! shows, that too.
+    pure function one_line() result(text)
+      character(len=:), allocatable :: limit, text
+
+      text = name//'  '//run%outcome%word
+      if (.not. run%outcome%has_answer) return
+      if (run%model%pairs > 0) then
+        text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)
+        limit = limit_of_pressure(run)
+        if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
+      end if
+      if (run%motions%count > 0) &
+        text = text//'  approach'//right(listed_number(number, run%answer%contact%approach(1), 0.0_wp), 13)
+    end function one_line
   end subroutine run_deck
-
-  !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh
-  !! shows, that too.
-  pure function one_line(stem, run) result(text)
-    character(len=*), intent(in) :: stem
-    type(run_results), intent(in) :: run
-    character(len=:), allocatable :: limit, text
-
-    text = stem//'  '//run%outcome%word
-    if (.not. run%outcome%has_answer) return
-    if (run%model%pairs > 0) then
-      text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)
-      limit = limit_of_pressure(run)
-      if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
-    end if
-    if (run%motions%count > 0) &
-      text = text//'  approach'//right(listed_number(number, run%answer%contact%approach(1), 0.0_wp), 13)
-  end function one_line
 end module epcont_app_driver

@@ -38,7 +38,7 @@ contains
       end associate
     end do
     if (len(text) > 0) &
-      text = text//shown(lines%file_name(0))//': '//tally([faults%errors, faults%warnings], n(:2))//newline
+      text = text//shown(lines%file_name(0))//': '//tally()//newline
 
   contains
 
@@ -48,6 +48,22 @@ contains
 
       are_alike = one%what(index(one%what, ': ') + 1:) == other%what(index(other%what, ': ') + 1:)
     end function are_alike
+
+    !> `63 errors (50 shown), 1 warning`.
+    pure function tally() result(text)
+      character(len=:), allocatable :: text
+      character(len=*), parameter :: noun(2) = ['error  ', 'warning']
+      integer :: found(2), i
+
+      text = ''
+      found = [faults%errors, faults%warnings]
+      do i = 1, 2
+        if (found(i) == 0) cycle
+        if (len(text) > 0) text = text//', '
+        text = text//plural(found(i), trim(noun(i)))
+        if (found(i) > n(i)) text = text//' ('//text_of(n(i))//' shown)'
+      end do
+    end function tally
   end function render
 
   !> Warnings and notes in deck order, one line each, for the listing: without the name of the deck, and of
@@ -82,22 +98,6 @@ contains
       if (text(i:i) < ' ' .or. iachar(text(i:i)) > 126) printable(i:i) = '?'
     end do
   end function printable
-
-  !> `63 errors (50 shown), 1 warning`.
-  pure function tally(count, told) result(text)
-    integer, dimension(2), intent(in) :: count, told   !! errors, warnings: all, and those shown
-    character(len=:), allocatable :: text
-    character(len=*), parameter :: noun(2) = ['error  ', 'warning']
-    integer :: i
-
-    text = ''
-    do i = 1, 2
-      if (count(i) == 0) cycle
-      if (len(text) > 0) text = text//', '
-      text = text//plural(count(i), trim(noun(i)))
-      if (count(i) > told(i)) text = text//' ('//text_of(told(i))//' shown)'
-    end do
-  end function tally
 
   !> One fault: `hertz.dat:41:25-32: GRID 17: field 4 (X1) is not a real number`, line of the deck, carets and
   !! remedy.
