@@ -8,7 +8,7 @@ module epcont_contact_geometry_balance
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: coincident, rounded_off
   use epcont_geometry_plane, only: cross_product, unit
-  use epcont_model_model, only: model_type
+  use epcont_model_model, only: line_contact, model_type
   implicit none
   private
   public :: balance_pairs
@@ -38,7 +38,7 @@ contains
       associate (contact => model%line_contact(c), b => model%pair_node(2, :))
         associate (pairs => pack([(k, k=contact%first, contact%last)], &
                                  .not. cut(b(contact%first:contact%last))))
-          call turn_normals(pairs)
+          call turn_normals(contact, pairs)
           do i = 1, size(pairs)
             call move_weights(pairs(i))
           end do
@@ -48,22 +48,39 @@ contains
 
   contains
 
-    !> Have the normals of a contact's pairs meet in one point, if they nearly do.
-    subroutine turn_normals(pairs)
+    !> Have the normals of a contact's pairs meet in one point, where those of the slave's nodes nearly do. A
+    !! slave that is round itself, in a round hollow, has its own normals, not the hollow's: it may turn.
+    subroutine turn_normals(contact, pairs)
+      type(line_contact), intent(in) :: contact
       integer, intent(in) :: pairs(:)
-      real(wp) :: away(2), radius
-      integer :: nearest
+      real(wp) :: away(2), middle(2), outward(2, model%nodes), own(2), own_radius, radius
+      integer, allocatable :: turned(:)
+      integer :: side
 
-      call find_centre(model%x(:, model%pair_node(2, pairs)), model%normal(:, pairs), &
-                       centre(:, centres + 1), radius)
-      if (radius == 0.0_wp) return
-      do nearest = 1, centres
-        if (norm2(centre(:, nearest) - centre(:, centres + 1)) <= coincident*radius) exit
+      do side = 1, size(contact%slave%element)
+        do k = 1, merge(3, 2, contact%slave%segment(3, side) > 0)
+          outward(:, contact%slave%segment(k, side)) = contact%slave%normal(:, k, side)
+        end do
       end do
-      centres = max(centres, nearest)
-      do i = 1, size(pairs)
-        away = model%x(:, model%pair_node(2, pairs(i))) - centre(:, nearest)
-        model%normal(:, pairs(i)) = sign(1.0_wp, dot_product(model%normal(:, pairs(i)), away))*unit(away)
+      turned = pack(pairs, pairs < contact%first_of_master)
+      associate (node => model%pair_node(2, turned), normal => model%normal(:, turned))
+        call find_centre(model%x(:, node), normal, middle, radius)
+        if (radius == 0.0_wp) return
+        call find_centre(model%x(:, node), outward(:, node), own, own_radius)
+        if (own_radius > 0.0_wp .and. &
+            all(sum(normal*(model%x(:, node) - spread(middle, 2, size(node))), dim=1) < 0.0_wp)) then
+          middle = own
+          turned = pairs
+        end if
+      end associate
+      do k = 1, centres
+        if (norm2(centre(:, k) - middle) <= coincident*radius) exit
+      end do
+      if (k > centres) centre(:, k) = middle
+      centres = max(centres, k)
+      do i = 1, size(turned)
+        away = model%x(:, model%pair_node(2, turned(i))) - centre(:, k)
+        model%normal(:, turned(i)) = sign(1.0_wp, dot_product(model%normal(:, turned(i)), away))*unit(away)
       end do
     end subroutine turn_normals
 
@@ -102,10 +119,10 @@ contains
     radius = 0.0_wp
     across(1, :) = -direction(2, :)
     across(2, :) = direction(1, :)
-    matrix = matmul(across, transpose(across))/size(x, 2)
-    determinant = matrix(1, 1)*matrix(2, 2) - matrix(1, 2)**2   ! the trace is 1
-    if (determinant < least_turn) return
-    right = matmul(across, levers_about(x(:, 1)))/size(x, 2)
+    matrix = matmul(across, transpose(across))
+    determinant = matrix(1, 1)*matrix(2, 2) - matrix(1, 2)**2
+    if (determinant <= least_turn*size(x, 2)**2) return   ! the trace is the number of lines
+    right = matmul(across, levers_about(x(:, 1)))
     centre = x(:, 1) + [cross_product(right, matrix(:, 2)), cross_product(matrix(:, 1), right)]/determinant
     radius = minval(norm2(x - spread(centre, 2, size(x, 2)), dim=1))
     if (maxval(abs(levers_about(centre))) > coincident*radius) radius = 0.0_wp

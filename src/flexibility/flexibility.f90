@@ -2,7 +2,7 @@
 module epcont_flexibility_flexibility
   use epcont_assembly_stiffness, only: body_stiffness
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: cancelled
+  use epcont_base_tolerances, only: cancelled, solved_to
   use epcont_element_kinematics, only: directions
   use epcont_linalg_assembled, only: sparse_rows
   use epcont_linalg_dense, only: cholesky_solve
@@ -155,7 +155,7 @@ contains
       do k = 1, model%pairs
         first = model%row_start(k)
         last = model%row_start(k + 1) - 1
-        if (abs(closing(k, m)) <= cancelled*sum(abs(model%row_weight(first:last))* &
+        if (abs(closing(k, m)) <= solved_to*sum(abs(model%row_weight(first:last))* &
           norm2(moved(:, model%row_node(first:last)), dim=1))) closing(k, m) = 0.0_wp
       end do
       resultant(m) = 0.0_wp

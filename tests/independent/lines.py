@@ -348,17 +348,23 @@ def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g, told=None)
            if (one.mirrored[end] or one.corner[end]) and {(one.nodes[-end], 0), (one.nodes[-end], 1)} & held}
     centres = []
     for contact in contacts:
-        balance([pair for pair in contact.pairs if pair.node not in cut], place, centres)
+        own = {node: one.outward(k) for one in contact.slave.segments for k, node in enumerate(one.nodes)}
+        balance([pair for pair in contact.pairs if pair.node not in cut], place, centres, own)
     return [contact.pairs for contact in contacts]
 
 
-def balance(pairs, x, centres):
-    """Forces of round contact meet in one of the centres, to which a new one is added; each has its counterforce on its own line."""
-    centre, radius = centre_of([(x[pair.node], pair.normal) for pair in pairs])
+def balance(pairs, x, centres, own):
+    """Forces of round contact meet in one of the centres, to which a new one is added; each has its counterforce on its own line. A
+    round slave in a round hollow has its own normals, `own` by node."""
+    turned = [pair for pair in pairs if not pair.stands_on]
+    centre, radius = centre_of([(x[pair.node], pair.normal) for pair in turned])
     if radius:
+        middle, is_round = centre_of([(x[pair.node], own[pair.node]) for pair in turned])
+        if is_round and all(dot(pair.normal, [x[pair.node][c] - centre[c] for c in (0, 1)]) < 0 for pair in turned):
+            centre, turned = middle, pairs
         centre = next((other for other in centres if hypot(*(a - b for a, b in zip(other, centre))) <= ON_LINE * radius), centre)
         centres.append(centre)
-        for pair in pairs:
+        for pair in turned:
             away = [x[pair.node][c] - centre[c] for c in (0, 1)]
             pair.normal = [copysign(1.0, dot(pair.normal, away)) * v for v in unit(away)]
     for pair in pairs:
