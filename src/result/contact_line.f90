@@ -52,10 +52,11 @@ contains
   function find_contact_line(model) result(line)
     type(model_type), intent(in) :: model   !! the scene
     type(contact_line) :: line
-    type(incidence) :: at
+    type(incidence) :: at         !! each node: the pairs of the contact, of the slave where there are lines
     type(partition) :: places
+    type(line_contact) :: contact
     integer, allocatable :: place(:)
-    integer :: c, count
+    integer :: c, many
 
     associate (n => model%pairs, a => model%pair_node(1, :), b => model%pair_node(2, :))
       line%node = merge(b, a, model%around%start(b + 1) > model%around%start(b))
@@ -66,57 +67,53 @@ contains
       places = new_partition(n)
     end associate
     ! A node may have a pair in each of several contacts: neighbours are of one.
-    call find_edges(model, 1, model%single_pairs(), line, at)
+    call find_edges(1, model%single_pairs())
     do c = 1, size(model%line_contact)
-      associate (contact => model%line_contact(c))
-        call find_edges(model, contact%first, contact%first_of_master - 1, line, at)
-        call insert_masters(model, contact, at, line, places)
-      end associate
+      contact = model%line_contact(c)
+      call find_edges(contact%first, contact%first_of_master - 1)
+      if (contact%last >= contact%first_of_master) call insert_masters()
     end do
-    call places%numbers(place, count)
-    line%at_place = new_incidence(reshape(place, [1, model%pairs]), count)
-  end function find_contact_line
-
-  !> Edges at a range of pairs, and the neighbours among them.
-  pure subroutine find_edges(model, first, last, line, at)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: first, last
-    type(contact_line), intent(inout) :: line
-    type(incidence), intent(out) :: at   !! these pairs at each node
-    integer, allocatable :: sides(:, :)
-    real(wp) :: longest, share(3)
-    integer :: beside, end, i, k, pair, own
-
-    at = new_incidence(reshape(line%node(first:last), [1, last - first + 1]), model%nodes)
-    at%group = first - 1 + at%group
-    do pair = first, last
-      longest = 0.0_wp
-      sides = outer_sides(model, line%node(pair))
-      do i = 1, size(sides, 2)
-        associate (side => sides(:3, i), n => model%normal(:, pair))
-          longest = max(longest, norm2(model%x(:, side(2)) - model%x(:, side(1))))
-          if (.not. is_along(model, side, n)) cycle
-          own = findloc(side, line%node(pair), dim=1)
-          share = shares_of_nodes(model, sides(4, i), side, n)
-          if (abs(share(own)) <= no_area*sum(share)) share(own) = 0.0_wp
-          line%tributary(pair) = line%tributary(pair) + share(own)
-          line%middle(pair) = own == 3
-          if (own == 3) then
-            line%neighbour(:, pair) = [(pair_of_side(model, at, side, side(end)), end=1, 2)]
-          else
-            beside = merge(side(3), side(3 - own), side(3) > 0)
-            k = findloc(line%neighbour(:, pair), 0, dim=1)
-            if (k == 0) cycle
-            line%neighbour(k, pair) = pair_of_side(model, at, side, beside)
-            line%part(k, pair) = share(own)
-          end if
-        end associate
-      end do
-      if (any(line%neighbour(:, pair) == 0)) &
-        line%mirrored(pair) = is_on_symmetry(pair, line%node(pair), longest)
-    end do
+    call places%numbers(place, many)
+    line%at_place = new_incidence(reshape(place, [1, model%pairs]), many)
 
   contains
+
+    !> Edges at a range of pairs, and the neighbours among them.
+    subroutine find_edges(first, last)
+      integer, intent(in) :: first, last
+      integer, allocatable :: sides(:, :)
+      real(wp) :: longest, share(3)
+      integer :: beside, end, i, k, pair, own
+
+      at = new_incidence(reshape(line%node(first:last), [1, last - first + 1]), model%nodes)
+      at%group = first - 1 + at%group
+      do pair = first, last
+        longest = 0.0_wp
+        sides = outer_sides(model, line%node(pair))
+        do i = 1, size(sides, 2)
+          associate (side => sides(:3, i), n => model%normal(:, pair))
+            longest = max(longest, norm2(model%x(:, side(2)) - model%x(:, side(1))))
+            if (.not. is_along(side, n)) cycle
+            own = findloc(side, line%node(pair), dim=1)
+            share = shares_of_nodes(model, sides(4, i), side, n)
+            if (abs(share(own)) <= no_area*sum(share)) share(own) = 0.0_wp
+            line%tributary(pair) = line%tributary(pair) + share(own)
+            line%middle(pair) = own == 3
+            if (own == 3) then
+              line%neighbour(:, pair) = [(pair_of_side(side, side(end)), end=1, 2)]
+            else
+              beside = merge(side(3), side(3 - own), side(3) > 0)
+              k = findloc(line%neighbour(:, pair), 0, dim=1)
+              if (k == 0) cycle
+              line%neighbour(k, pair) = pair_of_side(side, beside)
+              line%part(k, pair) = share(own)
+            end if
+          end associate
+        end do
+        if (any(line%neighbour(:, pair) == 0)) &
+          line%mirrored(pair) = is_on_symmetry(pair, line%node(pair), longest)
+      end do
+    end subroutine find_edges
 
     !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there,
     !! and so is the other body where it ends at the same line, or all over if it is rigid; a body that goes
@@ -153,97 +150,44 @@ contains
 
       is_guided = model%held(along, node) .and. .not. model%is_held(3 - along, node)
     end function is_guided
-  end subroutine find_edges
 
-  !> The sides of the outline at a node: nodes at their start, their end, and between or 0, and whose they are
-  !! [4, any].
-  pure function outer_sides(model, node) result(sides)
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: node             !! any
-    integer, allocatable :: sides(:, :)
-    integer :: i, k, side(3)
+    !> Does a side lie along the tangent?
+    pure logical function is_along(side, n)
+      integer, intent(in) :: side(3)
+      real(wp), intent(in) :: n(directions)   !! normal of the contact
 
-    allocate (sides(4, 0))
-    associate (elements => model%around%of(node))
-      do i = 1, size(elements)
-        do k = 1, model%corners(elements(i))
-          side = model%edge(elements(i), k)
-          if (.not. any(side == node)) cycle
-          ! Elements that have both of its ends
-          if (count(model%connectivity(:, model%around%of(side(1))) == side(2)) > 1) cycle
-          sides = reshape([sides, side, elements(i)], [4, size(sides, 2) + 1])
-        end do
+      associate (edge => model%x(:, side(2)) - model%x(:, side(1)))
+        is_along = abs(dot_product(edge, n)) <= along_tangent*norm2(edge)
+      end associate
+    end function is_along
+
+    !> The pair that a side has at one of its nodes: of several there the one that presses on it the most
+    !! squarely; 0: none.
+    pure integer function pair_of_side(side, node) result(pair)
+      integer, intent(in) :: side(3), node   !! 0: none
+      integer, allocatable :: there(:)
+
+      pair = 0
+      if (node == 0) return
+      there = at%of(node)
+      if (size(there) > 0) pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), &
+                                                          model%normal(:, there))), dim=1))
+    end function pair_of_side
+
+    !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
+    !! them.
+    subroutine insert_masters()
+      type(incidence) :: on_side
+      integer, allocatable :: masters(:)
+      integer :: side
+
+      on_side = new_incidence(reshape(contact%stands_on, [1, size(contact%stands_on)]), &
+                              size(contact%slave%element))
+      do side = 1, size(contact%slave%element)
+        masters = contact%first_of_master - 1 + on_side%of(side)
+        if (size(masters) > 0) call link(side, run_on(side, masters))
       end do
-    end associate
-  end function outer_sides
-
-  !> Does a side lie along the tangent?
-  pure logical function is_along(model, side, n)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: side(3)
-    real(wp), intent(in) :: n(directions)   !! normal of the contact
-
-    associate (edge => model%x(:, side(2)) - model%x(:, side(1)))
-      is_along = abs(dot_product(edge, n)) <= along_tangent*norm2(edge)
-    end associate
-  end function is_along
-
-  !> What a uniform pressure on a side gives to each of its nodes, along a normal or in all, over that
-  !! pressure: their parts of its area [length**2].
-  pure function shares_of_nodes(model, element, side, normal) result(share)
-    type(model_type), intent(in) :: model          !! the scene
-    integer, intent(in) :: element, side(3)        !! the side's, and its nodes
-    real(wp), intent(in), optional :: normal(directions)    !! from where it is seen
-    real(wp) :: share(3)
-    type(edge_point) :: point(edge_point_count)
-    real(wp) :: seen
-    integer :: p
-
-    point = edge_points(model%edge_coordinates(side))
-    share = 0.0_wp
-    do p = 1, edge_point_count
-      seen = norm2(point(p)%tangent)
-      if (present(normal)) seen = abs(cross_product(point(p)%tangent, normal))
-      share = share + model%depth(element, point(p)%x(1))*point(p)%values*seen
-    end do
-  end function shares_of_nodes
-
-  !> The pair that a side has at one of its nodes: of several there the one that presses on it the most
-  !! squarely; 0: none.
-  pure integer function pair_of_side(model, at, side, node) result(pair)
-    type(model_type), intent(in) :: model
-    type(incidence), intent(in) :: at      !! pairs at each node
-    integer, intent(in) :: side(3), node   !! 0: none
-    integer, allocatable :: there(:)
-
-    pair = 0
-    if (node == 0) return
-    there = at%of(node)
-    if (size(there) > 0) pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), &
-                                                        model%normal(:, there))), dim=1))
-  end function pair_of_side
-
-  !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
-  !! them.
-  subroutine insert_masters(model, contact, at, line, places)
-    type(model_type), intent(in) :: model
-    type(line_contact), intent(in) :: contact
-    type(incidence), intent(in) :: at   !! the slave's pairs at each node
-    type(contact_line), intent(inout) :: line
-    type(partition), intent(inout) :: places
-    type(incidence) :: on_side
-    integer, allocatable :: masters(:)
-    integer :: side
-
-    if (contact%last < contact%first_of_master) return
-    on_side = new_incidence(reshape(contact%stands_on, [1, size(contact%stands_on)]), &
-                            size(contact%slave%element))
-    do side = 1, size(contact%slave%element)
-      masters = contact%first_of_master - 1 + on_side%of(side)
-      if (size(masters) > 0) call link(side, run_on(side, masters))
-    end do
-
-  contains
+    end subroutine insert_masters
 
     !> Where a pair stands on the slave [length].
     pure function foot_of(pair) result(x)
@@ -267,7 +211,7 @@ contains
       integer :: i, before
 
       associate (node => contact%slave%segment(:, side))
-        pairs = [(pair_of_side(model, at, node, node(i)), i=1, 3), masters]
+        pairs = [(pair_of_side(node, node(i)), i=1, 3), masters]
         pairs = pack(pairs, pairs > 0)
         away = [(norm2(foot_of(pairs(i)) - model%x(:, node(1))), i=1, size(pairs))]
       end associate
@@ -294,7 +238,7 @@ contains
           pair = run(i)
           if (pair >= contact%first_of_master) cycle
           share = shares_of_nodes(model, element, side, model%normal(:, pair))
-          if (is_along(model, side, model%normal(:, pair))) &
+          if (is_along(side, model%normal(:, pair))) &
             line%tributary(pair) = line%tributary(pair) - sum(share, mask=side == line%node(pair))
           do k = 1, 2
             if (.not. (line%middle(pair) .or. any(run == line%neighbour(k, pair)))) cycle
@@ -306,29 +250,70 @@ contains
         do i = 1, size(run) - 1
           apart = norm2(foot_of(run(i + 1)) - foot_of(run(i)))
           if (apart < close*(chord/merge(2, 1, side(3) > 0))) call places%join(run(i), run(i + 1))
-          call add_piece(run(i:i + 1), 0.5_wp*width*apart, line)
+          call add_piece(run(i:i + 1), 0.5_wp*width*apart)
         end do
       end associate
     end subroutine link
-  end subroutine insert_masters
 
-  !> Two pairs are neighbours, and a piece of the boundary between them belongs to each.
-  pure subroutine add_piece(pairs, piece, line)
-    integer, intent(in) :: pairs(2)
-    real(wp), intent(in) :: piece   !! of either [length**2]
-    type(contact_line), intent(inout) :: line
-    integer :: i, k, pair
+    !> Two pairs are neighbours, and a piece of the boundary between them belongs to each.
+    subroutine add_piece(pairs, piece)
+      integer, intent(in) :: pairs(2)
+      real(wp), intent(in) :: piece   !! of either [length**2]
+      integer :: i, k, pair
 
-    do i = 1, 2
-      pair = pairs(i)
-      k = findloc(line%neighbour(:, pair), pairs(3 - i), dim=1)
-      if (k == 0) k = findloc(line%neighbour(:, pair), 0, dim=1)
-      if (k == 0) k = 2
-      line%neighbour(k, pair) = pairs(3 - i)
-      line%part(k, pair) = line%part(k, pair) + piece
-      line%tributary(pair) = line%tributary(pair) + piece
+      do i = 1, 2
+        pair = pairs(i)
+        k = findloc(line%neighbour(:, pair), pairs(3 - i), dim=1)
+        if (k == 0) k = findloc(line%neighbour(:, pair), 0, dim=1)
+        if (k == 0) k = 2
+        line%neighbour(k, pair) = pairs(3 - i)
+        line%part(k, pair) = line%part(k, pair) + piece
+        line%tributary(pair) = line%tributary(pair) + piece
+      end do
+    end subroutine add_piece
+  end function find_contact_line
+
+  !> The sides of the outline at a node: nodes at their start, their end, and between or 0, and whose they are
+  !! [4, any].
+  pure function outer_sides(model, node) result(sides)
+    type(model_type), intent(in) :: model   !! the scene
+    integer, intent(in) :: node             !! any
+    integer, allocatable :: sides(:, :)
+    integer :: i, k, side(3)
+
+    allocate (sides(4, 0))
+    associate (elements => model%around%of(node))
+      do i = 1, size(elements)
+        do k = 1, model%corners(elements(i))
+          side = model%edge(elements(i), k)
+          if (.not. any(side == node)) cycle
+          ! Elements that have both of its ends
+          if (count(model%connectivity(:, model%around%of(side(1))) == side(2)) > 1) cycle
+          sides = reshape([sides, side, elements(i)], [4, size(sides, 2) + 1])
+        end do
+      end do
+    end associate
+  end function outer_sides
+
+  !> What a uniform pressure on a side gives to each of its nodes, along a normal or in all, over that
+  !! pressure: their parts of its area [length**2].
+  pure function shares_of_nodes(model, element, side, normal) result(share)
+    type(model_type), intent(in) :: model          !! the scene
+    integer, intent(in) :: element, side(3)        !! the side's, and its nodes
+    real(wp), intent(in), optional :: normal(directions)    !! from where it is seen
+    real(wp) :: share(3)
+    type(edge_point) :: point(edge_point_count)
+    real(wp) :: seen
+    integer :: p
+
+    point = edge_points(model%edge_coordinates(side))
+    share = 0.0_wp
+    do p = 1, edge_point_count
+      seen = norm2(point(p)%tangent)
+      if (present(normal)) seen = abs(cross_product(point(p)%tangent, normal))
+      share = share + model%depth(element, point(p)%x(1))*point(p)%values*seen
     end do
-  end subroutine add_piece
+  end function shares_of_nodes
 
   !> Between the places of two pairs [length].
   pure real(wp) function distance(self, a, b)
