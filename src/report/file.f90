@@ -124,53 +124,50 @@ contains
     type(file_lock), intent(out) :: lock                  !! the right, where it could be taken
     type(error_type), allocatable, intent(out) :: error   !! another run has it
     integer(c_int), parameter :: exclusive_at_once = 6, would_wait = 11   ! LOCK_EX + LOCK_NB, EWOULDBLOCK
+    integer(c_int), parameter :: duplicate = 0, first = 3   ! F_DUPFD; the first that is no standard stream
     integer(c_int), pointer :: errno
+    type(c_ptr) :: stream
     integer(c_int) :: ignored
     logical :: exists
 
     lock%path = stem//'.lock'
     do
-      call open_lock(lock)
+      stream = c_fopen(lock%path//c_null_char, 'a'//c_null_char)
+      if (.not. c_associated(stream)) return
+      ! not in the place of a standard stream that is closed, or what is printed would go there
+      lock%descriptor = c_fcntl(c_fileno(stream), duplicate, first)
+      ignored = c_fclose(stream)
       if (lock%descriptor == no_file) return
       if (c_flock(lock%descriptor, exclusive_at_once) /= 0) then
         call c_f_pointer(c_errno_location(), errno)
         if (errno /= would_wait) return
-        ignored = c_close(lock%descriptor)
-        lock%descriptor = no_file
+        call close_lock(lock)
         call raise(error, status_usage, stem//'.lst: another run is at work on these results: '// &
                    'wait for it, or take another -o DIR')
         return
       end if
       inquire (file=lock%path, exist=exists)
       if (exists) return
-      ignored = c_close(lock%descriptor)   ! who had it has removed it since we opened it
+      call close_lock(lock)   ! who had it has removed it since we opened it
     end do
   end subroutine lock_files
 
-  !> Open the file; but not in the place of a standard stream that is closed, or what is printed would go
-  !! there.
-  subroutine open_lock(lock)
+  !> Close its file.
+  subroutine close_lock(lock)
     type(file_lock), intent(inout) :: lock
-    integer(c_int), parameter :: duplicate = 0, first = 3   ! F_DUPFD; the first that is no standard stream
-    type(c_ptr) :: stream
     integer(c_int) :: ignored
 
+    ignored = c_close(lock%descriptor)
     lock%descriptor = no_file
-    stream = c_fopen(lock%path//c_null_char, 'a'//c_null_char)
-    if (.not. c_associated(stream)) return
-    lock%descriptor = c_fcntl(c_fileno(stream), duplicate, first)
-    ignored = c_fclose(stream)
-  end subroutine open_lock
+  end subroutine close_lock
 
   !> Give it back.
   subroutine unlock_files(lock)
     type(file_lock), intent(inout) :: lock   !! the right, which ends
-    integer(c_int) :: ignored
 
     if (lock%descriptor == no_file) return
     call remove_file(lock%path)
-    ignored = c_close(lock%descriptor)
-    lock%descriptor = no_file
+    call close_lock(lock)
   end subroutine unlock_files
 
   !> Begin a file.
