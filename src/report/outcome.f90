@@ -75,7 +75,7 @@ contains
     else
       call judge_answer()
       outcome%has_answer = .true.
-      call remark_answer(run, outcome%found)
+      call remark_answer()
     end if
 
   contains
@@ -107,6 +107,90 @@ contains
                            'ill-conditioned', doubtful), 'the figures are not to be trusted: '//doubts())
       end if
     end subroutine judge_answer
+
+    !> Add warnings and notes of an answer: where its equations, solved as they are, are not those of the
+    !! scene.
+    subroutine remark_answer()
+      integer :: k, vague
+
+      call warn_of_contact()
+      call warn_of_forces()
+      do k = 1, scene_warnings
+        if (k == side_changed .and. run%answer%gradient%part > 0.0_wp) then
+          call warn('displacements are not small: '//text_of(nint(100.0_wp*run%answer%gradient%part))// &
+                    ' % of the volume turned or stretched by over 0.1, most at '// &
+                    centre_name(run%model, run%answer%gradient%worst)// &
+                    '; equilibrium and contact are those of the undeformed shape')
+        else
+          call warn(scene_sentence(run%model, run%certificate%scene, k))
+        end if
+      end do
+      call warn_of_material()
+      vague = count(run%answer%contact%indeterminate)
+      if (vague > 0) call warn('the forces of '//plural(vague, 'pair')//' are one choice of many, and so '// &
+        'are their pressures: pairs at one place, or parts that cannot bend (`force not unique` in CONTACT)')
+      do k = 1, run%motions%count
+        if (.not. run%answer%contact%motion_free(k)) cycle
+        call outcome%found%add_note(place_type(), 'approach of '//motion_name(run, k)// &
+                                    ': nothing resists or drives this motion: its value is a choice')
+      end do
+    end subroutine remark_answer
+
+    !> Add a warning; an empty text is none.
+    subroutine warn(text)
+      character(len=*), intent(in) :: text
+
+      if (len(text) > 0) call outcome%found%add_warning(of_scene, 0, 0, text, '')
+    end subroutine warn
+
+    !> No pair closes.
+    subroutine warn_of_contact()
+      integer :: nearest
+
+      if (run%model%pairs == 0 .or. any(run%answer%contact%touching)) return
+      associate (gap => run%answer%contact%gap)
+        ! Of gaps that are as good as equal the first: rounding chooses no pair.
+        nearest = findloc(gap <= (1.0_wp + no_effect)*minval(gap), .true., dim=1)
+        call warn('nothing touches: no pair carries a force; nearest is '// &
+                  run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
+                  short_real(gap(nearest))//' away')
+      end associate
+    end subroutine warn_of_contact
+
+    !> A component that narrow contact has by how its normals lean alone, and that may hold a body.
+    subroutine warn_of_forces()
+      real(wp) :: error, force
+      integer :: c, i
+
+      if (.not. allocated(run%accuracy%body_force)) return
+      do i = 1, size(run%answer%bodies)
+        do c = 1, directions
+          force = abs(run%answer%bodies(i)%resultant(c))
+          error = run%accuracy%body_force(c, i)
+          if (error < as_much*force .or. force < of_total*sum(run%answer%contact%force)) cycle
+          call warn('contact may not bear '//short_real(force)//' along '//axis_name(c)// &
+                    ' on '//body_name(run%answer%bodies(i)%body)// &
+                    ': its error is as large, normals lean there; what rests on it may slide')
+        end do
+      end do
+    end subroutine warn_of_forces
+
+    !> Elements that are too stiff, strained too far, or unloaded.
+    subroutine warn_of_material()
+      if (run%answer%locking%elements > 0) &
+        call warn(plural(run%answer%locking%elements, 'three-node element')// &
+                  ' of nearly constant volume ('//poisson_text(run%answer)// &
+                '): too stiff; six-node elements or CQUAD4 would be right')
+      if (any(run%answer%beyond)) &
+        call warn(plural(count(run%answer%beyond), 'element')// &
+                  ' strained beyond the last point of the table, whose last slope goes on')
+      if (run%answer%shortfall > 0.0_wp) &
+        call warn('formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to '// &
+                  percent(run%answer%shortfall, 1.0_wp)//' below the curve; the certificate does not see it')
+      if (run%answer%unloaded > 0) &
+        call warn(plural(run%answer%unloaded, 'element')//' unloaded after yielding: '// &
+                  'the theory takes them back along the curve, not along the elastic line')
+    end subroutine warn_of_material
 
     !> Which body moves off, and how.
     pure function escaping() result(text)
@@ -215,93 +299,6 @@ contains
     if (word == unbounded) text = '   unbounded: it grows with every finer mesh'
     if (word == not_resolved) text = '   not resolved: too few pairs where it is largest'
   end function reason_of
-
-  !> Add warnings and notes of an answer: where its equations, solved as they are, are not those of the scene.
-  subroutine remark_answer(run, found)
-    class(solution_type), intent(in) :: run      !! a scene with its answer
-    type(findings), intent(inout) :: found       !! warnings and notes are added
-    integer :: k, vague
-
-    call warn_of_contact()
-    call warn_of_forces()
-    do k = 1, scene_warnings
-      if (k == side_changed .and. run%answer%gradient%part > 0.0_wp) then
-        call warn('displacements are not small: '//text_of(nint(100.0_wp*run%answer%gradient%part))// &
-                  ' % of the volume turned or stretched by over 0.1, most at '// &
-                  centre_name(run%model, run%answer%gradient%worst)// &
-                  '; equilibrium and contact are those of the undeformed shape')
-      else
-        call warn(scene_sentence(run%model, run%certificate%scene, k))
-      end if
-    end do
-    call warn_of_material()
-    vague = count(run%answer%contact%indeterminate)
-    if (vague > 0) call warn('the forces of '//plural(vague, 'pair')//' are one choice of many, and so '// &
-      'are their pressures: pairs at one place, or parts that cannot bend (`force not unique` in CONTACT)')
-    do k = 1, run%motions%count
-      if (.not. run%answer%contact%motion_free(k)) cycle
-      call found%add_note(place_type(), 'approach of '//motion_name(run, k)// &
-                          ': nothing resists or drives this motion: its value is a choice')
-    end do
-
-  contains
-
-    !> Add a warning; an empty text is none.
-    subroutine warn(text)
-      character(len=*), intent(in) :: text
-
-      if (len(text) > 0) call found%add_warning(of_scene, 0, 0, text, '')
-    end subroutine warn
-
-    !> No pair closes.
-    subroutine warn_of_contact()
-      integer :: nearest
-
-      if (run%model%pairs == 0 .or. any(run%answer%contact%touching)) return
-      associate (gap => run%answer%contact%gap)
-        ! Of gaps that are as good as equal the first: rounding chooses no pair.
-        nearest = findloc(gap <= (1.0_wp + no_effect)*minval(gap), .true., dim=1)
-        call warn('nothing touches: no pair carries a force; nearest is '// &
-                  run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
-                  short_real(gap(nearest))//' away')
-      end associate
-    end subroutine warn_of_contact
-
-    !> A component that narrow contact has by how its normals lean alone, and that may hold a body.
-    subroutine warn_of_forces()
-      real(wp) :: error, force
-      integer :: c, i
-
-      if (.not. allocated(run%accuracy%body_force)) return
-      do i = 1, size(run%answer%bodies)
-        do c = 1, directions
-          force = abs(run%answer%bodies(i)%resultant(c))
-          error = run%accuracy%body_force(c, i)
-          if (error < as_much*force .or. force < of_total*sum(run%answer%contact%force)) cycle
-          call warn('contact may not bear '//short_real(force)//' along '//axis_name(c)// &
-                    ' on the body of '//first_grid(run%model, run%model%body == run%answer%bodies(i)%body)// &
-                    ': its error is as large, normals lean there; what rests on it may slide')
-        end do
-      end do
-    end subroutine warn_of_forces
-
-    !> Elements that are too stiff, strained too far, or unloaded.
-    subroutine warn_of_material()
-      if (run%answer%locking%elements > 0) &
-        call warn(plural(run%answer%locking%elements, 'three-node element')// &
-                  ' of nearly constant volume ('//poisson_text(run%answer)// &
-                '): too stiff; six-node elements or CQUAD4 would be right')
-      if (any(run%answer%beyond)) &
-        call warn(plural(count(run%answer%beyond), 'element')// &
-                  ' strained beyond the last point of the table, whose last slope goes on')
-      if (run%answer%shortfall > 0.0_wp) &
-        call warn('formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to '// &
-                  percent(run%answer%shortfall, 1.0_wp)//' below the curve; the certificate does not see it')
-      if (run%answer%unloaded > 0) &
-        call warn(plural(run%answer%unloaded, 'element')//' unloaded after yielding: '// &
-                  'the theory takes them back along the curve, not along the elastic line')
-    end subroutine warn_of_material
-  end subroutine remark_answer
 
   !> Warnings of an answer in lines, and its notes if these are wanted.
   pure function remark_lines(found, with_notes) result(text)
