@@ -99,7 +99,7 @@ contains
     class(table_type), intent(inout) :: self
     integer, intent(in) :: wholes(:)           !! ids and counts, in the order of the columns
     real(wp), intent(in) :: numbers(:)         !! in that order
-    character(len=*), intent(in) :: words(:)   !! in that order
+    character(len=*), intent(in), optional :: words(:)   !! in that order; not given: no column has any
     character(len=25) :: cell(size(self%column)), full(size(numbers))
     integer :: i
 

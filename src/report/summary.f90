@@ -214,12 +214,10 @@ contains
       character(len=:), allocatable :: reason
 
       reason = reason_of(limit)
-      if (len(reason) > 0) then
-        call put('mesh_error_'//key, unit, known, error, 'mesh: '//name, listed=reason)
-      else
-        call put('mesh_error_'//key, unit, known, error, when(error >= 0.0_wp, 'mesh: '//name), &
-                 '   '//percent(error, value), listed_number(estimate, error, value))
-      end if
+      call put('mesh_error_'//key, unit, known, error, &
+               when(reason /= '' .or. error >= 0.0_wp, 'mesh: '//name), &
+               when(reason == '', '   '//percent(error, value)), &
+               when(reason == '', listed_number(estimate, error, value), reason))
     end subroutine put_error
   end function summarise
 end module epcont_report_summary

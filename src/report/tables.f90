@@ -205,7 +205,7 @@ contains
         do k = 1, size(bodies)
           call table%row([bodies(k)%body, run%model%node_id(bodies(k)%node)], &
                          [bodies(k)%resultant(1), run%accuracy%body_force(1, k), &
-                          bodies(k)%resultant(2), run%accuracy%body_force(:, k)], [character ::])
+                          bodies(k)%resultant(2), run%accuracy%body_force(:, k)])
         end do
       end associate
     end subroutine put_bodies
@@ -217,8 +217,7 @@ contains
                         spread(maxval(abs(run%answer%reaction)), 1, directions)])
       do k = 1, run%model%nodes
         call table%row([run%model%node_id(k)], &
-                       [run%model%x(:, k), run%answer%displacement(:, k), run%answer%reaction(:, k)], &
-                       [character ::])
+                       [run%model%x(:, k), run%answer%displacement(:, k), run%answer%reaction(:, k)])
       end do
     end subroutine put_nodes
 
@@ -245,7 +244,7 @@ contains
       do k = 1, size(run%answer%history)
         associate (now => run%answer%history(k))
           call table%row([k, now%iteration, now%touching, now%yielded, now%pivots], &
-                         [now%load_factor, now%change, now%residual, now%load_factor], [character ::])
+                         [now%load_factor, now%change, now%residual, now%load_factor])
         end associate
       end do
     end subroutine put_history
