@@ -118,7 +118,6 @@ contains
     subroutine assess_sums()
       !> Error of each approach, of the sum of forces, of what bodies bear
       real(wp) :: off(size(loads%force, 2))
-      real(wp) :: relative
       !> What the gaps of the pairs are the sum of, added up [length] [pairs]
       real(wp), allocatable :: travel(:)
       integer :: j
@@ -138,9 +137,9 @@ contains
       call assess_forces(off(motions + 1:))
       ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones
       ! nothing else tells.
-      relative = accuracy%total_force/sum(answer%contact%force)
-      where (accuracy%zone%pressure >= 0.0_wp) &
-        accuracy%zone%pressure = max(accuracy%zone%pressure, relative*answer%zones%max_pressure)
+      where (accuracy%zone%pressure >= 0.0_wp) accuracy%zone%pressure = &
+        max(accuracy%zone%pressure, &
+            accuracy%total_force/sum(answer%contact%force)*answer%zones%max_pressure)
       accuracy%weak = find_weak()
     end subroutine assess_sums
 
@@ -153,10 +152,9 @@ contains
       do j = 1, size(loads%moved)
         off(loads%moved(j)) = error_along(j)
       end do
-      associate (of_motions => matmul(transpose(loads%share), loads%force(:, :motions)))
-        off(motions + 1:) = off(motions + 1:) + &
-          sum(abs(matmul(of_motions, shifted_loads(scene%model, line, scene%motions, answer))), dim=2)
-      end associate
+      off(motions + 1:) = off(motions + 1:) + &
+        sum(abs(matmul(matmul(transpose(loads%share), loads%force(:, :motions)), &
+                       shifted_loads(scene%model, line, scene%motions, answer))), dim=2)
     end function errors
 
     !> Error of an approach, or of a sum of contact forces: the product of the errors of the scene and of its

@@ -160,17 +160,14 @@ contains
       call listing%line(repeat(' ', merge(4, 0, from > 1))//text(from:))
     end subroutine wrap
 
-    !> Figures of the summary that have a name; of a key that ends in `_` all that begin so.
+    !> Figures of the summary that have a name, and whose keys begin so; a key that ends in `|` is one alone.
     subroutine list_figures(keys)
       character(len=*), intent(in) :: keys(:)
-      integer :: i, n
+      integer :: i
 
       do k = 1, size(keys)
-        n = len_trim(keys(k))
         do i = 1, size(figures)
-          if (figures(i)%key /= keys(k) .and. &
-              .not. (keys(k)(n:) == '_' .and. figures(i)%key(:n) == keys(k))) cycle
-          if (figures(i)%name /= '') &
+          if (figures(i)%name /= '' .and. index(trim(figures(i)%key)//'|', trim(keys(k))) == 1) &
             call list_figure(figures(i)%name, trim(figures(i)%listed), trim(figures(i)%note))
         end do
       end do
@@ -271,7 +268,7 @@ contains
       call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
                            short_real(run%certificate%tolerance)//')')
       call list_figures([character(len=25) :: 'equilibrium_residual', 'smallest_', &
-        'largest_force_gap_product', 'stress_off_curve', 'curve_tolerance', 'stress_off_curve_limit', &
+        'largest_force_gap_product', 'stress_off_curve|', 'curve_tolerance', 'stress_off_curve_limit', &
         'energy_balance'])
     end subroutine list_summary
 

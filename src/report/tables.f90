@@ -107,16 +107,17 @@ contains
   pure function columns_in(suffix) result(text)
     character(len=*), intent(in) :: suffix   !! of the file's name
     character(len=:), allocatable :: text
+    type(column), allocatable :: columns(:)
 
+    if (suffix == '.contact.csv') columns = contact_columns
+    if (suffix == '.zones.csv') columns = zone_columns
+    if (suffix == '.bodies.csv') columns = body_columns
+    if (suffix == '.history.csv') columns = history_columns
+    if (suffix == '.pivots.csv') columns = pivot_columns
+    if (suffix == '.nodes.csv') columns = node_columns
+    if (suffix == '.elements.csv') columns = element_columns
     text = ''
-    if (suffix == '.contact.csv') text = columns_text(contact_columns)
-    if (suffix == '.zones.csv') text = columns_text(zone_columns)
-    if (suffix == '.bodies.csv') text = columns_text(body_columns)
-    if (suffix == '.history.csv') text = columns_text(history_columns)
-    if (suffix == '.pivots.csv') text = columns_text(pivot_columns)
-    if (suffix == '.nodes.csv') text = columns_text(node_columns)
-    if (suffix == '.elements.csv') text = columns_text(element_columns)
-    if (len(text) > 0) text = 'Columns: '//text//'.'
+    if (allocated(columns)) text = 'Columns: '//columns_text(columns)//'.'
   end function columns_in
 
   !> Write a table.
@@ -149,14 +150,14 @@ contains
 
     !> Forces, pressures and gaps: a row a pair.
     subroutine put_contact()
-      associate (model => run%model, contact => run%answer%contact, pressure => run%answer%pressure)
+      associate (model => run%model, contact => run%answer%contact)
         call table%begin('CONTACT', contact_columns, &
-                         [spread(0.0_wp, 1, 5), maxval(abs(contact%force)), maxval(pressure), &
+                         [spread(0.0_wp, 1, 5), maxval(abs(contact%force)), maxval(run%answer%pressure), &
                           max(maxval(abs(contact%gap)), maxval(abs(run%answer%displacement)))])
         do k = 1, model%pairs
           call table%row([model%pair_id(k), model%node_id(model%pair_node(:, k))], &
                          [model%x(:, model%pair_node(2, k)), model%normal(:, k), model%initial_gap(k), &
-                          contact%force(k), pressure(k), contact%gap(k)], &
+                          contact%force(k), run%answer%pressure(k), contact%gap(k)], &
                          [merge('touching          ', 'open              ', contact%touching(k)), &
                           merge(', force not unique', '                  ', contact%indeterminate(k))])
         end do
