@@ -69,11 +69,9 @@ contains
       search%least = same_place*maxval(maxval(x, dim=2) - minval(x, dim=2)) &
                      + roundings*epsilon(1.0_wp)*(maxval(abs(x)) + maxval(abs(displacement)))
       allocate (search%line_length(outline%sides), source=0.0_wp)
-      if (allocated(model%line)) then
-        do k = 1, size(model%line)
-          search%line_length(model%line(k)%side) = search%allowance%length(model%line(k)%side)
-        end do
-      end if
+      do k = 1, size(model%line)
+        search%line_length(model%line(k)%side) = search%allowance%length(model%line(k)%side)
+      end do
       search%width = [(sum(search%allowance%length(outline%first(k):outline%first(k + 1) - 1)) &
                        /acos(-1.0_wp), k=1, outline%parts)]
       search%middle = [(middle_of(outline%first(k)), k=1, outline%parts)]
