@@ -134,11 +134,12 @@ contains
       do i = model%row_start(pair), model%row_start(pair + 1) - 1
         associate (other => model%row_node(i))
           if (other == node) cycle
-          rigid = rigid .and. model%is_held(along, other)
-          if (.not. model%is_held(along, other)) cycle
-          if (abs(model%x(along, other) - model%x(along, node)) > beside_line*side) cycle
-          ends = .true.
-          guided = guided .or. is_guided(along, other)
+          if (.not. model%is_held(along, other)) then
+            rigid = .false.
+          else if (abs(model%x(along, other) - model%x(along, node)) <= beside_line*side) then
+            ends = .true.
+            guided = guided .or. is_guided(along, other)
+          end if
         end associate
       end do
       is_on_symmetry = guided .and. (ends .or. rigid)
@@ -287,8 +288,7 @@ contains
         do k = 1, model%corners(elements(i))
           side = model%edge(elements(i), k)
           if (.not. any(side == node)) cycle
-          ! Elements that have both of its ends
-          if (count(model%connectivity(:, model%around%of(side(1))) == side(2)) > 1) cycle
+          if (size(model%with_side(side(1), side(2))) > 1) cycle
           sides = reshape([sides, side, elements(i)], [4, size(sides, 2) + 1])
         end do
       end do
