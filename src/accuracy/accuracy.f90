@@ -118,14 +118,12 @@ contains
     subroutine assess_sums()
       !> Error of each approach, of the sum of forces, of what bodies bear
       real(wp) :: off(size(loads%force, 2))
-      !> What the gaps of the pairs are the sum of, added up [length] [pairs]
-      real(wp), allocatable :: travel(:)
       integer :: j
 
-      travel = abs(linear%problem%initial_gap) + abs(linear%problem%load_gap) &
-               + matmul(abs(linear%problem%motion), abs(answer%contact%approach))
-      accuracy%sensitivity = find_sensitivity(loads%problem, loads%basis, answer%contact%force, travel, &
-                                              answer%condition)
+      accuracy%sensitivity = find_sensitivity( &
+        loads%problem, loads%basis, answer%contact%force, &
+        abs(linear%problem%initial_gap) + abs(linear%problem%load_gap) &
+        + matmul(abs(linear%problem%motion), abs(answer%contact%approach)), answer%condition)
       ! What the last step of refinement has not changed is right.
       accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
       off = errors()

@@ -52,8 +52,8 @@ contains
       integer, allocatable :: last(:), node(:), point(:)
       integer :: i
 
-      associate (model => run%model, answer => run%answer, start => run%model%around%start)
-        node = pack([(i, i=1, model%nodes)], start(2:) > start(:model%nodes))
+      associate (model => run%model, answer => run%answer)
+        node = pack([(i, i=1, model%nodes)], model%around%start(2:) > model%around%start(:model%nodes))
         allocate (point(model%nodes))
         point(node) = [(i, i=1, size(node))]
         last = model%node_count
