@@ -1,20 +1,20 @@
 !> The library: a scene made from arrays in, a certified answer out (input/library/README.md).
 module epcont
   use, intrinsic :: ieee_exceptions, only: ieee_all, ieee_get_status, ieee_set_halting_mode, &
-                                          ieee_set_status, ieee_status_type
+      ieee_set_status, ieee_status_type
   use epcont_base_diagnostic, only: severity_error, severity_note, severity_warning
   use epcont_base_error, only: error_type, status_deck, status_internal, status_no_answer, status_numerical, &
-                               status_usage, status_valid
+      status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_version, only: program_version
   use epcont_contact_geometry_complete, only: complete_model
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
   use epcont_model_arrays, only: add_elements, line_couple, named_line, new_scene, scene_type, set_pairs, &
-                                set_sections, side_pressure
+      set_sections, side_pressure
   use epcont_model_controls, only: controls_type, method_auto, method_inistr, method_modsec, method_newton, &
-                                   method_secant, precision_double, precision_mixed, precision_open, &
-                                   precision_single, rule_auto, rule_block, rule_conry, solver_auto, &
-                                   solver_band, solver_frontal, uniaxial_curve
+      method_secant, precision_double, precision_mixed, precision_open, &
+      precision_single, rule_auto, rule_block, rule_conry, solver_auto, &
+      solver_band, solver_frontal, uniaxial_curve
   use epcont_model_finding, only: findings
   use epcont_model_yield_curve, only: bilinear_curve
   use epcont_plasticity_observer, only: observer

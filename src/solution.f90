@@ -73,7 +73,7 @@ contains
       call analyse(self%planned_scene, self%answer, self%certificate, self%accuracy, watch)
       if (self%answer%failed_body > 0 .or. count == most_solves) exit
       call enter_nodes_that_came_near(self%model, self%answer%displacement, &
-                                      self%answer%contact%touching, entered)
+          self%answer%contact%touching, entered)
       if (.not. entered) exit
       call self%make_plan(watch)
     end do
@@ -130,7 +130,7 @@ contains
         call recover_stresses(model, linear, answer%load_factor*model%load + pair_forces(model, force), &
                               answer)
         answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
-                                      answer%secant_modulus)
+            answer%secant_modulus)
         answer%gradient = find_gradients(model, volume, answer%displacement)
         touching = line%in_contact(answer%contact%touching)
         answer%pressure = pair_pressures(model, line, touching, force)

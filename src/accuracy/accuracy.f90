@@ -8,7 +8,7 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_surface_line, only: first_element, new_surface_line, smooth_pressures, surface_line
   use epcont_accuracy_unit_loads, only: contact_sensitivity, find_sensitivity, find_unit_loads, unit_loads
   use epcont_accuracy_weights, only: concentrated, least_energy, of_shares, uncancelled, unresolved, &
-                                     wave_height
+      wave_height
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, no_effect
@@ -110,7 +110,7 @@ contains
                         z=1, size(answer%zones))]
       do z = 1, size(answer%zones)
         accuracy%zone(z)%too_near = too_near(scene%model, surface, answer%contact%force, accuracy%zone(z), &
-                                             answer%zones(z)%pairs)
+            answer%zones(z)%pairs)
       end do
     end subroutine assess_zones
 
@@ -175,7 +175,7 @@ contains
           if (.not. zone%resolved) vague = unresolved
           ! Of a tilt of either sign the ends count, not the sum.
           end_error = end_error + sum(abs(force))*(zone%weights%end*(at_end*zone%end_resolution**2) &
-                                                   + wave_height*zone%wave_height + zone%too_near)
+              + wave_height*zone%wave_height + zone%too_near)
         end associate
       end do
       short = max(abs(field%along(1, j) - near), uncancelled*field%along(2, j))

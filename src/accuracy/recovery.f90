@@ -166,7 +166,7 @@ contains
               x(:, first + k - 1) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
               do f = 1, size(strain, 3)
                 sample(:, first + k - 1, f) = matmul(strain(:, first:last, f), &
-                                                     kind%sample_of(:kind%points, k))
+                    kind%sample_of(:kind%points, k))
               end do
             end do
             cycle

@@ -138,12 +138,12 @@ contains
         elements = elements_behind(model, model%row_node(i))
         if (size(elements) == 0) cycle
         call materials%section(model%section(elements(1)))%law%update(smooth(:, model%row_node(i)), &
-                                                                      point_state(), state)
+            point_state(), state)
         ! the row's first node is one side, the others share the other
         n = merge(1, 2, i == model%row_start(k))
         associate (normal => model%normal(:, k), stress => state%stress)
           side(n) = side(n) - model%row_weight(i)*(stress(1)*normal(1)**2 + stress(2)*normal(2)**2 + &
-                                                   2.0_wp*stress(4)*normal(1)*normal(2))
+              2.0_wp*stress(4)*normal(1)*normal(2))
         end associate
         weight(n) = weight(n) + model%row_weight(i)
       end do

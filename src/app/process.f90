@@ -2,7 +2,7 @@
 !> whether its text arrived; the system does.
 module epcont_app_process
   use, intrinsic :: iso_c_binding, only: c_bool, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, &
-                                         c_long, c_null_char, c_ptr, c_short, c_size_t
+      c_long, c_null_char, c_ptr, c_short, c_size_t
   use epcont_base_error, only: status_internal, status_usage
   use epcont_base_kinds, only: i8
   use epcont_base_text, only: newline

@@ -12,15 +12,15 @@ module epcont_build_build
   use epcont_contact_geometry_complete, only: check_controls, finish_model
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_grid, card_mat1, &
-                                    card_mats1, card_param, card_pgap, card_pshell, card_psolid, card_rbe2, &
-                                    card_spc, card_spc1, card_tables1
+      card_mats1, card_param, card_pgap, card_pshell, card_psolid, card_rbe2, &
+      card_spc, card_spc1, card_tables1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: least_cause
   use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
   use epcont_model_element_shapes, only: check_axis
   use epcont_model_finding, only: findings, of_body, of_couple, of_element, of_line, of_node, of_pair, &
-                                  of_paper_ratio, of_scene
+      of_paper_ratio, of_scene
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -28,7 +28,7 @@ module epcont_build_build
 
   !> Cards with ids of their own.
   integer, parameter :: own_ids(8) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
-                                      card_cord2r, card_blseg, card_bconp]
+      card_cord2r, card_blseg, card_bconp]
 
 contains
 

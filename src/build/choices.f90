@@ -4,7 +4,7 @@ module epcont_build_choices
   use epcont_deck_card_kinds, only: card_param
   use epcont_deck_deck, only: deck_type
   use epcont_model_controls, only: controls_type, method_name, original_controls, precision_name, &
-                                   precision_open, rule_name, solver_name
+      precision_open, rule_name, solver_name
   use epcont_model_finding, only: findings
   implicit none
   private

@@ -5,7 +5,7 @@ module epcont_build_conditions
   use epcont_base_text, only: short_real, text_of
   use epcont_build_reference, only: card_index, chosen_set, resolve
   use epcont_deck_card_kinds, only: card_force, card_grid, card_ploadx1, card_rbe2, card_spc, card_spc1, &
-                                    card_suport
+      card_suport
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
   use epcont_model_arrays, only: side_pressure
@@ -164,7 +164,7 @@ contains
           if (element(i) == 0 .or. a(i) == 0 .or. b(i) == 0 .or. nint(pressure%value(1, i)) /= load_set) cycle
           if (any(model%connectivity(:model%node_count(element(i)), element(i)) == 0)) cycle
           call add_pressure(model, side_pressure(element(i), [a(i), b(i)], pressure%value(3:4, i), &
-                                                 pressure%number('THETA', i)), behind(i))
+              pressure%number('THETA', i)), behind(i))
           if (behind(i) < 0) &
             call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &
                                  model%name_of(of_element, element(i)), &

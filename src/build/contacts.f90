@@ -111,7 +111,7 @@ contains
         end do
         model%line(i)%node = [integer ::]
         if (sound) model%line(i)%node = [((nodes%find(id), id=blseg%list(k)%from, blseg%list(k)%to, &
-                                           blseg%list(k)%step), k=first, last)]
+            blseg%list(k)%step), k=first, last)]
       end associate
     end subroutine read_line
   end subroutine build_contacts

@@ -124,7 +124,7 @@ contains
           return
         end if
         if (mats1%has('H', i)) call refuse(card_mats1, i, 'H', ': field 5 (H) is given beside a table', &
-                                           'a blank H, or a blank TID')
+            'a blank H, or a blank TID')
         if (.not. mats1%has('LIMIT1', i) .and. mats1%word(mats1%column('TYPE'), i) == 'PLASTIC') &
           call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is blank', &
                       'the yield stress: the second stress of the table')

@@ -173,7 +173,7 @@ contains
       do s = 1, size(turn)
         do k = 1, 2
           turn(s) = max(turn(s), 2.0_wp*abs(angle(right_of(drawn%tangent(s, real(k - 1, wp))), &
-                                                  model%boundary%normal(:, k, s))))
+              model%boundary%normal(:, k, s))))
         end do
       end do
     end function turns_of_lines

@@ -157,8 +157,8 @@ contains
     other = sides_at(place%side, place%s)
     longest = [maxval(search%line_length(own)), maxval(search%line_length(other))]
     found%meeting = meeting_type(max(slide_along(own, point%s), slide_along(other, place%s)), &
-                                 merge(maxval(longest), 0.0_wp, all(longest > 0.0_wp)), &
-                                 is_joined(point%side, place%side))
+        merge(maxval(longest), 0.0_wp, all(longest > 0.0_wp)), &
+        is_joined(point%side, place%side))
     found%allowed = search%least + most_allowed(own) + most_allowed(other)
 
   contains

@@ -13,7 +13,7 @@ module epcont_certificate_scene
   use epcont_base_tolerances, only: no_effect
   use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, rated, scene_type
   use epcont_certificate_meeting, only: insert, keep, meet, motion_at, new_search, &
-                                       part_along, point_on, point_type, search_type, sides_meeting
+      part_along, point_on, point_type, search_type, sides_meeting
   use epcont_certificate_way, only: look_at_ways
   use epcont_element_kinematics, only: directions
   use epcont_geometry_outline_shape, only: near_place, outline_shape

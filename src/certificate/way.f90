@@ -9,7 +9,7 @@ module epcont_certificate_way
   use epcont_base_kinds, only: wp
   use epcont_certificate_findings, only: is_worse, overlap_place, rated, scene_type
   use epcont_certificate_meeting, only: insert, meet, point_on, point_type, search_type, &
-                                       sides_meeting
+      sides_meeting
   use epcont_element_kinematics, only: directions
   use epcont_geometry_box_tree, only: box_tree, new_box_tree
   use epcont_geometry_outline_shape, only: near_place, outline_shape

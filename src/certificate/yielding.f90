@@ -109,7 +109,7 @@ contains
     if (largest == 0.0_wp) return
     part = stress/largest
     von_mises_stress = largest*sqrt(0.5_wp*((part(1) - part(2))**2 + (part(2) - part(3))**2 &
-                                            + (part(3) - part(1))**2) + 3.0_wp*part(4)**2)
+        + (part(3) - part(1))**2) + 3.0_wp*part(4)**2)
   end function von_mises_stress
 
   !> Stress at a total strain; the last slope goes on. From the lower point up: nothing cancels.

@@ -110,7 +110,7 @@ contains
       solution%approach(scaled%kept) = state%approach
       call find_touching(state, terms, solution%touching)
       solution%motion_free = find_free_motions(motion, solution%touching, &
-                                               state%force > lost_digits*maxval([state%force, 1.0_wp]))
+          state%force > lost_digits*maxval([state%force, 1.0_wp]))
       if (any(solution%motion_free)) then
         where (state%force <= zero) state%force = 0.0_wp
         call choose_neutral(state, solution%approach)
@@ -151,7 +151,7 @@ contains
       where (abs(opening) <= negligible) opening = 0.0_wp
       change = -matmul(approach, loose)
       call solve_contact(contact_problem(matmul(opening, transpose(opening)), motion(:, :0), state%gap + &
-                                         matmul(opening, change), 0*state%gap, [real(wp) ::]), held)
+          matmul(opening, change), 0*state%gap, [real(wp) ::]), held)
       if (held%state /= contact_solved) return
       change = change + matmul(held%force, opening)
       approach = approach + matmul(loose, change)

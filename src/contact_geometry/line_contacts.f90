@@ -52,7 +52,7 @@ contains
     end do
     do i = 1, size(model%line)
       if (.not. used(i)) call found%add_warning(of_line, i, 1, ': no BCONP names it', &
-                                                'a BCONP with it as SLAVE or MASTER, or no such line')
+          'a BCONP with it as SLAVE or MASTER, or no such line')
     end do
     contacts = 0
     if (found%errors == 0) call join_couples()

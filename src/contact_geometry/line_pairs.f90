@@ -35,7 +35,7 @@ contains
     call find_tips()
     contact%stands_on = tips%segment
     contact%came_near = pack(contact%came_near, [(any(tips%node == contact%came_near(k)), &
-                                                  k=1, size(contact%came_near))])
+        k=1, size(contact%came_near))])
     contact%first = model%pairs + 1
     contact%first_of_master = contact%first + size(faces%row)
     call append_pairs(faces%row, rows)

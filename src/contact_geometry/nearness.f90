@@ -157,7 +157,7 @@ contains
           beside = 0
           if (which < 3) beside = master%neighbour(which, side)
           left_open = left_open + allowance*(openness(slave, [s], 0.0_wp) + &
-                                             openness(master, [side, beside], slave%chord_length(s)))
+              openness(master, [side, beside], slave%chord_length(s)))
         else
           left_open = left_open + bend(slave, s, 0.0_wp)
         end if

@@ -62,14 +62,14 @@ contains
       integer :: k
 
       lines = new_incidence(reshape(model%row_node(model%row_start(cgaps + 1:model%pairs)), &
-                                    [1, model%pairs - cgaps]), model%nodes)
+          [1, model%pairs - cgaps]), model%nodes)
       cgap = [(cgap_like(k), k=1, cgaps)]
       line = [(line_pair_like(k), k=1, cgaps)]
       k = findloc(cgap > 0, .true., dim=1)
       if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
-                                      model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
-                                      'same gap'//like_this(cgap), &
-                                      'one CGAP for two nodes and a normal')
+          model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
+          'same gap'//like_this(cgap), &
+          'one CGAP for two nodes and a normal')
       k = findloc(line > 0, .true., dim=1)
       if (k == 0) return
       c = findloc(model%line_contact%last >= line(k), .true., dim=1)

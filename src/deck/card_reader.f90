@@ -6,9 +6,9 @@ module epcont_deck_card_reader
   use epcont_base_text, only: short_real, text_of, upper
   use epcont_deck_card, only: card_fields
   use epcont_deck_entry, only: farthest, field_entry, kind_blank, kind_components, kind_integer, kind_real, &
-                               kind_word, largest_id, number_of
+      kind_word, largest_id, number_of
   use epcont_deck_field, only: scan_components, scan_integer, scan_malformed, scan_no_point, scan_real, &
-                               scan_sound, scan_too_large, scan_too_long, scan_too_small, scan_word
+      scan_sound, scan_too_large, scan_too_long, scan_too_small, scan_word
   use epcont_deck_table, only: card_table, list_item
   implicit none
   private
@@ -259,7 +259,7 @@ contains
       slot = slot + 2
       most = item%step*max(1, abs(length))
       call read_slot(slot, field_entry(kind=kind_integer, lowest=real(min(item%step, most), wp), &
-                                       highest=real(max(item%step, most), wp)), value)
+          highest=real(max(item%step, most), wp)), value)
       if (value%outcome /= scan_sound) return
       if (mod(length, nint(value%number)) == 0) then
         item%step = nint(value%number)

@@ -4,7 +4,7 @@ module epcont_deck_manual
   use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_catalogue, only: catalogue, parameters
   use epcont_deck_entry, only: card_entry, field_entry, fields_a_line, kind_any, kind_blank, kind_real, &
-                               number_of
+      number_of
   implicit none
   private
   public :: manual

@@ -1,7 +1,7 @@
 !> Faults of a deck as text: file, line and columns, the line itself, and what would be right.
 module epcont_deck_render
   use epcont_base_diagnostic, only: diagnostic, diagnostics, place_type, severity_error, severity_note, &
-                                     severity_warning
+      severity_warning
   use epcont_base_text, only: newline, plural, shown, text_of
   use epcont_deck_source, only: source
   implicit none

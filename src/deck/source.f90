@@ -75,7 +75,7 @@ contains
     allocate (lines%line(1 + lines%used/usual_line))
     call cut(1, ended)
     if (.not. ended) call faults%add_error(place_type(), 'ENDDATA is missing: the deck looks cut off', &
-                                           'ENDDATA as the last line')
+        'ENDDATA as the last line')
 
   contains
 
@@ -221,7 +221,7 @@ contains
     integer :: at, comment, code
     ! By code, the characters that mean nothing but themselves: printable ASCII but `$` and `,`.
     logical, parameter :: plain(0:255) = [(code >= 32 .and. code <= 126 .and. &
-                                           all(code /= iachar(['$', ','])), code=0, 255)]
+        all(code /= iachar(['$', ','])), code=0, 255)]
 
     comment = huge(1)
     special = huge(1)

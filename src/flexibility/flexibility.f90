@@ -114,7 +114,7 @@ contains
 
     do k = 1, model%pairs
       opening(k) = model%opening(k, displacement(:, model%row_node(model%row_start(k): &
-                                                                   model%row_start(k + 1) - 1)))
+          model%row_start(k + 1) - 1)))
     end do
   end function gap_opening
 

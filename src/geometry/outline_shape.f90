@@ -87,7 +87,7 @@ contains
     end do
     associate (tree => shape%side_tree, n => outline%parts)
       shape%part_tree = new_box_tree(reshape([(tree(p)%low(:, 1), p=1, n)], [2, n]), &
-                                     reshape([(tree(p)%high(:, 1), p=1, n)], [2, n]))
+          reshape([(tree(p)%high(:, 1), p=1, n)], [2, n]))
     end associate
   end function new_outline_shape
 

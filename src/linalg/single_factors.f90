@@ -7,7 +7,7 @@ module epcont_linalg_single_factors
   use epcont_linalg_front_layout, only: front_layout
   use epcont_linalg_panel_layout, only: panel_layout
   use epcont_linalg_single_lapack, only: gemm => sgemm, gemv => sgemv, potrf => spotrf, syrk => ssyrk, &
-                                         trsm => strsm
+      trsm => strsm
   use epcont_system_large_pages, only: use_large_pages
   implicit none
   private

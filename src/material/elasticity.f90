@@ -58,6 +58,6 @@ contains
     real(wp), intent(in) :: stress(components)  !! xx, yy, zz, xy
 
     equivalent_stress = sqrt(0.5_wp*((stress(1) - stress(2))**2 + (stress(2) - stress(3))**2 + &
-                                     (stress(3) - stress(1))**2) + 3.0_wp*stress(4)**2)
+        (stress(3) - stress(1))**2) + 3.0_wp*stress(4)**2)
   end function equivalent_stress
 end module epcont_material_elasticity

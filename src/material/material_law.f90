@@ -71,6 +71,6 @@ contains
     real(wp), intent(in) :: stress(components)   !! [stress]
 
     distance = equivalent_stress((stress - state%stress)/max(state%modulus*state%deviatoric, &
-                                                             self%yield_stress))
+        self%yield_stress))
   end function distance
 end module epcont_material_material_law

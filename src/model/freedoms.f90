@@ -151,7 +151,7 @@ contains
     if (maxval(abs(u - travel), mask=known) > follows*maxval(abs(u), mask=known)) return
     model%travel(:, node) = travel
     model%beyond_travel(:, node) = merge(u - travel, 0.0_wp, known .and. &
-                                         abs(u - travel) > cancelled*maxval(abs(u)))
+        abs(u - travel) > cancelled*maxval(abs(u)))
   end subroutine find_travel
 
   !> Mean of those values that are known, exact where they are all the same; 0 of none.

@@ -243,7 +243,7 @@ contains
     model%elements = sum([(size(model%block(b)%section), b=1, size(model%block))])
     allocate (model%kind(model%elements), model%section(model%elements))
     allocate (model%connectivity(maxval([0, (size(model%block(b)%node, 1), b=1, size(model%block))]), &
-                                 model%elements), source=0)
+        model%elements), source=0)
     last = 0
     do b = 1, size(model%block)
       first = last + 1

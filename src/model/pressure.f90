@@ -38,7 +38,7 @@ contains
       value = at_ends(1) + (at_ends(2) - at_ends(1))*point(p)%along
       do k = 1, size(ends)
         if (ends(k) > 0) model%load(:, ends(k)) = model%load(:, ends(k)) + &
-                                                  value*depth*point(p)%values(k)*direction
+            value*depth*point(p)%values(k)*direction
       end do
     end do
   end subroutine add_pressure

@@ -115,7 +115,7 @@ contains
       motions%node = [motions%node, node]
       motions%component = [motions%component, component]
       motions%coefficient = reshape([motions%coefficient, of_parts(matmul(basis, unit))], &
-                                    [part_motions, motions%parts%count, motions%count])
+          [part_motions, motions%parts%count, motions%count])
     end if
 
   contains

@@ -220,7 +220,7 @@ contains
         if (filled > first) then
           found = order%node(first:filled)
           order%node(first:filled) = found(sorted_order(model%around%start(found + 1) - &
-                                                        model%around%start(found)))
+              model%around%start(found)))
         end if
       end do
     end function sweep

@@ -67,7 +67,7 @@ contains
 
     if (now%iteration == 1) self%distance = [real(wp) ::]
     self%distance = [self%distance, max(now%change/max(self%plan%tolerance, least), &
-                                        now%residual/max(self%plan%off_curve, least))]
+        now%residual/max(self%plan%off_curve, least))]
     left = 0
     if (over) then
       self%solves = self%solves + now%iteration

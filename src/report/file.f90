@@ -5,7 +5,7 @@
 !> not.
 module epcont_report_file
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_null_char, c_null_ptr, &
-                                         c_ptr, c_size_t
+      c_ptr, c_size_t
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_text, only: newline
   implicit none

@@ -228,7 +228,7 @@ contains
       worst = maxloc(figure/max(largest, least), dim=1)
       text = ''
       if (figure(worst) > largest(worst)) text = trim(figure_name(worst))//' '//short_real(figure(worst))// &
-                                                 ' (at most '//short_real(largest(worst))//')'
+          ' (at most '//short_real(largest(worst))//')'
       much = 0.1_wp*run%certificate%tolerance
       taken = epsilon(1.0_wp)/run%answer%weakest%ratio   ! of a pivot: the cause, even if mended
       if (.not. all(figure <= huge(figure))) then

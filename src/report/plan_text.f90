@@ -4,8 +4,8 @@ module epcont_report_plan_text
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_controls, only: method_inistr, method_name, method_newton, precision_double, &
-                                   precision_name, precision_open, precision_single, solver_auto, &
-                                   solver_band, solver_frontal, solver_name
+      precision_name, precision_open, precision_single, solver_auto, &
+      solver_band, solver_frontal, solver_name
   use epcont_model_model, only: line_contact
   use epcont_plan_iteration_plan, only: iteration_plan, many_pairs
   use epcont_plan_numbering, only: many_operations
@@ -156,7 +156,7 @@ contains
       node = [pack(line%segment(1, :), ends(1, :)), &
               pack(line%segment(2, :), ends(2, :) .and. line%neighbour(2, :) == 0)]
       if (size(node) > 0) call say('  corners of BLSEG '//joined(id, ', ')//': GRID '// &
-                                   joined(scene%model%node_id(node), ', ', most_corners))
+          joined(scene%model%node_id(node), ', ', most_corners))
     end subroutine say_corners
 
     !> How bodies are factored, where it is not in panels of their bands alone, and in double precision.

@@ -9,7 +9,7 @@ module epcont_report_results
   use epcont_deck_render, only: printable
   use epcont_model_controls, only: precision_single
   use epcont_report_columns, only: estimate_number, listed_number, number, part, percent, right, &
-                                   rounding_number, table_type
+      rounding_number, table_type
   use epcont_report_echo, only: list_cards
   use epcont_report_file, only: new_text_file, remove_file
   use epcont_report_names, only: centre_name, joined, point_name, when
@@ -248,7 +248,7 @@ contains
                ' degenerate'//when(contact%block_steps > 0, ' (CONRY, after '// &
                                    plural(contact%block_steps, 'set')//' of block pivoting)')
         if (contact%by_blocks) text = '  block pivoting: '//plural(contact%block_steps, 'set')//', '// &
-                                      plural(contact%pivots, 'exchange')//' of pairs'
+            plural(contact%pivots, 'exchange')//' of pairs'
         call listing%line(text//when(size(run%answer%history) > 1, ', in the last solve'))
         if (size(contact%history) > 0) call put_table(run, 'pivots', listing)
         if (size(contact%history) > 0 .and. contact%pivots > size(contact%history)) &
@@ -307,14 +307,14 @@ contains
       in_single = run%answer%precision == precision_single
       call list_figures(['iteration_error_', 'condition       '])
       if (in_single) call list_figure('error that single precision leaves', &
-                                      short_real(run%answer%rounding_error), '')
+          short_real(run%answer%rounding_error), '')
       if (run%answer%precision /= run%iteration%precision) call say( &
         '  (factors in double: in single precision '// &
         when(run%iteration%precision == precision_single, 'they left an error of more than '// &
              short_real(run%iteration%rounding_error)//', or no answer)', &
              'there was no answer that refinement could reach)'))
       if (.not. in_single) call list_figure('digits that rounding leaves, at least', &
-                                            text_of(max(0, floor(-log10(run%answer%rounding())))), '')
+          text_of(max(0, floor(-log10(run%answer%rounding())))), '')
       call list_figure('linear residual', rounding_number(run%certificate%equilibrium), '')
       if (run%accuracy%sensitivity%known .and. .not. in_single) &
         call list_figure('rounding in the contact forces, at most', &

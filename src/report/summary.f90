@@ -7,7 +7,7 @@ module epcont_report_summary
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_element_kinematics, only: directions
   use epcont_report_columns, only: estimate, factor, force, full_numbers, known, length, listed_number, &
-                                   number, part, percent, rounding, size_of, stress
+      number, part, percent, rounding, size_of, stress
   use epcont_report_names, only: motion_name, point_name, when
   use epcont_report_outcome, only: limit_of_pressure, reason_of, unbounded
   use epcont_report_run, only: run_results
@@ -51,7 +51,7 @@ contains
     !> Contact, yielding and stresses.
     subroutine put_answer()
       if (run%model%pairs > 0) call put('max_pressure', stress, known, run%answer%largest_pressure(), &
-                                        'largest pressure', reason_of(limit_of_pressure(run)))
+          'largest pressure', reason_of(limit_of_pressure(run)))
       do k = 1, run%motions%count
         call put('approach_'//motion_key(), length, number, run%answer%contact%approach(k), &
                  'approach: '//motion_name(run, k), &
@@ -160,7 +160,7 @@ contains
                        when(run%accuracy%approach_unbounded(k), unbounded))
       end do
       if (run%model%pairs > 0) call put_error('total_contact_force', force, 'total contact force', &
-                                              run%accuracy%total_force, sum(run%answer%contact%force), '')
+          run%accuracy%total_force, sum(run%answer%contact%force), '')
     end subroutine put_mesh_errors
 
     !> What rounding and errors of the stiffness make of the contact forces.

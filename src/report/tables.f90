@@ -6,7 +6,7 @@ module epcont_report_tables
   use epcont_contact_problem, only: pivot_record
   use epcont_element_kinematics, only: directions
   use epcont_report_columns, only: column, columns_text, estimate, force, known, length, no_number, number, &
-                                   off_curve, rounding, state, stress, table_type, whole, word
+      off_curve, rounding, state, stress, table_type, whole, word
   use epcont_report_outcome, only: limit_of_pressure
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: place_of_point
@@ -290,7 +290,7 @@ contains
         x = place_of_point(model, point)
         associate (corner => model%connectivity(:model%corners(e), e))
           id = text_of(model%node_id(corner(minloc((model%x(1, corner) - x(1))**2 + &
-                                                   (model%x(2, corner) - x(2))**2, dim=1))))
+              (model%x(2, corner) - x(2))**2, dim=1))))
         end associate
       end associate
     end function nearest_grid

@@ -65,7 +65,7 @@ contains
       first = model%row_start(k)
       last = model%row_start(k + 1) - 1
       share(k) = model%normal(c, k)*sum(model%row_weight(first:last), &
-                                        mask=model%body(model%row_node(first:last)) == body)
+          mask=model%body(model%row_node(first:last)) == body)
     end do
   end function shares_of_pairs
 end module epcont_result_body_force

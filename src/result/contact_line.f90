@@ -172,7 +172,7 @@ contains
       if (node == 0) return
       there = at%of(node)
       if (size(there) > 0) pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), &
-                                                          model%normal(:, there))), dim=1))
+          model%normal(:, there))), dim=1))
     end function pair_of_side
 
     !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with

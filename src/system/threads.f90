@@ -2,7 +2,7 @@
 !> cut differently, and the last digits of the tables are others. (Decks run side by side use more cores.)
 module epcont_system_threads
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, &
-                                         c_null_char, c_null_ptr, c_ptr
+      c_null_char, c_null_ptr, c_ptr
   !$ use omp_lib, only: omp_get_max_threads, omp_set_num_threads
   implicit none
   private
