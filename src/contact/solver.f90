@@ -141,6 +141,7 @@ contains
     subroutine choose_neutral(state, approach)
       type(contact_state), intent(inout) :: state
       real(wp), intent(inout) :: approach(:)   !! scaled [m]
+      type(contact_problem) :: springs
       type(contact_solution) :: held
       real(wp), allocatable :: loose(:, :), opening(:, :)   ! neutral motions, and the gaps that they open
       real(wp), allocatable :: change(:)                    ! of these motions
@@ -150,8 +151,11 @@ contains
       opening = -matmul(motion, loose)
       where (abs(opening) <= negligible) opening = 0.0_wp
       change = -matmul(approach, loose)
-      call solve_contact(contact_problem(matmul(opening, transpose(opening)), motion(:, :0), state%gap + &
-          matmul(opening, change), 0*state%gap, [real(wp) ::]), held)
+      springs%flexibility = matmul(opening, transpose(opening))
+      springs%initial_gap = state%gap + matmul(opening, change)
+      springs%load_gap = 0*state%gap
+      allocate (springs%motion(size(state%gap), 0), springs%resultant(0))
+      call solve_contact(springs, held)
       if (held%state /= contact_solved) return
       change = change + matmul(held%force, opening)
       approach = approach + matmul(loose, change)
