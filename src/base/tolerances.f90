@@ -30,8 +30,9 @@ module epcont_base_tolerances
     negligible = 1.0e-11_wp, &
     !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that
     !! can be asked where the flexibility is badly conditioned (1e10: tests/contact/hard_problem). Stresses
-    !! this near to their curves are on them.
-    !! > found/a_force_that_drives_nothing, and contact/test_random from 1e-14 on; < contact/test_answers
+    !! this near to their curves are on them; gaps that a motion closes by such a part of it are not closed.
+    !! > found/a_force_that_drives_nothing, and contact/test_random from 1e-14 on; < contact/test_answers,
+    !! extremes/test_motions
     solved_to = 1.0e-10_wp, &
     !> Part of the largest of its kind (shares, distances, stresses, strains, pressures) by which equal
     !! figures differ; errors up to this are rounding.

@@ -57,15 +57,15 @@ contains
       integer, allocatable :: turned(:)
       integer :: side
 
-      do side = 1, size(contact%slave%element)
-        do k = 1, merge(3, 2, contact%slave%segment(3, side) > 0)
-          outward(:, contact%slave%segment(k, side)) = contact%slave%normal(:, k, side)
-        end do
-      end do
       turned = pack(pairs, pairs < contact%first_of_master)
       associate (node => model%pair_node(2, turned), normal => model%normal(:, turned))
         call find_centre(model%x(:, node), normal, middle, radius)
         if (radius == 0.0_wp) return
+        do side = 1, size(contact%slave%element)
+          do k = 1, merge(3, 2, contact%slave%segment(3, side) > 0)
+            outward(:, contact%slave%segment(k, side)) = contact%slave%normal(:, k, side)
+          end do
+        end do
         call find_centre(model%x(:, node), outward(:, node), own, own_radius)
         if (own_radius > 0.0_wp .and. &
             all(sum(normal*(model%x(:, node) - spread(middle, 2, size(node))), dim=1) < 0.0_wp)) then
@@ -137,5 +137,4 @@ contains
       lever = sum(across*(x - spread(place, 2, size(x, 2))), dim=1)
     end function levers_about
   end subroutine find_centre
-
 end module epcont_contact_geometry_balance
