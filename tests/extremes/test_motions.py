@@ -58,8 +58,7 @@ class Supports(Extremes):
         return deck
 
     def test_round_fits(self):
-        """A disc, or a ring round one, free to turn in the next ring, bears what it bears held, though digits are cut and chords
-        and parabolas are no circles; a lever of a millionth of its radius is none, but an oval turns until its sides are even."""
+        """A disc, or a ring round one, free to turn in the next ring bears what it bears held, whatever digits and chords; an oval turns."""
         for kind, around in (("CTRIA3", (22, 31)), ("CQUAD4", (24, 48)), ("CTRIA6", (16, 32)), ("CQUAD8", (9, 18)), ("CQUAD4", (24, 37, 48))):
             for digits in (16, 6):
                 with self.subTest(kind=kind, around=around, digits=digits):
@@ -123,10 +122,7 @@ class Supports(Extremes):
             deck.support(1, nodes[0][0])
             deck.support(2, nodes[1][0], nodes[1][-1])
             deck.press(nodes[-1], 1.0)
-            if lean < 1e-10:
-                self.valid(deck)
-            else:
-                self.refused(deck, 1, "moves off and no contact holds it")
+            self.valid(deck) if lean < 1e-10 else self.refused(deck, 1, "moves off and no contact holds it")
 
     def test_no_load(self):
         """A free body without load rests where it is; without SUPORT it is refused with the card to paste."""

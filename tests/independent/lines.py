@@ -354,8 +354,7 @@ def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g, told=None)
 
 
 def balance(pairs, x, centres, own):
-    """Forces of round contact meet in one of the centres, to which a new one is added; each has its counterforce on its own line. A
-    round slave in a round hollow has its own normals, `own` by node."""
+    """Forces of round contact meet in one of the centres, or a new one, each with its counterforce on its line; `own`: of a round slave."""
     turned = [pair for pair in pairs if not pair.stands_on]
     centre, radius = centre_of([(x[pair.node], pair.normal) for pair in turned])
     if radius:
