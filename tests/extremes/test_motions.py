@@ -58,7 +58,7 @@ class Supports(Extremes):
         return deck
 
     def test_round_fits(self):
-        """A disc, or a ring round one, free to turn in the next ring bears what it bears held, whatever digits and chords; an oval turns."""
+        """A disc, or a ring, free to turn in the next ring bears what it bears held, whatever digits and chords; an oval turns."""
         for kind, around in (("CTRIA3", (22, 31)), ("CQUAD4", (24, 48)), ("CTRIA6", (16, 32)), ("CQUAD8", (9, 18)), ("CQUAD4", (24, 37, 48))):
             for digits in (16, 6):
                 with self.subTest(kind=kind, around=around, digits=digits):
@@ -114,7 +114,7 @@ class Supports(Extremes):
         return deck
 
     def test_feet_that_lean(self):
-        """By less than 1e-10, which may be rounding, they do not push a plate along."""
+        """By less than 1e-10 they push nothing."""
         for lean in (1e-12, 1e-9):
             deck = Deck(*STEEL)
             nodes = deck.block(1, [0.0, 1.0, 2.0], [0.0, 1.0])
