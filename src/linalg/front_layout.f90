@@ -17,7 +17,6 @@ module epcont_linalg_front_layout
     type(incidence) :: rows                !! equations that each front reaches, ascending
     integer, allocatable :: own(:)         !! how many equations are a front's own [fronts]
     integer, allocatable :: reached(:)     !! and how many it reaches [fronts]
-    logical :: in_sequence = .true.        !! all fronts below one stand right before it
     !> The elements in the order of the first fronts that they have equations of.
     integer, allocatable :: element(:)
   contains
@@ -52,7 +51,6 @@ contains
     layout%element = [at%group, pack([(e, e=1, size(home))], home(1, :) == 0)]
     call find_rows(layout, at, numbers)
     layout%reached = layout%rows%start(2:) - layout%rows%start(:size(layout%own))
-    layout%in_sequence = stand_in_sequence(layout%parent)
   end function new_front_layout
 
   !> The rows of each front, and its parent. A front reaches what elements join to its equations and what the
@@ -123,45 +121,36 @@ contains
     entries = start(size(start)) - 1
   end function entries
 
-  !> Whether the fronts below each stand right before it: else what one leaves may still be wanted when
-  !! others, not below the same, are eliminated.
-  pure logical function stand_in_sequence(parent)
-    integer, intent(in) :: parent(:)
-    integer :: below(size(parent)), lowest(size(parent)), p
-
-    stand_in_sequence = .true.
-    below = 0
-    lowest = [(p, p=1, size(parent))]
-    do p = 1, size(parent)
-      if (p - lowest(p) /= below(p)) stand_in_sequence = .false.
-      if (parent(p) == 0) cycle
-      below(parent(p)) = below(parent(p)) + below(p) + 1
-      lowest(parent(p)) = min(lowest(parent(p)), lowest(p))
-    end do
-  end function stand_in_sequence
-
-  !> Where the update matrix of each front, what it leaves to the later equations, begins behind the factor:
-  !! in its own place where all are kept, else behind that of its parent, where those that are done with were
-  !! before. And one behind the last [fronts + 1].
+  !> Where the update matrix of each front, what it leaves to the later equations, begins behind the factor.
+  !! It is in use from when the first front below passes something on until it is passed on itself, or always
+  !! where all are kept. It begins behind that of the next front whose matrix is in use by then: any later one
+  !! that is, is in use at this next front too, and so stands before. And one behind the last [fronts + 1].
   pure function update_starts(self, kept) result(start)
     class(front_layout), intent(in) :: self
     logical, intent(in) :: kept   !! all update matrices are kept
-    integer(i8) :: start(size(self%first)), factor, last
-    integer :: p
+    integer(i8) :: start(size(self%first)), last
+    !> The front after which each is in use, and the next whose matrix is by then
+    integer :: after(size(self%own)), next(size(self%own)), p, q
 
-    factor = sum(int(self%own, i8)*(self%own + self%reached))
-    last = factor
-    do p = size(self%parent), 1, -1
-      if (kept .or. .not. self%in_sequence) then
-        start(p) = last + 1
-      else if (self%parent(p) == 0) then
-        start(p) = factor + 1
-      else
-        start(p) = start(self%parent(p)) + int(self%reached(self%parent(p)), i8)**2
-      end if
-      last = max(last, start(p) - 1 + int(self%reached(p), i8)**2)
+    after = merge(0, [(p - 1, p=1, size(after))], kept)
+    do p = 1, size(after)
+      q = self%parent(p)
+      if (q > 0) after(q) = min(after(q), p - 1)
     end do
-    start(size(start)) = last + 1
+    start(size(start)) = sum(int(self%own, i8)*(self%own + self%reached)) + 1
+    last = start(size(start))
+    do p = size(next), 1, -1
+      q = p + 1
+      do while (q <= size(next))
+        if (after(q) < p) exit
+        q = next(q)
+      end do
+      next(p) = q
+      start(p) = start(q)
+      if (q <= size(next)) start(p) = start(p) + int(self%reached(q), i8)**2
+      last = max(last, start(p) + int(self%reached(p), i8)**2)
+    end do
+    start(size(start)) = last
   end function update_starts
 
   !> Operations that the factorization takes.
