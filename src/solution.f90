@@ -69,7 +69,7 @@ contains
       call check_memory(self%expected%double_bytes, limit, in_double)
       if (allocated(in_double)) self%iteration%against_double = in_double%message
       self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
-      call watch%expect(self%iteration, self%model%controls%most_iterations, self%expected%operations)
+      call watch%expect(self%iteration, self%model%controls%most_iterations, self%expected)
       call analyse(self%planned_scene, self%answer, self%certificate, self%accuracy, watch)
       if (self%answer%failed_body > 0 .or. count == most_solves) exit
       call enter_nodes_that_came_near(self%model, self%answer%displacement, &

@@ -1,6 +1,7 @@
 !> One deck from file to results.
 module epcont_app_driver
   use epcont_app_arguments, only: arguments_type, stem_of
+  use epcont_app_forecast_text, only: forecast_text
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type, timing_text
   use epcont_base_error, only: error_type, status_deck, status_valid
@@ -9,6 +10,7 @@ module epcont_app_driver
   use epcont_build_build, only: build_model, tell
   use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render, render_notes
+  use epcont_linalg_rate, only: measured_rate
   use epcont_report_columns, only: known, listed_number, number, right
   use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_outcome, only: judge, limit_of_pressure, reason_of, remark_lines
@@ -73,7 +75,10 @@ contains
         if (arguments%asks('--plan')) call print_text(name//plan_text(run%planned_scene), status)
       end if
       call print_error(render(run%faults, run%deck%source))
-      if (.not. writes) return
+      if (.not. writes) then
+        if (.not. arguments%asks('--check')) call say_forecast()
+        return
+      end if
       run%deck_notes = render_notes(run%faults, run%deck%source)
       call run%deck%forget_text()
       call run%solve(arguments%memory, watch, error)
@@ -92,6 +97,12 @@ contains
       if (len(run%outcome%sentence) > 0) call say_lines(run%outcome%sentence//newline)
       call say(one_line())
     end subroutine solve_deck
+
+    !> What the run would take on this machine: on standard error, since plans are compared.
+    subroutine say_forecast()
+      call print_error(name//': '//forecast_text(run%planned_scene, &
+        run%rows_of_tables(arguments%asks('--tables')), sum(watch%spent(2, :)), measured_rate())//newline)
+    end subroutine say_forecast
 
     !> Read and check.
     subroutine prepare()

@@ -21,7 +21,9 @@ module epcont_app_options
     option_type('-o', 'write results to DIR (default: the current directory)', 'DIR', &
                 more='DIR is made where there is none; what it lies in must be there.'), &
     option_type('--check', 'read and check the decks, then stop'), &
-    option_type('--plan', 'print what would be solved and what it takes, then stop'), &
+    option_type('--plan', 'print what would be solved and what it takes, then stop', &
+                more='The time that the run would take on this machine goes to standard error: within a '// &
+                     'factor of 2, beyond yield where it takes about as many solves as are told.'), &
     option_type('--tables', 'write node and element tables, whatever the deck asks for', 'all', &
                 more='Without it they are written where the deck has DISPLACEMENT, SPCFORCES or STRESS.'), &
     option_type('--vtk', 'write DECK.vtu and DECK.contact.vtu, for ParaView'), &

@@ -4,7 +4,9 @@ module epcont_app_progress_display
   use epcont_app_process, only: print_error, terminal_columns
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: formatted, newline, short_real, text_of
+  use epcont_plan_forecast, only: forecast_type
   use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_run_time, only: foresee, likely_rate
   use epcont_plasticity_expectation, only: expectation_type, new_expectation
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_report_columns, only: rounding_number
@@ -45,13 +47,14 @@ contains
   end subroutine begin
 
   !> The plan is made; solves begin.
-  subroutine expect(self, plan, most_iterations, operations)
+  subroutine expect(self, plan, most_iterations, expected)
     class(progress_type), intent(inout) :: self
     type(iteration_plan), intent(in) :: plan   !! how yielding is iterated
     integer, intent(in) :: most_iterations   !! at a load
-    real(wp), intent(in) :: operations       !! of a solve
+    type(forecast_type), intent(in) :: expected   !! work of a solve
 
-    self%expected = new_expectation(plan, most_iterations, operations, self%elapsed())
+    self%expected = new_expectation(plan, most_iterations, &
+                                    foresee(plan, expected, 0, self%elapsed(), likely_rate))
     call show(self, iteration_record())
   end subroutine expect
 

@@ -3,7 +3,7 @@ module epcont_plan_forecast
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: short_real
-  use epcont_model_controls, only: precision_double, solver_frontal
+  use epcont_model_controls, only: method_inistr, precision_double, solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -18,6 +18,9 @@ module epcont_plan_forecast
     integer(i8) :: bytes = 0            !! that the process will hold at its peak, on one thread
     integer(i8) :: double_bytes = 0     !! the same with factors in double precision
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
+    real(wp) :: operations_again = 0.0_wp   !! of these, what each solve but the first has, beyond yield
+    integer(i8) :: entries = 0          !! of the factors
+    integer(i8) :: entries_again = 0    !! of these, what is factored for each solve
   end type forecast_type
 
   real(wp), parameter :: giga = 1.0e9_wp
@@ -83,6 +86,7 @@ contains
     type(forecast_type) :: expected
     integer(i8), allocatable :: own_pairs(:)
     integer(i8) :: entries, factor, flexibility, pairs, saved
+    real(wp) :: operations
     integer :: b
 
     pairs = model%pairs
@@ -102,7 +106,13 @@ contains
         ! The trailing block of the inverse, or the window that right-hand sides go through; and that part.
         flexibility = max(flexibility, own_pairs(b)**2 + merge(int(body%contact_equations, i8)**2, &
           own_pairs(b)*(body%half_bandwidth + own_pairs(b)), body%contact_last))
-        expected%operations = expected%operations + 4.0_wp*body%border*factor + body%operations
+        operations = 4.0_wp*body%border*factor + body%operations
+        expected%operations = expected%operations + operations
+        expected%entries = expected%entries + factor
+        if (body%can_yield .and. plan%method /= method_inistr) then
+          expected%operations_again = expected%operations_again + operations
+          expected%entries_again = expected%entries_again + factor
+        end if
       end associate
     end do
     entries = entries + max(int(pair_matrices*real(pairs, wp)**2, i8), flexibility + 2*pairs**2) + &
@@ -111,8 +121,9 @@ contains
     expected%bytes = expected%double_bytes - saved
     ! A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice,
     ! and the sets on the way to it are smaller, or little of them is factored.
-    expected%operations = expected%operations + &
-                          merge(2.0_wp/3.0_wp, 2.0_wp, plan%by_blocks)*real(pairs, wp)**3
+    operations = merge(2.0_wp/3.0_wp, 2.0_wp, plan%by_blocks)*real(pairs, wp)**3
+    expected%operations = expected%operations + operations
+    expected%operations_again = expected%operations_again + operations
 
   contains
 

@@ -1,19 +1,15 @@
-!> How long a run will take in all: by the plan's operations before the first solve, by the clock and by how
+!> How long a run will take in all: by the plan's forecast before the first solve, by the clock and by how
 !> fast the iteration comes to its end after it.
 module epcont_plasticity_expectation
   use epcont_base_kinds, only: wp
   use epcont_model_controls, only: method_newton
   use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_run_time, only: run_time
   use epcont_plasticity_observer, only: iteration_record
   implicit none
   private
   public :: expectation_type, new_expectation, solves_to_come
 
-  !> Operations in a second, before any were measured: of one core with AVX2, assembly and what the system
-  !! takes to give memory included (40 000 and 120 000 nodes: 1.0e10 to 2.4e10).
-  real(wp), parameter :: likely_rate = 1.0e10_wp
-  !> What comes after the last solve, over what comes before the first: both grow with the mesh alone.
-  real(wp), parameter :: end_part = 1.0_wp
   !> How much longer each step of NEWTON is than the one before, in digits. All decks in input that yield, and
   !! others, from the second solve on: 92 % of the numbers of solves expected are right within a factor 1.5;
   !! of the other methods, whose steps are even, 77 %. The order that the last two steps show serves worse (70
@@ -29,7 +25,7 @@ module epcont_plasticity_expectation
     real(wp) :: first_solve = 0.0_wp         !! when it will be done [s]
     type(iteration_plan), private :: plan
     integer, private :: most_iterations = 1
-    real(wp), private :: begun = 0.0_wp      !! when solves began [s]
+    real(wp), private :: finish = 0.0_wp     !! what comes after the last solve [s]
     real(wp), private :: solved_at = 0.0_wp  !! when the last one was done [s]
     integer, private :: solves = 0           !! at loads that are behind
     integer, private :: load_steps = 0       !! of these
@@ -41,18 +37,16 @@ module epcont_plasticity_expectation
 
 contains
 
-  !> Before the first solve, where `begun` seconds have gone. With yielding it is not known how many solves
-  !! there will be.
-  pure function new_expectation(plan, most_iterations, operations, begun) result(expected)
+  !> Before the first solve. With yielding it is not known how many solves there will be.
+  pure function new_expectation(plan, most_iterations, time) result(expected)
     type(iteration_plan), intent(in) :: plan   !! how yielding is iterated
     integer, intent(in) :: most_iterations   !! at a load
-    real(wp), intent(in) :: operations       !! of a solve
-    real(wp), intent(in) :: begun            !! [s]
+    type(run_time), intent(in) :: time       !! its parts, as forecast
     type(expectation_type) :: expected
 
-    expected = expectation_type(first_solve=begun + operations/likely_rate, plan=plan, &
-                                most_iterations=most_iterations, begun=begun, solved_at=begun)
-    if (.not. plan%yields) expected%seconds = expected%first_solve + end_part*begun
+    expected = expectation_type(first_solve=time%begun + time%solve, plan=plan, finish=time%finish, &
+                                most_iterations=most_iterations, solved_at=time%begun)
+    if (.not. plan%yields) expected%seconds = expected%first_solve + time%finish
   end function new_expectation
 
   !> A solve was done at `seconds`; `over` if it was the last one at its load. The next will take as long as
@@ -81,7 +75,7 @@ contains
       each = real(size(self%distance) + left, wp)
       if (self%load_steps > 0) each = real(self%solves, wp)/self%load_steps
       each = each*max(0, self%plan%load_steps - self%load_steps - merge(0, 1, over))
-      self%seconds = seconds + (seconds - self%solved_at)*(left + each) + end_part*self%begun
+      self%seconds = seconds + (seconds - self%solved_at)*(left + each) + self%finish
     end if
     self%solved_at = seconds
   end subroutine learn

@@ -14,7 +14,7 @@ module epcont_report_plan_text
   use epcont_report_names, only: joined, motion_name, when
   implicit none
   private
-  public :: plan_text
+  public :: plan_text, megabytes
 
   !> Free motions, bodies and contacts that are told of one by one, and corners of each line.
   integer, parameter :: most = 20, most_corners = 8
@@ -217,7 +217,7 @@ contains
 
   !> Memory, rounded up.
   pure function megabytes(bytes) result(text)
-    integer(i8), intent(in) :: bytes
+    integer(i8), intent(in) :: bytes   !! of it
     character(len=:), allocatable :: text
 
     text = text_of((bytes + 999999_i8)/1000000_i8)//' MB'

@@ -59,8 +59,8 @@ contains
     integer :: k
 
     call remove_results(stem)
-    nodes = all_tables .or. run%deck%displacement .or. run%deck%spcforces
-    elements = all_tables .or. run%deck%stress
+    nodes = run%wants_nodes(all_tables)
+    elements = run%wants_elements(all_tables)
     figures = summarise(run)
     call write_listing()
     call write_table('summary')

@@ -14,5 +14,36 @@ module epcont_report_run
     type(diagnostics) :: faults
     character(len=:), allocatable :: deck_notes   !! its warnings and notes, in lines
     type(outcome_type) :: outcome
+  contains
+    procedure :: wants_nodes
+    procedure :: wants_elements
+    procedure :: rows_of_tables
   end type run_results
+
+contains
+
+  !> The table of nodes is asked for.
+  pure logical function wants_nodes(self, all_tables)
+    class(run_results), intent(in) :: self
+    logical, intent(in) :: all_tables   !! on the command line
+
+    wants_nodes = all_tables .or. self%deck%displacement .or. self%deck%spcforces
+  end function wants_nodes
+
+  !> The table of elements is asked for.
+  pure logical function wants_elements(self, all_tables)
+    class(run_results), intent(in) :: self
+    logical, intent(in) :: all_tables   !! on the command line
+
+    wants_elements = all_tables .or. self%deck%stress
+  end function wants_elements
+
+  !> Rows of the tables that grow with a scene.
+  pure integer function rows_of_tables(self, all_tables) result(rows)
+    class(run_results), intent(in) :: self
+    logical, intent(in) :: all_tables   !! on the command line
+
+    rows = self%model%pairs + merge(self%model%nodes, 0, self%wants_nodes(all_tables)) + &
+           merge(self%model%elements, 0, self%wants_elements(all_tables))
+  end function rows_of_tables
 end module epcont_report_run
