@@ -92,7 +92,6 @@ contains
 
     condition = 1.0_wp
     do b = 1, size(self%body)
-      if (scene%numbering%body(b)%can_yield) call self%body(b)%find_norm(scene, self%operator, self%law, b)
       condition = max(condition, self%body(b)%matrix%condition())
     end do
   end subroutine estimate_condition

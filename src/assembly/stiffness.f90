@@ -32,7 +32,6 @@ module epcont_assembly_stiffness
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
   contains
     procedure :: assemble
-    procedure :: find_norm
     procedure :: factor
     procedure :: is_sound
     procedure :: solve_lower
@@ -49,17 +48,12 @@ contains
     type(strain_operator), intent(in) :: operator    !! strains of nodal displacements
     type(linear_law), intent(in) :: law              !! stresses of strains, and where that has changed since
     integer, intent(in) :: b                         !! the body
-    real(wp) :: k(most_freedoms**2)
-    real(wp), allocatable :: row_sum(:)
     logical, allocatable :: stale(:)                 ! the equation is to be filled [-border:equations]
-    integer :: e, n, number(most_freedoms)
-    logical :: first
 
-    first = .not. allocated(self%matrix)
     associate (body => scene%numbering%body(b))
       allocate (stale(-body%border:body%equations), source=.true.)
       stale(0) = .false.
-      if (first) then
+      if (.not. allocated(self%matrix)) then
         call begin()
       else
         if (self%is_sound() .and. body%border == 0) call find_stale()
@@ -70,21 +64,51 @@ contains
       allocate (self%schur(body%border, body%border), source=0.0_wp)
       self%lacks_memory = self%matrix%lacks_memory
       if (self%lacks_memory) return
-      allocate (row_sum(merge(body%equations, 0, first)), source=0.0_wp)
-      do e = 1, size(body%element)
-        number = scene%numbering%of_element(scene%model, body%element(e))
-        if (.not. any(stale(number))) cycle
-        n = directions*scene%model%node_count(body%element(e))
-        call operator%element_stiffness(scene%model, body%element(e), law, n, k)
-        if (self%single) k(:n**2) = k(:n**2)/self%unit
-        call self%matrix%add(n, number, k)
-        if (body%border > 0) call add_to_border(n, number, k, self)
-        if (first) call add_magnitudes(n, number, k, row_sum)
-      end do
+      if (body%solver == solver_frontal) then
+        call fill_from(size(body%fronts%own) + 1)
+      else
+        call fill(1, 1, size(body%element))
+      end if
     end associate
-    if (first) self%matrix%norm = max(0.0_wp, maxval(row_sum))
 
   contains
+
+    !> Fill a front, after all that are below it, and factor it.
+    recursive subroutine fill_from(p)
+      integer, intent(in) :: p
+      integer :: i
+
+      associate (fronts => scene%numbering%body(b)%fronts)
+        if (p <= size(fronts%own)) then
+          if (.not. stale(fronts%first(p))) return
+        end if
+        do i = fronts%below%start(p), fronts%below%start(p + 1) - 1
+          call fill_from(fronts%below%group(i))
+        end do
+        call fill(p, fronts%first_element(p), fronts%first_element(p + 1) - 1)
+      end associate
+    end subroutine fill_from
+
+    !> Fill a part of the matrix with its elements.
+    subroutine fill(part, first, last)
+      integer, intent(in) :: part, first, last
+      real(wp) :: k(most_freedoms**2)
+      integer :: e, n, number(most_freedoms)
+
+      call self%matrix%open(part)
+      do e = first, last
+        associate (element => scene%numbering%body(b)%element(e))
+          number = scene%numbering%of_element(scene%model, element)
+          n = directions*scene%model%node_count(element)
+          if (.not. any(stale(number(:n)))) cycle
+          call operator%element_stiffness(scene%model, element, law, n, k)
+          if (self%single) k(:n**2) = k(:n**2)/self%unit
+          call self%matrix%add(n, number, k)
+          if (size(self%schur) > 0) call add_to_border(n, number, k, self)
+        end associate
+      end do
+      call self%matrix%close(part)
+    end subroutine fill
 
     !> A matrix of zeros, of the kind that the plan has chosen.
     subroutine begin()
@@ -120,7 +144,7 @@ contains
 
     !> The equations of elements that have changed.
     subroutine find_stale()
-      integer :: i
+      integer :: e, i, number(most_freedoms)
 
       stale = .false.
       associate (element => scene%numbering%body(b)%element, first => scene%model%first_point)
@@ -152,45 +176,6 @@ contains
     end function unit_of
   end subroutine assemble
 
-  !> The 1-norm of a body's stiffness as it was factored last, or a bound of it, from its elements.
-  pure subroutine find_norm(self, scene, operator, law, b)
-    class(body_stiffness), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene         !! with the numbers of its equations
-    type(strain_operator), intent(in) :: operator    !! strains of nodal displacements
-    type(linear_law), intent(in) :: law              !! as it was assembled with
-    integer, intent(in) :: b                         !! the body
-    real(wp) :: k(most_freedoms**2), row_sum(scene%numbering%body(b)%equations)
-    integer :: e, n
-
-    row_sum = 0.0_wp
-    do e = 1, size(scene%numbering%body(b)%element)
-      associate (element => scene%numbering%body(b)%element(e))
-        n = directions*scene%model%node_count(element)
-        call operator%element_stiffness(scene%model, element, law, n, k)
-        call add_magnitudes(n, scene%numbering%of_element(scene%model, element), k, row_sum)
-      end associate
-    end do
-    self%matrix%norm = max(0.0_wp, maxval(row_sum))/self%unit
-  end subroutine find_norm
-
-  !> Add an element's part of the sums of the magnitudes of each row. (A matrix has no larger ones: where
-  !! elements meet, their entries may cancel.)
-  pure subroutine add_magnitudes(n, number, k, row_sum)
-    integer, intent(in) :: n, number(n)
-    real(wp), intent(in) :: k(n, n)
-    real(wp), intent(inout) :: row_sum(:)
-    real(wp) :: sums(n)
-    integer :: j
-
-    sums = 0.0_wp
-    do j = 1, n
-      if (number(j) > 0) sums = sums + abs(k(:, j))
-    end do
-    do j = 1, n
-      if (number(j) > 0) row_sum(number(j)) = row_sum(number(j)) + sums(j)
-    end do
-  end subroutine add_magnitudes
-
   !> Add an element matrix to the coupling and the border.
   pure subroutine add_to_border(n, number, k, stiffness)
     integer, intent(in) :: n, number(n)
@@ -210,7 +195,7 @@ contains
   end subroutine add_to_border
 
   !> Factor the matrix, then the Schur complement of the border.
-  pure subroutine factor(self)
+  subroutine factor(self)
     class(body_stiffness), intent(inout) :: self
     real(wp), allocatable :: coupled(:, :)
     integer :: at, info

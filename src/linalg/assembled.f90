@@ -2,9 +2,9 @@
 !> solved with, and seen by the pairs. How one begins, by its panels or by its fronts, is the affair of each
 !> kind.
 !>
-!> The elements of fronts are added in the order of the first front that they have equations of
-!> (`front_layout`): what stands before is complete then, and is factored while it is at hand. So `add` does
-!> most of the work, `factor` the rest.
+!> A matrix is filled part by part. A band is one; of fronts each is: it is opened when all below it are
+!> closed, is given its elements (`front_layout`), and factored when it is closed, while it is at hand. That
+!> does most of the work, `factor` the rest.
 module epcont_linalg_assembled
   use epcont_base_kinds, only: wp
   use epcont_linalg_dense, only: cholesky_inverse
@@ -23,13 +23,15 @@ module epcont_linalg_assembled
   type, abstract :: assembled_matrix
     integer :: order = 0
     integer :: trailing = 0   !! last equations, the only ones that `add_compliance` is asked for; 0: any
-    real(wp) :: norm = 0.0_wp           !! 1-norm of the matrix, or a bound of it
+    real(wp) :: norm = 0.0_wp           !! 1-norm of the matrix when it was factored, or a bound of it
     real(wp) :: rounding = epsilon(1.0_wp)   !! relative, of its entries and of what is done with them
     logical :: lacks_memory = .false.   !! there was not enough to begin it
     real(wp), allocatable :: pivot_ratio(:)   !! pivot**2 over the diagonal entry [order]
   contains
     procedure(clear_entries), deferred :: clear
+    procedure :: open
     procedure(add_element), deferred :: add
+    procedure :: close
     procedure(eliminate_rest), deferred :: eliminate
     procedure :: factor
     procedure(first_half), deferred :: solve_lower
@@ -51,8 +53,8 @@ module epcont_linalg_assembled
       logical, intent(inout) :: stale(:)
     end subroutine clear_entries
 
-    !> Add the matrix of the next element; rows and columns of number 0 and less are left out, and columns
-    !! that are not stale.
+    !> Add the matrix of an element to its part; rows and columns of number 0 and less are left out, and
+    !! columns that are not stale.
     pure subroutine add_element(self, n, number, k)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(inout) :: self
@@ -61,8 +63,8 @@ module epcont_linalg_assembled
       real(wp), intent(in) :: k(n, n)        !! symmetric
     end subroutine add_element
 
-    !> Eliminate what has not been eliminated yet.
-    pure subroutine eliminate_rest(self, failed)
+    !> Eliminate what has not been eliminated yet, and find the norm.
+    subroutine eliminate_rest(self, failed)
       import :: assembled_matrix
       class(assembled_matrix), intent(inout) :: self
       integer, intent(out) :: failed         !! equation that has no pivot; 0: none, the matrix is definite
@@ -95,9 +97,23 @@ module epcont_linalg_assembled
 
 contains
 
+  !> Make a part ready for its elements. A band is.
+  subroutine open(self, p)
+    class(assembled_matrix), intent(inout) :: self
+    integer, intent(in) :: p   !! the part; one behind the last: elements that have no equations
+
+  end subroutine open
+
+  !> A part has all its elements. A band waits for `factor`.
+  subroutine close(self, p)
+    class(assembled_matrix), intent(inout) :: self
+    integer, intent(in) :: p   !! the part
+
+  end subroutine close
+
   !> End with the Cholesky factor of the matrix. Many singular matrices pass for definite, so the ratio of the
   !! smallest pivot to its diagonal entry is returned as well.
-  pure subroutine factor(self, smallest_ratio, at)
+  subroutine factor(self, smallest_ratio, at)
     class(assembled_matrix), intent(inout) :: self
     real(wp), intent(out) :: smallest_ratio  !! 0 where the matrix is not definite
     integer, intent(out) :: at               !! its equation

@@ -8,7 +8,10 @@ module epcont_linalg_front_layout
   use epcont_base_sorting, only: sorted_order
   implicit none
   private
-  public :: front_layout, new_front_layout
+  public :: front_layout, new_front_layout, update_size
+
+  !> What goes along with a front, one number a row: diagonal of the matrix, sums of magnitudes, two probes.
+  integer, parameter, public :: columns_along = 4
 
   type :: front_layout
     integer, allocatable :: first(:)       !! equation of each front [fronts + 1]
@@ -17,8 +20,11 @@ module epcont_linalg_front_layout
     type(incidence) :: rows                !! equations that each front reaches, ascending
     integer, allocatable :: own(:)         !! how many equations are a front's own [fronts]
     integer, allocatable :: reached(:)     !! and how many it reaches [fronts]
-    !> The elements in the order of the first fronts that they have equations of.
-    integer, allocatable :: element(:)
+    !> Right below each front, and those that are below none as if below one more [fronts + 1]
+    type(incidence) :: below
+    !> The elements in the order of the first fronts that they have equations of, and where those of each
+    !! begin; of none, behind all others [fronts + 2]
+    integer, allocatable :: element(:), first_element(:)
   contains
     procedure :: entries
     procedure :: update_starts
@@ -34,6 +40,7 @@ contains
     type(front_layout) :: layout
     type(incidence) :: at                   !! elements of each front
     integer :: home(1, size(numbers, 2))    !! the first front that each element has equations of, or 0
+    integer, allocatable :: above(:, :)
     integer :: e, lowest, p
 
     layout%first = first
@@ -49,8 +56,13 @@ contains
     end do
     at = new_incidence(home, size(layout%own))
     layout%element = [at%group, pack([(e, e=1, size(home))], home(1, :) == 0)]
+    layout%first_element = [at%start, size(layout%element) + 1]
     call find_rows(layout, at, numbers)
     layout%reached = layout%rows%start(2:) - layout%rows%start(:size(layout%own))
+    associate (fronts => size(layout%own))
+      above = reshape(merge(layout%parent, fronts + 1, layout%parent > 0), [1, fronts])
+      layout%below = new_incidence(above, fronts + 1)
+    end associate
   end function new_front_layout
 
   !> The rows of each front, and its parent. A front reaches what elements join to its equations and what the
@@ -121,36 +133,40 @@ contains
     entries = start(size(start)) - 1
   end function entries
 
-  !> Where the update matrix of each front, what it leaves to the later equations, begins behind the factor.
-  !! It is in use from when the first front below passes something on until it is passed on itself, or always
-  !! where all are kept. It begins behind that of the next front whose matrix is in use by then: any later one
-  !! that is, is in use at this next front too, and so stands before. And one behind the last [fronts + 1].
+  !> Entries of the update matrix of a front, and of the columns that go along.
+  elemental integer(i8) function update_size(own, reached)
+    integer, intent(in) :: own       !! equations of the front
+    integer, intent(in) :: reached   !! later ones
+
+    update_size = int(reached, i8)**2 + int(columns_along, i8)*(own + reached)
+  end function update_size
+
+  !> Where the update matrix of each front, what it leaves to the later equations, begins behind the factor:
+  !! in its own place where all are kept. Else fronts right below one are eliminated one after another, each
+  !! with all that is below it, then the one itself. So each begins behind that of its parent and what those
+  !! before it have left there. And one behind the last [fronts + 1].
   pure function update_starts(self, kept) result(start)
     class(front_layout), intent(in) :: self
     logical, intent(in) :: kept   !! all update matrices are kept
-    integer(i8) :: start(size(self%first)), last
-    !> The front after which each is in use, and the next whose matrix is by then
-    integer :: after(size(self%own)), next(size(self%own)), p, q
+    integer(i8) :: start(size(self%first))
+    !> Entries of each; what those below it leave, and what they have at once; what is left before it
+    integer(i8), dimension(size(self%first)) :: before, left, most, own
+    integer :: above(size(self%own)), p
 
-    after = merge(0, [(p - 1, p=1, size(after))], kept)
-    do p = 1, size(after)
-      q = self%parent(p)
-      if (q > 0) after(q) = min(after(q), p - 1)
+    above = merge(self%parent, size(start), self%parent > 0 .and. .not. kept)
+    own = [update_size(self%own, self%reached), 0_i8]
+    left = 0
+    most = 0
+    do p = 1, size(above)
+      before(p) = left(above(p))
+      left(above(p)) = before(p) + own(p)
+      most(above(p)) = max(most(above(p)), left(above(p)) + most(p))
     end do
     start(size(start)) = sum(int(self%own, i8)*(self%own + self%reached)) + 1
-    last = start(size(start))
-    do p = size(next), 1, -1
-      q = p + 1
-      do while (q <= size(next))
-        if (after(q) < p) exit
-        q = next(q)
-      end do
-      next(p) = q
-      start(p) = start(q)
-      if (q <= size(next)) start(p) = start(p) + int(self%reached(q), i8)**2
-      last = max(last, start(p) + int(self%reached(p), i8)**2)
+    do p = size(above), 1, -1
+      start(p) = start(above(p)) + own(above(p)) + before(p)
     end do
-    start(size(start)) = last
+    start(size(start)) = start(size(start)) + most(size(start))
   end function update_starts
 
   !> Operations that the factorization takes.
