@@ -76,6 +76,7 @@ contains
         if (.not. any(stale(number))) cycle
         n = directions*scene%model%node_count(body%element(e))
         call operator%element_stiffness(scene%model, body%element(e), law, n, k)
+        call scene%numbering%axes%turn_stiffness(scene%model%connectivity(:, body%element(e)), n, k)
         if (self%single) k(:n**2) = k(:n**2)/self%unit
         call self%matrix%add(n, number, k)
         if (body%border > 0) call add_to_border(n, number, k, self)
@@ -167,6 +168,7 @@ contains
       associate (element => scene%numbering%body(b)%element(e))
         n = directions*scene%model%node_count(element)
         call operator%element_stiffness(scene%model, element, law, n, k)
+        call scene%numbering%axes%turn_stiffness(scene%model%connectivity(:, element), n, k)
         call add_magnitudes(n, scene%numbering%of_element(scene%model, element), k, row_sum)
       end associate
     end do
