@@ -11,13 +11,14 @@ module epcont_flexibility_flexibility
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, pair_forces, &
-    see_motions
+  public :: add_flexibility, body_flexibility, complete_flexibility, find_flexibility, gap_opening, &
+    pair_forces, see_motions
 
   !> One body's part of F, between the pairs that it gives way at.
   type :: body_flexibility
     integer, allocatable :: pair(:)         !! ascending
-    real(wp), allocatable :: matrix(:, :)   !! [length/force] [its pairs, its pairs]
+    !> Lower triangle [length/force] [its pairs, its pairs]
+    real(wp), allocatable :: matrix(:, :)
   end type body_flexibility
 
 contains
@@ -32,19 +33,19 @@ contains
     type(sparse_rows) :: rows
 
     call find_rows(part%pair, rows)
-    allocate (part%matrix(size(part%pair), size(part%pair)), source=0.0_wp)
     if (size(part%pair) == 0) return
     rows%weight = rows%weight/sqrt(stiffness%unit)
-    call stiffness%matrix%add_compliance(rows, part%matrix)
+    call stiffness%matrix%find_compliance(rows, part%matrix)
     if (numbering%body(b)%border > 0) part%matrix = part%matrix + border_part()
 
   contains
 
     !> Rows of N in the body, of the pairs that have any entry there; negative equations are of the border.
-    !! Freedoms that are held, across the normal or of another body are left out.
+    !! Freedoms that are held, not wanted, across the normal or of another body are left out.
     pure subroutine find_rows(pair, rows)
       integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
       type(sparse_rows), intent(out) :: rows
+      real(wp) :: normal(directions)   ! along the freedoms of a node
       integer :: c, found, i, k, last, number
 
       allocate (pair(model%pairs), rows%start(model%pairs + 1), source=1)
@@ -54,12 +55,14 @@ contains
       do k = 1, model%pairs
         do i = model%row_start(k), model%row_start(k + 1) - 1
           if (model%body(model%row_node(i)) /= b) cycle
+          normal = numbering%axes%along(model%row_node(i), model%normal(:, k))
           do c = 1, directions
             number = numbering%equation(c, model%row_node(i))
-            if (number == 0 .or. model%normal(c, k) == 0.0_wp) cycle
+            if (number == 0 .or. normal(c) == 0.0_wp) cycle
+            if (.not. numbering%axes%wanted(c, model%row_node(i))) cycle
             last = last + 1
             rows%equation(last) = number
-            rows%weight(last) = model%row_weight(i)*model%normal(c, k)
+            rows%weight(last) = model%row_weight(i)*normal(c)
           end do
         end do
         if (last < rows%start(found + 1)) cycle
@@ -97,13 +100,25 @@ contains
   !> Add a body's part to F.
   pure subroutine add_flexibility(part, flexibility)
     type(body_flexibility), intent(in) :: part   !! one body's
-    real(wp), intent(inout) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
+    real(wp), intent(inout) :: flexibility(:, :)   !! lower triangle [length/force] [pairs, pairs]
     integer :: k
 
     do k = 1, size(part%pair)
-      flexibility(part%pair, part%pair(k)) = flexibility(part%pair, part%pair(k)) + part%matrix(:, k)
+      associate (row => part%pair(k:), column => part%pair(k))
+        flexibility(row, column) = flexibility(row, column) + part%matrix(k:, k)
+      end associate
     end do
   end subroutine add_flexibility
+
+  !> Copy the lower triangle of F, when all parts have been added, to the upper one.
+  pure subroutine complete_flexibility(flexibility)
+    real(wp), intent(inout) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
+    integer :: k
+
+    do k = 2, size(flexibility, 2)
+      flexibility(:k - 1, k) = flexibility(k, :k - 1)
+    end do
+  end subroutine complete_flexibility
 
   !> Opening of the gaps by displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)

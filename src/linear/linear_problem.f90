@@ -7,8 +7,8 @@ module epcont_linear_linear_problem
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
-  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, &
-    gap_opening, pair_forces, see_motions
+  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, complete_flexibility, &
+    find_flexibility, gap_opening, pair_forces, see_motions
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed
@@ -81,6 +81,7 @@ contains
         self%problem%flexibility = self%lasting_flexibility
       end if
       call add_flexibilities(yields)
+      call complete_flexibility(self%problem%flexibility)
     end associate
     call watch%lap(stage_flexibility)
 
