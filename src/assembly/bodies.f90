@@ -141,19 +141,21 @@ contains
       integer, intent(in) :: b
       type(half_solved_body), intent(inout) :: half
       real(wp), allocatable :: border(:, :), inner(:, :)
-      real(wp) :: own
+      real(wp) :: own(directions)
       integer :: c, i
 
       associate (body => scene%numbering%body(b))
         allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
         do i = 1, size(body%node)
-          do c = 1, directions
-            associate (number => scene%numbering%equation(c, body%node(i)))
-              own = force(c, body%node(i)) + load_factor*self%settlement(c, body%node(i))
-              if (number > 0) inner(number, 1) = inner(number, 1) + own
-              if (number < 0) border(-number, 1) = border(-number, 1) + own
-            end associate
-          end do
+          associate (node => body%node(i))
+            own = scene%numbering%axes%along(node, force(:, node) + load_factor*self%settlement(:, node))
+            do c = 1, directions
+              associate (number => scene%numbering%equation(c, node))
+                if (number > 0) inner(number, 1) = inner(number, 1) + own(c)
+                if (number < 0) border(-number, 1) = border(-number, 1) + own(c)
+              end associate
+            end do
+          end associate
         end do
       end associate
       if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
@@ -176,10 +178,10 @@ contains
     type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
     type(half_solved_body), intent(in) :: half(:)  !! all that has been put on [bodies]
     real(wp), intent(in) :: load_factor  !! of the prescribed displacements
-    logical, intent(in) :: at_contact    !! only nodes of pairs are wanted
+    logical, intent(in) :: at_contact    !! only what gaps depend on is wanted
     real(wp), allocatable :: u(:, :)
     real(wp), allocatable :: border(:, :), inner(:, :)
-    integer :: b, c, i
+    integer :: b, c, first, i
 
     allocate (u(directions, scene%model%nodes), source=0.0_wp)
     call prescribe(scene, load_factor, u)
@@ -187,15 +189,18 @@ contains
       associate (body => scene%numbering%body(b))
         inner = half(b)%inner
         border = half(b)%border
-        if (half(b)%loaded) &
-          call self%body(b)%solve_upper(inner, border, merge(body%first_contact, 1, at_contact))
+        first = merge(body%first_contact, 1, at_contact)
+        if (half(b)%loaded) call self%body(b)%solve_upper(inner, border, first)
         do i = 1, size(body%node)
-          do c = 1, directions
-            associate (node => body%node(i), number => scene%numbering%equation(c, body%node(i)))
-              if (number > 0) u(c, node) = inner(number, 1)
-              if (number < 0) u(c, node) = border(-number, 1)
-            end associate
-          end do
+          associate (node => body%node(i))
+            do c = 1, directions
+              associate (number => scene%numbering%equation(c, node))
+                if (number > 0) u(c, node) = merge(inner(number, 1), 0.0_wp, number >= first)
+                if (number < 0) u(c, node) = border(-number, 1)
+              end associate
+            end do
+            u(:, node) = scene%numbering%axes%back(node, u(:, node))
+          end associate
         end do
       end associate
     end do

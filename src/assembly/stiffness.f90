@@ -102,6 +102,7 @@ contains
           n = directions*scene%model%node_count(element)
           if (.not. any(stale(number(:n)))) cycle
           call operator%element_stiffness(scene%model, element, law, n, k)
+          call scene%numbering%axes%turn_stiffness(scene%model%connectivity(:, element), n, k)
           if (self%single) k(:n**2) = k(:n**2)/self%unit
           call self%matrix%add(n, number, k)
           if (size(self%schur) > 0) call add_to_border(n, number, k, self)

@@ -41,10 +41,11 @@ contains
   contains
 
     !> Rows of N in the body, of the pairs that have any entry there; negative equations are of the border.
-    !! Freedoms that are held, across the normal or of another body are left out.
+    !! Freedoms that are held, not wanted, across the normal or of another body are left out.
     pure subroutine find_rows(pair, rows)
       integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
       type(sparse_rows), intent(out) :: rows
+      real(wp) :: normal(directions)   ! along the freedoms of a node
       integer :: c, found, i, k, last, number
 
       allocate (pair(model%pairs), rows%start(model%pairs + 1), source=1)
@@ -54,12 +55,13 @@ contains
       do k = 1, model%pairs
         do i = model%row_start(k), model%row_start(k + 1) - 1
           if (model%body(model%row_node(i)) /= b) cycle
+          normal = numbering%axes%along(model%row_node(i), model%normal(:, k))
           do c = 1, directions
             number = numbering%equation(c, model%row_node(i))
-            if (number == 0 .or. model%normal(c, k) == 0.0_wp) cycle
+            if (number == 0 .or. normal(c) == 0.0_wp .or. .not. numbering%axes%wanted(c, model%row_node(i))) cycle
             last = last + 1
             rows%equation(last) = number
-            rows%weight(last) = model%row_weight(i)*model%normal(c, k)
+            rows%weight(last) = model%row_weight(i)*normal(c)
           end do
         end do
         if (last < rows%start(found + 1)) cycle

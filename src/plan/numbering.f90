@@ -9,6 +9,7 @@ module epcont_plan_numbering
   use epcont_linalg_panel_layout, only: new_panel_layout, panel_layout
   use epcont_model_controls, only: solver_auto, solver_band, solver_frontal
   use epcont_model_model, only: model_type
+  use epcont_plan_contact_axes, only: contact_axes, new_contact_axes
   use epcont_plan_dissection, only: dissect, dissection
   implicit none
   private
@@ -23,7 +24,7 @@ module epcont_plan_numbering
     integer, allocatable :: node(:)        !! its nodes, in the order of the equations
     integer, allocatable :: element(:)     !! its elements
     integer :: equations = 0               !! in the band
-    integer :: contact_equations = 0       !! of these at nodes of pairs
+    integer :: contact_equations = 0       !! of these, those that gaps depend on
     logical :: contact_last = .true.       !! the contact equations are the last ones
     integer :: first_contact = 1           !! the first of them; behind the last equation where there is none
     logical :: can_yield = .false.
@@ -36,14 +37,18 @@ module epcont_plan_numbering
   end type body_numbering
 
   type :: numbering_type
+    type(contact_axes) :: axes             !! along which the freedoms are, and what gaps want of them
     !> Equation of each freedom in its body: positive in the band, negative in the border, 0 held; that of a
     !! tied freedom is its leader's, and never positive. [directions, nodes]
     integer, allocatable :: equation(:, :)
-    logical, allocatable :: at_contact(:)  !! the node is one of a pair [nodes]
     type(body_numbering), allocatable :: body(:)
   contains
     procedure :: of_element
   end type numbering_type
+
+  !> Operations that finding F from the last front's, or the trailing block's, factor takes, over the cube of
+  !! its equations.
+  real(wp), parameter :: of_inversion = 1.0_wp
 
   !> Freedoms of an element.
   integer, parameter, public :: most_freedoms = directions*most_nodes
@@ -63,12 +68,15 @@ contains
     type(incidence) :: elements, nodes
     integer, allocatable :: own(:)             ! nodes of the body that is being numbered
     logical, allocatable :: fixed(:, :)        ! the freedom has a support, or SUPORT [directions, nodes]
-    integer :: b
+    logical, allocatable :: free(:, :)         ! it has an equation of its own, perhaps in the border
+    logical, allocatable :: stands_last(:)     ! gaps depend on all free freedoms of the node [nodes]
+    integer :: b, i
 
-    allocate (numbering%at_contact(model%nodes), source=.false.)
-    numbering%at_contact(model%row_node) = .true.
     allocate (numbering%equation(directions, model%nodes), source=0)
     fixed = model%held .or. model%reference
+    free = .not. fixed .and. model%leader == spread([(i, i=1, model%nodes)], 1, directions)
+    numbering%axes = new_contact_axes(model, fixed)
+    stands_last = numbering%axes%pair > 0 .and. .not. any(free .and. .not. numbering%axes%wanted, dim=1)
     nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
     elements = new_incidence(reshape(model%body(model%connectivity(1, :)), [1, model%elements]), model%bodies)
     allocate (numbering%body(model%bodies))
@@ -89,52 +97,61 @@ contains
 
   contains
 
-    !> Number a body for nested fronts, the contact nodes in the last of them. It is parted along x, along y
-    !! and along the distance from the contact, in elements: there they are the smallest, mostly, and what
-    !! lies around it has the shortest edge.
+    !> Number a body for nested fronts, the freedoms that gaps depend on in the last of them, the others of
+    !! the contact nodes where the dissection has these. It is parted along x, along y and along the distance
+    !! from the contact, in elements: there they are the smallest, mostly, and what lies around it has the
+    !! shortest edge.
     subroutine number_fronts(body)
       type(body_numbering), intent(inout) :: body
       type(level_order) :: outward
       type(dissection) :: found
       real(wp) :: distance(model%nodes)
       integer, allocatable :: first(:), numbers(:, :), roots(:)
-      integer :: i, number(most_freedoms)
+      integer :: i, number(most_freedoms), others
 
-      roots = pack(own, numbering%at_contact(own))
+      roots = pack(own, numbering%axes%pair(own) > 0)
       if (size(roots) == 0) roots = own(:1)
       outward = sweep(roots)
       distance(outward%node) = [(real(i, wp), i=1, size(own))]
-      found = dissect(model, distance, body%element, own, numbering%at_contact)
+      found = dissect(model, distance, body%element, own, stands_last)
+      body%contact_last = .true.
+      body%solver = solver_frontal
       call number_nodes(found%node, body)
       if (body%equations == 0) then
+        body%solver = solver_band
         call number_panels(found%node, body)
         return
       end if
-      body%solver = solver_frontal
-      body%contact_last = .true.
-      ! A front's equations follow on one another, and some fronts have none.
-      allocate (first(size(found%first)), source=1)
-      do i = 2, size(first)
-        first(i) = max(first(i - 1), 1 + &
-                       maxval(numbering%equation(:, found%node(found%first(i - 1):found%first(i) - 1))))
+      ! A front's equations follow on one another, and some fronts have none; the last has the contact's.
+      allocate (first(size(found%first) + 1), source=1)
+      do i = 2, size(found%first)
+        associate (node => found%node(found%first(i - 1):found%first(i) - 1))
+          others = count(numbering%equation(:, node) > 0 .and. .not. numbering%axes%wanted(:, node))
+        end associate
+        first(i) = first(i - 1) + others
       end do
+      first(size(first)) = body%equations + 1
       allocate (numbers(directions*maxval(model%node_count(body%element)), size(body%element)))
       do i = 1, size(body%element)
         number = numbering%of_element(model, body%element(i))
         numbers(:, i) = number(:size(numbers, 1))
       end do
       body%fronts = new_front_layout(pack(first, [first(2:) > first(:size(first) - 1), .true.]), numbers)
-      body%operations = body%fronts%operations() + real(body%contact_equations, wp)**3
+      body%operations = body%fronts%operations() + of_inversion*real(body%contact_equations, wp)**3
       ! What is assembled together stands together in memory.
       body%element = body%element(body%fronts%element)
     end subroutine number_fronts
 
     !> Number a body for a band, in reverse Cuthill-McKee order. Its levels are rooted at the contact nodes so
-    !! that these come last: then the trailing block of the factor alone gives the flexibility. Or, where that
-    !! widens the band by more than forward substitution of all pairs costs, they are rooted at the body's far
-    !! end. Where even that band is a wide one, fronts are taken.
+    !! that what gaps want of these can come last: then the trailing block of the factor alone gives the
+    !! flexibility. Or, where that widens the band by more than forward substitution of all pairs costs, they
+    !! are rooted at the body's far end. Where even that band is a wide one, fronts are taken; so they are
+    !! where the flexibility makes the work as much, if with them it is less: of long contacts of slender
+    !! bodies, say.
     subroutine number_band(body)
       type(body_numbering), intent(inout) :: body
+      type(body_numbering) :: band
+      integer, allocatable :: equation(:, :)
       type(level_order) :: order
       logical :: may_choose
       integer :: i, n
@@ -151,17 +168,24 @@ contains
       order = sweep(order%node(n:))
       ! The contact comes late in the reversed order, and with it what yields: what stands before is factored
       ! once.
-      associate (place => pack([(real(i, wp), i=1, n)], numbering%at_contact(order%node)))
+      associate (place => pack([(real(i, wp), i=1, n)], numbering%axes%pair(order%node) > 0))
         if (sum(place) > 0.5_wp*size(place)*n) order = sweep(order%node(n:))
       end associate
-      call number_panels(order%node(n:1:-1), body)
       body%contact_last = .false.
+      call number_panels(order%node(n:1:-1), body)
       body%operations = body%panels%operations()
       if (may_choose .and. body%operations > many_operations) then
         call number_fronts(body)
-      else if (any(numbering%at_contact(own))) then
+      else if (any(numbering%axes%pair(own) > 0)) then
         ! The roots stand in the order of the sweep from the far end, which runs along the contact.
-        call root_at_contact(pack(order%node, numbering%at_contact(order%node)), body)
+        call root_at_contact(pack(order%node, numbering%axes%pair(order%node) > 0), body)
+        if (.not. may_choose .or. body%operations <= many_operations) return
+        band = body
+        equation = numbering%equation(:, own)
+        call number_fronts(body)
+        if (body%operations <= band%operations) return
+        numbering%equation(:, own) = equation
+        body = band
       end if
     end subroutine number_band
 
@@ -178,9 +202,9 @@ contains
       plain = body
       equation = numbering%equation(:, own)
       order = sweep(roots)
-      call number_panels(order%node(size(own):1:-1), body)
       body%contact_last = .true.
-      body%operations = body%panels%operations() + real(body%contact_equations, wp)**3
+      call number_panels(order%node(size(own):1:-1), body)
+      body%operations = body%panels%operations() + of_inversion*real(body%contact_equations, wp)**3
       if (model%controls%by_inversion .or. body%operations <= plain%operations) return
       numbering%equation(:, own) = equation
       body = plain
@@ -225,16 +249,18 @@ contains
       end do
     end function sweep
 
-    !> Number the freedoms of a body along an order of its nodes. A leader of ties that is free goes to the
-    !! border, so that the band never sees a whole line of nodes on one freedom.
+    !> Number the freedoms of a body along an order of its nodes; those that gaps depend on, if they are to be
+    !! last, in that of a narrow band too, and of fronts in that of their pairs: then the inverse of their
+    !! block is in the order of the gaps. A leader of ties that is free goes to the border, so that the band
+    !! never sees a whole line of nodes on one freedom.
     subroutine number_nodes(order, body)
       integer, intent(in) :: order(:)
-      type(body_numbering), intent(inout) :: body
+      type(body_numbering), intent(inout) :: body   !! whether they are to be last, and the solver, are known
+      integer, allocatable :: contact(:)
       integer :: c, i, leader
 
       body%node = order
       body%equations = 0
-      body%contact_equations = 0
       body%border = 0
       numbering%equation(:, order) = 0
       do i = 1, size(order)
@@ -246,21 +272,38 @@ contains
         end do
       end do
       do i = 1, size(order)
+        numbering%equation(:, order(i)) = [(numbering%equation(c, model%leader(c, order(i))), c=1, directions)]
+      end do
+      contact = pack(order, numbering%axes%pair(order) > 0)
+      if (body%contact_last) then
+        call number_freedoms(order, [.false.], body)
+        if (body%solver == solver_frontal) contact = contact(sorted_order(numbering%axes%pair(contact)))
+        call number_freedoms(contact, [.true.], body)
+      else
+        call number_freedoms(order, [.false., .true.], body)
+      end if
+      associate (at_contact => pack(numbering%equation(:, contact), numbering%axes%wanted(:, contact)))
+        body%contact_equations = count(at_contact > 0)
+        body%first_contact = minval([at_contact, body%equations + 1], mask=[at_contact, 1] > 0)
+      end associate
+    end subroutine number_nodes
+
+    !> Number the freedoms of some nodes that are free and not in the border.
+    subroutine number_freedoms(node, wanted, body)
+      integer, intent(in) :: node(:)
+      logical, intent(in) :: wanted(:)   !! those that gaps depend on, those that they do not, or both
+      type(body_numbering), intent(inout) :: body
+      integer :: c, i
+
+      do i = 1, size(node)
         do c = 1, directions
-          leader = model%leader(c, order(i))
-          associate (own => numbering%equation(c, order(i)))
-            own = numbering%equation(c, leader)
-            if (leader /= order(i) .or. own < 0 .or. fixed(c, leader)) cycle
-            body%equations = body%equations + 1
-            own = body%equations
-          end associate
-          if (.not. numbering%at_contact(leader)) cycle
-          body%contact_equations = body%contact_equations + 1
-          if (body%contact_equations == 1) body%first_contact = body%equations
+          if (.not. free(c, node(i)) .or. numbering%equation(c, node(i)) < 0) cycle
+          if (all(numbering%axes%wanted(c, node(i)) .neqv. wanted)) cycle
+          body%equations = body%equations + 1
+          numbering%equation(c, node(i)) = body%equations
         end do
       end do
-      if (body%contact_equations == 0) body%first_contact = body%equations + 1
-    end subroutine number_nodes
+    end subroutine number_freedoms
 
     !> The same for a band, with its panels, as far down as each equation is coupled.
     subroutine number_panels(order, body)

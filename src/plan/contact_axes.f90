@@ -1,0 +1,142 @@
+!> What the gaps ask of the nodes: which of their freedoms, and along which axes these are.
+!>
+!> Mostly a node has one normal: the gaps depend on its displacement along that alone. So its freedoms are
+!> turned there, the first along the normal, the second a quarter turn on: only the first has to be known of
+!> the inverse of the stiffness, which is half as wide then. Where the normal is along x or y nothing is
+!> turned. Nodes with unlike normals (corners, masters of curved contact) and those whose freedoms supports or
+!> RBE2 take as they are keep both.
+!>
+!> The axes are known to factored bodies alone: outside all displacements and forces are in x and y.
+module epcont_plan_contact_axes
+  use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: directions
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: contact_axes, new_contact_axes
+
+  type :: contact_axes
+    integer, allocatable :: pair(:)         !! the first pair of each node; 0: none [nodes]
+    logical, allocatable :: wanted(:, :)    !! gaps depend on the freedom [directions, nodes]
+    integer, allocatable :: turn(:)         !! where the normal of each node is; 0: its freedoms are x and y [nodes]
+    real(wp), allocatable :: normal(:, :)   !! unit, along which the first freedom is [directions, turned nodes]
+  contains
+    procedure :: along
+    procedure :: back
+    procedure :: turn_stiffness
+  end type contact_axes
+
+  !> Sine of the angle between directions that differ by rounding alone: of two unit vectors, each component
+  !! rounded a few times. What such a normal has across the axis is left out.
+  real(wp), parameter :: rounding = 8*epsilon(1.0_wp)
+
+contains
+
+  !> The axes of all nodes, and what is wanted of them. Gaps without friction want the displacements along
+  !! their normals; whatever else is wanted of a pair's nodes is to be said here, in `want`.
+  function new_contact_axes(model, fixed) result(axes)
+    type(model_type), intent(in) :: model   !! the scene
+    logical, intent(in) :: fixed(:, :)      !! the freedom has no equation: a support, or SUPORT [directions, nodes]
+    type(contact_axes) :: axes
+    !> Along which each node is wanted first, and whether along another one too
+    real(wp), allocatable :: first(:, :)
+    logical, allocatable :: is_whole(:)
+    logical, allocatable :: leads(:)        ! others follow the node
+    integer :: c, i, k, node, turned
+
+    allocate (axes%pair(model%nodes), axes%turn(model%nodes), source=0)
+    allocate (axes%wanted(directions, model%nodes), is_whole(model%nodes), leads(model%nodes), source=.false.)
+    allocate (first(directions, model%nodes))
+    do k = 1, model%pairs
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        call want(model%row_node(i), model%normal(:, k))
+      end do
+    end do
+    do node = 1, model%nodes
+      do c = 1, directions
+        if (model%leader(c, node) /= node) leads(model%leader(c, node)) = .true.
+      end do
+    end do
+    turned = 0
+    do node = 1, model%nodes
+      if (axes%pair(node) == 0) cycle
+      axes%wanted(:, node) = is_whole(node) .or. abs(first(:, node)) > rounding
+      if (.not. all(axes%wanted(:, node)) .or. is_whole(node) .or. leads(node) .or. &
+          any(model%leader(:, node) /= node .or. fixed(:, node))) cycle
+      turned = turned + 1
+      axes%turn(node) = turned
+      axes%wanted(:, node) = [.true., .false.]
+      first(:, turned) = first(:, node)
+    end do
+    axes%normal = first(:, :turned)
+
+  contains
+
+    !> A gap of pair k wants the displacement of a node along a unit vector.
+    subroutine want(node, direction)
+      integer, intent(in) :: node
+      real(wp), intent(in) :: direction(directions)
+
+      if (axes%pair(node) == 0) then
+        axes%pair(node) = k
+        first(:, node) = direction
+      else
+        is_whole(node) = is_whole(node) .or. abs(first(1, node)*direction(2) - first(2, node)*direction(1)) > rounding
+      end if
+    end subroutine want
+  end function new_contact_axes
+
+  !> The components of a vector along the freedoms of a node. What rounding leaves across the normal is none:
+  !! so contact forces act on freedoms that are wanted alone.
+  pure function along(self, node, vector) result(own)
+    class(contact_axes), intent(in) :: self
+    integer, intent(in) :: node                     !! where it acts
+    real(wp), intent(in) :: vector(directions)      !! in x and y
+    real(wp) :: own(directions)
+
+    own = vector
+    if (self%turn(node) == 0) return
+    associate (n => self%normal(:, self%turn(node)))
+      own = [n(1)*vector(1) + n(2)*vector(2), n(1)*vector(2) - n(2)*vector(1)]
+    end associate
+    if (abs(own(2)) <= rounding*abs(own(1))) own(2) = 0.0_wp
+  end function along
+
+  !> A vector in x and y, from its components along the freedoms of a node.
+  pure function back(self, node, own) result(vector)
+    class(contact_axes), intent(in) :: self
+    integer, intent(in) :: node                     !! where it is
+    real(wp), intent(in) :: own(directions)         !! as `along` gives it
+    real(wp) :: vector(directions)
+
+    vector = own
+    if (self%turn(node) == 0) return
+    associate (n => self%normal(:, self%turn(node)))
+      vector = [n(1)*own(1) - n(2)*own(2), n(2)*own(1) + n(1)*own(2)]
+    end associate
+  end function back
+
+  !> Turn the stiffness of an element to the freedoms of its nodes.
+  pure subroutine turn_stiffness(self, node, n, k)
+    class(contact_axes), intent(in) :: self
+    integer, intent(in) :: node(:)                  !! of the element, n/2 and more
+    integer, intent(in) :: n                        !! its freedoms
+    real(wp), intent(inout) :: k(n, n)              !! in x and y, then along the freedoms
+    real(wp) :: before(n)
+    integer :: i, j
+
+    if (size(self%normal, 2) == 0) return
+    do i = 1, n/directions
+      if (self%turn(node(i)) == 0) cycle
+      j = directions*(i - 1) + 1
+      associate (c => self%normal(1, self%turn(node(i))), s => self%normal(2, self%turn(node(i))))
+        before = k(:, j)
+        k(:, j) = c*before + s*k(:, j + 1)
+        k(:, j + 1) = c*k(:, j + 1) - s*before
+        before = k(j, :)
+        k(j, :) = c*before + s*k(j + 1, :)
+        k(j + 1, :) = c*k(j + 1, :) - s*before
+      end associate
+    end do
+  end subroutine turn_stiffness
+end module epcont_plan_contact_axes
