@@ -17,7 +17,8 @@ module epcont_flexibility_flexibility
   !> One body's part of F, between the pairs that it gives way at.
   type :: body_flexibility
     integer, allocatable :: pair(:)         !! ascending
-    real(wp), allocatable :: matrix(:, :)   !! [length/force] [its pairs, its pairs]
+    !> Lower triangle [length/force] [its pairs, its pairs]
+    real(wp), allocatable :: matrix(:, :)
   end type body_flexibility
 
 contains
@@ -32,10 +33,9 @@ contains
     type(sparse_rows) :: rows
 
     call find_rows(part%pair, rows)
-    allocate (part%matrix(size(part%pair), size(part%pair)), source=0.0_wp)
     if (size(part%pair) == 0) return
     rows%weight = rows%weight/sqrt(stiffness%unit)
-    call stiffness%matrix%add_compliance(rows, part%matrix)
+    call stiffness%matrix%find_compliance(rows, part%matrix)
     if (numbering%body(b)%border > 0) part%matrix = part%matrix + border_part()
 
   contains
@@ -99,11 +99,13 @@ contains
   !> Add a body's part to F.
   pure subroutine add_flexibility(part, flexibility)
     type(body_flexibility), intent(in) :: part   !! one body's
-    real(wp), intent(inout) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
+    real(wp), intent(inout) :: flexibility(:, :)   !! lower triangle [length/force] [pairs, pairs]
     integer :: k
 
     do k = 1, size(part%pair)
-      flexibility(part%pair, part%pair(k)) = flexibility(part%pair, part%pair(k)) + part%matrix(:, k)
+      associate (row => part%pair(k:), column => part%pair(k))
+        flexibility(row, column) = flexibility(row, column) + part%matrix(k:, k)
+      end associate
     end do
   end subroutine add_flexibility
 

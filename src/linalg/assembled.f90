@@ -7,10 +7,12 @@
 !> does most of the work, `factor` the rest.
 module epcont_linalg_assembled
   use epcont_base_kinds, only: wp
-  use epcont_linalg_dense, only: cholesky_inverse
+  use epcont_base_sorting, only: sorted_order
+  use epcont_linalg_dense, only: lower_inverse
+  use epcont_linalg_staircase, only: multiply_staircase, solve_staircase
   implicit none
   private
-  public :: assembled_matrix, sparse_rows, add_compliance, probes
+  public :: assembled_matrix, sparse_rows, find_compliance, order_rows, probes
 
   !> Rows of a sparse matrix N: entries start(k) to start(k+1)-1 of row k are equations and weights. Equations
   !! that are not positive count for nothing.
@@ -22,7 +24,7 @@ module epcont_linalg_assembled
 
   type, abstract :: assembled_matrix
     integer :: order = 0
-    integer :: trailing = 0   !! last equations, the only ones that `add_compliance` is asked for; 0: any
+    integer :: trailing = 0   !! last equations, the only ones that `find_compliance` is asked for; 0: any
     real(wp) :: norm = 0.0_wp           !! 1-norm of the matrix when it was factored, or a bound of it
     real(wp) :: rounding = epsilon(1.0_wp)   !! relative, of its entries and of what is done with them
     logical :: lacks_memory = .false.   !! there was not enough to begin it
@@ -37,10 +39,10 @@ module epcont_linalg_assembled
     procedure(first_half), deferred :: solve_lower
     procedure(second_half), deferred :: solve_upper
     procedure(columns_of_factor), deferred :: half_solved_probes
-    procedure(columns_of_factor), deferred :: trailing_factor
+    procedure(last_of_factor), deferred :: get_trailing_factor
     procedure :: solve
     procedure :: condition
-    procedure :: add_compliance
+    procedure :: find_compliance
   end type assembled_matrix
 
   abstract interface
@@ -86,13 +88,20 @@ module epcont_linalg_assembled
       integer, intent(in) :: first
     end subroutine second_half
 
-    !> `half_solved_probes`: `probes` with the first half of the solve behind them; they were taken along when
-    !! the factor was made, perhaps. `trailing_factor`: L22, the last rows and columns of the factor.
+    !> `probes` with the first half of the solve behind them; they were taken along when the factor was made,
+    !! perhaps.
     pure function columns_of_factor(self) result(x)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
       real(wp), allocatable :: x(:, :)
     end function columns_of_factor
+
+    !> L22, the last rows and columns of the factor. (A function would hand back a copy.)
+    pure subroutine last_of_factor(self, x)
+      import :: assembled_matrix, wp
+      class(assembled_matrix), intent(in) :: self
+      real(wp), allocatable, intent(out) :: x(:, :)   !! lower triangle, zeros above it [trailing, trailing]
+    end subroutine last_of_factor
   end interface
 
 contains
@@ -173,33 +182,60 @@ contains
     x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
   end function probes
 
-  !> Add N K^-1 N' from the factor, by the trailing block of the inverse: with L22 that of the factor it is
-  !! (L22 L22')^-1, since all that stands before has been eliminated from it.
-  pure subroutine add_compliance(self, rows, compliance)
+  !> N K^-1 N' from the factor, by its trailing block L22, since all that stands before has been eliminated
+  !! from it: the inverse (L22 L22')^-1 in place, where each row of N is a trailing equation in turn; else
+  !! X'X with X = L22^-1 N'.
+  pure subroutine find_compliance(self, rows, compliance)
     class(assembled_matrix), intent(in) :: self
     type(sparse_rows), intent(in) :: rows       !! N; equations before the trailing ones count for nothing
-    real(wp), intent(inout) :: compliance(:, :)       !! [rows, rows]
-    real(wp), allocatable :: inverse(:, :)
-    real(wp) :: opening, response(self%trailing)
-    integer :: i, k, l
+    real(wp), allocatable, intent(out) :: compliance(:, :)   !! lower triangle [rows, rows]
+    real(wp), allocatable :: factor(:, :), x(:, :)
+    integer :: at(size(rows%equation)), begins(size(rows%start) - 1), column(size(rows%equation)), &
+        order(size(rows%start) - 1)
+    integer :: i, k
 
-    inverse = self%trailing_factor()
-    call cholesky_inverse(inverse)
-    associate (start => rows%start, at => rows%equation - (self%order - self%trailing))
-      do l = 1, size(compliance, 2)
-        response = 0.0_wp
-        do i = start(l), start(l + 1) - 1
-          if (at(i) > 0) response = response + rows%weight(i)*inverse(:, at(i))
+    at = max(0, rows%equation - (self%order - self%trailing))
+    if (size(at) == self%trailing .and. size(order) == self%trailing) then
+      if (all(at == [(k, k=1, size(at))]) .and. all(rows%start == [(k, k=1, size(rows%start))])) then
+        call self%get_trailing_factor(compliance)
+        call lower_inverse(compliance)
+        do k = 1, size(order)
+          compliance(k:, k) = rows%weight(k)*rows%weight(k:)*compliance(k:, k)
         end do
-        do k = l, size(compliance, 1)
-          opening = 0.0_wp
-          do i = start(k), start(k + 1) - 1
-            if (at(i) > 0) opening = opening + rows%weight(i)*response(at(i))
-          end do
-          compliance(k, l) = compliance(k, l) + opening
-          if (k > l) compliance(l, k) = compliance(l, k) + opening
-        end do
+        return
+      end if
+    end if
+    call order_rows(sparse_rows(rows%start, at, rows%weight), self%trailing, order, column, begins)
+    allocate (x(self%trailing, size(order)), source=0.0_wp)
+    do i = 1, size(at)
+      if (at(i) > 0) x(at(i), column(i)) = x(at(i), column(i)) + rows%weight(i)
+    end do
+    call self%get_trailing_factor(factor)
+    call solve_staircase(self%trailing, factor, begins, x)
+    deallocate (factor)
+    allocate (compliance(size(order), size(order)))
+    call multiply_staircase(self%trailing, x, begins, order, compliance)
+  end subroutine find_compliance
+
+  !> The rows in the order of their first equations, and which of these has each entry.
+  pure subroutine order_rows(rows, equations, order, column, begins)
+    type(sparse_rows), intent(in) :: rows   !! equations that are not positive count for nothing
+    integer, intent(in) :: equations        !! how many there are
+    integer, intent(out) :: order(:)        !! [rows]
+    integer, intent(out) :: column(:)       !! [entries]
+    integer, intent(out) :: begins(:)       !! the first equation of each row in that order; behind the last: none
+    integer :: i, k
+
+    begins = equations + 1
+    do k = 1, size(order)
+      do i = rows%start(k), rows%start(k + 1) - 1
+        if (rows%equation(i) > 0) begins(k) = min(begins(k), rows%equation(i))
       end do
-    end associate
-  end subroutine add_compliance
+    end do
+    order = sorted_order(begins)
+    begins = begins(order)
+    do k = 1, size(order)
+      column(rows%start(order(k)):rows%start(order(k) + 1) - 1) = k
+    end do
+  end subroutine order_rows
 end module epcont_linalg_assembled

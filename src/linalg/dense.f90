@@ -7,7 +7,7 @@ module epcont_linalg_dense
   use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
   implicit none
   private
-  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky, pivoted_cholesky
+  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky, lower_inverse, pivoted_cholesky
   public :: lu_solve, add_product, null_space
 
 contains
@@ -60,14 +60,21 @@ contains
   pure subroutine cholesky_inverse(a)
     !> Lower triangle: L; then both triangles of the inverse [n, n]
     real(wp), contiguous, intent(inout) :: a(:, :)
-    integer :: info, j
+    integer :: j
 
-    if (size(a) == 0) return
-    call dpotri('L', size(a, 1), a, size(a, 1), info)
+    call lower_inverse(a)
     do j = 2, size(a, 2)
       a(:j - 1, j) = a(j, :j - 1)
     end do
   end subroutine cholesky_inverse
+
+  !> The same, the lower triangle alone.
+  pure subroutine lower_inverse(a)
+    real(wp), contiguous, intent(inout) :: a(:, :)   !! lower triangle: L, then the inverse [n, n]
+    integer :: info
+
+    if (size(a) > 0) call dpotri('L', size(a, 1), a, size(a, 1), info)
+  end subroutine lower_inverse
 
   !> Cholesky factor of a semidefinite matrix, largest pivot first: a(order, order) = LL' to rounding.
   pure subroutine pivoted_cholesky(a, tolerance, order, rank)

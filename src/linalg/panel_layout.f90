@@ -60,7 +60,7 @@ contains
     operations = sum(real(columns(self), wp)*real(self%height, wp)**2)
   end function operations
 
-  !> Operations of `add_compliance`.
+  !> Operations of `find_compliance`.
   pure real(wp) function compliance_operations(self, begins) result(operations)
     class(panel_layout), intent(in) :: self
     integer, intent(in) :: begins(:)     !! the first equation of each row of N

@@ -65,6 +65,7 @@ contains
     type(planned_scene), intent(in) :: scene    !! that it was made for
     integer, intent(out) :: failed_body            !! first body that could not be factored; 0: all could
     class(stopwatch), intent(inout) :: watch    !! takes the time
+    integer :: k
 
     associate (yields => scene%numbering%body%can_yield, first => .not. allocated(self%problem%flexibility))
       call factor_bodies(yields .or. first)
@@ -81,6 +82,9 @@ contains
         self%problem%flexibility = self%lasting_flexibility
       end if
       call add_flexibilities(yields)
+      do k = 2, scene%model%pairs
+        self%problem%flexibility(:k - 1, k) = self%problem%flexibility(k, :k - 1)
+      end do
     end associate
     call watch%lap(stage_flexibility)
 
