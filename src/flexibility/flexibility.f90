@@ -11,8 +11,8 @@ module epcont_flexibility_flexibility
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: add_flexibility, body_flexibility, find_flexibility, gap_opening, pair_forces, &
-    see_motions
+  public :: add_flexibility, body_flexibility, complete_flexibility, find_flexibility, gap_opening, &
+    pair_forces, see_motions
 
   !> One body's part of F, between the pairs that it gives way at.
   type :: body_flexibility
@@ -58,7 +58,8 @@ contains
           normal = numbering%axes%along(model%row_node(i), model%normal(:, k))
           do c = 1, directions
             number = numbering%equation(c, model%row_node(i))
-            if (number == 0 .or. normal(c) == 0.0_wp .or. .not. numbering%axes%wanted(c, model%row_node(i))) cycle
+            if (number == 0 .or. normal(c) == 0.0_wp) cycle
+            if (.not. numbering%axes%wanted(c, model%row_node(i))) cycle
             last = last + 1
             rows%equation(last) = number
             rows%weight(last) = model%row_weight(i)*normal(c)
@@ -108,6 +109,16 @@ contains
       end associate
     end do
   end subroutine add_flexibility
+
+  !> Copy the lower triangle of F, when all parts have been added, to the upper one.
+  pure subroutine complete_flexibility(flexibility)
+    real(wp), intent(inout) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
+    integer :: k
+
+    do k = 2, size(flexibility, 2)
+      flexibility(:k - 1, k) = flexibility(k, :k - 1)
+    end do
+  end subroutine complete_flexibility
 
   !> Opening of the gaps by displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)

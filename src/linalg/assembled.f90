@@ -223,7 +223,8 @@ contains
     integer, intent(in) :: equations        !! how many there are
     integer, intent(out) :: order(:)        !! [rows]
     integer, intent(out) :: column(:)       !! [entries]
-    integer, intent(out) :: begins(:)       !! the first equation of each row in that order; behind the last: none
+    !> The first equation of each row in that order; behind the last: none
+    integer, intent(out) :: begins(:)
     integer :: i, k
 
     begins = equations + 1

@@ -7,8 +7,8 @@ module epcont_linalg_dense
   use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
   implicit none
   private
-  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky, lower_inverse, pivoted_cholesky
-  public :: lu_solve, add_product, null_space
+  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky, lower_inverse
+  public :: lu_solve, pivoted_cholesky, add_product, null_space
 
 contains
 

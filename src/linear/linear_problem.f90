@@ -7,8 +7,8 @@ module epcont_linear_linear_problem
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
-  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, &
-    gap_opening, pair_forces, see_motions
+  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, complete_flexibility, &
+    find_flexibility, gap_opening, pair_forces, see_motions
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed
@@ -65,7 +65,6 @@ contains
     type(planned_scene), intent(in) :: scene    !! that it was made for
     integer, intent(out) :: failed_body            !! first body that could not be factored; 0: all could
     class(stopwatch), intent(inout) :: watch    !! takes the time
-    integer :: k
 
     associate (yields => scene%numbering%body%can_yield, first => .not. allocated(self%problem%flexibility))
       call factor_bodies(yields .or. first)
@@ -82,9 +81,7 @@ contains
         self%problem%flexibility = self%lasting_flexibility
       end if
       call add_flexibilities(yields)
-      do k = 2, scene%model%pairs
-        self%problem%flexibility(:k - 1, k) = self%problem%flexibility(k, :k - 1)
-      end do
+      call complete_flexibility(self%problem%flexibility)
     end associate
     call watch%lap(stage_flexibility)
 

@@ -18,8 +18,10 @@ module epcont_plan_contact_axes
   type :: contact_axes
     integer, allocatable :: pair(:)         !! the first pair of each node; 0: none [nodes]
     logical, allocatable :: wanted(:, :)    !! gaps depend on the freedom [directions, nodes]
-    integer, allocatable :: turn(:)         !! where the normal of each node is; 0: its freedoms are x and y [nodes]
-    real(wp), allocatable :: normal(:, :)   !! unit, along which the first freedom is [directions, turned nodes]
+    !> Where the normal of each node is; 0: its freedoms are x and y [nodes]
+    integer, allocatable :: turn(:)
+    !> Unit, along which the first freedom of a turned node is [directions, turned nodes]
+    real(wp), allocatable :: normal(:, :)
   contains
     procedure :: along
     procedure :: back
@@ -36,7 +38,8 @@ contains
   !! their normals; whatever else is wanted of a pair's nodes is to be said here, in `want`.
   function new_contact_axes(model, fixed) result(axes)
     type(model_type), intent(in) :: model   !! the scene
-    logical, intent(in) :: fixed(:, :)      !! the freedom has no equation: a support, or SUPORT [directions, nodes]
+    !> The freedom has no equation: a support, or SUPORT [directions, nodes]
+    logical, intent(in) :: fixed(:, :)
     type(contact_axes) :: axes
     !> Along which each node is wanted first, and whether along another one too
     real(wp), allocatable :: first(:, :)
@@ -81,7 +84,8 @@ contains
         axes%pair(node) = k
         first(:, node) = direction
       else
-        is_whole(node) = is_whole(node) .or. abs(first(1, node)*direction(2) - first(2, node)*direction(1)) > rounding
+        is_whole(node) = is_whole(node) .or. &
+          abs(first(1, node)*direction(2) - first(2, node)*direction(1)) > rounding
       end if
     end subroutine want
   end function new_contact_axes

@@ -85,7 +85,7 @@ contains
     type(iteration_plan), intent(in) :: plan   !! of its iteration
     type(forecast_type) :: expected
     integer(i8), allocatable :: own_pairs(:)
-    integer(i8) :: entries, factor, flexibility, pairs, saved
+    integer(i8) :: entries, factor, flexibility, last, pairs, saved
     real(wp) :: operations
     integer :: b
 
@@ -103,9 +103,18 @@ contains
         end if
         entries = entries + factor + int(body%equations, i8)*body%border
         if (plan%precision /= precision_double) saved = saved + factor*real_bytes/2
-        ! The trailing block of the inverse, or the window that right-hand sides go through; and that part.
-        flexibility = max(flexibility, own_pairs(b)**2 + merge(int(body%contact_equations, i8)**2, &
-          own_pairs(b)*(body%half_bandwidth + own_pairs(b)), body%contact_last))
+        ! Its part, and the window that right-hand sides go through; or those on the trailing block and this,
+        ! then that part; where each pair has one equation of its own, the part alone.
+        last = body%contact_equations
+        associate (own => own_pairs(b))
+          if (.not. body%contact_last) then
+            flexibility = max(flexibility, own*(body%half_bandwidth + 2*own))
+          else if (last == own) then
+            flexibility = max(flexibility, own**2)
+          else
+            flexibility = max(flexibility, last*own + max(last, own)**2)
+          end if
+        end associate
         operations = 4.0_wp*body%border*factor + body%operations
         expected%operations = expected%operations + operations
         expected%entries = expected%entries + factor

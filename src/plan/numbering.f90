@@ -272,7 +272,9 @@ contains
         end do
       end do
       do i = 1, size(order)
-        numbering%equation(:, order(i)) = [(numbering%equation(c, model%leader(c, order(i))), c=1, directions)]
+        do c = 1, directions
+          numbering%equation(c, order(i)) = numbering%equation(c, model%leader(c, order(i)))
+        end do
       end do
       contact = pack(order, numbering%axes%pair(order) > 0)
       if (body%contact_last) then

@@ -16,8 +16,8 @@ program bench_ours
   use epcont_contact_solver, only: solve_contact
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_base_diagnostic, only: diagnostics
-  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, find_flexibility, &
-    gap_opening, pair_forces, see_motions
+  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, complete_flexibility, &
+    find_flexibility, gap_opening, pair_forces, see_motions
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_build_build, only: build_model
@@ -143,6 +143,7 @@ contains
       call find_flexibility(model, numbering, b, bodies%body(b), part)
       call add_flexibility(part, problem%flexibility)
     end do
+    call complete_flexibility(problem%flexibility)
     spent(flexibility) = lap()
     problem%load_gap = gap_opening(model, bodies%displacements(scene, model%load, 1.0_wp))
     spent(load_gap) = lap()
