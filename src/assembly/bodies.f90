@@ -144,11 +144,12 @@ contains
       real(wp) :: own(directions)
       integer :: c, i
 
-      associate (body => scene%numbering%body(b))
+      associate (body => scene%numbering%body(b), axes => scene%numbering%axes)
         allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
         do i = 1, size(body%node)
           associate (node => body%node(i))
-            own = scene%numbering%axes%along(node, force(:, node) + load_factor*self%settlement(:, node))
+            own = force(:, node) + load_factor*self%settlement(:, node)
+            if (axes%turn(node) > 0) own = axes%along(node, own)
             do c = 1, directions
               associate (number => scene%numbering%equation(c, node))
                 if (number > 0) inner(number, 1) = inner(number, 1) + own(c)
@@ -186,7 +187,7 @@ contains
     allocate (u(directions, scene%model%nodes), source=0.0_wp)
     call prescribe(scene, load_factor, u)
     do b = 1, size(half)
-      associate (body => scene%numbering%body(b))
+      associate (body => scene%numbering%body(b), axes => scene%numbering%axes)
         inner = half(b)%inner
         border = half(b)%border
         first = merge(body%first_contact, 1, at_contact)
@@ -199,7 +200,7 @@ contains
                 if (number < 0) u(c, node) = border(-number, 1)
               end associate
             end do
-            u(:, node) = scene%numbering%axes%back(node, u(:, node))
+            if (axes%turn(node) > 0) u(:, node) = axes%back(node, u(:, node))
           end associate
         end do
       end associate
