@@ -98,9 +98,9 @@ contains
   contains
 
     !> Number a body for nested fronts, the freedoms that gaps depend on in the last of them, the others of
-    !! the contact nodes where the dissection has these. It is parted along x, along y and along the distance
-    !! from the contact, in elements: there they are the smallest, mostly, and what lies around it has the
-    !! shortest edge.
+    !! the contact nodes where the dissection has these. It is parted along x, y, their diagonals and the
+    !! distance from the contact, in elements: there they are the smallest, mostly, and what lies around it
+    !! has the shortest edge.
     subroutine number_fronts(body)
       type(body_numbering), intent(inout) :: body
       type(level_order) :: outward
@@ -113,7 +113,7 @@ contains
       if (size(roots) == 0) roots = own(:1)
       outward = sweep(roots)
       distance(outward%node) = [(real(i, wp), i=1, size(own))]
-      found = dissect(model, distance, body%element, own, stands_last)
+      found = dissect(model, distance, own, stands_last)
       body%contact_last = .true.
       body%solver = solver_frontal
       call number_nodes(found%node, body)
