@@ -17,7 +17,7 @@ module epcont_accuracy_body_loads
   public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads, pairs_of_bodies
 
   !> A load that others make up for, but for this part of its largest force on any body, is a sum of these.
-  real(wp), parameter :: made_up_for = 1.0e-3_wp
+  real(wp), parameter :: made_up_for = 1.0e-2_wp
 
   !> Of unit loads those that a body feels, and that no batch of fields has told of yet.
   type :: body_loads
