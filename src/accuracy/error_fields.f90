@@ -90,10 +90,13 @@ contains
       allocate (strain(width, most_points), sample(width, size(samples%x, 2)), smooth(width, size(place)))
       do i = 1, size(element)
         call look_at(element(i))
-        call find_strains()
-        associate (kind => scene%model%kinds(scene%model%kind(e)))
-          call samples%take(kind, e, linear%operator%volume(first:first + points - 1), width, strain, sample)
-        end associate
+        if (points == 1) then
+          call find_strains(sample(:, samples%before(e) + 1))
+        else
+          call find_strains(strain)
+          call samples%take(scene%model%kinds(scene%model%kind(e)), e, linear%operator%volume(first), width, &
+                            strain, sample)
+        end if
       end do
       call recover(scene%model, table, b, samples, size(u, 2), sample, smooth)
       ! Strains are found again: kept at all points they would be the largest array of all.
@@ -102,7 +105,7 @@ contains
         if (points == 1) then
           strain(:, 1) = sample(:, samples%before(e) + 1)
         else
-          call find_strains()
+          call find_strains(strain)
         end if
         associate (law => linear%materials%section(scene%model%section(e))%law, &
                    kind => scene%model%kinds(scene%model%kind(e)))
@@ -134,7 +137,8 @@ contains
     end subroutine look_at
 
     !> Its strains, of the answer and of all fields.
-    subroutine find_strains()
+    subroutine find_strains(strain)
+      real(wp), intent(inout) :: strain(components*(1 + size(u, 2)), *)   !! at its points
       integer :: p
 
       do p = 1, points

@@ -102,7 +102,7 @@ contains
     integer, allocatable :: at(:)           !! samples of a patch [any]
     real(wp), allocatable :: weight(:)      !! that they have there [any]
     integer :: first, i, last, p
-    logical :: curved
+    logical :: any_curved, curved   ! elements of the body, of the patch, have nodes between their corners
 
     smooth = 0.0_wp
     allocate (fits(size(smooth, 3)), source=-1)
@@ -115,7 +115,8 @@ contains
         first = table%around%start(p)
         last = table%around%start(p + 1) - 1
         if (last < first .or. fits(i) >= 0) cycle
-        curved = has_curved(table%around%group(first:last))
+        curved = any_curved
+        if (any_curved) curved = has_curved(table%around%group(first:last))
         if (table%inside(p) .and. last - first + 1 >= merge(least_quadratic/3, least_linear, curved)) then
           call fit(table%around%group(first:last))
         else
@@ -134,6 +135,8 @@ contains
     subroutine find_middles()
       integer :: e, j, k
 
+      any_curved = has_curved(samples%element)
+      if (.not. any_curved) return
       do j = 1, size(samples%element)
         e = samples%element(j)
         do k = model%corners(e) + 1, model%node_count(e)
