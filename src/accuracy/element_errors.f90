@@ -163,12 +163,12 @@ contains
     real(wp), intent(in) :: cross, shear          !! K - 2/3 G, G [stress]
     real(wp), intent(in) :: strain(components)    !! xx, yy, zz, xy
     real(wp), intent(out) :: stress(components)   !! the same [stress]
-    real(wp) :: common
+    real(wp) :: volumetric
 
-    common = cross*(strain(1) + strain(2) + strain(3))
-    stress(1) = common + 2.0_wp*shear*strain(1)
-    stress(2) = common + 2.0_wp*shear*strain(2)
-    stress(3) = common + 2.0_wp*shear*strain(3)
+    volumetric = cross*(strain(1) + strain(2) + strain(3))
+    stress(1) = volumetric + 2.0_wp*shear*strain(1)
+    stress(2) = volumetric + 2.0_wp*shear*strain(2)
+    stress(3) = volumetric + 2.0_wp*shear*strain(3)
     stress(4) = shear*strain(4)
   end subroutine put_elastic_stress
 end module epcont_accuracy_element_errors

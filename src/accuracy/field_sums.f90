@@ -80,19 +80,19 @@ contains
       integer, intent(in) :: places   !! how many
       real(wp), intent(in) :: found(components, 0:most_fields, places)   !! first that of the answer
       real(wp), dimension(most_rows, errors%fields), intent(inout) :: strain, stress
-      real(wp) :: common, double, e(components)
+      real(wp) :: volumetric, double, e(components)
       integer :: f, k, row
 
       do f = 1, errors%fields
         row = self%rows(i)
         do k = 1, places
           e = found(:, f, k)
-          common = part(k)*cross*(e(1) + e(2) + e(3))
+          volumetric = part(k)*cross*(e(1) + e(2) + e(3))
           double = 2.0_wp*part(k)*law%shear
           strain(row + 1:row + components, f) = e
-          stress(row + 1, f) = common + double*e(1)
-          stress(row + 2, f) = common + double*e(2)
-          stress(row + 3, f) = common + double*e(3)
+          stress(row + 1, f) = volumetric + double*e(1)
+          stress(row + 2, f) = volumetric + double*e(2)
+          stress(row + 3, f) = volumetric + double*e(3)
           stress(row + 4, f) = 0.5_wp*double*e(4)
           row = row + components
         end do
