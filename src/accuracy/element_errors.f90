@@ -1,5 +1,5 @@
-!> One element: its own strains where they are compared, what smooth ones are beyond them, in several fields at
-!> once, and what the stress of the answer, the first of them, is off by.
+!> One element: its own strains where they are compared, what smooth ones are beyond them, in several fields
+!> at once, and what the stress of the answer, the first of them, is off by.
 !>
 !> With s the stress and e the strain of an element, and * for the smooth ones, the square of the error is the
 !> integral of (s* - s).(e* - e), s* being the stress on the material's curve at e*. Of elastic elements that
@@ -153,8 +153,9 @@ contains
     product = 0.0_wp
     v = components*field
     do k = 1, self%places
-      product = product + (self%stress(1, k)*self%error(v + 1, k) + self%stress(2, k)*self%error(v + 2, k)) + &
-                (self%stress(3, k)*self%error(v + 3, k) + self%stress(4, k)*self%error(v + 4, k))
+      product = product &
+                + (self%stress(1, k)*self%error(v + 1, k) + self%stress(2, k)*self%error(v + 2, k)) &
+                + (self%stress(3, k)*self%error(v + 3, k) + self%stress(4, k)*self%error(v + 4, k))
     end do
   end function product
 

@@ -1,5 +1,5 @@
-!> Sums over the elements of a body, for loads that are each a sum of few fields: products of the errors of the
-!> answer and of the load, signed and not, and energies of the load's error and of its own strain.
+!> Sums over the elements of a body, for loads that are each a sum of few fields: products of the errors of
+!> the answer and of the load, signed and not, and energies of the load's error and of its own strain.
 !>
 !> The energy of a sum of fields is a sum over each two of them, so those of the fields are found; what is
 !> summed without signs is not, and is found for each load and element from the products of the fields.
@@ -113,7 +113,8 @@ contains
     self%along(1, :) = self%along(1, :) + sum(of_load, dim=1)
     self%along(2, :) = self%along(2, :) + sum(abs(of_load), dim=1)
     do i = 1, 2
-      call add_inner_products(self%rows(i), self%strain(:, :, i), self%stress(:, :, i), self%together(:, :, i))
+      call add_inner_products(self%rows(i), self%strain(:, :, i), self%stress(:, :, i), &
+                              self%together(:, :, i))
     end do
     self%elements = 0
     self%rows = 0

@@ -1,9 +1,9 @@
 !> Smooth strains from those of the elements (Zienkiewicz and Zhu 1992, superconvergent patch recovery).
 !>
 !> At each corner a polynomial is fitted by least squares to the strains of the elements around it
-!> (`patches.f90`), at the points where they are best, the samples: the middles of three- and four-node elements
-!> (linear), places within those with nodes between corners (quadratic). Nodes between corners take the mean of
-!> the polynomials of both.
+!> (`patches.f90`), at the points where they are best, the samples: the middles of three- and four-node
+!> elements (linear), places within those with nodes between corners (quadratic). Nodes between corners take
+!> the mean of the polynomials of both.
 module epcont_accuracy_recovery
   use epcont_accuracy_patches, only: patch_table, wide_patch
   use epcont_base_kinds, only: wp
@@ -167,8 +167,8 @@ contains
       end if
     end subroutine fit
 
-    !> The linear polynomials of one sample an element, at the place: a sum of the samples. A direction in which
-    !! they do not spread is constant.
+    !> The linear polynomials of one sample an element, at the place: a sum of the samples. A direction in
+    !! which they do not spread is constant.
     subroutine fit_linear(patch)
       integer, intent(in) :: patch(:)
       real(wp) :: determinant, dx, dy, here(components), slope(2), x, y
@@ -202,7 +202,8 @@ contains
       slope = 0.0_wp
       if (determinant > lost_digits*(xx + yy)**2) slope = [mx*yy - my*xy, my*xx - mx*xy]/determinant
       do k = 1, n
-        weight(k) = 1.0_wp/n - slope(1)*(samples%x(1, at(k)) - x - mx) - slope(2)*(samples%x(2, at(k)) - y - my)
+        weight(k) = 1.0_wp/n - slope(1)*(samples%x(1, at(k)) - x - mx) &
+                    - slope(2)*(samples%x(2, at(k)) - y - my)
       end do
       do f = 0, fields
         here = 0.0_wp
