@@ -4,7 +4,7 @@
 module epcont_accuracy_accuracy
   use epcont_accuracy_error_fields, only: compare_fields, error_fields
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
-  use epcont_accuracy_recovery, only: new_patch_table, patch_table, wide_patch
+  use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_surface_line, only: first_element, new_surface_line, smooth_pressures, surface_line
   use epcont_accuracy_unit_loads, only: contact_sensitivity, find_sensitivity, find_unit_loads, unit_loads
   use epcont_accuracy_weights, only: concentrated, least_energy, of_shares, uncancelled, unresolved, &

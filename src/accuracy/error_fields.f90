@@ -1,27 +1,23 @@
 !> The strains of the answer and of unit loads against smooth ones: how far they are from these, as an energy
-!> (Zienkiewicz and Zhu 1987), and what their errors have in common.
-!>
-!> With s the stress and e the strain of an element, and * for the smooth ones, the square of the error is the
-!> integral of (s* - s).(e* - e), s* being the stress on the material's curve at e*. Of elastic elements that
-!> is the energy norm. Of yielding ones it lies between those of the tangent and of the secant, and vanishes
-!> only with the error, whatever the curve.
+!> (Zienkiewicz and Zhu 1987), and what their errors have in common. Body by body, since of all loads a body
+!> feels few that it tells apart (`body_loads.f90`).
 module epcont_accuracy_error_fields
-  use epcont_accuracy_recovery, only: patch_table, recover_strains
+  use epcont_accuracy_body_loads, only: body_loads, choose_fields, find_displacements, load_batch, &
+    new_body_loads, pairs_of_bodies
+  use epcont_accuracy_element_errors, only: element_errors, new_element_errors
+  use epcont_accuracy_field_sums, only: field_sums, new_field_sums
+  use epcont_accuracy_patches, only: patch_table
+  use epcont_accuracy_recovery, only: body_samples, place_samples, recover
+  use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
-  use epcont_element_element_kind, only: element_kind, most_places
+  use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: components
-  use epcont_flexibility_flexibility, only: pair_forces
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_scene_state, only: scene_state
-  use epcont_material_elasticity, only: cross_modulus
-  use epcont_material_material_law, only: point_state
-  use epcont_material_scene_materials, only: scene_materials
-  use epcont_model_model, only: model_type
-  use epcont_plan_forecast, only: loads_at_once
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: compare_fields, error_fields, error_product, error_products
+  public :: compare_fields, error_fields
 
   !> Strains less smooth ones are errors: their energies, and their products with those of unit loads.
   type :: error_fields
@@ -31,13 +27,6 @@ module epcont_accuracy_error_fields
     real(wp), allocatable :: along(:, :)    !! of all elements, of each without its sign [energy] [2, loads]
     real(wp), allocatable :: missing(:)     !! part of the energy of each unit load [loads]
   end type error_fields
-
-  !> What the errors of fields of strain have in common, and what each misses.
-  type :: error_product
-    real(wp), allocatable :: element(:, :)   !! [energy] [elements, fields]
-    !> Part of the energy, of elastic bodies; not found of the first field [fields]
-    real(wp), allocatable :: missing(:)
-  end type error_product
 
 contains
 
@@ -49,139 +38,113 @@ contains
     type(patch_table), intent(in) :: table       !! of its elements
     real(wp), intent(in) :: unit_force(:, :)     !! contact forces under each unit load [pairs, loads]
     type(error_fields), intent(out) :: field     !! what is off
-    !> Of the answer, then of some unit loads [components, any, 1 + loads]
-    real(wp), allocatable :: strain(:, :, :), smooth(:, :, :)
-    type(error_product) :: product
-    integer :: first, j, k, loads
+    type(incidence) :: pairs
+    type(body_loads) :: loads
+    type(load_batch) :: batch
+    real(wp) :: unit(size(unit_force, 2))        ! largest force under each load
+    real(wp) :: energy(2, size(unit_force, 2))   ! of each load's error, and of its own strain
+    real(wp), allocatable :: u(:, :, :)          ! under the fields of a batch [directions, fields, places]
+    real(wp), allocatable :: strain(:, :)        ! of the answer and all fields in an element [width, points]
+    integer :: e, first, nodes, points           ! the element, its first point, how many it has
+    integer :: own(most_nodes)                   ! its places, among those of the body
+    integer :: b, k
 
-    associate (model => scene%model, volume => linear%operator%volume)
-      allocate (field%along(2, size(unit_force, 2)), field%missing(size(unit_force, 2)))
-      do first = 1, max(1, size(unit_force, 2)), loads_at_once
-        loads = min(loads_at_once, size(unit_force, 2) - first + 1)
-        allocate (strain(components, model%points, 1 + loads))
-        strain(:, :, 1) = answer%strain
-        do j = 1, loads
-          strain(:, :, 1 + j) = linear%operator%strains(model, linear%displacements( &
-                                scene, pair_forces(model, unit_force(:, first - 1 + j)), 0.0_wp))
-        end do
-        smooth = recover_strains(model, table, volume, strain)
-        product = error_products(model, table, linear%materials, volume, strain, smooth, answer%point)
-        deallocate (strain)
-        do j = 1, loads
-          k = first - 1 + j
-          field%along(:, k) = [sum(product%element(:, 1 + j)), sum(abs(product%element(:, 1 + j)))]
-          field%missing(k) = product%missing(1 + j)
-        end do
-      end do
-      do k = 1, model%points
-        field%energy = field%energy + volume(k)*dot_product(answer%strain(:, k), answer%point_stress(:, k))
-      end do
-    end associate
-    field%element = product%element(:, 1)
-    field%smooth = smooth(:, :, 1)
-  end subroutine compare_fields
-
-  !> Integrals of error times error: what the stress of the first field, on the material's curve, is off by,
-  !! times what the strain of each field is off by. Of the first field that is the square of its error. Each
-  !! of the other fields by itself misses a part of its energy, too.
-  pure function error_products(model, table, materials, volume, strain, smooth, state) result(product)
-    type(model_type), intent(in) :: model                 !! the scene
-    type(patch_table), intent(in) :: table                !! of its elements
-    type(scene_materials), intent(in) :: materials        !! of its sections
-    real(wp), intent(in) :: volume(:)                     !! of the integration points [points]
-    real(wp), contiguous, intent(in) :: strain(:, :, :)   !! [components, points, fields]
-    real(wp), contiguous, intent(in) :: smooth(:, :, :)   !! [components, places, fields]
-    !> Of the first field, where anything yields [points]
-    type(point_state), allocatable, intent(in) :: state(:)
-    type(error_product) :: product
-    type(point_state) :: before, after
-    real(wp) :: own(components, most_places), error(components, most_places, size(strain, 3))
-    real(wp) :: part(most_places), cross, one
-    real(wp) :: energy(2, size(strain, 3))   !! of each field's error, and of its own strain
-    logical :: yielded
-    integer :: e, f, fields, k
-
-    fields = size(strain, 3)
-    allocate (product%element(model%elements, fields), product%missing(fields), source=0.0_wp)
+    allocate (field%smooth(components, table%places), field%element(scene%model%elements), &
+              field%along(2, size(unit)), field%missing(size(unit)), source=0.0_wp)
+    pairs = pairs_of_bodies(scene%model)
+    unit = maxval(abs(unit_force), dim=1)
     energy = 0.0_wp
-    do e = 1, model%elements
-      associate (first => model%first_point(e), last => model%first_point(e + 1) - 1, &
-                 law => materials%section(model%section(e))%law, kind => model%kinds(model%kind(e)))
-        cross = cross_modulus(law%bulk, law%shear, law%sheet)
-        do k = 1, kind%places
-          part(k) = sum(kind%v(:last - first + 1, k)*volume(first:last))
-        end do
-        do f = fields, 1, -1   ! last the first, whose own strain is wanted
-          call compare(kind, table%place(:kind%nodes, e), strain(:, first:last, f), smooth(:, :, f), own, &
-                       error(:, :, f))
-          if (f == 1) exit
-          do k = 1, kind%places
-            energy(:, f) = energy(:, f) + &
-                           part(k)*[elastic_product(cross, law%shear, error(:, k, f), error(:, k, f)), &
-                                    elastic_product(cross, law%shear, own(:, k), own(:, k))]
-          end do
-        end do
-        do k = 1, kind%places
-          yielded = .false.
-          if (law%yields) then
-            if (kind%sees_points) then
-              before = state(first - 1 + min(k, kind%points))
-            else
-              call law%update(own(:, k), point_state(), before)
-            end if
-            call law%update(own(:, k) + error(:, k, 1), point_state(), after)
-            yielded = before%yielded .or. after%yielded
-          end if
-          do f = 1, fields
-            if (yielded) then
-              one = dot_product(after%stress - before%stress, error(:, k, f))
-            else
-              one = elastic_product(cross, law%shear, error(:, k, 1), error(:, k, f))
-            end if
-            product%element(e, f) = product%element(e, f) + part(k)*one
-          end do
-        end do
-      end associate
-    end do
-    where (energy(1, :) > 0.0_wp) product%missing = energy(1, :)/sum(energy, dim=1)
-  end function error_products
-
-  !> An element's own strain at its places, and what the smooth one is beyond it.
-  pure subroutine compare(kind, place, strain, smooth, own, error)
-    type(element_kind), intent(in) :: kind
-    integer, contiguous, intent(in) :: place(:)
-    real(wp), contiguous, intent(in) :: strain(:, :)      !! [components, its points]
-    real(wp), contiguous, intent(in) :: smooth(:, :)      !! [components, places of all]
-    real(wp), intent(inout) :: own(components, most_places), error(components, most_places)
-    real(wp) :: middle(components)
-    integer :: i, k
-
-    if (size(place) == 3) then   ! what follows below, for most of all elements
-      middle = 0.5_wp*(smooth(:, place(1)) + smooth(:, place(2)) + smooth(:, place(3))) - strain(:, 1)
-      do k = 1, 3
-        own(:, k) = strain(:, 1)
-        error(:, k) = middle - 0.5_wp*smooth(:, place(k))
-      end do
-      return
-    end if
-    do k = 1, kind%places
-      own(:, k) = 0.0_wp
-      do i = 1, size(strain, 2)
-        own(:, k) = own(:, k) + kind%p(i, k)*strain(:, i)
-      end do
-      error(:, k) = -own(:, k)
-      do i = 1, size(place)
-        error(:, k) = error(:, k) + kind%n(i, k)*smooth(:, place(i))
+    do b = 1, size(scene%numbering%body)
+      if (size(scene%numbering%body(b)%element) == 0) cycle
+      loads = new_body_loads(pairs%of(b), unit_force, unit)
+      do
+        call choose_fields(loads, batch)
+        call compare_on_body(scene%numbering%body(b)%element, table%of_body%of(b))
+        if (size(loads%load) == 0) exit
       end do
     end do
-  end subroutine compare
+    where (energy(1, :) > 0.0_wp) field%missing = energy(1, :)/sum(energy, dim=1)
+    field%along = spread(unit, 1, 2)*field%along
+    do k = 1, scene%model%points
+      field%energy = field%energy + linear%operator%volume(k)* &
+                     dot_product(answer%strain(:, k), answer%point_stress(:, k))
+    end do
 
-  !> The stress of one strain, elastic, times another strain; in a sheet their components zz are none.
-  pure real(wp) function elastic_product(cross, shear, one, other) result(product)
-    real(wp), intent(in) :: cross, shear
-    real(wp), intent(in) :: one(components), other(components)
+  contains
 
-    product = cross*(one(1) + one(2) + one(3))*(other(1) + other(2) + other(3)) &
-              + shear*(2.0_wp*(one(1)*other(1) + one(2)*other(2) + one(3)*other(3)) + one(4)*other(4))
-  end function elastic_product
+    !> What the elements of a body add, under a batch of loads.
+    subroutine compare_on_body(element, place)
+      integer, intent(in) :: element(:), place(:)   !! those of the body
+      type(body_samples) :: samples
+      type(element_errors) :: errors
+      type(field_sums) :: sums
+      real(wp), allocatable :: sample(:, :), smooth(:, :)   ! of the answer and all fields [width, any]
+      integer :: i, width
+
+      call find_displacements(scene, linear, b, loads%pair, batch, table%node(place), u)
+      errors = new_element_errors(size(u, 2))
+      sums = new_field_sums(batch%share)
+      samples = place_samples(scene%model, element)
+      width = errors%width
+      if (allocated(strain)) deallocate (strain)
+      allocate (strain(width, most_points), sample(width, size(samples%x, 2)), smooth(width, size(place)))
+      do i = 1, size(element)
+        call look_at(element(i))
+        if (points == 1) then
+          call find_strains(sample(:, samples%before(e) + 1))
+        else
+          call find_strains(strain)
+          call samples%take(scene%model%kinds(scene%model%kind(e)), e, linear%operator%volume(first), width, &
+                            strain, sample)
+        end if
+      end do
+      call recover(scene%model, table, b, samples, size(u, 2), sample, smooth)
+      ! Strains are found again: kept at all points they would be the largest array of all.
+      do i = 1, size(element)
+        call look_at(element(i))
+        if (points == 1) then
+          strain(:, 1) = sample(:, samples%before(e) + 1)
+        else
+          call find_strains(strain)
+        end if
+        associate (law => linear%materials%section(scene%model%section(e))%law, &
+                   kind => scene%model%kinds(scene%model%kind(e)))
+          call errors%compare(kind, linear%operator%volume(first), strain, own, smooth)
+          call errors%find_stress(kind, law, first, answer%point)
+          field%element(e) = errors%product(0)
+          if (size(u, 2) > 0) call sums%add(errors, law)
+        end associate
+      end do
+      field%smooth(:, place) = smooth(:components, :)
+      if (size(u, 2) == 0) return
+      call sums%finish()
+      field%along(:, batch%load) = field%along(:, batch%load) + sums%along
+      energy(:, batch%load) = energy(:, batch%load) + sums%energy
+    end subroutine compare_on_body
+
+    !> Turn to an element.
+    subroutine look_at(element)
+      integer, intent(in) :: element
+      integer :: k
+
+      e = element
+      nodes = scene%model%node_count(e)
+      first = scene%model%first_point(e)
+      points = scene%model%first_point(e + 1) - first
+      do k = 1, nodes
+        own(k) = table%own(table%place(k, e))
+      end do
+    end subroutine look_at
+
+    !> Its strains, of the answer and of all fields.
+    subroutine find_strains(strain)
+      real(wp), intent(inout) :: strain(components*(1 + size(u, 2)), *)   !! at its points
+      integer :: p
+
+      do p = 1, points
+        strain(:components, p) = answer%strain(:, first + p - 1)
+      end do
+      call linear%operator%add_fields(scene%model, e, own, size(u, 2), u, strain)
+    end subroutine find_strains
+  end subroutine compare_fields
 end module epcont_accuracy_error_fields

@@ -10,7 +10,6 @@ module epcont_accuracy_narrow_zone
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
-  use epcont_plan_rigid_parts, only: part_motions
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: resultants
   use epcont_result_contact_line, only: contact_line
@@ -109,10 +108,9 @@ contains
         aside = maxval([0.0_wp, (0.5_wp*line%distance(k, beside(i))/bearing, i=1, size(beside))])
         do i = 1, 2   ! A is pushed against the normal, B along it
           body = model%body(model%pair_node(i, k))
-          do m = 1, motions%count
-            if (motions%body(m) == body) load(m, z) = load(m, z) + &
-              (2*i - 3)*sum(force(pairs))*aside/motions%parts%extent(body) &
-              *motions%coefficient(part_motions, motions%parts%of_node(model%pair_node(i, k)), m)
+          do m = motions%first(body), motions%first(body + 1) - 1
+            load(m, z) = load(m, z) + (2*i - 3)*sum(force(pairs))*aside/motions%parts%extent(body) &
+                         *motions%turn(model%pair_node(i, k), m)
           end do
         end do
       end associate

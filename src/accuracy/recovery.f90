@@ -1,31 +1,29 @@
 !> Smooth strains from those of the elements (Zienkiewicz and Zhu 1992, superconvergent patch recovery).
 !>
-!> At each corner a polynomial is fitted by least squares to the strains of the elements around it, at the
-!> points where they are best: the middles of three- and four-node elements (linear), places within those with
-!> nodes between corners (quadratic). Nodes between corners take the mean of the polynomials of both.
-!>
-!> Which elements tell of the strain at a node: those around it of one section, since strains jump where
-!> materials change. A node where sections meet has a place in each of them. A place at the boundary of its
-!> section has elements on one side only, too few to tell how the strain changes: the elements around its
-!> neighbours are added there.
+!> At each corner a polynomial is fitted by least squares to the strains of the elements around it
+!> (`patches.f90`), at the points where they are best, the samples: the middles of three- and four-node
+!> elements (linear), places within those with nodes between corners (quadratic). Nodes between corners take
+!> the mean of the polynomials of both.
 module epcont_accuracy_recovery
-  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_accuracy_patches, only: patch_table, wide_patch
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits
+  use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: components
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: new_patch_table, patch_table, recover_strains, wide_patch
+  public :: body_samples, place_samples, recover
 
-  type :: patch_table
-    integer :: places = 0
-    integer, allocatable :: node(:)        !! of each place [places]
-    !> Of each node of an element, 0 where it has no more [most_nodes, elements]
-    integer, allocatable :: place(:, :)
-    type(incidence) :: around              !! elements at each place
-    logical, allocatable :: inside(:)      !! elements go all around the place [places]
-  end type patch_table
+  !> Where the strains of one body's elements are best.
+  type :: body_samples
+    integer, allocatable :: element(:)     !! the elements
+    !> Before those of each element [elements of the scene; of others nothing is said]
+    integer, allocatable :: before(:)
+    real(wp), allocatable :: x(:, :)       !! [length] [2, samples]
+  contains
+    procedure :: take
+  end type body_samples
 
   !> Terms of a quadratic polynomial: 1, x, y, x**2, xy, y**2.
   integer, parameter :: quadratic = 6
@@ -34,249 +32,246 @@ module epcont_accuracy_recovery
 
 contains
 
-  !> The places of a scene.
-  pure function new_patch_table(model) result(table)
-    type(model_type), intent(in) :: model   !! the scene
-    type(patch_table) :: table
-    logical :: free(0:model%nodes)   ! on an outline
-    integer :: p
-
-    call split_places(table%place, table%node)
-    table%places = size(table%node)
-    table%around = new_incidence(table%place, table%places)
-    free = .false.
-    free([model%body_outline%node]) = .true.
-    associate (full => model%around%start, own => table%around%start, node => table%node)
-      table%inside = [(.not. free(node(p)) .and. own(p + 1) - own(p) == full(node(p) + 1) - full(node(p)), &
-                       p=1, table%places)]
-    end associate
-
-  contains
-
-    !> A node has one place for each section that it belongs to; that of the first section is the node's own
-    !! number.
-    pure subroutine split_places(place, node)
-      integer, allocatable, intent(out) :: place(:, :), node(:)   !! of each element, of each place
-      integer, allocatable :: next(:), section(:)   !! of each place the next place of its node, its section
-      integer :: at, e, k, places
-
-      place = model%connectivity
-      node = [(k, k=1, model%nodes)]
-      if (all(model%section == model%section(1))) return
-      node = [node, spread(0, 1, size(place))]
-      allocate (next(size(node)), source=0)
-      places = model%nodes
-      section = [(minval(model%section(model%around%of(k))), k=1, places), node(places + 1:)]
-      do e = 1, model%elements
-        do k = 1, model%node_count(e)
-          at = place(k, e)
-          do while (section(at) /= model%section(e))
-            if (next(at) == 0) then
-              places = places + 1
-              next(at) = places
-              section(places) = model%section(e)
-              node(places) = place(k, e)
-            end if
-            at = next(at)
-          end do
-          place(k, e) = at
-        end do
-      end do
-      node = node(:places)
-    end subroutine split_places
-  end function new_patch_table
-
-  !> The elements around a place and around the corners of these.
-  pure subroutine wide_patch(model, table, place, seen, patch)
-    type(model_type), intent(in) :: model             !! the scene
-    type(patch_table), intent(in) :: table            !! of its elements
-    integer, intent(in) :: place                      !! which place
-    !> The last place that each element was taken for [elements]
-    integer, intent(inout) :: seen(:)
-    integer, allocatable, intent(out) :: patch(:)     !! elements
-    integer :: i, k
-
-    allocate (patch(0))
-    associate (near => table%around%of(place))
-      do i = 1, size(near)
-        do k = 1, model%corners(near(i))
-          associate (there => table%around%of(table%place(k, near(i))))
-            patch = [patch, pack(there, seen(there) /= place)]
-            seen(there) = place
-          end associate
-        end do
-      end do
-    end associate
-  end subroutine wide_patch
-
-  !> Strains at the places of a table, of several fields at once [components, places, fields].
-  function recover_strains(model, table, volume, strain) result(smooth)
+  !> The samples of a body.
+  pure function place_samples(model, element) result(samples)
     type(model_type), intent(in) :: model    !! the scene
-    type(patch_table), intent(in) :: table   !! of its elements
-    real(wp), intent(in) :: volume(:)        !! of the integration points [points]
-    real(wp), intent(in) :: strain(:, :, :)  !! xx, yy, zz, xy [components, points, fields]
-    real(wp), allocatable :: smooth(:, :, :)
-    !> Samples: [length] [2, points], [components, points, fields]
-    real(wp), allocatable :: x(:, :), sample(:, :, :)
-    integer, allocatable :: patch(:)
-    integer :: seen(model%elements), e, k, p
-    !> Of a node between corners: polynomials that reach it; of others -1
-    integer :: fits(table%places)
+    integer, intent(in) :: element(:)        !! those of the body
+    type(body_samples) :: samples
+    integer :: e, i, k, last
 
-    call take_samples()
-    allocate (smooth(components, table%places, size(strain, 3)), source=0.0_wp)
-    fits = -1
-    do e = 1, model%elements
-      do k = model%corners(e) + 1, model%node_count(e)
-        fits(table%place(k, e)) = 0
-      end do
+    samples%element = element
+    allocate (samples%before(model%elements))
+    last = 0
+    do i = 1, size(element)
+      samples%before(element(i)) = last
+      last = last + model%kinds(model%kind(element(i)))%samples
     end do
-    seen = 0
-    do p = 1, table%places
-      patch = table%around%of(p)
-      if (size(patch) == 0 .or. fits(p) >= 0) cycle
-      associate (curved => any(model%kinds(model%kind(patch))%degree > 1))
-        if (.not. table%inside(p) .or. size(patch) < merge(least_quadratic/3, least_linear, curved)) &
-          call wide_patch(model, table, p, seen, patch)
-        if (curved) then
-          call fit_quadratic(p)
+    allocate (samples%x(2, last))
+    do i = 1, size(element)
+      e = element(i)
+      associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)), &
+                 before => samples%before(e))
+        if (kind%degree > 1) then
+          do k = 1, kind%samples
+            samples%x(:, before + k) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
+          end do
         else
-          call fit_linear(p)
+          samples%x(:, before + 1) = sum(model%x(:, node), dim=2)/kind%nodes
         end if
       end associate
     end do
-    do p = 1, table%places
-      if (fits(p) > 0) smooth(:, p, :) = smooth(:, p, :)/fits(p)
+  end function place_samples
+
+  !> What strains of an element are at its samples.
+  pure subroutine take(self, kind, element, volume, width, strain, sample)
+    class(body_samples), intent(in) :: self
+    type(element_kind), intent(in) :: kind                !! of the element
+    integer, intent(in) :: element                        !! which
+    real(wp), intent(in) :: volume(kind%points)           !! of its points
+    integer, intent(in) :: width                          !! components of all fields
+    real(wp), intent(in) :: strain(width, kind%points)    !! at its points
+    real(wp), intent(inout) :: sample(width, *)           !! of the body [width, samples]
+    real(wp) :: part
+    integer :: k, p, s, v
+
+    do k = 1, kind%samples
+      s = self%before(element) + k
+      do p = 1, kind%points
+        part = kind%sample_of(p, k)
+        if (kind%degree == 1) part = volume(p)/sum(volume)
+        do v = 1, width
+          if (p == 1) sample(v, s) = 0.0_wp
+          sample(v, s) = sample(v, s) + part*strain(v, p)
+        end do
+      end do
+    end do
+  end subroutine take
+
+  !> Smooth strains at the places of a body, of all fields at once.
+  subroutine recover(model, table, b, samples, fields, strain, smooth)
+    type(model_type), intent(in) :: model        !! the scene
+    type(patch_table), intent(in) :: table       !! of its elements
+    integer, intent(in) :: b                     !! the body
+    type(body_samples), intent(in) :: samples    !! of its elements
+    integer, intent(in) :: fields                !! how many, besides the answer's
+    real(wp), intent(in) :: strain(components, 0:fields, *)   !! [.., .., samples]
+    !> [.., .., its places]
+    real(wp), intent(out) :: smooth(components, 0:fields, table%of_body%start(b + 1) - table%of_body%start(b))
+    integer, allocatable :: fits(:)   !! of a node between corners: polynomials that reach it; of others -1
+    integer, allocatable :: patch(:), seen(:)
+    integer, allocatable :: at(:)           !! samples of a patch [any]
+    real(wp), allocatable :: weight(:)      !! that they have there [any]
+    integer :: first, i, last, p
+    logical :: any_curved, curved   ! elements of the body, of the patch, have nodes between their corners
+
+    smooth = 0.0_wp
+    allocate (fits(size(smooth, 3)), source=-1)
+    allocate (at(size(samples%element)), weight(size(samples%element)))
+    allocate (seen(model%elements), source=0)
+    associate (places => table%of_body%group(table%of_body%start(b):table%of_body%start(b + 1) - 1))
+      call find_middles()
+      do i = 1, size(places)
+        p = places(i)
+        first = table%around%start(p)
+        last = table%around%start(p + 1) - 1
+        if (last < first .or. fits(i) >= 0) cycle
+        curved = any_curved
+        if (any_curved) curved = has_curved(table%around%group(first:last))
+        if (table%inside(p) .and. last - first + 1 >= merge(least_quadratic/3, least_linear, curved)) then
+          call fit(table%around%group(first:last))
+        else
+          call wide_patch(model, table, p, seen, patch)
+          call fit(patch)
+        end if
+      end do
+    end associate
+    do i = 1, size(fits)
+      if (fits(i) > 0) smooth(:, :, i) = smooth(:, :, i)/fits(i)
     end do
 
   contains
 
-    !> Where the strains of the elements are best, and what they are there: the samples of an element have the
-    !! numbers of its first points.
-    subroutine take_samples()
-      integer :: e, f, k, p
+    !> The nodes between corners.
+    subroutine find_middles()
+      integer :: e, j, k
 
-      allocate (x(2, model%points))
-      sample = strain
-      do e = 1, model%elements
-        associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)), &
-                   first => model%first_point(e), last => model%first_point(e + 1) - 1)
-          if (kind%degree > 1) then
-            do k = 1, kind%samples
-              x(:, first + k - 1) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
-              do f = 1, size(strain, 3)
-                sample(:, first + k - 1, f) = matmul(strain(:, first:last, f), &
-                    kind%sample_of(:kind%points, k))
-              end do
-            end do
-            cycle
-          end if
-          x(:, first) = sum(model%x(:, node), dim=2)/kind%nodes
-          if (first == last) cycle
-          sample(:, first, :) = 0.0_wp
-          do p = first, last
-            sample(:, first, :) = sample(:, first, :) + strain(:, p, :)*(volume(p)/sum(volume(first:last)))
-          end do
-        end associate
+      any_curved = has_curved(samples%element)
+      if (.not. any_curved) return
+      do j = 1, size(samples%element)
+        e = samples%element(j)
+        do k = model%corners(e) + 1, model%node_count(e)
+          fits(table%own(table%place(k, e))) = 0
+        end do
       end do
-    end subroutine take_samples
+    end subroutine find_middles
 
-    !> The linear polynomials of one sample an element, at a place. A direction in which the samples do not
-    !! spread is constant.
-    subroutine fit_linear(p)
-      integer, intent(in) :: p
-      real(wp) :: at(2), d(2), determinant
-      real(wp), dimension(components) :: mean, along, across
-      real(wp) :: m(2), xx, xy, yy   !! moments of the samples about the place, then about their middle
-      integer :: f, i, s
+    !> Is any of these elements one with nodes between its corners?
+    pure logical function has_curved(elements)
+      integer, intent(in) :: elements(:)
+      integer :: k
 
-      at = model%x(:, table%node(p))
-      m = 0.0_wp
+      has_curved = .false.
+      do k = 1, size(elements)
+        has_curved = has_curved .or. model%kinds(model%kind(elements(k)))%degree > 1
+      end do
+    end function has_curved
+
+    !> The polynomials about the place.
+    subroutine fit(patch)
+      integer, intent(in) :: patch(:)
+
+      if (curved) then
+        call fit_quadratic(patch)
+      else
+        call fit_linear(patch)
+      end if
+    end subroutine fit
+
+    !> The linear polynomials of one sample an element, at the place: a sum of the samples. A direction in
+    !! which they do not spread is constant.
+    subroutine fit_linear(patch)
+      integer, intent(in) :: patch(:)
+      real(wp) :: determinant, dx, dy, here(components), slope(2), x, y
+      real(wp) :: mx, my, xx, xy, yy   !! moments of the samples about the place, then about their middle
+      integer :: f, k, n
+
+      n = size(patch)
+      x = model%x(1, table%node(p))
+      y = model%x(2, table%node(p))
+      mx = 0.0_wp
+      my = 0.0_wp
       xx = 0.0_wp
       xy = 0.0_wp
       yy = 0.0_wp
-      do i = 1, size(patch)
-        d = x(:, model%first_point(patch(i))) - at
-        m = m + d
-        xx = xx + d(1)*d(1)
-        xy = xy + d(1)*d(2)
-        yy = yy + d(2)*d(2)
+      do k = 1, n
+        at(k) = samples%before(patch(k)) + 1
+        dx = samples%x(1, at(k)) - x
+        dy = samples%x(2, at(k)) - y
+        mx = mx + dx
+        my = my + dy
+        xx = xx + dx*dx
+        xy = xy + dx*dy
+        yy = yy + dy*dy
       end do
-      xx = xx - m(1)*m(1)/size(patch)
-      xy = xy - m(1)*m(2)/size(patch)
-      yy = yy - m(2)*m(2)/size(patch)
+      mx = mx/n
+      my = my/n
+      xx = xx - n*mx*mx
+      xy = xy - n*mx*my
+      yy = yy - n*my*my
       determinant = xx*yy - xy*xy
-      do f = 1, size(sample, 3)
-        mean = 0.0_wp
-        along = 0.0_wp
-        across = 0.0_wp
-        do i = 1, size(patch)
-          s = model%first_point(patch(i))
-          d = x(:, s) - at
-          mean = mean + sample(:, s, f)
-          along = along + d(1)*sample(:, s, f)
-          across = across + d(2)*sample(:, s, f)
+      slope = 0.0_wp
+      if (determinant > lost_digits*(xx + yy)**2) slope = [mx*yy - my*xy, my*xx - mx*xy]/determinant
+      do k = 1, n
+        weight(k) = 1.0_wp/n - slope(1)*(samples%x(1, at(k)) - x - mx) &
+                    - slope(2)*(samples%x(2, at(k)) - y - my)
+      end do
+      do f = 0, fields
+        here = 0.0_wp
+        do k = 1, n
+          here = here + weight(k)*strain(:, f, at(k))
         end do
-        mean = mean/size(patch)
-        along = along - m(1)*mean
-        across = across - m(2)*mean
-        if (determinant > lost_digits*(xx + yy)**2) &
-          mean = mean - (m(1)*(yy*along - xy*across) + m(2)*(xx*across - xy*along))/(determinant*size(patch))
-        smooth(:, p, f) = mean
+        smooth(:, f, i) = here
       end do
     end subroutine fit_linear
 
     !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
     !! meet there.
-    subroutine fit_quadratic(p)
-      integer, intent(in) :: p
+    subroutine fit_quadratic(patch)
+      integer, intent(in) :: patch(:)
       real(wp) :: matrix(quadratic, quadratic), term(quadratic)
-      real(wp) :: coefficient(components, size(sample, 3), quadratic)
-      real(wp) :: at(2), reach, weight
-      integer :: e, f, i, j, k, s, samples
+      real(wp) :: coefficient(components, 0:fields, quadratic)
+      real(wp) :: centre(2), near, reach
+      integer :: e, j, k, n, s
 
-      at = model%x(:, table%node(p))
+      centre = model%x(:, table%node(p))
       reach = 0.0_wp
-      samples = 0
-      do i = 1, size(patch)   ! in any direction, all samples alike: scenes and elements may be turned
-        associate (first => model%first_point(patch(i)), own => model%kinds(model%kind(patch(i)))%samples)
-          reach = reach + sum((x(:, first:first + own - 1) - spread(at, 2, own))**2)
-          samples = samples + own
-        end associate
+      n = 0
+      do k = 1, size(patch)   ! in any direction, all samples alike: scenes and elements may be turned
+        do s = samples%before(patch(k)) + 1, samples%before(patch(k)) + samples_of(patch(k))
+          reach = reach + sum((samples%x(:, s) - centre)**2)
+          n = n + 1
+        end do
       end do
-      reach = sqrt(reach/samples)
+      reach = sqrt(reach/n)
       matrix = 0.0_wp
       coefficient = 0.0_wp
-      do i = 1, size(patch)
-        associate (first => model%first_point(patch(i)))
-          do s = first, first + model%kinds(model%kind(patch(i)))%samples - 1
-            term = terms((x(:, s) - at)/reach)
-            weight = 1.0_wp/(0.1_wp + sum(term(2:3)**2))**2
-            do j = 1, quadratic
-              matrix(:, j) = matrix(:, j) + term*term(j)*weight
-              coefficient(:, :, j) = coefficient(:, :, j) + sample(:, s, :)*term(j)*weight
-            end do
+      do k = 1, size(patch)
+        do s = samples%before(patch(k)) + 1, samples%before(patch(k)) + samples_of(patch(k))
+          term = terms((samples%x(:, s) - centre)/reach)
+          near = 1.0_wp/(0.1_wp + sum(term(2:3)**2))**2
+          do j = 1, quadratic
+            matrix(:, j) = matrix(:, j) + term*term(j)*near
+            coefficient(:, :, j) = coefficient(:, :, j) + strain(:, :fields, s)*(term(j)*near)
           end do
-        end associate
+        end do
       end do
-      if (samples < least_quadratic) matrix(:, 4:) = 0.0_wp   ! linear
-      call solve(matrix, size(coefficient, 1)*size(coefficient, 2), coefficient)
-      smooth(:, p, :) = coefficient(:, :, 1)
-      do i = table%around%start(p), table%around%start(p + 1) - 1
-        e = table%around%group(i)
+      if (n < least_quadratic) matrix(:, 4:) = 0.0_wp   ! linear
+      call solve(matrix, components*(1 + fields), coefficient)
+      smooth(:, :, i) = coefficient(:, :, 1)
+      do j = table%around%start(p), table%around%start(p + 1) - 1
+        e = table%around%group(j)
         associate (place => table%place(:, e), corners => model%corners(e))
           do k = corners + 1, model%node_count(e)
             if (place(k - corners) /= p .and. place(mod(k - corners, corners) + 1) /= p) cycle
-            term = terms((model%x(:, table%node(place(k))) - at)/reach)
-            do f = 1, size(sample, 3)
-              smooth(:, place(k), f) = smooth(:, place(k), f) + matmul(coefficient(:, f, :), term)
-            end do
-            fits(place(k)) = fits(place(k)) + 1
+            term = terms((model%x(:, table%node(place(k))) - centre)/reach)
+            associate (own => table%own(place(k)))
+              do n = 1, quadratic
+                smooth(:, :, own) = smooth(:, :, own) + coefficient(:, :, n)*term(n)
+              end do
+              fits(own) = fits(own) + 1
+            end associate
           end do
         end associate
       end do
     end subroutine fit_quadratic
-  end function recover_strains
+
+    !> How many samples an element has.
+    pure integer function samples_of(element)
+      integer, intent(in) :: element
+
+      samples_of = model%kinds(model%kind(element))%samples
+    end function samples_of
+  end subroutine recover
 
   !> Terms of a quadratic polynomial at a place.
   pure function terms(x) result(term)

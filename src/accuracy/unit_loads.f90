@@ -121,7 +121,7 @@ contains
       do i = 1, scene%model%nodes
         if (scene%model%body(i) /= body) cycle
         rest = merge(1.0_wp, 0.0_wp, [1, 2] == c)
-        do m = 1, scene%motions%count
+        do m = scene%motions%first(body), scene%motions%first(body + 1) - 1
           if (scene%motions%component(m) == c) rest = rest - scene%motions%displacement(scene%model, i, m)
         end do
         is_free = is_free .and. norm2(rest) <= least_difference

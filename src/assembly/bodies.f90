@@ -35,6 +35,7 @@ module epcont_assembly_bodies
     procedure :: displacements
     procedure :: add_forces
     procedure :: finish
+    procedure :: body_displacements
     procedure :: estimate_condition
     procedure :: weakest
   end type factored_bodies
@@ -206,4 +207,63 @@ contains
       end associate
     end do
   end function finish
+
+  !> Displacements of nodes of one body under several fields of forces on some of its nodes, supports at zero.
+  !! All fields are solved for at once: so the factor is read only twice.
+  subroutine body_displacements(self, scene, b, loaded, force, node, u)
+    class(factored_bodies), intent(in) :: self
+    type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
+    integer, intent(in) :: b                       !! the body
+    integer, intent(in) :: loaded(:)               !! its nodes that forces act on; one may stand there twice
+    real(wp), intent(in) :: force(:, :, :)         !! [force] [directions, fields, loaded nodes]
+    integer, intent(in) :: node(:)                 !! those that are asked for
+    real(wp), intent(out) :: u(:, :, :)            !! [length] [directions, fields, nodes asked for]
+    real(wp), allocatable :: border(:, :), inner(:, :)
+    real(wp) :: own(directions, size(force, 2))
+    integer :: c, i
+
+    associate (body => scene%numbering%body(b))
+      allocate (inner(body%equations, size(force, 2)), border(body%border, size(force, 2)), source=0.0_wp)
+    end associate
+    do i = 1, size(loaded)
+      own = force(:, :, i)
+      call turn(loaded(i), .true.)
+      do c = 1, directions
+        associate (number => scene%numbering%equation(c, loaded(i)))
+          if (number > 0) inner(number, :) = inner(number, :) + own(c, :)
+          if (number < 0) border(-number, :) = border(-number, :) + own(c, :)
+        end associate
+      end do
+    end do
+    call self%body(b)%solve_lower(inner, border)
+    call self%body(b)%solve_upper(inner, border, 1)
+    do i = 1, size(node)
+      own = 0.0_wp
+      do c = 1, directions
+        associate (number => scene%numbering%equation(c, node(i)))
+          if (number > 0) own(c, :) = inner(number, :)
+          if (number < 0) own(c, :) = border(-number, :)
+        end associate
+      end do
+      call turn(node(i), .false.)
+      u(:, :, i) = own
+    end do
+
+  contains
+
+    !> Of all fields at a node to the axes of its freedoms, or back.
+    subroutine turn(node, there)
+      integer, intent(in) :: node
+      logical, intent(in) :: there
+      integer :: f
+
+      associate (axes => scene%numbering%axes)
+        if (axes%turn(node) == 0) return
+        do f = 1, size(own, 2)
+          if (there) own(:, f) = axes%along(node, own(:, f))
+          if (.not. there) own(:, f) = axes%back(node, own(:, f))
+        end do
+      end associate
+    end subroutine turn
+  end subroutine body_displacements
 end module epcont_assembly_bodies

@@ -18,6 +18,7 @@ module epcont_assembly_strain_operator
     real(wp), allocatable :: volume(:)       !! that belongs to each point [length**3] [points]
   contains
     procedure :: strains
+    procedure :: add_fields
     procedure :: nodal_forces
     procedure :: element_stiffness
   end type strain_operator
@@ -75,6 +76,32 @@ contains
       strain(:, p) = now
     end do
   end function strains
+
+  !> Strains of one element under several fields of displacements, put behind one that is there.
+  pure subroutine add_fields(self, model, element, place, fields, u, strain)
+    class(strain_operator), intent(in) :: self
+    type(model_type), intent(in) :: model        !! the scene
+    integer, intent(in) :: element               !! which
+    integer, intent(in) :: place(*)              !! where its nodes are in `u`
+    integer, intent(in) :: fields                !! how many
+    real(wp), intent(in) :: u(directions, fields, *)   !! displacements [length]
+    !> At its points: the first field stays as it is [components, 0:fields, points]
+    real(wp), intent(inout) :: strain(components, 0:fields, *)
+    real(wp) :: now(components)
+    integer :: c, f, i, nodes, p
+
+    nodes = model%node_count(element)
+    do p = 1, model%first_point(element + 1) - model%first_point(element)
+      c = self%column(model%first_point(element) + p - 1)
+      do f = 1, fields
+        now = 0.0_wp
+        do i = 1, nodes
+          now = now + self%b(:, c + 2*i - 1)*u(1, f, place(i)) + self%b(:, c + 2*i)*u(2, f, place(i))
+        end do
+        strain(:, f, p) = now
+      end do
+    end do
+  end subroutine add_fields
 
   !> Forces that nodes must exert on the elements to hold their stresses [force] [directions, nodes].
   pure function nodal_forces(self, model, stress) result(force)

@@ -153,35 +153,52 @@ contains
   !! is no closing of a pair that moves as a whole, or along itself, but for rounding: else a large force on
   !! it would drive the body. Nor is there a load where loads cancel, or act across the motion: else rounding
   !! would tell whether the body moves off. What acts on a held freedom does not count: its support has it.
-  pure subroutine see_motions(model, motions, closing, resultant)
+  subroutine see_motions(model, motions, closing, resultant)
     type(model_type), intent(in) :: model   !! the scene
     type(free_motions), intent(in) :: motions   !! free ones
     real(wp), allocatable, intent(out) :: closing(:, :)   !! A [pairs, motions]
     real(wp), allocatable, intent(out) :: resultant(:)    !! P [motions]
-    real(wp) :: all_loads, load(directions), moved(directions, model%nodes)
-    integer :: c, first, i, k, last, m
+    real(wp) :: all_loads(motions%count), load(directions), moved(directions)
+    integer :: c, i, m
 
-    allocate (closing(model%pairs, motions%count), resultant(motions%count))
-    do m = 1, motions%count
-      do i = 1, model%nodes
-        moved(:, i) = motions%displacement(model, i, m)
+    allocate (closing(model%pairs, motions%count), resultant(motions%count), source=0.0_wp)
+    call close_gaps()
+    all_loads = 0.0_wp
+    do i = 1, model%nodes
+      load = [(merge(0.0_wp, model%load(c, i), model%held(c, model%leader(c, i))), c=1, directions)]
+      if (all(load == 0.0_wp)) cycle
+      do m = motions%first(model%body(i)), motions%first(model%body(i) + 1) - 1
+        moved = motions%displacement(model, i, m)
+        resultant(m) = resultant(m) + dot_product(moved, load)
+        all_loads(m) = all_loads(m) + norm2(moved)*norm2(load)
       end do
-      closing(:, m) = -gap_opening(model, moved)
-      do k = 1, model%pairs
-        first = model%row_start(k)
-        last = model%row_start(k + 1) - 1
-        if (abs(closing(k, m)) <= solved_to*sum(abs(model%row_weight(first:last))* &
-          norm2(moved(:, model%row_node(first:last)), dim=1))) closing(k, m) = 0.0_wp
-      end do
-      resultant(m) = 0.0_wp
-      all_loads = 0.0_wp
-      do i = 1, model%nodes
-        load = [(merge(0.0_wp, model%load(c, i), model%held(c, model%leader(c, i))), c=1, directions)]
-        if (all(load == 0.0_wp)) cycle
-        resultant(m) = resultant(m) + dot_product(moved(:, i), load)
-        all_loads = all_loads + norm2(moved(:, i))*norm2(load)
-      end do
-      if (abs(resultant(m)) <= cancelled*all_loads) resultant(m) = 0.0_wp
     end do
+    where (abs(resultant) <= cancelled*all_loads) resultant = 0.0_wp
+
+  contains
+
+    !> Of each pair by the motions of the bodies that have its nodes.
+    subroutine close_gaps()
+      real(wp) :: moved(directions, maxval([0, model%row_start(2:) - model%row_start(:model%pairs)]))
+      integer :: i, j, k, m, n
+
+      do k = 1, model%pairs
+        associate (node => model%row_node(model%row_start(k):model%row_start(k + 1) - 1), &
+                   weight => model%row_weight(model%row_start(k):model%row_start(k + 1) - 1))
+          n = size(node)
+          do i = 1, n
+            if (any(model%body(node(:i - 1)) == model%body(node(i)))) cycle
+            do m = motions%first(model%body(node(i))), motions%first(model%body(node(i)) + 1) - 1
+              do j = 1, n
+                moved(:, j) = motions%displacement(model, node(j), m)
+              end do
+              closing(k, m) = -model%opening(k, moved(:, :n))
+              if (abs(closing(k, m)) <= solved_to*sum(abs(weight)*norm2(moved(:, :n), dim=1))) &
+                closing(k, m) = 0.0_wp
+            end do
+          end do
+        end associate
+      end do
+    end subroutine close_gaps
   end subroutine see_motions
 end module epcont_flexibility_flexibility

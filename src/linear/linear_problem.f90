@@ -45,7 +45,7 @@ module epcont_linear_linear_problem
 contains
 
   !> What does not change with the law.
-  pure subroutine new_linear_problem(scene, plan, linear)
+  subroutine new_linear_problem(scene, plan, linear)
     type(planned_scene), intent(in) :: scene       !! what is to be solved
     type(iteration_plan), intent(in) :: plan       !! how; it may differ from the scene's
     type(linear_problem), intent(out) :: linear    !! all but its law
@@ -321,11 +321,13 @@ contains
 
     state%point_stress = self%law%stress(state%strain)
     state%displacement = state%deformation + load_factor*scene%model%travel
-    do k = 1, scene%motions%count
-      do node = 1, scene%model%nodes
-        state%displacement(:, node) = state%displacement(:, node) &
-          + state%contact%approach(k)*scene%motions%displacement(scene%model, node, k)
-      end do
+    do node = 1, scene%model%nodes
+      associate (b => scene%model%body(node))
+        do k = scene%motions%first(b), scene%motions%first(b + 1) - 1
+          state%displacement(:, node) = state%displacement(:, node) &
+            + state%contact%approach(k)*scene%motions%displacement(scene%model, node, k)
+        end do
+      end associate
     end do
     opening = gap_opening(scene%model, state%deformation)
     travel = load_factor*self%travel_gap

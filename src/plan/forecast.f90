@@ -8,7 +8,6 @@ module epcont_plan_forecast
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_numbering, only: numbering_type
-  use epcont_plan_rigid_parts, only: part_motions
   use epcont_system_memory, only: has_memory, memory_of_libraries
   implicit none
   private
@@ -36,11 +35,11 @@ module epcont_plan_forecast
   real(wp), parameter :: pair_matrices = 4.2_wp
   !> And over pairs and free motions.
   integer(i8), parameter :: motion_matrices = 8
-  !> Unit loads along free motions whose strains are there at once when the figures are assessed: of a stack
-  !! of many bodies those of all would take more memory than the factors. And what each takes of a node and of
-  !! a point [bytes].
-  integer, parameter, public :: loads_at_once = 15
-  integer(i8), parameter :: load_of_node = 32, load_of_point = 64
+  !> Unit loads along free motions whose strains are there at once, of one body, when the figures are
+  !! assessed (`most_fields` of `accuracy/element_errors.f90`), and what each takes of a node and of an
+  !! element [bytes].
+  integer, parameter :: loads_at_once = 15
+  integer(i8), parameter :: load_of_node = 64, load_of_element = 32
 
 contains
 
@@ -85,7 +84,7 @@ contains
     type(iteration_plan), intent(in) :: plan   !! of its iteration
     type(forecast_type) :: expected
     integer(i8), allocatable :: own_pairs(:)
-    integer(i8) :: entries, factor, flexibility, last, pairs, saved
+    integer(i8) :: entries, factor, flexibility, last, pairs, saved, unit_loads
     real(wp) :: operations
     integer :: b
 
@@ -94,6 +93,7 @@ contains
     entries = 0       ! of the factors
     saved = 0         ! bytes, by factors in single precision
     flexibility = 0   ! entries that are wanted for that of one body
+    unit_loads = 0    ! bytes of those that one body feels
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
         if (body%solver == solver_frontal) then
@@ -115,6 +115,8 @@ contains
             flexibility = max(flexibility, last*own + max(last, own)**2)
           end if
         end associate
+        unit_loads = max(unit_loads, min(int(min(motions%count, loads_at_once), i8), own_pairs(b))* &
+                         (load_of_node*size(body%node) + load_of_element*size(body%element)))
         operations = 4.0_wp*body%border*factor + body%operations
         expected%operations = expected%operations + operations
         expected%entries = expected%entries + factor
@@ -125,8 +127,8 @@ contains
       end associate
     end do
     entries = entries + max(int(pair_matrices*real(pairs, wp)**2, i8), flexibility + 2*pairs**2) + &
-              (motion_matrices*pairs + part_motions*motions%parts%count)*motions%count
-    expected%double_bytes = real_bytes*entries + beside_matrices(min(motions%count, loads_at_once))
+              motion_matrices*pairs*motions%count
+    expected%double_bytes = real_bytes*entries + beside_matrices() + unit_loads
     expected%bytes = expected%double_bytes - saved
     ! A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice,
     ! and the sets on the way to it are smaller, or little of them is factored.
@@ -154,13 +156,11 @@ contains
       end do
     end function pairs_of_bodies
 
-    !> What a run holds besides its matrices, with so many unit loads at once [bytes].
-    pure integer(i8) function beside_matrices(loads) result(bytes)
-      integer, intent(in) :: loads
+    !> What a run holds besides its matrices [bytes].
+    pure integer(i8) function beside_matrices() result(bytes)
       integer :: p
 
-      bytes = of_process + (of_node + load_of_node*loads)*model%nodes + &
-              (of_point + load_of_point*loads)*model%points
+      bytes = of_process + of_node*model%nodes + of_point*model%points
       do p = 1, model%points
         bytes = bytes + of_node_of_point*model%node_count(model%point_element(p)) + &
                 merge(of_yielding_point, 0_i8, model%can_yield(model%point_element(p)))

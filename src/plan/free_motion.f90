@@ -27,11 +27,17 @@ module epcont_plan_free_motion
   type :: free_motions
     integer :: count = 0
     integer, allocatable :: body(:), node(:), component(:)  !! of each motion: body, SUPORT freedom [count]
+    !> First of each body: they end before that of the next [bodies + 1]
+    integer, allocatable :: first(:)
     type(rigid_parts) :: parts
-    !> Of x, y, turn of each part in each motion [part_motions, parts, count]
-    real(wp), allocatable :: coefficient(:, :, :)
+    integer, allocatable, private :: own_part(:)   !! number of each part among those of its body [parts]
+    !> Of x, y, turn of each part of its body in each motion, and the columns before those of a motion
+    !! [part_motions, any], [count]
+    real(wp), allocatable, private :: coefficient(:, :)
+    integer, allocatable, private :: before(:)
   contains
     procedure :: displacement
+    procedure :: turn
   end type free_motions
 
 contains
@@ -45,10 +51,19 @@ contains
 
     u = 0.0_wp
     if (self%body(k) /= model%body(node)) return
-    associate (part => self%coefficient(:, self%parts%of_node(node), k))
+    associate (part => self%coefficient(:, self%before(k) + self%own_part(self%parts%of_node(node))))
       u = part(:directions) + part(part_motions)*self%parts%turn(model, node)
     end associate
   end function displacement
+
+  !> By how much the part of a node turns in a motion of its body: what a place at the body's extent from its
+  !! centre moves by [length].
+  pure real(wp) function turn(self, node, k)
+    class(free_motions), intent(in) :: self
+    integer, intent(in) :: node, k   !! the node, and the number of the motion
+
+    turn = self%coefficient(part_motions, self%before(k) + self%own_part(self%parts%of_node(node)))
+  end function turn
 
   !> Find the free motions of all bodies; a body whose SUPORT freedoms do not fit is an error.
   subroutine find_free_motions(model, motions, found)
@@ -56,16 +71,22 @@ contains
     type(free_motions), intent(out) :: motions   !! of all bodies whose SUPORT freedoms fit
     type(findings), intent(inout) :: found       !! the others are added
     type(incidence) :: nodes, parts   ! of each body
-    integer :: b
+    integer :: b, i
 
-    allocate (motions%body(0), motions%node(0), motions%component(0))
+    allocate (motions%body(0), motions%node(0), motions%component(0), motions%before(0))
+    allocate (motions%coefficient(part_motions, 0), motions%first(model%bodies + 1))
     motions%parts = find_rigid_parts(model)
-    allocate (motions%coefficient(part_motions, motions%parts%count, 0))
     nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
     parts = new_incidence(reshape(motions%parts%body, [1, motions%parts%count]), model%bodies)
+    allocate (motions%own_part(motions%parts%count))
     do b = 1, model%bodies
-      call examine_body(model, nodes%of(b), parts%of(b), motions, found)
+      motions%first(b) = motions%count + 1
+      associate (own => parts%of(b))
+        motions%own_part(own) = [(i, i=1, size(own))]
+        call examine_body(model, nodes%of(b), own, motions, found)
+      end associate
     end do
+    motions%first(model%bodies + 1) = motions%count + 1
   end subroutine find_free_motions
 
   !> Free motions of one body.
@@ -77,11 +98,8 @@ contains
     character(len=:), allocatable :: body
     real(wp), allocatable :: basis(:, :), factors(:, :), loose(:, :), measured(:, :), square(:, :), unit(:, :)
     integer, allocatable :: component(:), node(:)   ! of the SUPORT freedoms
-    integer :: column(motions%parts%count)          ! before those of each part
     integer :: i, info, m
 
-    column = 0
-    column(own) = [(part_motions*(i - 1), i=1, size(own))]
     node = pack(spread(nodes, 1, directions), model%reference(:, nodes))
     component = pack(spread([(i, i=1, directions)], 2, size(nodes)), model%reference(:, nodes))
     allocate (measured(size(node), part_motions*size(own)))
@@ -94,7 +112,7 @@ contains
     loose = matmul(basis, null_space(square, dependent))
     body = 'the body of '//model%name_of(of_node, nodes(1))
     if (size(loose, 2) > 0) then
-      call add_loose_body(of_parts(loose))
+      call add_loose_body(reshape(loose, [part_motions, size(own), size(loose, 2)]))
     else if (size(node) > m) then
       call found%add_error(of_body, nodes(1), 0, body//' has '//plural(m, 'free motion')//' and '// &
                            plural(size(node), 'SUPORT freedom'), 'as many SUPORT freedoms as free motions')
@@ -114,20 +132,21 @@ contains
       motions%body = [motions%body, spread(model%body(nodes(1)), 1, m)]
       motions%node = [motions%node, node]
       motions%component = [motions%component, component]
-      motions%coefficient = reshape([motions%coefficient, of_parts(matmul(basis, unit))], &
-          [part_motions, motions%parts%count, motions%count])
+      associate (columns => size(motions%coefficient, 2))
+        motions%before = [motions%before, (columns + size(own)*(i - 1), i=1, m)]
+        motions%coefficient = reshape([motions%coefficient, matmul(basis, unit)], &
+                                      [part_motions, columns + size(own)*m])
+      end associate
     end if
 
   contains
 
-    !> What motions of the body make of all parts [part_motions, parts, motions].
-    pure function of_parts(motion)
-      real(wp), intent(in) :: motion(:, :)
-      real(wp) :: of_parts(part_motions, motions%parts%count, size(motion, 2))
+    !> The column before those of a part of the body.
+    pure integer function column(part)
+      integer, intent(in) :: part
 
-      of_parts = 0.0_wp
-      of_parts(:, own, :) = reshape(motion, [part_motions, size(own), size(motion, 2)])
-    end function of_parts
+      column = part_motions*(motions%own_part(part) - 1)
+    end function column
 
     !> Displacement of a freedom, as one of a part, by the motions of all parts of the body.
     pure function row(part, node, c)
@@ -153,9 +172,10 @@ contains
         rows = 0
         do i = 1, size(parts%hinge, 2)
           if (model%body(parts%hinge(1, i)) /= model%body(nodes(1))) cycle
-          associate (here => held(rows + 1:rows + directions, :), at => column(parts%hinge(2:, i)))
-            here(:, at(1) + 1:at(1) + part_motions) = parts%rows(model, parts%hinge(1, i))
-            here(:, at(2) + 1:at(2) + part_motions) = -parts%rows(model, parts%hinge(1, i))
+          associate (here => held(rows + 1:rows + directions, :), one => column(parts%hinge(2, i)), &
+                     other => column(parts%hinge(3, i)))
+            here(:, one + 1:one + part_motions) = parts%rows(model, parts%hinge(1, i))
+            here(:, other + 1:other + part_motions) = -parts%rows(model, parts%hinge(1, i))
           end associate
           rows = rows + directions
         end do
@@ -183,14 +203,14 @@ contains
     !> Say how the body moves, and the freedoms that would hold it: those that move most, one after the other,
     !! each motion taken out of the others at the freedom chosen for it.
     subroutine add_loose_body(loose)
-      real(wp), intent(in) :: loose(:, :, :)     !! motions that nothing holds [part_motions, parts, any]
+      real(wp), intent(in) :: loose(:, :, :)     !! motions that nothing holds [part_motions, own parts, any]
       real(wp) :: motion(directions*size(nodes), size(loose, 3))
       character(len=:), allocatable :: card, text
       integer :: at(2), i, j, k, moving
 
       moving = 0
       do i = 1, size(nodes)
-        associate (of_part => loose(:, motions%parts%of_node(nodes(i)), :))
+        associate (of_part => loose(:, motions%own_part(motions%parts%of_node(nodes(i))), :))
           motion(directions*(i - 1) + 1:directions*i, :) = &
             matmul(motions%parts%rows(model, nodes(i)), of_part)
           if (moving == 0 .and. any(abs(of_part) > no_effect*maxval(abs(loose)))) moving = nodes(i)

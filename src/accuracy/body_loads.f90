@@ -1,0 +1,153 @@
+!> What arrives of unit loads at one body, and its displacements under them.
+!>
+!> Contact frozen, a unit load on one body presses on others down to the ground. But far from it they feel its
+!> resultants only, and no body feels more than its pairs can tell apart: of all loads few are solved for, and
+!> the others are sums of these.
+module epcont_accuracy_body_loads
+  use epcont_accuracy_element_errors, only: most_fields
+  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: no_effect
+  use epcont_element_kinematics, only: directions
+  use epcont_linear_linear_problem, only: linear_problem
+  use epcont_model_model, only: model_type
+  use epcont_plan_planned_scene, only: planned_scene
+  implicit none
+  private
+  public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads, pairs_of_bodies
+
+  !> A load that others make up for, but for this part of its largest force on any body, is a sum of these.
+  real(wp), parameter :: made_up_for = 1.0e-2_wp
+
+  !> Of unit loads those that a body feels, and that no batch of fields has told of yet.
+  type :: body_loads
+    integer, allocatable :: pair(:)        !! those with a node in the body [its pairs]
+    integer, allocatable :: load(:)        !! by their numbers [loads]
+    !> Contact forces, in the unit of each load [its pairs, loads]
+    real(wp), allocatable :: force(:, :)
+  end type body_loads
+
+  !> Some loads, and the few of them that make up for all.
+  type :: load_batch
+    integer, allocatable :: load(:)        !! by their numbers [loads]
+    real(wp), allocatable :: force(:, :)   !! of those that are solved for [body's pairs, fields]
+    real(wp), allocatable :: share(:, :)   !! of each field in each load [fields, loads]
+  end type load_batch
+
+contains
+
+  !> The pairs that have a node in each body.
+  pure function pairs_of_bodies(model) result(pairs)
+    type(model_type), intent(in) :: model   !! the scene
+    type(incidence) :: pairs
+    integer, allocatable :: body(:, :)      !! of each pair; 0 ends them [any, pairs]
+    integer :: i, k, m
+
+    allocate (body(maxval([1, model%row_start(2:) - model%row_start(:model%pairs)]), model%pairs), source=0)
+    do k = 1, model%pairs
+      m = 0
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        associate (b => model%body(model%row_node(i)))
+          if (any(body(:m, k) == b)) cycle
+          m = m + 1
+          body(m, k) = b
+        end associate
+      end do
+    end do
+    pairs = new_incidence(body, model%bodies)
+  end function pairs_of_bodies
+
+  !> The loads that a body feels.
+  pure function new_body_loads(pair, unit_force, unit) result(loads)
+    integer, intent(in) :: pair(:)              !! those of the body
+    real(wp), intent(in) :: unit_force(:, :)    !! contact forces under each load [pairs, loads]
+    real(wp), intent(in) :: unit(:)             !! largest force under each load [force] [loads]
+    type(body_loads) :: loads
+    integer :: j
+
+    loads%pair = pair
+    loads%load = pack([(j, j=1, size(unit))], [(any(unit_force(pair, j) /= 0.0_wp), j=1, size(unit))])
+    allocate (loads%force(size(pair), size(loads%load)))
+    do j = 1, size(loads%load)
+      loads%force(:, j) = unit_force(pair, loads%load(j))/unit(loads%load(j))
+    end do
+  end function new_body_loads
+
+  !> Take the loads that a few fields make up for out of those that are left: Gram and Schmidt's way, next the
+  !! load of which most is left; of loads that are as much, but for rounding, the first.
+  pure subroutine choose_fields(loads, batch)
+    type(body_loads), intent(inout) :: loads   !! those that are left
+    type(load_batch), intent(out) :: batch     !! fields and what they make up for
+    real(wp), allocatable :: rest(:, :)        !! of each load [its pairs, loads]
+    real(wp), allocatable :: share(:, :)       !! of each direction in each load [fields, loads]
+    real(wp) :: along(size(loads%pair)), left(size(loads%load))
+    integer :: chosen(min(most_fields, size(loads%pair), size(loads%load)))
+    integer :: i, j, fields
+
+    rest = loads%force
+    allocate (share(size(chosen), size(left)))
+    fields = 0
+    do
+      left = norm2(rest, dim=1)
+      if (fields == size(chosen) .or. all(left <= made_up_for)) exit
+      fields = fields + 1
+      associate (next => findloc(left >= (1.0_wp - no_effect)*maxval(left), .true., dim=1))
+        chosen(fields) = next
+        along = rest(:, next)/left(next)
+      end associate
+      do j = 1, size(left)
+        share(fields, j) = dot_product(along, rest(:, j))
+        rest(:, j) = rest(:, j) - share(fields, j)*along
+      end do
+      rest(:, chosen(fields)) = 0.0_wp
+    end do
+    ! From sums of directions to sums of the fields that gave them.
+    do i = fields, 1, -1
+      share(i, :) = share(i, :)/share(i, chosen(i))
+      do j = 1, i - 1
+        share(j, :) = share(j, :) - share(j, chosen(i))*share(i, :)
+      end do
+    end do
+    associate (told => pack([(j, j=1, size(left))], left <= made_up_for), &
+               others => pack([(j, j=1, size(left))], left > made_up_for))
+      batch%force = loads%force(:, chosen(:fields))
+      batch%load = loads%load(told)
+      batch%share = share(:fields, told)
+      loads%load = loads%load(others)
+      loads%force = loads%force(:, others)
+    end associate
+  end subroutine choose_fields
+
+  !> Displacements of nodes of a body under the fields of a batch.
+  subroutine find_displacements(scene, linear, b, pair, batch, node, u)
+    type(planned_scene), intent(in) :: scene     !! that was solved
+    type(linear_problem), intent(in) :: linear   !! of the last solve
+    integer, intent(in) :: b                     !! the body
+    integer, intent(in) :: pair(:)               !! its pairs
+    type(load_batch), intent(in) :: batch        !! forces on it
+    integer, intent(in) :: node(:)               !! that are asked for
+    real(wp), allocatable, intent(out) :: u(:, :, :)   !! [length] [directions, fields, nodes asked for]
+    real(wp), allocatable :: force(:, :, :)            !! [directions, fields, loaded nodes]
+    integer, allocatable :: loaded(:)
+    integer :: c, i, k, n
+
+    allocate (u(directions, size(batch%force, 2), size(node)))
+    if (size(u) == 0) return
+    associate (model => scene%model)
+      n = sum(model%row_start(pair + 1) - model%row_start(pair))
+      allocate (loaded(n), force(directions, size(u, 2), n))
+      n = 0
+      do k = 1, size(pair)
+        do i = model%row_start(pair(k)), model%row_start(pair(k) + 1) - 1
+          if (model%body(model%row_node(i)) /= b) cycle
+          n = n + 1
+          loaded(n) = model%row_node(i)
+          do c = 1, directions
+            force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*batch%force(k, :)
+          end do
+        end do
+      end do
+    end associate
+    call linear%body_displacements(scene, b, loaded(:n), force(:, :, :n), node, u)
+  end subroutine find_displacements
+end module epcont_accuracy_body_loads

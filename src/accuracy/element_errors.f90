@@ -1,0 +1,175 @@
+!> One element: its own strains where they are compared, what smooth ones are beyond them, in several fields
+!> at once, and what the stress of the answer, the first of them, is off by.
+!>
+!> With s the stress and e the strain of an element, and * for the smooth ones, the square of the error is the
+!> integral of (s* - s).(e* - e), s* being the stress on the material's curve at e*. Of elastic elements that
+!> is the energy norm. Of yielding ones it lies between those of the tangent and of the secant, and vanishes
+!> only with the error, whatever the curve.
+module epcont_accuracy_element_errors
+  use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: element_kind, most_places
+  use epcont_element_kinematics, only: components
+  use epcont_material_elasticity, only: cross_modulus
+  use epcont_material_material_law, only: material_law, point_state
+  implicit none
+  private
+  public :: element_errors, new_element_errors
+
+  !> Fields that are compared at once, besides the answer: strains under all loads that a body feels may take
+  !! more memory than its factor.
+  integer, parameter, public :: most_fields = 15
+  integer, parameter :: most_width = components*(1 + most_fields)
+
+  type :: element_errors
+    integer :: fields = 0                    !! besides the answer
+    integer :: width = components            !! components of all fields, those of the answer first
+    integer :: places = 0                    !! of comparison
+    integer :: own_places = 0                !! at which own strains are told: one where all are the same
+    real(wp) :: part(most_places) = 0.0_wp   !! of the volume, at each place
+    real(wp) :: own(most_width, most_places)      !! strains
+    real(wp) :: error(most_width, most_places)    !! smooth ones less these
+    !> Of the answer: smooth less own, times the part of the volume [components, places]
+    real(wp) :: stress(components, most_places)
+  contains
+    procedure :: compare
+    procedure :: find_stress
+    procedure :: product
+  end type element_errors
+
+contains
+
+  !> For so many fields besides the answer.
+  pure function new_element_errors(fields) result(errors)
+    integer, intent(in) :: fields   !! how many
+    type(element_errors) :: errors
+
+    errors%fields = fields
+    errors%width = components*(1 + fields)
+  end function new_element_errors
+
+  !> An element's own strains at its places, and what the smooth ones are beyond them.
+  pure subroutine compare(self, kind, volume, strain, place, smooth)
+    class(element_errors), intent(inout) :: self
+    type(element_kind), intent(in) :: kind                 !! of the element
+    real(wp), intent(in) :: volume(kind%points)            !! of its points
+    real(wp), intent(in) :: strain(self%width, *)          !! at its points
+    integer, intent(in) :: place(kind%nodes)               !! where its nodes are in `smooth`
+    real(wp), intent(in) :: smooth(self%width, *)          !! smooth strains [width, any]
+    real(wp) :: middle
+    integer :: i, k, v
+
+    self%places = kind%places
+    self%own_places = merge(1, kind%places, kind%points == 1)
+    do k = 1, kind%places
+      self%part(k) = 0.0_wp
+      do i = 1, kind%points
+        self%part(k) = self%part(k) + kind%v(i, k)*volume(i)
+      end do
+    end do
+    do k = 1, self%own_places
+      call own_strain(k, self%own(:, k))
+    end do
+    if (kind%nodes == 3) then   ! what follows below, for most of all elements
+      do v = 1, self%width
+        middle = 0.5_wp*(smooth(v, place(1)) + smooth(v, place(2)) + smooth(v, place(3))) - strain(v, 1)
+        self%error(v, 1) = middle - 0.5_wp*smooth(v, place(1))
+        self%error(v, 2) = middle - 0.5_wp*smooth(v, place(2))
+        self%error(v, 3) = middle - 0.5_wp*smooth(v, place(3))
+      end do
+      return
+    end if
+    do k = 1, kind%places
+      do v = 1, self%width
+        self%error(v, k) = -self%own(v, min(k, self%own_places))
+      end do
+      do i = 1, kind%nodes
+        do v = 1, self%width
+          self%error(v, k) = self%error(v, k) + kind%n(i, k)*smooth(v, place(i))
+        end do
+      end do
+    end do
+
+  contains
+
+    !> Own strain at a place.
+    pure subroutine own_strain(k, own)
+      integer, intent(in) :: k
+      real(wp), intent(inout) :: own(self%width)
+      integer :: i, v
+
+      if (kind%sees_points) then
+        do v = 1, self%width
+          own(v) = strain(v, k)
+        end do
+        return
+      end if
+      own = 0.0_wp
+      do i = 1, kind%points
+        do v = 1, self%width
+          own(v) = own(v) + kind%p(i, k)*strain(v, i)
+        end do
+      end do
+    end subroutine own_strain
+  end subroutine compare
+
+  !> What the stress of the answer is off by, on the material's curve.
+  pure subroutine find_stress(self, kind, law, first, state)
+    class(element_errors), intent(inout) :: self
+    type(element_kind), intent(in) :: kind            !! of the element
+    class(material_law), intent(in) :: law            !! of its section
+    integer, intent(in) :: first                      !! its first point
+    type(point_state), allocatable, intent(in) :: state(:)   !! of the answer, where anything yields [points]
+    type(point_state) :: after, before
+    real(wp) :: cross
+    integer :: k
+
+    cross = cross_modulus(law%bulk, law%shear, law%sheet)
+    do k = 1, self%places
+      if (law%yields) then
+        associate (own => self%own(:components, min(k, self%own_places)))
+          if (kind%sees_points) then
+            before = state(first - 1 + min(k, kind%points))
+          else
+            call law%update(own, point_state(), before)
+          end if
+          call law%update(own + self%error(:components, k), point_state(), after)
+        end associate
+        if (before%yielded .or. after%yielded) then
+          self%stress(:, k) = self%part(k)*(after%stress - before%stress)
+          cycle
+        end if
+      end if
+      call put_elastic_stress(self%part(k)*cross, self%part(k)*law%shear, self%error(1, k), self%stress(1, k))
+    end do
+  end subroutine find_stress
+
+  !> What the stress of the answer is off by, times what the strain of a field is off by: of the answer itself
+  !! the square of its error [energy].
+  pure real(wp) function product(self, field)
+    class(element_errors), intent(in) :: self
+    integer, intent(in) :: field   !! 0: the answer
+    integer :: k, v
+
+    product = 0.0_wp
+    v = components*field
+    do k = 1, self%places
+      product = product &
+                + (self%stress(1, k)*self%error(v + 1, k) + self%stress(2, k)*self%error(v + 2, k)) &
+                + (self%stress(3, k)*self%error(v + 3, k) + self%stress(4, k)*self%error(v + 4, k))
+    end do
+  end function product
+
+  !> The stress of a strain, elastic; in a sheet the component zz of both is none.
+  pure subroutine put_elastic_stress(cross, shear, strain, stress)
+    real(wp), intent(in) :: cross, shear          !! K - 2/3 G, G [stress]
+    real(wp), intent(in) :: strain(components)    !! xx, yy, zz, xy
+    real(wp), intent(out) :: stress(components)   !! the same [stress]
+    real(wp) :: volumetric
+
+    volumetric = cross*(strain(1) + strain(2) + strain(3))
+    stress(1) = volumetric + 2.0_wp*shear*strain(1)
+    stress(2) = volumetric + 2.0_wp*shear*strain(2)
+    stress(3) = volumetric + 2.0_wp*shear*strain(3)
+    stress(4) = shear*strain(4)
+  end subroutine put_elastic_stress
+end module epcont_accuracy_element_errors
