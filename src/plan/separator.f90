@@ -51,36 +51,25 @@ contains
   subroutine find_separator(self, set)
     type(parted_graph), intent(inout) :: self
     integer, intent(in) :: set(:)   !! nodes that are left, right, or between; all others are outside
-    integer, dimension(size(set)) :: band, first, last   ! and what of it has neighbours left, and right
-    integer :: at_left, at_right, i, in_band, on_left, touched, ways
-    logical :: longer
+    integer, allocatable :: band(:), beside(:)
+    integer, allocatable :: first(:), last(:)   ! of the band, with neighbours left, and right
+    integer :: i, laid, ways
 
-    in_band = 0
-    on_left = 0
-    at_left = 0
-    at_right = 0
-    do i = 1, size(set)
-      if (self%side(set(i)) == left) on_left = on_left + 1
-      if (self%side(set(i)) /= between) cycle
-      in_band = in_band + 1
-      band(in_band) = set(i)
-      self%before(set(i)) = no_way
-      touched = sides_beside(self, set(i))
-      if (btest(touched, left)) call append(set(i), first, at_left)
-      if (btest(touched, right)) call append(set(i), last, at_right)
-    end do
+    band = pack(set, self%side(set) == between)
+    beside = [(sides_beside(self, band(i)), i=1, size(band))]
+    first = pack(band, btest(beside, left))
+    last = pack(band, btest(beside, right))
+    self%before(band) = no_way
     ways = 0
-    do
-      call measure(self, band(:in_band), last(:at_right))
-      longer = .false.
-      do i = 1, at_left
-        if (self%far(-first(i)) == never) cycle
-        longer = .true.
-        call lay_way(self, first(i), ways)
+    laid = -1
+    do while (ways > laid)
+      laid = ways
+      call measure(self, band, last)
+      do i = 1, size(first)
+        if (self%far(-first(i)) /= never) call lay_way(self, first(i), ways)
       end do
-      if (.not. longer) exit
     end do
-    call part_evenly(self, band(:in_band), first(:at_left), (size(set) - ways)/2 - on_left)
+    call part_evenly(self, band, first, (size(set) - ways)/2 - count(self%side(set) == left))
   end subroutine find_separator
 
   !> The sides that the neighbours of a node are on, as bits.
@@ -94,14 +83,6 @@ contains
       sides = ior(sides, shiftl(1, self%side(self%beside%group(j))))
     end do
   end function sides_beside
-
-  pure subroutine append(node, list, length)
-    integer, intent(in) :: node
-    integer, intent(inout) :: list(:), length
-
-    length = length + 1
-    list(length) = node
-  end subroutine append
 
   !> How far each state is from the right, in steps that a new way may go.
   subroutine measure(self, band, last)
