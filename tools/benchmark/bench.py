@@ -3,12 +3,15 @@
     tools/bench --quick     3 turns, beyond yield up to 11 000 nodes: about half an hour
     tools/bench             up to 42 000 nodes, 5 turns: about an hour, most of it CalculiX's
     tools/bench --part 2    one part only; --quick --part 4: half a minute
+    tools/bench --part 5 --beside OLD/epcont    large scenes, in turns with another epcont, such as the release before
 
 Part 1: two cylinders (`tools/decks hertz N`, CTRIA3), whole programs, against CalculiX and scikit-fem. Part 2: the dense
 contact problem alone, against packages for quadratic programs. Part 3: the factorization's part of dgemm's rate, how
 time and memory grow to 170 000 unknowns, and what the deck of 44 nodes costs beside an empty program. Part 4: the solve part,
-numbering to displacements, stage by stage beside the best libraries bare. Everything on one thread; the programs take turns, times are medians, ratios the medians of those of each turn.
-What a part measured is kept in build/benchmark/part*.json. Once all four are there, their tables go to
+numbering to displacements, stage by stage beside the best libraries bare. Part 5: many pairs, bodies and unknowns, growth to
+2 000 000 unknowns, order, factor and solves beside PARDISO and CHOLMOD, many pairs beside CalculiX. Everything on one thread, but
+one scene of part 5; the programs take turns, times are medians, ratios the medians of those of each turn.
+What a part measured is kept in build/benchmark/part*.json. Once all are there, their tables go to
 tools/benchmark/results.md and with a picture to results.png, each with its own command and load; to standard output in any case.
 """
 import json
@@ -25,7 +28,11 @@ HERE = pathlib.Path(__file__).resolve().parent
 TOP = HERE.parent.parent
 sys.path.insert(0, str(HERE.parent))
 
+import beside_calculix  # noqa: E402
 import cylinders  # noqa: E402
+import growth  # noqa: E402
+import large  # noqa: E402
+import peers  # noqa: E402
 import report  # noqa: E402
 import solve_part  # noqa: E402
 from process import ONE_THREAD  # noqa: E402
@@ -35,6 +42,7 @@ NODES, UNKNOWNS = (330, 1000, 3000, 11000, 42000), (50, 100, 200, 500, 1000, 200
 #: Of part 4 and of growth: nodes of meshes with twice as many unknowns.
 SOLVED, GROWING = (330, 930, 3080, 11100, 42500), (3080, 7600, 20200, 42500, 85000)
 RELEASE = TOP / "build/release"
+PARTS = (1, 2, 3, 4, 5)
 
 
 def say(text):
@@ -87,6 +95,19 @@ def part4(place, sizes, turns):
     return [solve_part.one(RELEASE, place, n, turns, say) for n in sizes]
 
 
+def part5(place, turns, options):
+    """What `--only` names, else all of it."""
+    program = RELEASE / "epcont"
+    does = {"scenes": lambda: large.scenes(place, program, options.beside, turns, options.quick, say),
+            "growth": lambda: growth.growth(place, program, turns, options.quick, say),
+            "peers": lambda: peers.peers(RELEASE, place, turns, options.quick, say),
+            "calculix": lambda: beside_calculix.beside_calculix(place, program, turns, options.quick, say)}
+    before = json.loads(kept(5).read_text())["rows"] if options.only and kept(5).exists() else {}
+    rows = {**before, **{what: does[what]() for what in options.only or does}}
+    version = options.beside and output(options.beside, "--version").split()[-1]
+    return {**rows, "beside": version or before.get("beside")}
+
+
 def kept(part):
     """Where what a part measured is kept."""
     return TOP / f"build/benchmark/part{part}.json"
@@ -107,10 +128,14 @@ def machine():
 def main():
     parser = parser_of(__doc__, "tools/bench")
     parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--part", type=int, choices=(1, 2, 3, 4))
+    parser.add_argument("--part", type=int, choices=PARTS)
     parser.add_argument("--turns", type=int)
     parser.add_argument("--nodes", type=int, nargs="+", help="of parts 1, 3 and 4")
+    parser.add_argument("--beside", type=pathlib.Path, metavar="PROGRAM", help="of part 5: another epcont that takes turns with this one")
+    parser.add_argument("--only", nargs="+", choices=("scenes", "growth", "peers", "calculix"), help="of part 5; its other tables stay as they were")
     options = parser.parse_args()
+    if options.beside:
+        options.beside = options.beside.resolve()
     turns = options.turns or (3 if options.quick else 5)
     sizes = options.nodes or NODES
     command = shlex.join(["tools/bench", *sys.argv[1:]])
@@ -120,14 +145,15 @@ def main():
         does = {1: lambda: part1(place, sizes, turns, NODES[-2] if options.quick else sizes[-1]),
                 2: lambda: part2(place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 20),
                 3: lambda: part3(place, sizes, growing, turns),
-                4: lambda: part4(place, solved, turns)}
-        for part in (options.part,) if options.part else (4, 3, 1, 2):
+                4: lambda: part4(place, solved, turns),
+                5: lambda: part5(place, turns, options)}
+        for part in (options.part,) if options.part else (4, 3, 5, 1, 2):
             load = f"load {os.getloadavg()[0]:.1f} at the start"
             kept(part).write_text(json.dumps({"command": command, "load": load, "rows": does[part]()}), encoding="ascii")
-    parts = {part: json.loads(kept(part).read_text()) for part in (1, 2, 3, 4) if kept(part).exists()}
-    text = report.page(parts if len(parts) == 4 else {options.part: parts[options.part]}, machine())
+    parts = {part: json.loads(kept(part).read_text()) for part in PARTS if kept(part).exists()}
+    text = report.page(parts if len(parts) == len(PARTS) else {options.part: parts[options.part]}, machine())
     print(text)
-    if len(parts) == 4:
+    if len(parts) == len(PARTS):
         (HERE / "results.md").write_text(text + "\n", encoding="utf-8")
         report.draw({part: found["rows"] for part, found in parts.items()}, HERE / "results.png")
 

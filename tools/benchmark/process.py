@@ -14,11 +14,12 @@ ONE_THREAD = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
               "CCX_NPROC_STIFFNESS": "1", "CCX_NPROC_RESULTS": "1"}
 
 
-def timed(command, place):
+def timed(command, place, threads=1):
     """(exit status, seconds of processor, seconds of wall, standard output)."""
+    environment = {**ONE_THREAD, "OMP_NUM_THREADS": str(threads)}
     with open(place / "stdout", "w+", encoding="utf-8", errors="replace") as out:
         start = time.perf_counter()
-        child = subprocess.Popen(command, cwd=place, env=ONE_THREAD, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT)
+        child = subprocess.Popen(command, cwd=place, env=environment, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT)
         _, status, usage = os.wait4(child.pid, 0)
         wall = time.perf_counter() - start
         child.returncode = os.waitstatus_to_exitcode(status)
@@ -26,13 +27,13 @@ def timed(command, place):
         return child.returncode, usage.ru_utime + usage.ru_stime, wall, out.read()
 
 
-def settled(command, place):
+def settled(command, place, threads=1):
     """As `timed`, of a run that follows another of the same."""
-    timed(command, place)
-    return timed(command, place)
+    timed(command, place, threads)
+    return timed(command, place, threads)
 
 
-def peak(command, place):
+def peak(command, place, threads=1):
     """(exit status, peak memory in MB, seconds of processor, standard output)."""
-    status, cpu, _, out = timed(["/usr/bin/time", "-q", "-f", "%M", "-o", "memory", *command], place)
+    status, cpu, _, out = timed(["/usr/bin/time", "-q", "-f", "%M", "-o", "memory", *command], place, threads)
     return status, int((place / "memory").read_text().split()[-1]) / 1024, cpu, out

@@ -1,37 +1,14 @@
 """The page and the picture of tools/bench."""
 import math
 
+import report_large
+from report_words import best, exponent, milliseconds, per_cent, short, table
+
 COLOURS = {"epcont": "#cc3311", "CalculiX": "#4477aa", "scikit-fem": "#228833", "scikit-fem's parts": "#88cc88", "quadprog": "#4477aa", "HiGHS": "#228833", "DAQP": "#ccbb44",
            "PIQP": "#aa3377", "OSQP": "#888888"}
 KINDS = ("elastic", "elastoplastic")
 SCIKIT_FEM = ("scikit-fem", "scikit-fem's parts")
 PROGRAMS = ("epcont", "CalculiX", *SCIKIT_FEM)
-
-
-def table(head, rows):
-    return "\n".join(["| " + " | ".join(head) + " |", "| " + " | ".join("---" for _ in head) + " |",
-                      *("| " + " | ".join("" if cell is None else str(cell) for cell in row) + " |" for row in rows)])
-
-
-def short(value, digits=3):
-    if value is None or math.isnan(value):
-        return ""
-    return f"{value:.{digits}g}" if abs(value) < 10 ** digits else f"{value:.0f}"
-
-
-def per_cent(value):
-    return "" if math.isnan(value) else f"{100 * value:+.2f}"
-
-
-def best(rows, kind, program):
-    return [row for row in rows if row["kind"] == kind and row["program"] == program and row["best"]]
-
-
-def exponent(points):
-    """Slope of the logarithms, least squares."""
-    logs = [(math.log(x), math.log(y)) for x, y in points]
-    mx, my = (sum(values) / len(logs) for values in zip(*logs))
-    return sum((x - mx) * (y - my) for x, y in logs) / sum((x - mx) ** 2 for x, _ in logs)
 
 
 def ratios(rows):
@@ -81,10 +58,6 @@ def contact(rows):
         "w/(|F||R|))| and of the load's relative error, |R| the largest force, |F| the largest sum of a row; the packages are asked for 1e-9. A program that "
         "took too long is left out at the next size.",
         table(["problem", "n", "condition of F", "program", "CPU, s", "ratio", "violation", ""], lines)])
-
-
-def milliseconds(seconds):
-    return short(1e3 * seconds)
 
 
 def factor(rows, runs):
@@ -137,11 +110,12 @@ def page(parts, about):
     """`parts`: of each number the rows, and the command and the load that they were measured by and under."""
     rows = {part: found["rows"] for part, found in parts.items()}
     by = "; ".join(f"part {part} by `{found['command']}`, {found['load']}" for part, found in sorted(parts.items()))
-    text = ["# Benchmarks", f"{about} One thread each. Measured once: {by}. Another machine, or a busy one, gives other times. Ratios are steadier."]
+    text = ["# Benchmarks", f"{about} One thread each, where nothing else is said. Measured once: {by}. Another machine, or a busy one, gives other times. Ratios are steadier."]
     text += [cylinders(rows[1])] if 1 in rows else []
     text += [contact(rows[2])] if 2 in rows else []
     text += [factor(rows[3], rows.get(1, []))] if 3 in rows else []
     text += [solve_part(rows[4])] if 4 in rows else []
+    text += [report_large.large(rows[5])] if 5 in rows else []
     return "\n\n".join(text)
 
 
