@@ -64,10 +64,8 @@ contains
     layout%first_element = [at%start, size(layout%element) + 1]
     call find_rows(layout, at, numbers)
     layout%reached = layout%rows%start(2:) - layout%rows%start(:size(layout%own))
-    associate (fronts => size(layout%own))
-      above = reshape(merge(layout%parent, fronts + 1, layout%parent > 0), [1, fronts])
-      layout%below = new_incidence(above, fronts + 1)
-    end associate
+    above = reshape(merge(layout%parent, size(first), layout%parent > 0), [1, size(layout%own)])
+    layout%below = new_incidence(above, size(first))
     call find_units(layout)
   end function new_front_layout
 
