@@ -65,7 +65,7 @@ contains
       self%lacks_memory = self%matrix%lacks_memory
       if (self%lacks_memory) return
       if (body%solver == solver_frontal) then
-        call fill_from(size(body%fronts%own) + 1)
+        call fill_fronts()
       else
         call fill(1, 1, size(body%element))
       end if
@@ -73,21 +73,40 @@ contains
 
   contains
 
-    !> Fill a front, after all that are below it, and factor it.
-    recursive subroutine fill_from(p)
+    !> Fill and factor the fronts, unit by unit, each after those below it, by the threads that are at hand:
+    !! what is summed, and in which order, does not depend on them.
+    subroutine fill_fronts()
+      integer :: above, p
+      integer, allocatable :: unit(:)   ! nothing but its addresses, of units and of none, counts
+
+      associate (fronts => scene%numbering%body(b)%fronts)
+        unit = [fronts%unit, 0]
+        do p = 1, size(fronts%unit)
+          if (fronts%unit(p) /= p .or. .not. stale(fronts%first(p))) cycle
+          above = merge(fronts%parent(p), size(unit), fronts%parent(p) > 0)
+          !$omp task firstprivate(p) depend(in: unit(above)) depend(inout: unit(p)) if(size(self%schur) == 0)
+          call fill_below(p)
+          !$omp end task
+        end do
+        !$omp taskwait
+        call fill(size(unit), fronts%first_element(size(unit)), size(scene%numbering%body(b)%element))
+      end associate
+    end subroutine fill_fronts
+
+    !> Fill and factor a front, after those of its unit that are below it.
+    recursive subroutine fill_below(p)
       integer, intent(in) :: p
       integer :: i
 
       associate (fronts => scene%numbering%body(b)%fronts)
-        if (p <= size(fronts%own)) then
-          if (.not. stale(fronts%first(p))) return
-        end if
         do i = fronts%below%start(p), fronts%below%start(p + 1) - 1
-          call fill_from(fronts%below%group(i))
+          associate (below => fronts%below%group(i))
+            if (fronts%unit(below) /= below) call fill_below(below)
+          end associate
         end do
         call fill(p, fronts%first_element(p), fronts%first_element(p + 1) - 1)
       end associate
-    end subroutine fill_from
+    end subroutine fill_below
 
     !> Fill a part of the matrix with its elements.
     subroutine fill(part, first, last)

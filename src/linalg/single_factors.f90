@@ -19,5 +19,6 @@ contains
 
   include 'blocks_kernel.inc'
   include 'panel_kernel.inc'
+  include 'columns_kernel.inc'
   include 'front_kernel.inc'
 end module epcont_linalg_single_factors

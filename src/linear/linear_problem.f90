@@ -11,7 +11,7 @@ module epcont_linear_linear_problem
     find_flexibility, gap_opening, pair_forces, see_motions
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
-  use epcont_model_controls, only: precision_double, precision_mixed
+  use epcont_model_controls, only: precision_double, precision_mixed, solver_frontal
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
@@ -97,12 +97,14 @@ contains
       logical, intent(in) :: chosen(:)     !! [bodies]
       real(wp), allocatable :: operations(:)
       integer, allocatable :: body(:)
+      logical, allocatable :: shared(:)
       integer :: i, threads
 
       body = pack([(i, i=1, size(chosen))], chosen)
+      body = body(heaviest_first(scene%numbering%body(body)%operations))
       operations = scene%numbering%body(body)%operations
-      body = body(heaviest_first(operations))
-      threads = threads_for(operations, self%plan%threads)
+      shared = scene%numbering%body(body)%solver == solver_frontal
+      threads = threads_for(operations, shared, self%plan%threads)
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
       do i = 1, size(body)
         call self%body(body(i))%assemble(scene, self%operator, self%law, body(i))
@@ -119,9 +121,11 @@ contains
     subroutine add_flexibilities(chosen)
       logical, intent(in) :: chosen(:)     !! [bodies]
       type(body_flexibility) :: own
+      real(wp), allocatable :: operations(:)
       integer :: b, threads
 
-      threads = threads_for(merge(scene%numbering%body%operations, 0.0_wp, chosen), self%plan%threads)
+      operations = merge(scene%numbering%body%operations, 0.0_wp, chosen)
+      threads = threads_for(operations, spread(.false., 1, size(chosen)), self%plan%threads)
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic) ordered private(own)
       do b = 1, scene%model%bodies
         if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, self%body(b), own)
