@@ -6,7 +6,7 @@ module epcont_linalg_factors
   use epcont_linalg_front_layout, only: columns_along, front_layout, update_size
   use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
   use epcont_linalg_panel_layout, only: panel_layout
-  use epcont_system_large_pages, only: use_large_pages
+  use epcont_system_large_pages, only: give_back, use_large_pages
   implicit none
   private
   public :: front_matrix, panel_matrix

@@ -27,6 +27,7 @@ module epcont_linalg_front_layout
     integer, allocatable :: element(:), first_element(:)
   contains
     procedure :: entries
+    procedure :: entries_of_factor
     procedure :: update_starts
     procedure :: operations
   end type front_layout
@@ -133,6 +134,13 @@ contains
     entries = start(size(start)) - 1
   end function entries
 
+  !> Entries of the factor alone.
+  pure integer(i8) function entries_of_factor(self)
+    class(front_layout), intent(in) :: self
+
+    entries_of_factor = sum(int(self%own, i8)*(self%own + self%reached))
+  end function entries_of_factor
+
   !> Entries of the update matrix of a front, and of the columns that go along.
   elemental integer(i8) function update_size(own, reached)
     integer, intent(in) :: own       !! equations of the front
@@ -162,7 +170,7 @@ contains
       left(above(p)) = before(p) + own(p)
       most(above(p)) = max(most(above(p)), left(above(p)) + most(p))
     end do
-    start(size(start)) = sum(int(self%own, i8)*(self%own + self%reached)) + 1
+    start(size(start)) = self%entries_of_factor() + 1
     do p = size(above), 1, -1
       start(p) = start(above(p)) + own(above(p)) + before(p)
     end do

@@ -8,7 +8,7 @@ module epcont_linalg_single_factors
   use epcont_linalg_panel_layout, only: panel_layout
   use epcont_linalg_single_lapack, only: gemm => sgemm, gemv => sgemv, potrf => spotrf, syrk => ssyrk, &
       trsm => strsm
-  use epcont_system_large_pages, only: use_large_pages
+  use epcont_system_large_pages, only: give_back, use_large_pages
   implicit none
   private
   public :: front_matrix, panel_matrix

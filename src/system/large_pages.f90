@@ -1,15 +1,16 @@
 !> Large pages: one of 2 MB is mapped in one step where 512 of 4 kB take 512, and the processor finds it
-!> sooner. Nothing but speed depends on them.
+!> sooner. Nothing but speed depends on them, and what is given back is there for others.
 module epcont_system_large_pages
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_loc, c_size_t
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: use_large_pages, prepare_heap
+  public :: give_back, use_large_pages, prepare_heap
 
   integer(c_intptr_t), parameter :: page = 4096            !! where advice may begin [bytes]
-  integer(c_intptr_t), parameter :: large_page = 2097152   !! [bytes]
+  integer(c_intptr_t), parameter, public :: large_page = 2097152   !! [bytes]
   integer(c_int), parameter :: advice_large_pages = 14 !! MADV_HUGEPAGE of Linux; others refuse it, to no harm
+  integer(c_int), parameter :: advice_not_needed = 4   !! MADV_DONTNEED
 
   !> Parameters of glibc's `mallopt`.
   integer(c_int), parameter :: trim_threshold = -1, top_pad = -2, mmap_threshold = -3, arena_max = -8
@@ -46,6 +47,21 @@ contains
 
     call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*bits/8)
   end subroutine use_large_pages
+
+  !> Give the memory of an array, as far as it has large pages of its own, back to the system: what stands
+  !! there is lost.
+  subroutine give_back(array, bits)
+    type(*), contiguous, target, intent(in) :: array(:)   !! of numbers
+    integer, intent(in) :: bits                           !! that one of them takes
+    integer(c_intptr_t) :: first, from, length
+    integer(c_int) :: ignored
+
+    if (size(array) == 0) return
+    first = transfer(c_loc(array), first)
+    from = (first + large_page - 1)/large_page*large_page
+    length = (first + size(array, kind=c_intptr_t)*bits/8 - from)/large_page*large_page
+    if (length > 0) ignored = madvise(from, int(length, c_size_t), advice_not_needed)
+  end subroutine give_back
 
   !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them.
   !! Threads have no heaps of their own: each would take 128 MB of addresses, and keep what it frees from the
