@@ -33,6 +33,7 @@ module epcont_linalg_front_layout
     integer, allocatable :: element(:), first_element(:)
   contains
     procedure :: entries
+    procedure :: entries_of_factor
     procedure :: operations
   end type front_layout
 
@@ -167,8 +168,15 @@ contains
         end associate
       end do
     end do
-    entries = sum(int(self%own, i8)*(self%own + self%reached)) + most
+    entries = self%entries_of_factor() + most
   end function entries
+
+  !> Entries of the factor alone.
+  pure integer(i8) function entries_of_factor(self)
+    class(front_layout), intent(in) :: self
+
+    entries_of_factor = sum(int(self%own, i8)*(self%own + self%reached))
+  end function entries_of_factor
 
   !> Entries of the update matrix of a front, and of the columns that go along.
   elemental integer(i8) function update_size(own, reached)

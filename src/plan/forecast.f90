@@ -84,7 +84,7 @@ contains
     type(iteration_plan), intent(in) :: plan   !! of its iteration
     type(forecast_type) :: expected
     integer(i8), allocatable :: own_pairs(:)
-    integer(i8) :: entries, factor, flexibility, last, pairs, saved, unit_loads
+    integer(i8) :: done_with, entries, factor, flexibility, last, pairs, passing, saved, unit_loads
     real(wp) :: operations
     integer :: b
 
@@ -94,15 +94,20 @@ contains
     saved = 0         ! bytes, by factors in single precision
     flexibility = 0   ! entries that are wanted for that of one body
     unit_loads = 0    ! bytes of those that one body feels
+    passing = 0       ! and entries that fronts leave to each other, free for others when one body has been factored
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
         if (body%solver == solver_frontal) then
           factor = body%fronts%entries(kept=body%can_yield)
+          done_with = factor - body%fronts%entries_of_factor()
         else
           factor = body%panels%entries()
+          done_with = 0
         end if
-        entries = entries + factor + int(body%equations, i8)*body%border
-        if (plan%precision /= precision_double) saved = saved + factor*real_bytes/2
+        if (body%can_yield) done_with = 0
+        passing = max(passing, done_with)
+        entries = entries + factor - done_with + int(body%equations, i8)*body%border
+        if (plan%precision /= precision_double) saved = saved + (factor - done_with)*real_bytes/2
         ! Its part, and the window that right-hand sides go through; or those on the trailing block and this,
         ! then that part; where each pair has one equation of its own, the part alone.
         last = body%contact_equations
@@ -126,7 +131,7 @@ contains
         end if
       end associate
     end do
-    entries = entries + max(int(pair_matrices*real(pairs, wp)**2, i8), flexibility + 2*pairs**2) + &
+    entries = entries + max(int(pair_matrices*real(pairs, wp)**2, i8), flexibility + 2*pairs**2, passing) + &
               motion_matrices*pairs*motions%count
     expected%double_bytes = real_bytes*entries + beside_matrices() + unit_loads
     expected%bytes = expected%double_bytes - saved

@@ -18,6 +18,11 @@ module epcont_plan_numbering
   !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact
   !! bodies (7 000 nodes of two cylinders) and on long ones, on elastic ones and on those that yield.
   real(wp), parameter, public :: many_operations = 2.0e8_wp
+  !> Operations of the flexibility by a band from which on it may be FRONTAL for their sake, if fronts take
+  !! fewer in all. Measured with factor and numbering, on two strips of 50 to 800 pairs, 4 to 14 elements
+  !! high: level at 1e7, 1.2 times as fast at 3e7, 1.5 at 1e8, 2.4 at 2e9. (A second makes 35e9 operations
+  !! of substitution or 45e9 of inversion, but 5e9 to 20e9 of factors.)
+  real(wp), parameter, public :: many_of_flexibility = 2.0e7_wp
 
   !> One body's system of equations.
   type :: body_numbering
@@ -46,8 +51,9 @@ module epcont_plan_numbering
     procedure :: of_element
   end type numbering_type
 
-  !> Operations that finding F from the last front's, or the trailing block's, factor takes, over the cube of
-  !! its equations.
+  !> Operations that finding F takes where what gaps depend on comes last, over the cube of these equations:
+  !! of its inverse, or of right-hand sides and their product (`linalg/staircase.f90`), 2/3, and what copies
+  !! take of the time (1.5e-11 s times the cube in all, of 1 000 to 3 000).
   real(wp), parameter :: of_inversion = 1.0_wp
 
   !> Freedoms of an element.
@@ -146,8 +152,7 @@ contains
     !! that what gaps want of these can come last: then the trailing block of the factor alone gives the
     !! flexibility. Or, where that widens the band by more than forward substitution of all pairs costs, they
     !! are rooted at the body's far end. Where even that band is a wide one, fronts are taken; so they are
-    !! where the flexibility makes the work as much, if with them it is less: of long contacts of slender
-    !! bodies, say.
+    !! where the flexibility makes much work, if with them it is less: for long contacts of slender bodies.
     subroutine number_band(body)
       type(body_numbering), intent(inout) :: body
       type(body_numbering) :: band
@@ -179,7 +184,7 @@ contains
       else if (any(numbering%axes%pair(own) > 0)) then
         ! The roots stand in the order of the sweep from the far end, which runs along the contact.
         call root_at_contact(pack(order%node, numbering%axes%pair(order%node) > 0), body)
-        if (.not. may_choose .or. body%operations <= many_operations) return
+        if (.not. may_choose .or. body%operations - body%panels%operations() <= many_of_flexibility) return
         band = body
         equation = numbering%equation(:, own)
         call number_fronts(body)

@@ -8,7 +8,7 @@ module epcont_report_plan_text
       solver_band, solver_frontal, solver_name
   use epcont_model_model, only: line_contact
   use epcont_plan_iteration_plan, only: iteration_plan, many_pairs
-  use epcont_plan_numbering, only: many_operations
+  use epcont_plan_numbering, only: many_of_flexibility, many_operations
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_report_columns, only: column, state, table_type, whole, word
   use epcont_report_names, only: joined, motion_name, when
@@ -168,7 +168,8 @@ contains
         call say('bodies factored in nested fronts (FRONTAL): '//text_of(fronts))
         if (scene%model%controls%solver == solver_auto) &
           call say('  chosen here (AUTO): faster where a band (BAND) takes more than '// &
-                   short_real(many_operations)//' operations')
+                   short_real(many_operations)//' operations, the flexibility by it '// &
+                   short_real(many_of_flexibility))
       end if
       if (.not. in_double) call say('factors in single precision, '// &
         when(iteration%precision == precision_single, 'not refined', 'refined to double')// &
