@@ -83,7 +83,7 @@ contains
     logical :: stiff                          ! the scene has been factored
     logical :: elastic                        ! with the law of a state that has not yielded
     logical :: converged
-    integer :: step
+    integer :: failed_body, step
 
     call begin()
     call watch%lap(stage_stiffness)
@@ -96,7 +96,12 @@ contains
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call answer%take(state)
       if (answer%contact%state /= contact_solved) return
-      if (converged .or. step == 1) call estimate_rounding()
+      if (converged .or. step == 1) call describe()
+      ! Of the steps on the way nobody asks.
+      failed_body = 0
+      if (.not. converged .and. answer%carried) call return_to_carried(failed_body)
+      if (failed_body > 0) answer%condition = huge(1.0_wp)
+      if (failed_body == 0 .and. (step == plan%load_steps .or. .not. converged)) call estimate_rounding()
       if (.not. converged) exit
       answer%carried = .true.
       if (plan%load_steps > 1) call find_unloaded()
@@ -363,11 +368,25 @@ contains
       stiff = .false.
     end subroutine step_by_tangent
 
+    !> The load that is carried, and the weakest pivot there.
+    subroutine describe()
+      answer%load_factor = load_factor
+      answer%weakest = linear%weakest()
+    end subroutine describe
+
+    !> The stiffness of the last load that was carried, made once more.
+    subroutine return_to_carried(failed_body)
+      integer, intent(out) :: failed_body   !! that could not be factored again
+
+      about = answer%scene_state
+      stiff = stiff .and. plan%method == method_inistr   ! that is the elastic one, at any load
+      call set_law(method, failed_body)
+      load_factor = answer%load_factor
+    end subroutine return_to_carried
+
     !> What rounding may have done to the answer.
     subroutine estimate_rounding()
-      answer%load_factor = load_factor
       call linear%estimate_condition(scene, answer%condition)
-      answer%weakest = linear%weakest()
       if (plan%precision == precision_single) &
         call linear%rounding_error(scene, load_factor, answer%scene_state, answer%rounding_error)
       call watch%lap(stage_accuracy)
