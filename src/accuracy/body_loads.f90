@@ -16,14 +16,15 @@ module epcont_accuracy_body_loads
   private
   public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads, pairs_of_bodies
 
-  !> A load that others make up for, but for this part of its largest force on any body, is a sum of these.
+  !> A load that others make up for, but for this part of its largest force on any body, is a sum of these:
+  !! figures of a stack of 30 bodies change by 3e-6; with three times as much by 5e-4.
   real(wp), parameter :: made_up_for = 1.0e-2_wp
 
   !> Of unit loads those that a body feels, and that no batch of fields has told of yet.
   type :: body_loads
     integer, allocatable :: pair(:)        !! those with a node in the body [its pairs]
     integer, allocatable :: load(:)        !! by their numbers [loads]
-    !> Contact forces, in the unit of each load [its pairs, loads]
+    !> Contact forces, in the unit of each load [loads, its pairs]
     real(wp), allocatable :: force(:, :)
   end type body_loads
 
@@ -58,18 +59,31 @@ contains
   end function pairs_of_bodies
 
   !> The loads that a body feels.
-  pure function new_body_loads(pair, unit_force, unit) result(loads)
+  pure function new_body_loads(pair, unit_force, told, unit) result(loads)
     integer, intent(in) :: pair(:)              !! those of the body
-    real(wp), intent(in) :: unit_force(:, :)    !! contact forces under each load [pairs, loads]
-    real(wp), intent(in) :: unit(:)             !! largest force under each load [force] [loads]
+    real(wp), intent(in) :: unit_force(:, :)    !! contact forces under each load [pairs, any]
+    integer, intent(in) :: told(:)              !! columns of the loads that are asked for [loads]
+    real(wp), intent(in) :: unit(:)             !! largest force under each [force] [loads]
     type(body_loads) :: loads
-    integer :: j
+    integer :: felt(size(told))
+    integer :: j, k, n
 
+    n = 0
+    do j = 1, size(told)
+      do k = 1, size(pair)
+        if (unit_force(pair(k), told(j)) /= 0.0_wp) exit
+      end do
+      if (k > size(pair)) cycle
+      n = n + 1
+      felt(n) = j
+    end do
     loads%pair = pair
-    loads%load = pack([(j, j=1, size(unit))], [(any(unit_force(pair, j) /= 0.0_wp), j=1, size(unit))])
-    allocate (loads%force(size(pair), size(loads%load)))
-    do j = 1, size(loads%load)
-      loads%force(:, j) = unit_force(pair, loads%load(j))/unit(loads%load(j))
+    loads%load = felt(:n)
+    allocate (loads%force(n, size(pair)))
+    do j = 1, n
+      do k = 1, size(pair)
+        loads%force(j, k) = unit_force(pair(k), told(felt(j)))/unit(felt(j))
+      end do
     end do
   end function new_body_loads
 
@@ -78,43 +92,51 @@ contains
   pure subroutine choose_fields(loads, batch)
     type(body_loads), intent(inout) :: loads   !! those that are left
     type(load_batch), intent(out) :: batch     !! fields and what they make up for
-    real(wp), allocatable :: rest(:, :)        !! of each load [its pairs, loads]
-    real(wp), allocatable :: share(:, :)       !! of each direction in each load [fields, loads]
-    real(wp) :: along(size(loads%pair)), left(size(loads%load))
+    real(wp), allocatable :: rest(:, :)        !! of each load [loads, its pairs]
+    real(wp), allocatable :: share(:, :)       !! of each direction in each load [loads, fields]
+    real(wp) :: along(size(loads%pair))        !! a direction
+    real(wp) :: left(size(loads%load))         !! square of what is left of each load
     integer :: chosen(min(most_fields, size(loads%pair), size(loads%load)))
-    integer :: i, j, fields
+    integer :: i, j, k, fields
 
     rest = loads%force
-    allocate (share(size(chosen), size(left)))
+    allocate (share(size(left), size(chosen)), source=0.0_wp)
+    left = 0.0_wp
+    do k = 1, size(along)
+      left = left + rest(:, k)**2
+    end do
     fields = 0
     do
-      left = norm2(rest, dim=1)
-      if (fields == size(chosen) .or. all(left <= made_up_for)) exit
+      if (fields == size(chosen) .or. all(left <= made_up_for**2)) exit
       fields = fields + 1
       associate (next => findloc(left >= (1.0_wp - no_effect)*maxval(left), .true., dim=1))
         chosen(fields) = next
-        along = rest(:, next)/left(next)
+        along = rest(next, :)/norm2(rest(next, :))
       end associate
-      do j = 1, size(left)
-        share(fields, j) = dot_product(along, rest(:, j))
-        rest(:, j) = rest(:, j) - share(fields, j)*along
+      do k = 1, size(along)
+        share(:, fields) = share(:, fields) + along(k)*rest(:, k)
       end do
-      rest(:, chosen(fields)) = 0.0_wp
+      do k = 1, size(along)
+        rest(:, k) = rest(:, k) - along(k)*share(:, fields)
+      end do
+      left = left - share(:, fields)**2
+      rest(chosen(fields), :) = 0.0_wp
+      left(chosen(fields)) = 0.0_wp
     end do
     ! From sums of directions to sums of the fields that gave them.
     do i = fields, 1, -1
-      share(i, :) = share(i, :)/share(i, chosen(i))
+      share(:, i) = share(:, i)/share(chosen(i), i)
       do j = 1, i - 1
-        share(j, :) = share(j, :) - share(j, chosen(i))*share(i, :)
+        share(:, j) = share(:, j) - share(chosen(i), j)*share(:, i)
       end do
     end do
-    associate (told => pack([(j, j=1, size(left))], left <= made_up_for), &
-               others => pack([(j, j=1, size(left))], left > made_up_for))
-      batch%force = loads%force(:, chosen(:fields))
+    associate (told => pack([(j, j=1, size(left))], left <= made_up_for**2), &
+               others => pack([(j, j=1, size(left))], left > made_up_for**2))
+      batch%force = transpose(loads%force(chosen(:fields), :))
       batch%load = loads%load(told)
-      batch%share = share(:fields, told)
+      batch%share = transpose(share(told, :fields))
       loads%load = loads%load(others)
-      loads%force = loads%force(:, others)
+      loads%force = loads%force(others, :)
     end associate
   end subroutine choose_fields
 
