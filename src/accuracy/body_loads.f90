@@ -97,7 +97,7 @@ contains
     real(wp) :: along(size(loads%pair))        !! a direction
     real(wp) :: left(size(loads%load))         !! square of what is left of each load
     integer :: chosen(min(most_fields, size(loads%pair), size(loads%load)))
-    integer :: i, j, k, fields
+    integer :: fields, k
 
     rest = loads%force
     allocate (share(size(left), size(chosen)), source=0.0_wp)
@@ -123,22 +123,42 @@ contains
       rest(chosen(fields), :) = 0.0_wp
       left(chosen(fields)) = 0.0_wp
     end do
-    ! From sums of directions to sums of the fields that gave them.
-    do i = fields, 1, -1
+    call from_directions(chosen(:fields), share)
+    call divide(loads, left <= made_up_for**2, chosen(:fields), share, batch)
+  end subroutine choose_fields
+
+  !> From sums of directions to sums of the fields that gave them.
+  pure subroutine from_directions(chosen, share)
+    integer, intent(in) :: chosen(:)            !! the load of each field
+    real(wp), intent(inout) :: share(:, :)      !! of each direction, then field, in each load [loads, any]
+    integer :: i, j
+
+    do i = size(chosen), 1, -1
       share(:, i) = share(:, i)/share(chosen(i), i)
       do j = 1, i - 1
         share(:, j) = share(:, j) - share(chosen(i), j)*share(:, i)
       end do
     end do
-    associate (told => pack([(j, j=1, size(left))], left <= made_up_for**2), &
-               others => pack([(j, j=1, size(left))], left > made_up_for**2))
-      batch%force = transpose(loads%force(chosen(:fields), :))
+  end subroutine from_directions
+
+  !> Hand loads over to a batch.
+  pure subroutine divide(loads, is_told, chosen, share, batch)
+    type(body_loads), intent(inout) :: loads   !! the others remain
+    logical, intent(in) :: is_told(:)          !! the fields make up for it [loads]
+    integer, intent(in) :: chosen(:)           !! the load of each field
+    real(wp), intent(in) :: share(:, :)        !! of each field in each load [loads, any]
+    type(load_batch), intent(out) :: batch     !! fields and what they make up for
+    integer :: j
+
+    associate (told => pack([(j, j=1, size(is_told))], is_told), &
+               others => pack([(j, j=1, size(is_told))], .not. is_told))
+      batch%force = transpose(loads%force(chosen, :))
       batch%load = loads%load(told)
-      batch%share = transpose(share(told, :fields))
+      batch%share = transpose(share(told, :size(chosen)))
       loads%load = loads%load(others)
       loads%force = loads%force(others, :)
     end associate
-  end subroutine choose_fields
+  end subroutine divide
 
   !> Displacements of nodes of a body under the fields of a batch.
   subroutine find_displacements(scene, linear, b, pair, batch, node, u)
@@ -151,25 +171,36 @@ contains
     real(wp), allocatable, intent(out) :: u(:, :, :)   !! [length] [directions, fields, nodes asked for]
     real(wp), allocatable :: force(:, :, :)            !! [directions, fields, loaded nodes]
     integer, allocatable :: loaded(:)
-    integer :: c, i, k, n
 
     allocate (u(directions, size(batch%force, 2), size(node)))
     if (size(u) == 0) return
-    associate (model => scene%model)
-      n = sum(model%row_start(pair + 1) - model%row_start(pair))
-      allocate (loaded(n), force(directions, size(u, 2), n))
-      n = 0
-      do k = 1, size(pair)
-        do i = model%row_start(pair(k)), model%row_start(pair(k) + 1) - 1
-          if (model%body(model%row_node(i)) /= b) cycle
-          n = n + 1
-          loaded(n) = model%row_node(i)
-          do c = 1, directions
-            force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*batch%force(k, :)
-          end do
+    call put_forces(scene%model, b, pair, batch, loaded, force)
+    call linear%body_displacements(scene, b, loaded, force, node, u)
+  end subroutine find_displacements
+
+  !> What pairs exert on the nodes of a body, one entry of its rows after the other.
+  pure subroutine put_forces(model, b, pair, batch, loaded, force)
+    type(model_type), intent(in) :: model        !! the scene
+    integer, intent(in) :: b, pair(:)            !! the body, its pairs
+    type(load_batch), intent(in) :: batch        !! forces on it
+    integer, allocatable, intent(out) :: loaded(:)         !! nodes
+    real(wp), allocatable, intent(out) :: force(:, :, :)   !! [force] [directions, fields, loaded nodes]
+    integer :: c, i, k, n
+
+    n = sum(model%row_start(pair + 1) - model%row_start(pair))
+    allocate (loaded(n), force(directions, size(batch%force, 2), n))
+    n = 0
+    do k = 1, size(pair)
+      do i = model%row_start(pair(k)), model%row_start(pair(k) + 1) - 1
+        if (model%body(model%row_node(i)) /= b) cycle
+        n = n + 1
+        loaded(n) = model%row_node(i)
+        do c = 1, directions
+          force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*batch%force(k, :)
         end do
       end do
-    end associate
-    call linear%body_displacements(scene, b, loaded(:n), force(:, :, :n), node, u)
-  end subroutine find_displacements
+    end do
+    loaded = loaded(:n)
+    force = force(:, :, :n)
+  end subroutine put_forces
 end module epcont_accuracy_body_loads
