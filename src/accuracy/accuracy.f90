@@ -56,6 +56,7 @@ contains
     type(error_fields) :: field
     type(surface_line) :: surface
     logical :: carried, pressed
+    logical, allocatable :: point_load(:)   ! the motion's SUPORT freedom bears one [motions]
     integer :: motions
 
     pressed = any(answer%contact%force > 0.0_wp)
@@ -66,6 +67,7 @@ contains
       allocate (loads%force(scene%model%pairs, 0), loads%moved(0))
     end if
     motions = scene%motions%count
+    point_load = find_point_loads()
     allocate (accuracy%approach(motions), source=-1.0_wp)
     allocate (accuracy%body_force(directions, size(answer%bodies)), source=-1.0_wp)
     allocate (accuracy%approach_unbounded(motions), accuracy%weak(scene%model%pairs), source=.false.)
@@ -81,7 +83,7 @@ contains
     !> The error of the mesh in the energy norm, and the elements that have the most of it.
     subroutine assess_mesh()
       table = new_patch_table(scene%model)
-      call compare_fields(scene, linear, answer, table, loads%force(:, loads%moved), field)
+      call compare_fields(scene, linear, answer, table, loads%force, loads%moved, field)
       accuracy%element = field%element
       associate (error => sum(field%element))
         if (error > 0.0_wp) accuracy%energy_norm = sqrt(error/(error + abs(field%energy)))
@@ -130,7 +132,7 @@ contains
       do j = 1, motions
         if (all(loads%moved /= j)) cycle
         accuracy%approach(j) = off(j)
-        accuracy%approach_unbounded(j) = is_point_load(j)
+        accuracy%approach_unbounded(j) = point_load(j)
       end do
       call assess_forces(off(motions + 1:))
       ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones
@@ -144,11 +146,31 @@ contains
     !> Errors of approaches, then of sums of forces.
     pure function errors() result(off)
       real(wp) :: off(size(loads%force, 2))
-      integer :: j
+      !> What a force at each pair adds of what contact at nodes alone lets the bodies come too near, and of
+      !! what its ends leave open [length] [pairs]
+      real(wp), dimension(scene%model%pairs) :: near, at_ends
+      real(wp) :: at_end
+      integer :: j, z
 
+      near = 0.0_wp
+      at_ends = 0.0_wp
+      do z = 1, size(accuracy%zone)
+        associate (zone => accuracy%zone(z), pairs => answer%zones(z)%pairs)
+          at_end = answer%zones(z)%max_pressure*zone%half_length*surface%compliance(zone%peak)
+          ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it
+          ! says nothing of one.
+          if (.not. zone%unbounded) &
+            near(pairs) = near(pairs) + zone%weights%between*(at_end*zone%resolution**2)
+          at_ends(pairs) = at_ends(pairs) + zone%weights%end*(at_end*zone%end_resolution**2) &
+                           + wave_height*zone%wave_height + zone%too_near
+        end associate
+      end do
       off = 0.0_wp
       do j = 1, size(loads%moved)
-        off(loads%moved(j)) = error_along(j)
+        associate (force => loads%force(:, loads%moved(j)))
+          ! Of a tilt of either sign the ends count, not the sum.
+          off(loads%moved(j)) = error_along(j, dot_product(near, force), dot_product(at_ends, abs(force)))
+        end associate
       end do
       off(motions + 1:) = off(motions + 1:) + &
         sum(abs(matmul(matmul(transpose(loads%share), loads%force(:, :motions)), &
@@ -158,32 +180,18 @@ contains
     !> Error of an approach, or of a sum of contact forces: the product of the errors of the scene and of its
     !! answer to a unit load along the motion, or to closing gaps, signed, with what contact at nodes alone
     !! lets the bodies come too near.
-    pure real(wp) function error_along(j) result(error)
-      integer, intent(in) :: j   !! in `loads%moved`
-      real(wp) :: at_end, end_error, near, short, vague
-      integer :: z
+    pure real(wp) function error_along(j, near, at_ends) result(error)
+      integer, intent(in) :: j               !! in `loads%moved`
+      real(wp), intent(in) :: near, at_ends  !! what contact at nodes alone, and its ends, add
+      real(wp) :: short, vague
 
-      near = 0.0_wp
-      end_error = 0.0_wp
-      vague = 1.0_wp
-      do z = 1, size(accuracy%zone)
-        associate (zone => accuracy%zone(z), force => loads%force(answer%zones(z)%pairs, loads%moved(j)))
-          at_end = answer%zones(z)%max_pressure*zone%half_length*surface%compliance(zone%peak)
-          ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it
-          ! says nothing of one.
-          if (.not. zone%unbounded) near = near + zone%weights%between*(at_end*zone%resolution**2)*sum(force)
-          if (.not. zone%resolved) vague = unresolved
-          ! Of a tilt of either sign the ends count, not the sum.
-          end_error = end_error + sum(abs(force))*(zone%weights%end*(at_end*zone%end_resolution**2) &
-              + wave_height*zone%wave_height + zone%too_near)
-        end associate
-      end do
+      vague = merge(1.0_wp, unresolved, all(accuracy%zone%resolved))
       short = max(abs(field%along(1, j) - near), uncancelled*field%along(2, j))
       ! Of what pairs or bodies share no part cancels another.
       if (loads%moved(j) > max(1, motions)) short = of_shares*(field%along(2, j) + abs(near))
       ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its
       ! field is too small. Of unlike elements that bear the largest weight counts.
-      error = vague*(end_error + maxval(accuracy%zone%weights%product)*short/ &
+      error = vague*(at_ends + maxval(accuracy%zone%weights%product)*short/ &
         max(least_energy, 1.0_wp - accuracy%energy_norm**2)/max(least_energy, 1.0_wp - field%missing(j)))
     end function error_along
 
@@ -227,16 +235,29 @@ contains
       force = off(k) + force
     end function with_waves
 
-    !> Is a SUPORT freedom the one node of its body's mesh that bears a load?
-    pure logical function is_point_load(j)
-      integer, intent(in) :: j
+    !> Is the SUPORT freedom of a motion the one node of its body's mesh that bears a load? [motions]
+    pure function find_point_loads() result(is_one)
+      logical :: is_one(motions)
+      real(wp) :: on_body(directions, scene%model%bodies)
+      integer :: c, followers(directions, scene%model%nodes), i, j
 
-      associate (model => scene%model, node => scene%motions%node(j), c => scene%motions%component(j))
-        is_point_load = abs(model%load(c, node)) > &
-                        concentrated*sum(abs(model%load(c, :)), mask=model%body == model%body(node)) .and. &
-                        count(model%leader(c, :) == node) == 1 .and. first_element(model, node) > 0
+      on_body = 0.0_wp
+      followers = 0
+      associate (model => scene%model)
+        do i = 1, model%nodes
+          on_body(:, model%body(i)) = on_body(:, model%body(i)) + abs(model%load(:, i))
+          do c = 1, directions
+            followers(c, model%leader(c, i)) = followers(c, model%leader(c, i)) + 1
+          end do
+        end do
+        do j = 1, motions
+          associate (node => scene%motions%node(j), c => scene%motions%component(j))
+            is_one(j) = abs(model%load(c, node)) > concentrated*on_body(c, model%body(node)) .and. &
+                        followers(c, node) == 1 .and. first_element(model, node) > 0
+          end associate
+        end do
       end associate
-    end function is_point_load
+    end function find_point_loads
 
     !> Elements at a load on one node, and around these: there no mesh is fine enough, and the contact does
     !! not feel it [elements].
@@ -249,7 +270,7 @@ contains
       beside = .false.
       seen = 0
       do j = 1, motions
-        if (.not. is_point_load(j)) cycle
+        if (.not. point_load(j)) cycle
         call wide_patch(scene%model, table, scene%motions%node(j), seen, patch)
         beside(patch) = .true.
       end do

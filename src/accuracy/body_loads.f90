@@ -16,14 +16,15 @@ module epcont_accuracy_body_loads
   private
   public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads, pairs_of_bodies
 
-  !> A load that others make up for, but for this part of its largest force on any body, is a sum of these.
+  !> A load that others make up for, but for this part of its largest force on any body, is a sum of these:
+  !! figures of a stack of 30 bodies change by 3e-6; with three times as much by 5e-4.
   real(wp), parameter :: made_up_for = 1.0e-2_wp
 
   !> Of unit loads those that a body feels, and that no batch of fields has told of yet.
   type :: body_loads
     integer, allocatable :: pair(:)        !! those with a node in the body [its pairs]
     integer, allocatable :: load(:)        !! by their numbers [loads]
-    !> Contact forces, in the unit of each load [its pairs, loads]
+    !> Contact forces, in the unit of each load [loads, its pairs]
     real(wp), allocatable :: force(:, :)
   end type body_loads
 
@@ -58,18 +59,31 @@ contains
   end function pairs_of_bodies
 
   !> The loads that a body feels.
-  pure function new_body_loads(pair, unit_force, unit) result(loads)
+  pure function new_body_loads(pair, unit_force, told, unit) result(loads)
     integer, intent(in) :: pair(:)              !! those of the body
-    real(wp), intent(in) :: unit_force(:, :)    !! contact forces under each load [pairs, loads]
-    real(wp), intent(in) :: unit(:)             !! largest force under each load [force] [loads]
+    real(wp), intent(in) :: unit_force(:, :)    !! contact forces under each load [pairs, any]
+    integer, intent(in) :: told(:)              !! columns of the loads that are asked for [loads]
+    real(wp), intent(in) :: unit(:)             !! largest force under each [force] [loads]
     type(body_loads) :: loads
-    integer :: j
+    integer :: felt(size(told))
+    integer :: j, k, n
 
+    n = 0
+    do j = 1, size(told)
+      do k = 1, size(pair)
+        if (unit_force(pair(k), told(j)) /= 0.0_wp) exit
+      end do
+      if (k > size(pair)) cycle
+      n = n + 1
+      felt(n) = j
+    end do
     loads%pair = pair
-    loads%load = pack([(j, j=1, size(unit))], [(any(unit_force(pair, j) /= 0.0_wp), j=1, size(unit))])
-    allocate (loads%force(size(pair), size(loads%load)))
-    do j = 1, size(loads%load)
-      loads%force(:, j) = unit_force(pair, loads%load(j))/unit(loads%load(j))
+    loads%load = felt(:n)
+    allocate (loads%force(n, size(pair)))
+    do j = 1, n
+      do k = 1, size(pair)
+        loads%force(j, k) = unit_force(pair(k), told(felt(j)))/unit(felt(j))
+      end do
     end do
   end function new_body_loads
 
@@ -78,45 +92,73 @@ contains
   pure subroutine choose_fields(loads, batch)
     type(body_loads), intent(inout) :: loads   !! those that are left
     type(load_batch), intent(out) :: batch     !! fields and what they make up for
-    real(wp), allocatable :: rest(:, :)        !! of each load [its pairs, loads]
-    real(wp), allocatable :: share(:, :)       !! of each direction in each load [fields, loads]
-    real(wp) :: along(size(loads%pair)), left(size(loads%load))
+    real(wp), allocatable :: rest(:, :)        !! of each load [loads, its pairs]
+    real(wp), allocatable :: share(:, :)       !! of each direction in each load [loads, fields]
+    real(wp) :: along(size(loads%pair))        !! a direction
+    real(wp) :: left(size(loads%load))         !! square of what is left of each load
     integer :: chosen(min(most_fields, size(loads%pair), size(loads%load)))
-    integer :: i, j, fields
+    integer :: fields, k
 
     rest = loads%force
-    allocate (share(size(chosen), size(left)))
+    allocate (share(size(left), size(chosen)), source=0.0_wp)
+    left = 0.0_wp
+    do k = 1, size(along)
+      left = left + rest(:, k)**2
+    end do
     fields = 0
     do
-      left = norm2(rest, dim=1)
-      if (fields == size(chosen) .or. all(left <= made_up_for)) exit
+      if (fields == size(chosen) .or. all(left <= made_up_for**2)) exit
       fields = fields + 1
       associate (next => findloc(left >= (1.0_wp - no_effect)*maxval(left), .true., dim=1))
         chosen(fields) = next
-        along = rest(:, next)/left(next)
+        along = rest(next, :)/norm2(rest(next, :))
       end associate
-      do j = 1, size(left)
-        share(fields, j) = dot_product(along, rest(:, j))
-        rest(:, j) = rest(:, j) - share(fields, j)*along
+      do k = 1, size(along)
+        share(:, fields) = share(:, fields) + along(k)*rest(:, k)
       end do
-      rest(:, chosen(fields)) = 0.0_wp
-    end do
-    ! From sums of directions to sums of the fields that gave them.
-    do i = fields, 1, -1
-      share(i, :) = share(i, :)/share(i, chosen(i))
-      do j = 1, i - 1
-        share(j, :) = share(j, :) - share(j, chosen(i))*share(i, :)
+      do k = 1, size(along)
+        rest(:, k) = rest(:, k) - along(k)*share(:, fields)
       end do
+      left = left - share(:, fields)**2
+      rest(chosen(fields), :) = 0.0_wp
+      left(chosen(fields)) = 0.0_wp
     end do
-    associate (told => pack([(j, j=1, size(left))], left <= made_up_for), &
-               others => pack([(j, j=1, size(left))], left > made_up_for))
-      batch%force = loads%force(:, chosen(:fields))
-      batch%load = loads%load(told)
-      batch%share = share(:fields, told)
-      loads%load = loads%load(others)
-      loads%force = loads%force(:, others)
-    end associate
+    call from_directions(chosen(:fields), share)
+    call divide(loads, left <= made_up_for**2, chosen(:fields), share, batch)
   end subroutine choose_fields
+
+  !> From sums of directions to sums of the fields that gave them.
+  pure subroutine from_directions(chosen, share)
+    integer, intent(in) :: chosen(:)            !! the load of each field
+    real(wp), intent(inout) :: share(:, :)      !! of each direction, then field, in each load [loads, any]
+    integer :: i, j
+
+    do i = size(chosen), 1, -1
+      share(:, i) = share(:, i)/share(chosen(i), i)
+      do j = 1, i - 1
+        share(:, j) = share(:, j) - share(chosen(i), j)*share(:, i)
+      end do
+    end do
+  end subroutine from_directions
+
+  !> Hand loads over to a batch.
+  pure subroutine divide(loads, is_told, chosen, share, batch)
+    type(body_loads), intent(inout) :: loads   !! the others remain
+    logical, intent(in) :: is_told(:)          !! the fields make up for it [loads]
+    integer, intent(in) :: chosen(:)           !! the load of each field
+    real(wp), intent(in) :: share(:, :)        !! of each field in each load [loads, any]
+    type(load_batch), intent(out) :: batch     !! fields and what they make up for
+    integer :: j
+
+    associate (told => pack([(j, j=1, size(is_told))], is_told), &
+               others => pack([(j, j=1, size(is_told))], .not. is_told))
+      batch%force = transpose(loads%force(chosen, :))
+      batch%load = loads%load(told)
+      batch%share = transpose(share(told, :size(chosen)))
+      loads%load = loads%load(others)
+      loads%force = loads%force(others, :)
+    end associate
+  end subroutine divide
 
   !> Displacements of nodes of a body under the fields of a batch.
   subroutine find_displacements(scene, linear, b, pair, batch, node, u)
@@ -129,25 +171,36 @@ contains
     real(wp), allocatable, intent(out) :: u(:, :, :)   !! [length] [directions, fields, nodes asked for]
     real(wp), allocatable :: force(:, :, :)            !! [directions, fields, loaded nodes]
     integer, allocatable :: loaded(:)
-    integer :: c, i, k, n
 
     allocate (u(directions, size(batch%force, 2), size(node)))
     if (size(u) == 0) return
-    associate (model => scene%model)
-      n = sum(model%row_start(pair + 1) - model%row_start(pair))
-      allocate (loaded(n), force(directions, size(u, 2), n))
-      n = 0
-      do k = 1, size(pair)
-        do i = model%row_start(pair(k)), model%row_start(pair(k) + 1) - 1
-          if (model%body(model%row_node(i)) /= b) cycle
-          n = n + 1
-          loaded(n) = model%row_node(i)
-          do c = 1, directions
-            force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*batch%force(k, :)
-          end do
+    call put_forces(scene%model, b, pair, batch, loaded, force)
+    call linear%body_displacements(scene, b, loaded, force, node, u)
+  end subroutine find_displacements
+
+  !> What pairs exert on the nodes of a body, one entry of its rows after the other.
+  pure subroutine put_forces(model, b, pair, batch, loaded, force)
+    type(model_type), intent(in) :: model        !! the scene
+    integer, intent(in) :: b, pair(:)            !! the body, its pairs
+    type(load_batch), intent(in) :: batch        !! forces on it
+    integer, allocatable, intent(out) :: loaded(:)         !! nodes
+    real(wp), allocatable, intent(out) :: force(:, :, :)   !! [force] [directions, fields, loaded nodes]
+    integer :: c, i, k, n
+
+    n = sum(model%row_start(pair + 1) - model%row_start(pair))
+    allocate (loaded(n), force(directions, size(batch%force, 2), n))
+    n = 0
+    do k = 1, size(pair)
+      do i = model%row_start(pair(k)), model%row_start(pair(k) + 1) - 1
+        if (model%body(model%row_node(i)) /= b) cycle
+        n = n + 1
+        loaded(n) = model%row_node(i)
+        do c = 1, directions
+          force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*batch%force(k, :)
         end do
       end do
-    end associate
-    call linear%body_displacements(scene, b, loaded(:n), force(:, :, :n), node, u)
-  end subroutine find_displacements
+    end do
+    loaded = loaded(:n)
+    force = force(:, :, :n)
+  end subroutine put_forces
 end module epcont_accuracy_body_loads

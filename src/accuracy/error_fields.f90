@@ -31,18 +31,19 @@ module epcont_accuracy_error_fields
 contains
 
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
-  subroutine compare_fields(scene, linear, answer, table, unit_force, field)
+  subroutine compare_fields(scene, linear, answer, table, unit_force, told, field)
     type(planned_scene), intent(in) :: scene     !! that was solved
     type(linear_problem), intent(in) :: linear   !! of the last solve
     class(scene_state), intent(in) :: answer     !! to it
     type(patch_table), intent(in) :: table       !! of its elements
-    real(wp), intent(in) :: unit_force(:, :)     !! contact forces under each unit load [pairs, loads]
+    real(wp), intent(in) :: unit_force(:, :)     !! contact forces under each unit load [pairs, any]
+    integer, intent(in) :: told(:)               !! columns of the loads that are asked for [loads]
     type(error_fields), intent(out) :: field     !! what is off
     type(incidence) :: pairs
     type(body_loads) :: loads
     type(load_batch) :: batch
-    real(wp) :: unit(size(unit_force, 2))        ! largest force under each load
-    real(wp) :: energy(2, size(unit_force, 2))   ! of each load's error, and of its own strain
+    real(wp) :: unit(size(told))                 ! largest force under each load
+    real(wp) :: energy(2, size(told))            ! of each load's error, and of its own strain
     real(wp), allocatable :: u(:, :, :)          ! under the fields of a batch [directions, fields, places]
     real(wp), allocatable :: strain(:, :)        ! of the answer and all fields in an element [width, points]
     integer :: e, first, nodes, points           ! the element, its first point, how many it has
@@ -52,11 +53,11 @@ contains
     allocate (field%smooth(components, table%places), field%element(scene%model%elements), &
               field%along(2, size(unit)), field%missing(size(unit)), source=0.0_wp)
     pairs = pairs_of_bodies(scene%model)
-    unit = maxval(abs(unit_force), dim=1)
+    unit = [(maxval(abs(unit_force(:, told(k)))), k=1, size(told))]
     energy = 0.0_wp
     do b = 1, size(scene%numbering%body)
       if (size(scene%numbering%body(b)%element) == 0) cycle
-      loads = new_body_loads(pairs%of(b), unit_force, unit)
+      loads = new_body_loads(pairs%of(b), unit_force, told, unit)
       do
         call choose_fields(loads, batch)
         call compare_on_body(scene%numbering%body(b)%element, table%of_body%of(b))
@@ -83,7 +84,7 @@ contains
 
       call find_displacements(scene, linear, b, loads%pair, batch, table%node(place), u)
       errors = new_element_errors(size(u, 2))
-      sums = new_field_sums(batch%share)
+      sums = new_field_sums(batch%share, size(element))
       samples = place_samples(scene%model, element)
       width = errors%width
       if (allocated(strain)) deallocate (strain)

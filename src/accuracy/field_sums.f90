@@ -15,10 +15,8 @@ module epcont_accuracy_field_sums
   private
   public :: field_sums, new_field_sums
 
-  !> Elements that are summed at once.
-  integer, parameter :: at_once = 64
-  !> Components of their strains, at most.
-  integer, parameter :: most_rows = components*most_places*at_once
+  !> Elements that are summed at once, at most.
+  integer, parameter :: most_at_once = 64
 
   type :: field_sums
     real(wp), allocatable :: along(:, :)    !! products: their sum, that without signs [energy] [2, loads]
@@ -41,15 +39,19 @@ module epcont_accuracy_field_sums
 contains
 
   !> Sums without any elements.
-  pure function new_field_sums(share) result(sums)
+  pure function new_field_sums(share, elements) result(sums)
     real(wp), intent(in) :: share(:, :)   !! of each field in each load [fields, loads]
+    integer, intent(in) :: elements       !! how many will be added
     type(field_sums) :: sums
+    integer :: at_once
 
     sums%share = share
+    at_once = min(elements, most_at_once)
     associate (fields => size(share, 1), loads => size(share, 2))
       allocate (sums%along(2, loads), sums%energy(2, loads), sums%together(fields, fields, 2), &
                 sums%product(at_once, fields), source=0.0_wp)
-      allocate (sums%strain(most_rows, fields, 2), sums%stress(most_rows, fields, 2))
+      allocate (sums%strain(components*most_places*at_once, fields, 2))
+      allocate (sums%stress, mold=sums%strain)
     end associate
   end function new_field_sums
 
@@ -70,7 +72,7 @@ contains
     do f = 1, errors%fields
       self%product(self%elements, f) = errors%product(f)
     end do
-    if (self%elements == at_once) call self%sum_up()
+    if (self%elements == size(self%product, 1)) call self%sum_up()
 
   contains
 
@@ -79,7 +81,7 @@ contains
       integer, intent(in) :: i        !! 1: errors, 2: own strains
       integer, intent(in) :: places   !! how many
       real(wp), intent(in) :: found(components, 0:most_fields, places)   !! first that of the answer
-      real(wp), dimension(most_rows, errors%fields), intent(inout) :: strain, stress
+      real(wp), dimension(size(self%strain, 1), errors%fields), intent(inout) :: strain, stress
       real(wp) :: volumetric, double, e(components)
       integer :: f, k, row
 
@@ -104,7 +106,7 @@ contains
   !> Sum up the elements that wait.
   pure subroutine sum_up(self)
     class(field_sums), intent(inout) :: self
-    real(wp) :: of_load(at_once, size(self%share, 2))
+    real(wp) :: of_load(size(self%product, 1), size(self%share, 2))
     integer :: i
 
     self%product(self%elements + 1:, :) = 0.0_wp

@@ -26,11 +26,11 @@ module epcont_accuracy_patches
 contains
 
   !> The places of a scene.
-  pure function new_patch_table(model) result(table)
+  function new_patch_table(model) result(table)
     type(model_type), intent(in) :: model   !! the scene
     type(patch_table) :: table
     logical :: free(0:model%nodes)   ! on an outline
-    integer :: b, k, p
+    integer :: p
 
     call split_places(table%place, table%node)
     table%places = size(table%node)
@@ -46,20 +46,27 @@ contains
                        p=1, table%places)]
     end associate
     table%of_body = new_incidence(reshape(model%body(table%node), [1, table%places]), model%bodies)
-    allocate (table%own(table%places))
-    do b = 1, model%bodies
-      associate (first => table%of_body%start(b))
-        do k = first, table%of_body%start(b + 1) - 1
-          table%own(table%of_body%group(k)) = k - first + 1
-        end do
-      end associate
-    end do
+    call number_own()
 
   contains
 
+    !> Number the places of each body.
+    subroutine number_own()
+      integer :: b, k
+
+      allocate (table%own(table%places))
+      do b = 1, model%bodies
+        associate (first => table%of_body%start(b))
+          do k = first, table%of_body%start(b + 1) - 1
+            table%own(table%of_body%group(k)) = k - first + 1
+          end do
+        end associate
+      end do
+    end subroutine number_own
+
     !> A node has one place for each section that it belongs to; that of the first section is the node's own
     !! number.
-    pure subroutine split_places(place, node)
+    subroutine split_places(place, node)
       integer, allocatable, intent(out) :: place(:, :), node(:)   !! of each element, of each place
       integer, allocatable :: next(:), section(:)   !! of each place the next place of its node, its section
       integer :: at, e, k, places

@@ -171,20 +171,36 @@ contains
     !! which they do not spread is constant.
     subroutine fit_linear(patch)
       integer, intent(in) :: patch(:)
-      real(wp) :: determinant, dx, dy, here(components), slope(2), x, y
-      real(wp) :: mx, my, xx, xy, yy   !! moments of the samples about the place, then about their middle
-      integer :: f, k, n
+      real(wp) :: here(components)
+      integer :: f, k
 
-      n = size(patch)
-      x = model%x(1, table%node(p))
-      y = model%x(2, table%node(p))
+      do k = 1, size(patch)
+        at(k) = samples%before(patch(k)) + 1
+      end do
+      call weigh(size(patch), model%x(1, table%node(p)), model%x(2, table%node(p)))
+      do f = 0, fields
+        here = 0.0_wp
+        do k = 1, size(patch)
+          here = here + weight(k)*strain(:, f, at(k))
+        end do
+        smooth(:, f, i) = here
+      end do
+    end subroutine fit_linear
+
+    !> What n samples count in the value of that polynomial at a place.
+    subroutine weigh(n, x, y)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: x, y
+      real(wp) :: determinant, dx, dy, slope(2)
+      real(wp) :: mx, my, xx, xy, yy   !! moments of the samples about the place, then about their middle
+      integer :: k
+
       mx = 0.0_wp
       my = 0.0_wp
       xx = 0.0_wp
       xy = 0.0_wp
       yy = 0.0_wp
       do k = 1, n
-        at(k) = samples%before(patch(k)) + 1
         dx = samples%x(1, at(k)) - x
         dy = samples%x(2, at(k)) - y
         mx = mx + dx
@@ -205,14 +221,7 @@ contains
         weight(k) = 1.0_wp/n - slope(1)*(samples%x(1, at(k)) - x - mx) &
                     - slope(2)*(samples%x(2, at(k)) - y - my)
       end do
-      do f = 0, fields
-        here = 0.0_wp
-        do k = 1, n
-          here = here + weight(k)*strain(:, f, at(k))
-        end do
-        smooth(:, f, i) = here
-      end do
-    end subroutine fit_linear
+    end subroutine weigh
 
     !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
     !! meet there.

@@ -27,6 +27,8 @@ module epcont_accuracy_unit_loads
   !> Pairs up to which all of M is made: the estimate may stop at one of two nearly equal rows, as rounding
   !! has it.
   integer, parameter :: few_pairs = 200
+  !> Unit loads that contact forces are found of at once.
+  integer, parameter :: loads_at_once = 64
   integer, parameter :: most_products = 5
 
   type :: contact_sensitivity
@@ -73,8 +75,9 @@ contains
     end if
     loads%basis = new_basis(loads%problem, answer%contact%force > 0.0_wp)
     call find_shares()
-    loads%force = reshape([unit_forces(), closing_forces(loads%problem, loads%basis, loads%share)], &
-                          [scene%model%pairs, scene%motions%count + size(loads%share, 2)])
+    allocate (loads%force(scene%model%pairs, scene%motions%count + size(loads%share, 2)), source=0.0_wp)
+    if (loads%basis%sound) call put_unit_forces()
+    loads%force(:, scene%motions%count + 1:) = closing_forces(loads%problem, loads%basis, loads%share)
     loads%moved = pack([(j, j=1, size(loads%force, 2))], any(loads%force /= 0.0_wp, dim=1) .and. &
                        [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))])
 
@@ -128,23 +131,25 @@ contains
       end do
     end function is_free
 
-    !> Contact forces under unit loads; zero for motions that are not kept [pairs, motions].
-    pure function unit_forces() result(force)
-      real(wp) :: force(scene%model%pairs, scene%motions%count)
+    !> Contact forces under unit loads; zero for motions that are not kept. Some at a time: of many bodies
+    !! those under all take as much memory as their flexibility.
+    subroutine put_unit_forces()
       real(wp), allocatable :: opening(:, :), load(:, :), carried(:, :), approach(:, :)
-      integer :: j
+      integer :: first, j, n
 
-      force = 0.0_wp
-      if (.not. loads%basis%sound) return
       associate (pairs => loads%basis%pairs, kept => loads%problem%kept)
-        allocate (opening(size(pairs), size(kept)), load(size(kept), size(kept)), source=0.0_wp)
-        do j = 1, size(kept)
-          load(j, j) = 1.0_wp/loads%problem%motion_size(kept(j))
+        do first = 1, size(kept), loads_at_once
+          n = min(loads_at_once, size(kept) - first + 1)
+          if (allocated(opening)) deallocate (opening, load)
+          allocate (opening(size(pairs), n), load(size(kept), n), source=0.0_wp)
+          do j = 1, n
+            load(first - 1 + j, j) = 1.0_wp/loads%problem%motion_size(kept(first - 1 + j))
+          end do
+          call respond(loads%basis, opening, load, carried, approach)
+          loads%force(pairs, kept(first:first - 1 + n)) = carried
         end do
-        call respond(loads%basis, opening, load, carried, approach)
-        force(pairs, kept) = carried
       end associate
-    end function unit_forces
+    end subroutine put_unit_forces
   end function find_unit_loads
 
   !> Contact forces when the gap of each pair shrinks by its weight; none where motions give way to that

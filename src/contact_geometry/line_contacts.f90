@@ -163,13 +163,10 @@ contains
 
     !> The pairs of a contact, looked for ever farther until there is one; and the warnings.
     subroutine find_pairs()
-      real(wp) :: most
-
-      most = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
       do
         call add_pairs(model, contact, faces)
         if (contact%last >= contact%first) exit
-        if (contact%search > most) then
+        if (contact%search > sum(maxval(model%x, dim=2) - minval(model%x, dim=2))) then
           call add_nothing_faced()
           return
         end if

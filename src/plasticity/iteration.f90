@@ -16,6 +16,7 @@ module epcont_plasticity_iteration
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_secant, only: secant_method
+  use epcont_plasticity_unloading, only: find_unloaded
   use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
   implicit none
   private
@@ -36,8 +37,6 @@ module epcont_plasticity_iteration
   real(wp), parameter :: stagnant = 1.0e-3_wp
   !> So many solves without a change less than those before.
   integer, parameter :: long = 5
-  !> A strain that falls by less than this part of it stays.
-  real(wp), parameter :: least_fall = 1.0e-6_wp
 
   !> What came of the loads, and how: a state, the answer or what came nearest to one.
   type, extends(scene_state) :: followed_loads
@@ -83,7 +82,7 @@ contains
     logical :: stiff                          ! the scene has been factored
     logical :: elastic                        ! with the law of a state that has not yielded
     logical :: converged
-    integer :: step
+    integer :: failed_body, step
 
     call begin()
     call watch%lap(stage_stiffness)
@@ -96,10 +95,17 @@ contains
       ! Of a load that was not carried nothing is kept, if one was before.
       if (converged .or. step == 1 .or. state%contact%state /= contact_solved) call answer%take(state)
       if (answer%contact%state /= contact_solved) return
-      if (converged .or. step == 1) call estimate_rounding()
+      if (converged .or. step == 1) answer%load_factor = load_factor
+      if (converged .or. step == 1) answer%weakest = linear%weakest()
+      ! Of the steps on the way nobody asks.
+      failed_body = 0
+      if (.not. converged .and. answer%carried) call return_to_carried(failed_body)
+      if (failed_body > 0) answer%condition = huge(1.0_wp)
+      if (failed_body == 0 .and. (step == plan%load_steps .or. .not. converged)) call estimate_rounding()
       if (.not. converged) exit
       answer%carried = .true.
-      if (plan%load_steps > 1) call find_unloaded()
+      if (plan%load_steps > 1) call find_unloaded(scene%model, answer%point, plan%tolerance, strained, &
+          answer%unloaded, answer%first_unloaded)
       call watch%lap(stage_yielding)
     end do
     answer%converged = converged
@@ -363,32 +369,23 @@ contains
       stiff = .false.
     end subroutine step_by_tangent
 
+    !> The stiffness of the last load that was carried, made once more.
+    subroutine return_to_carried(failed_body)
+      integer, intent(out) :: failed_body   !! that could not be factored again
+
+      about = answer%scene_state
+      stiff = stiff .and. plan%method == method_inistr   ! that is the elastic one, at any load
+      call set_law(method, failed_body)
+      load_factor = answer%load_factor
+    end subroutine return_to_carried
+
     !> What rounding may have done to the answer.
     subroutine estimate_rounding()
-      answer%load_factor = load_factor
       call linear%estimate_condition(scene, answer%condition)
-      answer%weakest = linear%weakest()
       if (plan%precision == precision_single) &
         call linear%rounding_error(scene, load_factor, answer%scene_state, answer%rounding_error)
       call watch%lap(stage_accuracy)
     end subroutine estimate_rounding
-
-    !> Elements beyond yield whose strain falls as the load grows: total theory takes them back along the
-    !! curve.
-    subroutine find_unloaded()
-      logical, allocatable :: fell(:)
-      integer :: p
-
-      allocate (fell(scene%model%elements), source=.false.)
-      do p = 1, scene%model%points
-        associate (e => scene%model%point_element(p), now => answer%point(p))
-          fell(e) = fell(e) .or. now%deviatoric < (1.0_wp - max(plan%tolerance, least_fall))*strained(p)
-          strained(p) = merge(now%deviatoric, 0.0_wp, now%yielded)
-        end associate
-      end do
-      answer%unloaded = answer%unloaded + count(fell)
-      if (answer%first_unloaded == 0) answer%first_unloaded = findloc(fell, .true., dim=1)
-    end subroutine find_unloaded
   end subroutine follow_loads
 
   !> a/b, 0 where both are 0; finite.

@@ -50,6 +50,9 @@ contains
 
     !> Contact, yielding and stresses.
     subroutine put_answer()
+      real(wp) :: farthest
+
+      farthest = maxval(abs(run%answer%displacement))
       if (run%model%pairs > 0) call put('max_pressure', stress, known, run%answer%largest_pressure(), &
           'largest pressure', reason_of(limit_of_pressure(run)))
       do k = 1, run%motions%count
@@ -57,7 +60,7 @@ contains
                  'approach: '//motion_name(run, k), &
                  when(run%answer%contact%motion_free(k), newline// &
                       '    nothing resists or drives this motion: its value is a choice'), &
-                 listed_number(number, run%answer%contact%approach(k), maxval(abs(run%answer%displacement))))
+                 listed_number(number, run%answer%contact%approach(k), farthest))
       end do
       call put('total_contact_force', force, number, sum(run%answer%contact%force), &
                when(run%model%pairs > 0, 'total contact force'))

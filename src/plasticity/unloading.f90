@@ -1,0 +1,37 @@
+!> Elements beyond yield that unload: total theory takes them back along the curve.
+module epcont_plasticity_unloading
+  use epcont_base_kinds, only: wp
+  use epcont_material_material_law, only: point_state
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: find_unloaded
+
+  !> A strain that falls by less than this part of it stays.
+  real(wp), parameter :: least_fall = 1.0e-6_wp
+
+contains
+
+  !> Elements beyond yield whose strain has fallen since the last load step, as the load grew.
+  pure subroutine find_unloaded(model, point, tolerance, strained, unloaded, first)
+    type(model_type), intent(in) :: model          !! the scene
+    type(point_state), intent(in) :: point(:)      !! at this load [points]
+    real(wp), intent(in) :: tolerance              !! of the iteration: part of a strain that says nothing
+    !> e of points that yielded at the last load, else 0; then at this one [points]
+    real(wp), intent(inout) :: strained(:)
+    integer, intent(inout) :: unloaded             !! elements, at each load once
+    integer, intent(inout) :: first                !! one of them; 0: none
+    logical :: fell(model%elements)
+    integer :: p
+
+    fell = .false.
+    do p = 1, model%points
+      associate (e => model%point_element(p), now => point(p))
+        fell(e) = fell(e) .or. now%deviatoric < (1.0_wp - max(tolerance, least_fall))*strained(p)
+        strained(p) = merge(now%deviatoric, 0.0_wp, now%yielded)
+      end associate
+    end do
+    unloaded = unloaded + count(fell)
+    if (first == 0) first = findloc(fell, .true., dim=1)
+  end subroutine find_unloaded
+end module epcont_plasticity_unloading
