@@ -51,6 +51,7 @@ module epcont_contact_basis
     logical :: sound = .false.           !! the forces are unique, and the pairs hold every motion
     integer, allocatable :: pairs(:)     !! S, level by level [s]
     integer :: motions = 0               !! m
+    integer, allocatable :: pair_row(:), motion_row(:)   !! of them in the factor [s], [m]
     real(wp) :: gamma = 0.0_wp           !! weight of A A' in F_g
     type(basis_level), allocatable :: level(:)
   end type contact_basis
@@ -178,21 +179,26 @@ contains
     motions = pack([(j, j=1, size(scaled%motion_level))], scaled%motion_level == l)
   end function motions_of
 
-  !> The pairs of all levels.
+  !> The pairs of all levels, and the rows that pairs and motions have in the factor.
   pure subroutine gather_pairs(basis)
     type(contact_basis), intent(inout) :: basis
-    integer, allocatable :: pairs(:)
-    integer :: l, last
+    integer, allocatable :: motion(:)
+    integer :: k, l, n, pairs, rows
 
-    allocate (pairs(sum([(size(basis%level(l)%pair), l=1, size(basis%level))])))
-    last = 0
+    pairs = sum([(size(basis%level(l)%pair), l=1, size(basis%level))])
+    if (allocated(basis%pairs)) deallocate (basis%pairs, basis%pair_row, basis%motion_row)
+    allocate (basis%pairs(pairs), basis%pair_row(pairs), basis%motion_row(basis%motions))
+    pairs = 0
+    rows = 0
     do l = 1, size(basis%level)
-      associate (own => basis%level(l)%pair)
-        pairs(last + 1:last + size(own)) = own
-        last = last + size(own)
-      end associate
+      n = size(basis%level(l)%pair)
+      basis%pairs(pairs + 1:pairs + n) = basis%level(l)%pair
+      basis%pair_row(pairs + 1:pairs + n) = [(rows + k, k=1, n)]
+      motion = basis%level(l)%motion
+      basis%motion_row(motion) = [(rows + n + k, k=1, size(motion))]
+      pairs = pairs + n
+      rows = rows + n + size(motion)
     end do
-    call move_alloc(pairs, basis%pairs)
   end subroutine gather_pairs
 
   !> Factor the equations, level by level; sound: the pairs hold all motions.
@@ -285,12 +291,11 @@ contains
     integer, intent(in) :: l, kept   !! the level's number, and its rows that are kept
     real(wp), allocatable :: closing(:, :)   ! A of own and next pairs, by own and next motions
     integer :: at(size(level%pair)), next_at(size(next_pair))   ! places in their levels
-    integer :: below, i, j, m, n, next, t, top
+    integer :: below, j, m, n, t, top
 
     n = size(level%pair)
     m = size(level%motion)
-    next = size(next_pair)
-    below = n + m + next
+    below = n + m + size(next_pair)
     call make_room(level%factor, below + next_m, n + m)
     closing = scaled%motion%rows([level%pair, next_pair], [motions_of(scaled, l), motions_of(scaled, l + 1)])
     at = scaled%flexibility%place(level%pair)
@@ -298,13 +303,9 @@ contains
     associate (f => level%factor, given => scaled%flexibility%level(l), scale => scaled%flexibility_scale)
       do j = 1, n
         top = max(j, kept + 1)
-        do i = top, n
-          f(i, j) = scale*given%within(at(i), at(j))
-        end do
+        f(top:n, j) = scale*given%within(at(top:n), at(j))
         if (j == top) f(j, j) = f(j, j) + scaled%own_flexibility
-        do i = 1, next
-          f(n + m + i, j) = scale*given%beyond(next_at(i), at(j))
-        end do
+        f(n + m + 1:below, j) = scale*given%beyond(next_at, at(j))
         do t = 1, size(closing, 2)
           if (closing(j, t) == 0.0_wp) cycle
           f(top:n, j) = f(top:n, j) + scaled%gamma*closing(j, t)*closing(top:n, t)
@@ -336,41 +337,37 @@ contains
     real(wp), intent(in) :: load(:, :)         !! p [m, k]
     real(wp), allocatable, intent(out) :: force(:, :)      !! R_S [s, k]
     real(wp), allocatable, intent(out) :: approach(:, :)   !! q [m, k]
-    real(wp), allocatable :: x(:, :)     ! forces and motions, level by level
-    integer, dimension(size(basis%level)) :: n, m, before, below
-    integer, allocatable :: motion(:)
-    integer :: l, levels, pairs
+    real(wp), allocatable :: x(:, :)     ! forces and motions
 
-    levels = size(basis%level)
-    n = [(size(basis%level(l)%pair), l=1, levels)]
-    m = [(size(basis%level(l)%motion), l=1, levels)]
-    before = [(sum(n(:l - 1)) + sum(m(:l - 1)), l=1, levels)]
-    below = [n(2:) + m(2:), 0]
-    allocate (x(sum(n) + sum(m), size(opening, 2)))
-    pairs = 0
-    do l = 1, levels
-      x(before(l) + 1:before(l) + n(l), :) = -opening(pairs + 1:pairs + n(l), :)
-      x(before(l) + n(l) + 1:before(l) + n(l) + m(l), :) = -load(basis%level(l)%motion, :)
-      pairs = pairs + n(l)
-    end do
-    do l = 1, levels
-      if (n(l) + m(l) == 0) cycle
-      call substitute(size(basis%level(l)%factor, 1), basis%level(l)%factor, n(l) + m(l), below(l), &
-                      size(x, 2), size(x, 1), x(before(l) + 1, 1))
-    end do
-    do l = levels, 1, -1
-      if (n(l) + m(l) == 0) cycle
-      call substitute_back(size(basis%level(l)%factor, 1), basis%level(l)%factor, [n(l), m(l)], below(l), &
-                           size(x, 2), size(x, 1), x(before(l) + 1, 1))
-    end do
-    allocate (force(size(opening, 1), size(opening, 2)))
-    approach = -basis%gamma*load
-    pairs = 0
-    do l = 1, levels
-      force(pairs + 1:pairs + n(l), :) = x(before(l) + 1:before(l) + n(l), :)
-      motion = basis%level(l)%motion
-      approach(motion, :) = approach(motion, :) + x(before(l) + n(l) + 1:before(l) + n(l) + m(l), :)
-      pairs = pairs + n(l)
-    end do
+    allocate (x(size(basis%pairs) + basis%motions, size(opening, 2)))
+    x(basis%pair_row, :) = -opening
+    x(basis%motion_row, :) = -load
+    call solve_levels(basis%level, x)
+    force = x(basis%pair_row, :)
+    approach = x(basis%motion_row, :) - basis%gamma*load
   end subroutine respond
+
+  !> Forward through the levels, and back.
+  pure subroutine solve_levels(level, x)
+    type(basis_level), intent(in) :: level(:)
+    real(wp), allocatable, intent(inout) :: x(:, :)   !! [rows, any]
+    integer, dimension(size(level)) :: n, m, before   ! pairs, motions, rows before
+    integer :: below(size(level))                     ! rows of the next
+    integer :: l
+
+    n = [(size(level(l)%pair), l=1, size(level))]
+    m = [(size(level(l)%motion), l=1, size(level))]
+    before = [(sum(n(:l - 1)) + sum(m(:l - 1)), l=1, size(level))]
+    below = [n(2:) + m(2:), 0]
+    do l = 1, size(level)
+      if (n(l) + m(l) == 0) cycle
+      call substitute(size(level(l)%factor, 1), level(l)%factor, n(l) + m(l), below(l), size(x, 2), &
+                      size(x, 1), x(before(l) + 1, 1))
+    end do
+    do l = size(level), 1, -1
+      if (n(l) + m(l) == 0) cycle
+      call substitute_back(size(level(l)%factor, 1), level(l)%factor, [n(l), m(l)], below(l), size(x, 2), &
+                           size(x, 1), x(before(l) + 1, 1))
+    end do
+  end subroutine solve_levels
 end module epcont_contact_basis

@@ -224,9 +224,8 @@ contains
     real(wp), intent(in) :: force(:)   !! R [force] [pairs]
     logical, intent(in), optional :: magnitudes   !! true: of F and R
     real(wp) :: gap(size(force))       !! [length]
-    real(wp), allocatable :: ahead(:), by(:), opened(:)
-    integer, allocatable :: own(:)
-    integer :: k, l
+    integer, allocatable :: own(:), next(:)
+    integer :: l
     logical :: absolute
 
     absolute = .false.
@@ -234,33 +233,31 @@ contains
     gap = 0.0_wp
     do l = 1, size(self%level)
       own = self%level(l)%pair
-      by = force(own)
-      opened = gap(own)
-      do k = 1, size(own)
-        if (by(k) == 0.0_wp) cycle
-        if (absolute) then
-          opened = opened + abs(by(k)*self%level(l)%within(:, k))
-        else
-          opened = opened + by(k)*self%level(l)%within(:, k)
-        end if
-      end do
-      gap(own) = opened
+      gap(own) = gap(own) + product_of(self%level(l)%within, force(own), absolute)
       if (l == size(self%level)) exit
-      ahead = force(self%level(l + 1)%pair)
-      opened = 0.0_wp*ahead
-      do k = 1, size(own)
-        if (absolute) then
-          gap(own(k)) = gap(own(k)) + dot_product(abs(ahead), abs(self%level(l)%beyond(:, k)))
-          opened = opened + abs(by(k)*self%level(l)%beyond(:, k))
-        else
-          gap(own(k)) = gap(own(k)) + dot_product(ahead, self%level(l)%beyond(:, k))
-          opened = opened + by(k)*self%level(l)%beyond(:, k)
-        end if
-      end do
-      own = self%level(l + 1)%pair
-      gap(own) = opened
+      next = self%level(l + 1)%pair
+      gap(next) = product_of(self%level(l)%beyond, force(own), absolute)
+      gap(own) = gap(own) + product_of(transpose(self%level(l)%beyond), force(next), absolute)
     end do
   end function times
+
+  !> A matrix times forces; or their magnitudes.
+  pure function product_of(matrix, force, absolute) result(gap)
+    real(wp), intent(in) :: matrix(:, :), force(:)
+    logical, intent(in) :: absolute
+    real(wp) :: gap(size(matrix, 1))
+    integer :: k
+
+    gap = 0.0_wp
+    do k = 1, size(force)
+      if (force(k) == 0.0_wp) cycle
+      if (absolute) then
+        gap = gap + abs(force(k)*matrix(:, k))
+      else
+        gap = gap + force(k)*matrix(:, k)
+      end if
+    end do
+  end function product_of
 
   !> Opening of each pair by a unit force of its own [length/force] [pairs].
   pure function diagonal(self)

@@ -128,13 +128,39 @@ contains
     type(motion_matrix), intent(in) :: motion
     integer, intent(in) :: motions(:)   !! that no others hang together with
     integer, intent(in) :: start(:), entry(:)   !! of the pairs that count
-    integer :: place(motion%motions())
-    real(wp) :: closing(motion%pairs)   ! by one of them
+    real(wp) :: closing(motion%pairs)   ! of those by one of the motions
     integer :: i, j, k, r
+
+    call outline_profile(motion, motions, start, entry, square)
+    allocate (square%entry(square%start(size(motions) + 1)), source=0.0_wp)
+    closing = 0.0_wp
+    do r = 1, size(motions)
+      do i = motion%start(motions(r)), motion%start(motions(r) + 1) - 1
+        k = motion%pair(i)
+        if (start(k + 1) > start(k)) closing(k) = motion%closing(i)
+      end do
+      do j = square%first(r), r
+        associate (sum => square%entry(square%start(r) + j))
+          do i = motion%start(motions(j)), motion%start(motions(j) + 1) - 1
+            sum = sum + motion%closing(i)*closing(motion%pair(i))
+          end do
+        end associate
+      end do
+      closing(motion%pair(motion%start(motions(r)):motion%start(motions(r) + 1) - 1)) = 0.0_wp
+    end do
+  end function new_profile
+
+  !> Where the rows of A'A begin.
+  pure subroutine outline_profile(motion, motions, start, entry, square)
+    type(motion_matrix), intent(in) :: motion
+    integer, intent(in) :: motions(:), start(:), entry(:)
+    type(profile), intent(out) :: square
+    integer :: place(motion%motions())
+    integer :: i, j, k, last, r
 
     place(motions) = [(j, j=1, size(motions))]
     allocate (square%first(size(motions)), square%start(size(motions) + 1))
-    square%start(1) = 0
+    last = 0
     do r = 1, size(motions)
       square%first(r) = r
       do i = motion%start(motions(r)), motion%start(motions(r) + 1) - 1
@@ -142,29 +168,11 @@ contains
         if (start(k + 1) == start(k)) cycle
         square%first(r) = min(square%first(r), minval(place(entry(start(k):start(k + 1) - 1))))
       end do
-      ! Behind the row before, that entry first(r) is the next one.
-      square%start(r) = square%start(r) - square%first(r) + 1
-      square%start(r + 1) = square%start(r) + r
+      square%start(r) = last + 1 - square%first(r)
+      last = square%start(r) + r
     end do
-    allocate (square%entry(square%start(size(motions) + 1)))
-    closing = 0.0_wp
-    do r = 1, size(motions)
-      associate (from => motion%start(motions(r)), to => motion%start(motions(r) + 1) - 1)
-        do i = from, to
-          k = motion%pair(i)
-          if (start(k + 1) > start(k)) closing(k) = motion%closing(i)
-        end do
-        do j = square%first(r), r
-          square%entry(square%start(r) + j) = 0.0_wp
-          do i = motion%start(motions(j)), motion%start(motions(j) + 1) - 1
-            square%entry(square%start(r) + j) = square%entry(square%start(r) + j) &
-                                                + motion%closing(i)*closing(motion%pair(i))
-          end do
-        end do
-        closing(motion%pair(from:to)) = 0.0_wp
-      end associate
-    end do
-  end function new_profile
+    square%start(size(motions) + 1) = last
+  end subroutine outline_profile
 
   !> Replace A'A by its Cholesky factor; not `sound` if a pivot is not above `least`.
   pure subroutine factor_profile(a, least, sound)
