@@ -294,7 +294,7 @@ contains
       ! Now of the force; what its pair gives way by under it alone is the least.
       off = off*line%tributary + accuracy%sensitivity%rounding*maxval(answer%contact%force)
       weak = merge(answer%contact%force <= off, &
-                   answer%contact%gap <= [(linear%problem%flexibility(k, k), k=1, size(off))]*off, &
+                   answer%contact%gap <= linear%problem%flexibility%diagonal()*off, &
                    answer%contact%touching)
     end function find_weak
   end subroutine assess

@@ -11,7 +11,7 @@ module epcont_accuracy_unit_loads
   use epcont_base_tolerances, only: least_difference, solved_to
   use epcont_contact_basis, only: contact_basis, new_basis, respond
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
-  use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
+  use epcont_contact_scaling, only: drop_motions, gaps_by_forces, scale_problem, scaled_problem
   use epcont_element_kinematics, only: directions
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
@@ -57,7 +57,7 @@ contains
   !> Unit loads on a scene whose contact has been found.
   function find_unit_loads(scene, linear, answer) result(loads)
     type(planned_scene), intent(in) :: scene     !! that was solved
-    type(linear_problem), intent(in) :: linear   !! of the last solve
+    type(linear_problem), intent(in), target :: linear   !! of the last solve; it must remain
     type(answer_type), intent(in) :: answer      !! with some contact
     type(unit_loads) :: loads
     type(rigid_start) :: start
@@ -69,7 +69,7 @@ contains
       ! Of motions that no pressed pair resists as many are held as are independent, which says nothing of the
       ! others.
       pressed = pack([(j, j=1, scene%model%pairs)], answer%contact%force > 0.0_wp)
-      call find_rigid_start(loads%problem%motion(pressed, :), 0*loads%problem%resultant, &
+      call find_rigid_start(loads%problem%motion%rows(pressed), 0*loads%problem%resultant, &
                             0*loads%problem%gap(pressed), start)
       call drop_motions(loads%problem, start%redundant)
     end if
@@ -178,7 +178,7 @@ contains
     type(contact_basis), intent(in) :: basis                 !! a sound one
     real(wp), contiguous, intent(in) :: opening(:, :)        !! in scaled units [pairs in contact, any]
     real(wp), allocatable :: carried(:, :), approach(:, :)
-    real(wp) :: load(size(basis%resistance, 1), size(opening, 2))
+    real(wp) :: load(basis%motions, size(opening, 2))
 
     load = 0.0_wp
     call respond(basis, opening, load, carried, approach)
@@ -192,12 +192,14 @@ contains
     real(wp), intent(in) :: travel(:)    !! what the gap of each pair is the sum of, added up [length] [pairs]
     real(wp), intent(in) :: condition    !! of the stiffness
     type(contact_sensitivity) :: found
-    real(wp), allocatable :: opening(:), rounding(:)
+    real(wp), allocatable :: opening(:), pressed(:), rounding(:)
 
     if (.not. basis%sound .or. size(basis%pairs) == 0) return
     found%known = .true.
-    opening = matmul(abs(problem%flexibility(basis%pairs, basis%pairs)), abs(force(basis%pairs))) &
-              /problem%force_unit
+    allocate (pressed(size(force)), source=0.0_wp)
+    pressed(basis%pairs) = force(basis%pairs)/problem%force_unit
+    opening = gaps_by_forces(problem, pressed, magnitudes=.true.)
+    opening = opening(basis%pairs)
     rounding = epsilon(1.0_wp)*(condition*opening + travel(basis%pairs)/problem%gap_unit)
     found%amplification = largest_change(basis, opening)*problem%force_unit/maxval(force)
     found%rounding = min(1.0_wp, largest_change(basis, rounding)*problem%force_unit/maxval(force))

@@ -12,10 +12,10 @@
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: solved_to
-  use epcont_contact_basis, only: change_set, contact_state, fresh_state, guess_tolerance, &
-    has_right_signs, solve_set
+  use epcont_contact_basis, only: change_set
   use epcont_contact_problem, only: contact_solution, contact_solved
   use epcont_contact_scaling, only: scaled_problem
+  use epcont_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, solve_set
   implicit none
   private
   public :: find_by_blocks
@@ -55,14 +55,14 @@ contains
       closed = scaled%guess .or. scaled%first_touching
       solution%block_steps = solution%block_steps + 1
       call test_afresh(guess_tolerance)
-      if (.not. found) call exchange_blocks(guess_tolerance)
+      if (.not. found) call look_for_set(guess_tolerance)
     end if
     if (.not. found) then
       closed = scaled%first_touching
       do while (size(closed)/(2*stride) >= fewest_candidates)
         stride = 2*stride
       end do
-      call exchange_blocks(solved_to)
+      call look_for_set(solved_to)
     end if
     if (found) solution%state = contact_solved
 
@@ -77,14 +77,25 @@ contains
       if (found) found = has_right_signs(scaled, state, tolerance)
     end subroutine test_afresh
 
-    !> Exchange until no pair is wrong, or no more steps are left, and test the set. Not if there were sets
-    !! without an own solution.
-    subroutine exchange_blocks(tolerance)
+    !> Exchange, and test the set that this ends with; by then no other factor is there.
+    subroutine look_for_set(tolerance)
       real(wp), intent(in) :: tolerance   !! of the test
+      logical :: ended
+
+      call exchange_blocks(ended)
+      if (ended) call test_afresh(tolerance)
+    end subroutine look_for_set
+
+    !> Exchange until no pair is wrong, or no more steps are left. Not `ended` if there were sets without an
+    !! own solution.
+    subroutine exchange_blocks(ended)
+      logical, intent(out) :: ended
       type(contact_state) :: trial
       real(wp) :: firmness(size(closed))
       integer :: repairs, step
 
+      if (allocated(state%level)) deallocate (state%level)
+      ended = .false.
       fewest = huge(fewest)
       firmness = 0.0_wp
       repairs = 0
@@ -106,7 +117,7 @@ contains
           closed = closed .or. scaled%first_touching
         end if
       end do
-      call test_afresh(tolerance)
+      ended = .true.
     end subroutine exchange_blocks
 
     !> The wrong pairs among the candidates; where there is none, among more of them.

@@ -6,6 +6,9 @@
 !>
 !> The first phase finds forces that carry the load at all, or a motion along which nothing resists it;
 !> the second, bounded since g^ >= 0, the statically determinate set of pairs that closes first.
+!>
+!> The tableau is kept row by row, and an exchange touches only rows and columns that are not zero there: of
+!> many bodies each has few pairs, and few others feel it.
 module epcont_contact_equilibrium
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: dependent, negligible, null_component
@@ -39,24 +42,25 @@ contains
     real(wp), intent(in) :: resultant(:)    !! P [m]
     real(wp), intent(in) :: gap(:)          !! g^, >= 0 [n]
     type(rigid_start), intent(out) :: start   !! which pairs touch first, or the motion that nothing resists
-    ! Rows: equations of equilibrium, with the signs that make P >= 0. Columns: forces 1..n, then one
-    ! artificial force a row. In phase 1 these carry all of the load and cost one a unit.
-    real(wp) :: entry(size(resultant), size(gap) + size(resultant)), reduced_cost(size(gap) + size(resultant))
+    !> Of a force in an equation of equilibrium, with the signs that make P >= 0: forces 1..n, then one
+    !! artificial force an equation. In phase 1 these carry all of the load and cost one a unit.
+    real(wp), allocatable :: entry(:, :)
+    real(wp) :: reduced_cost(size(gap) + size(resultant))
     real(wp) :: value(size(resultant))      ! basic variables
-    integer :: basic(size(resultant))       ! which variable is basic in each row
+    integer :: basic(size(resultant))       ! which variable is basic in each equation
     integer :: i, n
 
     n = size(gap)
     value = abs(resultant)
     if (any(value > 0.0_wp)) value = value/maxval(value)
-    entry = 0.0_wp
+    allocate (entry(n + size(resultant), size(resultant)), source=0.0_wp)
+    reduced_cost = 0.0_wp
     do i = 1, size(resultant)
-      entry(i, :n) = sign(1.0_wp, resultant(i))*motion(:, i)
-      entry(i, n + i) = 1.0_wp
+      entry(:n, i) = sign(1.0_wp, resultant(i))*motion(:, i)
+      entry(n + i, i) = 1.0_wp
       basic(i) = n + i
+      reduced_cost(:n) = reduced_cost(:n) - entry(:n, i)
     end do
-    reduced_cost(:n) = -sum(entry(:, :n), dim=1)
-    reduced_cost(n + 1:) = 0.0_wp
     call minimise()
     start%balanced = sum(value, mask=basic > n) <= dependent
     if (start%balanced) then
@@ -65,7 +69,7 @@ contains
       reduced_cost(:n) = gap
       reduced_cost(n + 1:) = 0.0_wp
       do i = 1, size(basic)
-        if (basic(i) <= n) reduced_cost = reduced_cost - gap(basic(i))*entry(i, :)
+        if (basic(i) <= n) reduced_cost = reduced_cost - gap(basic(i))*entry(:, i)
       end do
       call minimise()
       start%touching = [(any(basic == i), i=1, n)]
@@ -104,20 +108,21 @@ contains
     pure integer function leaving_row(column, by_index) result(row)
       integer, intent(in) :: column
       logical, intent(in) :: by_index
-      real(wp) :: least, ratio, zero
+      real(wp) :: least, pivot(size(basic)), ratio, zero
       integer :: i
 
       row = 0
       least = huge(least)
-      zero = null_component*maxval([abs(entry(:, column)), 1.0_wp])
+      pivot = entry(column, :)
+      zero = null_component*maxval([abs(pivot), 1.0_wp])
       do i = 1, size(basic)
-        if (entry(i, column) <= zero) cycle
-        ratio = value(i)/entry(i, column)
+        if (pivot(i) <= zero) cycle
+        ratio = value(i)/pivot(i)
         if (row > 0) then
           if (ratio > least + negligible) cycle
           if (ratio >= least - negligible) then
             if (by_index .and. basic(i) > basic(row)) cycle
-            if (.not. by_index .and. entry(i, column) <= entry(row, column)*(1.0_wp + negligible)) cycle
+            if (.not. by_index .and. pivot(i) <= pivot(row)*(1.0_wp + negligible)) cycle
           end if
         end if
         row = i
@@ -128,19 +133,29 @@ contains
     !> The variable of a column becomes basic in a row.
     subroutine exchange(row, column)
       integer, intent(in) :: row, column
+      integer :: filled(size(reduced_cost))   ! columns that are not zero in that row
       real(wp) :: factor
-      integer :: i
+      integer :: i, j, last
 
-      factor = entry(row, column)
-      entry(row, :) = entry(row, :)/factor
+      factor = entry(column, row)
       value(row) = value(row)/factor
+      last = 0
+      do j = 1, size(reduced_cost)
+        if (entry(j, row) == 0.0_wp) cycle
+        entry(j, row) = entry(j, row)/factor
+        last = last + 1
+        filled(last) = j
+      end do
       do i = 1, size(basic)
-        if (i == row) cycle
-        factor = entry(i, column)
-        entry(i, :) = entry(i, :) - factor*entry(row, :)
+        factor = entry(column, i)
+        if (i == row .or. factor == 0.0_wp) cycle
+        do j = 1, last
+          entry(filled(j), i) = entry(filled(j), i) - factor*entry(filled(j), row)
+        end do
         value(i) = max(value(i) - factor*value(row), 0.0_wp)
       end do
-      reduced_cost = reduced_cost - reduced_cost(column)*entry(row, :)
+      factor = reduced_cost(column)
+      reduced_cost(filled(:last)) = reduced_cost(filled(:last)) - factor*entry(filled(:last), row)
       basic(row) = column
     end subroutine exchange
 
@@ -152,11 +167,11 @@ contains
       do i = 1, size(basic)
         if (basic(i) <= n) cycle
         value(i) = 0.0_wp
-        column = first_largest(abs(entry(i, :n)), null_component*maxval(abs(entry(i, n + 1:))))
+        column = first_largest(abs(entry(:n, i)), null_component*maxval(abs(entry(n + 1:, i))))
         if (column > 0) then
           call exchange(i, column)
         else
-          entry(i, :n) = 0.0_wp
+          entry(:n, i) = 0.0_wp
         end if
       end do
     end subroutine expel_artificials

@@ -19,9 +19,10 @@
 module epcont_contact_loading
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, solved_to
-  use epcont_contact_basis, only: basic_values, contact_state, respond
+  use epcont_contact_basis, only: respond
   use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
   use epcont_contact_scaling, only: scaled_problem
+  use epcont_contact_state, only: basic_values, contact_state
   use epcont_linalg_dense, only: add_product
   implicit none
   private
@@ -86,7 +87,8 @@ contains
     !> The tableau of the set, with the responses of the basic variables to unit nonbasic ones: gaps of the
     !! pairs in contact, forces of the others.
     subroutine begin_tableau()
-      real(wp), allocatable :: opening(:, :), load(:, :), force(:, :), approach(:, :)
+      real(wp), allocatable :: opening(:, :), load(:, :), force(:, :), approach(:, :), motion(:, :)
+      real(wp), allocatable :: responding(:, :)   ! openings of all pairs by forces of the basis
       integer :: i
 
       associate (pairs => state%pairs)
@@ -97,9 +99,11 @@ contains
         place([-basic, load_factor]) = [(-i, i=1, n + 1)]
         value = start
         pending = 0
-        opening = scaled%flexibility(pairs, :)
-        load = -transpose(scaled%motion)
-        settled(:, :n) = scaled%flexibility
+        motion = scaled%motion%rows([(i, i=1, n)])
+        settled(:, :n) = scaled%flexibility_scale*scaled%flexibility%dense()
+        opening = settled(pairs, :n)
+        responding = settled(:, pairs)
+        load = -transpose(motion)
         do i = 1, size(pairs)
           opening(:, pairs(i)) = 0.0_wp
           opening(i, pairs(i)) = -1.0_wp
@@ -107,8 +111,8 @@ contains
         load(:, pairs) = 0.0_wp
         settled(:, pairs) = 0.0_wp
         call respond(state%contact_basis, opening, load, force, approach)
-        call add_product(1.0_wp, scaled%flexibility(:, pairs), force, settled(:, :n))
-        call add_product(-1.0_wp, scaled%motion, approach, settled(:, :n))
+        call add_product(1.0_wp, responding, force, settled(:, :n))
+        call add_product(-1.0_wp, motion, approach, settled(:, :n))
         settled(pairs, :n) = force
         settled(:, n + 1) = basic_values(state) - start
       end associate

@@ -8,6 +8,7 @@
 !> F is symmetric and semidefinite; it may be singular.
 module epcont_contact_problem
   use epcont_base_kinds, only: wp
+  use epcont_contact_flexibility_matrix, only: flexibility_matrix
   implicit none
   private
   public :: contact_problem, contact_solution, pivot_record
@@ -25,8 +26,7 @@ module epcont_contact_problem
   integer, parameter, public :: history_limit = 50
 
   type :: contact_problem
-    !> F, opening of pair i by a unit force at pair j [length/force] [n, n]
-    real(wp), allocatable :: flexibility(:, :)
+    type(flexibility_matrix) :: flexibility     !! F, opening of pair i by a unit force at pair j
     real(wp), allocatable :: motion(:, :)       !! A, closing of the gaps by unit rigid motions [n, m]
     real(wp), allocatable :: initial_gap(:)     !! g0, negative: an overlap [length] [n]
     real(wp), allocatable :: load_gap(:)        !! gl, opening by the loads without contact [length] [n]

@@ -7,19 +7,25 @@
 !>
 !> so that what drives the contact is of size one, however far apart the other pairs are. Without load or
 !> overlap rho is max|g| / max|F|; without flexibility omega is max|g|. Motions are scaled one by one
-!> because translations and rotations have different units.
+!> because translations and rotations have different units. F, which may be large, stays as it was given:
+!> its entries are scaled where they are used.
 module epcont_contact_scaling
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible
+  use epcont_contact_flexibility_matrix, only: flexibility_matrix
+  use epcont_contact_motion_matrix, only: motion_matrix, new_motion_matrix
   use epcont_contact_problem, only: contact_problem
   implicit none
   private
-  public :: scaled_problem, scale_problem, drop_motions, measure
+  public :: scaled_problem, scale_problem, drop_motions, measure, gaps_by_forces
 
   !> The problem in its own units, over the motions that are kept.
   type :: scaled_problem
-    real(wp), allocatable :: flexibility(:, :)  !! F [n, n]
-    real(wp), allocatable :: motion(:, :)       !! A [n, m]
+    type(flexibility_matrix), pointer :: flexibility => null()   !! F, as given
+    real(wp) :: flexibility_scale = 1.0_wp       !! rho/omega, by which entries of F are multiplied
+    real(wp) :: own_flexibility = 0.0_wp        !! that each pair has besides F
+    type(motion_matrix) :: motion               !! A [n, m]
+    integer, allocatable :: motion_level(:)     !! last level of the pairs that each motion closes [m]
     real(wp), allocatable :: gap(:)             !! g, gaps under load before contact acts [n]
     real(wp), allocatable :: gap_terms(:)       !! |g0| + |gl|, what g is the sum of [n]
     real(wp), allocatable :: unloaded_gap(:)    !! g^, gaps of the start, >= 0 [n]
@@ -40,10 +46,10 @@ module epcont_contact_scaling
 contains
 
   !> The problem in units of its own, with all of its motions.
-  pure type(scaled_problem) function scale_problem(problem) result(scaled)
-    type(contact_problem), intent(in) :: problem   !! in the deck's units
+  type(scaled_problem) function scale_problem(problem) result(scaled)
+    type(contact_problem), intent(in), target :: problem   !! in the deck's units; it must remain
     real(wp) :: driving   !! largest gap that asks for forces
-    real(wp) :: largest   !! max|F|
+    real(wp) :: largest   !! max|F|: on the diagonal, as F is semidefinite
     integer :: j, m
 
     m = size(problem%resultant)
@@ -53,7 +59,7 @@ contains
     scaled%gap = problem%initial_gap + problem%load_gap
     scaled%gap_terms = abs(problem%initial_gap) + abs(problem%load_gap)
     scaled%unloaded_gap = max(problem%initial_gap, 0.0_wp)
-    largest = max(maxval(abs(problem%flexibility)), 0.0_wp)   ! maxval of nothing is negative
+    largest = largest_of(problem%flexibility%diagonal())
 
     driving = max(largest_of(min(scaled%gap, 0.0_wp)), largest_of(problem%load_gap))
     associate (rho => scaled%force_unit, omega => scaled%gap_unit)
@@ -62,13 +68,14 @@ contains
       omega = or_else(rho*largest, max(largest_of(scaled%gap), largest_of(scaled%unloaded_gap)))
       omega = or_else(omega, 1.0_wp)
 
-      scaled%flexibility = problem%flexibility*(rho/omega)
+      scaled%flexibility_scale = rho/omega
       scaled%gap = scaled%gap/omega
       scaled%gap_terms = scaled%gap_terms/omega
       scaled%unloaded_gap = scaled%unloaded_gap/omega
       scaled%resultant = problem%resultant/scaled%motion_size/rho
     end associate
-    scaled%motion = problem%motion/spread(scaled%motion_size, 1, size(scaled%gap))
+    scaled%flexibility => problem%flexibility
+    scaled%motion = new_motion_matrix(problem%motion, scaled%motion_size)
     call measure(scaled)
 
   contains
@@ -97,7 +104,7 @@ contains
     integer :: j
 
     kept = pack([(j, j=1, size(dropped))], .not. dropped)
-    scaled%motion = scaled%motion(:, kept)
+    scaled%motion = scaled%motion%only(kept)
     scaled%resultant = scaled%resultant(kept)
     scaled%kept = scaled%kept(kept)
     call measure(scaled)
@@ -106,13 +113,35 @@ contains
   !> What is large and what is rounding, of flexibilities and motions as they now are.
   pure subroutine measure(scaled)
     type(scaled_problem), intent(inout) :: scaled   !! the problem in its own units
-    integer :: k, n
+    real(wp) :: squares(size(scaled%gap))   ! of what the motions close of each gap
+    integer :: i, j
 
-    n = size(scaled%gap)
-    scaled%softest = or_else(largest_of([(scaled%flexibility(k, k), k=1, n)]), 1.0_wp)
-    scaled%gamma = scaled%softest/or_else(largest_of(sum(scaled%motion**2, dim=2)), 1.0_wp)
-    scaled%rank_tolerance = max(negligible/100, 4*n*epsilon(1.0_wp))*scaled%softest
+    squares = 0.0_wp
+    scaled%motion_level = spread(1, 1, scaled%motion%motions())
+    do j = 1, size(scaled%motion_level)
+      do i = scaled%motion%start(j), scaled%motion%start(j + 1) - 1
+        associate (k => scaled%motion%pair(i))
+          squares(k) = squares(k) + scaled%motion%closing(i)**2
+          scaled%motion_level(j) = max(scaled%motion_level(j), scaled%flexibility%level_of(k))
+        end associate
+      end do
+    end do
+    scaled%softest = or_else(largest_of(scaled%flexibility%diagonal()*scaled%flexibility_scale &
+                                        + scaled%own_flexibility), 1.0_wp)
+    scaled%gamma = scaled%softest/or_else(largest_of(squares), 1.0_wp)
+    scaled%rank_tolerance = max(negligible/100, 4*size(squares)*epsilon(1.0_wp))*scaled%softest
   end subroutine measure
+
+  !> F R, or |F| |R|, what it is the sum of.
+  pure function gaps_by_forces(scaled, force, magnitudes) result(gap)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    real(wp), intent(in) :: force(:)              !! R [n]
+    logical, intent(in), optional :: magnitudes   !! true: of F and R
+    real(wp) :: gap(size(force))
+
+    gap = scaled%flexibility%times(scaled%flexibility_scale*force, magnitudes)
+    if (scaled%own_flexibility > 0.0_wp) gap = gap + scaled%own_flexibility*force
+  end function gaps_by_forces
 
   !> Largest absolute value; 0 of none.
   pure real(wp) function largest_of(values)

@@ -11,12 +11,12 @@
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible, null_component, solved_to
-  use epcont_contact_basis, only: basic_values, contact_state, fresh_state, guess_tolerance, &
-    has_right_signs, solve_set
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_loading, only: follow_load
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
-  use epcont_contact_scaling, only: measure, scaled_problem
+  use epcont_contact_scaling, only: gaps_by_forces, measure, scaled_problem
+  use epcont_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, &
+    has_right_signs, solve_set
   implicit none
   private
   public :: find_contacts
@@ -97,14 +97,11 @@ contains
       type(scaled_problem) :: softer
       type(contact_solution) :: trial
       type(contact_state) :: better
-      integer :: k
 
       softer = scaled
       if (allocated(softer%guess)) deallocate (softer%guess)
-      do k = 1, size(scaled%gap)
-        softer%flexibility(k, k) = softer%flexibility(k, k) &
-                                   + attempt*own_flexibility*maxval(abs(scaled%flexibility))
-      end do
+      softer%own_flexibility = attempt*own_flexibility*scaled%flexibility_scale &
+                               *maxval([scaled%flexibility%diagonal(), 0.0_wp])
       call measure(softer)
       trial%pivots = solution%pivots
       call find_by_blocks(softer, trial, better, found)
@@ -129,9 +126,9 @@ contains
       overlap = largest > 0.0_wp .and. all(z >= -null_component*largest)
       if (.not. overlap) return
       ! A little flexibility is some, too, where it is no rounding.
-      nothing = max(null_component*matmul(abs(scaled%flexibility), abs(z)), cancelled*largest)
-      overlap = all(abs(matmul(scaled%flexibility, z)) <= nothing) &
-                .and. all(abs(matmul(z, scaled%motion)) <= null_component*largest) &
+      nothing = max(null_component*gaps_by_forces(scaled, z, magnitudes=.true.), cancelled*largest)
+      overlap = all(abs(gaps_by_forces(scaled, z)) <= nothing) &
+                .and. all(abs(scaled%motion%carried(z)) <= null_component*largest) &
                 .and. dot_product(scaled%gap, z) < -negligible*largest
     end function is_overlap
   end subroutine find_contacts

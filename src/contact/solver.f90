@@ -4,15 +4,18 @@ module epcont_contact_solver
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component, &
     solved_to
-  use epcont_contact_basis, only: contact_state, gaps_under, new_basis, solve_set, terms_of_gaps
+  use epcont_contact_basis, only: new_basis
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
+  use epcont_contact_flexibility_matrix, only: dense_flexibility
+  use epcont_contact_loose_motions, only: loose_motions
+  use epcont_contact_motion_matrix, only: motion_matrix
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
     contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
+  use epcont_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
-  use epcont_linalg_dense, only: null_space
   implicit none
   private
   public :: solve_contact
@@ -22,19 +25,20 @@ contains
   !> Find forces, gaps and motions of a contact problem, or why there are none. Where motions are neutral, so
   !! that nothing tells their values, they are those nearest to zero that leave no gap below it.
   recursive subroutine solve_contact(problem, solution, start, by_blocks)
-    type(contact_problem), intent(in) :: problem   !! in the deck's units
+    type(contact_problem), intent(in), target :: problem   !! in the deck's units
     type(contact_solution), intent(out) :: solution   !! its state says whether there is one
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
     logical, intent(in), optional :: by_blocks  !! RULE BLOCK; not given: CONRY
     type(scaled_problem) :: scaled
     type(rigid_start) :: rigid
-    real(wp), allocatable :: motion(:, :)   ! A of all motions, scaled [n, m]
+    type(motion_matrix) :: motion   ! A of all motions, scaled [n, m]
+    integer :: k
 
     scaled = scale_problem(problem)
     motion = scaled%motion
     if (present(start)) scaled%guess = start
     call clear()
-    call find_rigid_start(motion, scaled%resultant, scaled%unloaded_gap, rigid)
+    call find_rigid_start(motion%rows([(k, k=1, motion%pairs)]), scaled%resultant, scaled%unloaded_gap, rigid)
     if (.not. rigid%balanced) then
       solution%state = contact_no_equilibrium
       solution%escape = rigid%escape/scaled%motion_size
@@ -74,10 +78,10 @@ contains
       case (contact_overlap)
         solution%overlapping = ray > null_component*maxval(ray)
       case (contact_stalled)
-        loose = null_space(motion, cancelled/solved_to)
+        loose = loose_motions(motion, [(k, k=1, motion%pairs)], cancelled/solved_to)
         if (size(loose, 2) == 0) return
         solution%escape = loose(:, 1)/scaled%motion_size
-        ray = abs(matmul(motion, loose(:, 1)))
+        ray = abs(motion%times(loose(:, 1)))
         solution%overlapping = ray > 0.5_wp*maxval(ray)
       case default
         call settle(state, solution)
@@ -147,11 +151,14 @@ contains
       real(wp), allocatable :: change(:)                    ! of these motions
       integer :: k
 
-      loose = null_space(motion(pack([(k, k=1, size(state%gap))], state%force > 0.0_wp), :), negligible)
-      opening = -matmul(motion, loose)
+      loose = loose_motions(motion, pack([(k, k=1, size(state%gap))], state%force > 0.0_wp), negligible)
+      allocate (opening(size(state%gap), size(loose, 2)))
+      do k = 1, size(loose, 2)
+        opening(:, k) = -motion%times(loose(:, k))
+      end do
       where (abs(opening) <= negligible) opening = 0.0_wp
       change = -matmul(approach, loose)
-      springs%flexibility = matmul(opening, transpose(opening))
+      springs%flexibility = dense_flexibility(matmul(opening, transpose(opening)))
       springs%initial_gap = state%gap + matmul(opening, change)
       springs%load_gap = 0*state%gap
       allocate (springs%motion(size(state%gap), 0), springs%resultant(0))
@@ -165,7 +172,7 @@ contains
     !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
     !! than none: its pair need not be closed. Where rigid stops take the load, gaps may be far below the size
     !! that they are measured in, and that force may have held other pairs closed: those are solved for again.
-    pure subroutine cut_rounding(state, terms)
+    subroutine cut_rounding(state, terms)
       type(contact_state), intent(inout) :: state
       real(wp), allocatable, intent(out) :: terms(:)   !! what gaps are the sum of [n]
       type(contact_state) :: fewer

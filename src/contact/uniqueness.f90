@@ -2,10 +2,12 @@
 module epcont_contact_uniqueness
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, null_component
-  use epcont_contact_basis, only: contact_basis, new_basis, regular_flexibility
+  use epcont_contact_basis, only: are_independent, contact_basis, new_basis, respond
   use epcont_contact_equilibrium, only: can_carry
+  use epcont_contact_loose_motions, only: loose_motions
+  use epcont_contact_motion_matrix, only: motion_matrix
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_linalg_dense, only: add_product, cholesky_solve, null_space, pivoted_cholesky
+  use epcont_linalg_dense, only: add_product, null_space, pivoted_cholesky
   implicit none
   private
   public :: find_indeterminate_forces, share_equally, find_free_motions
@@ -29,7 +31,7 @@ contains
     type(contact_basis) :: basis
     !> M [idle, idle], and what z makes of the forces of the pressed pairs
     real(wp), allocatable :: answer(:, :), coupling(:, :)
-    real(wp), allocatable :: change(:, :), loose(:, :)
+    real(wp), allocatable :: change(:, :), loose(:, :), motion(:, :)
     integer, allocatable :: growing(:), idle(:)
     real(wp) :: zero   !! part of M that is rounding
     integer :: k
@@ -37,12 +39,12 @@ contains
     allocate (indeterminate(size(touching)), source=.false.)
     idle = pack([(k, k=1, size(touching))], touching .and. .not. pressed)
     if (size(idle) == 0) return
-    basis = new_basis(problem, pressed)
+    if (are_independent(problem, touching)) return
+    basis = new_basis(problem, pressed, held=.true.)
     coupling = regular_flexibility(problem, idle, idle)
     loose = regular_flexibility(problem, basis%pairs, idle)
-    answer = loose
-    call cholesky_solve(basis%factor, answer)
-    call add_product(-1.0_wp, transpose(loose), answer, coupling)
+    call respond(basis, loose, spread([real(wp) ::], 2, size(idle)), answer, motion)
+    call add_product(1.0_wp, transpose(loose), answer, coupling)
 
     zero = amplification*problem%rank_tolerance
     growing = forces_that_can_grow()
@@ -70,13 +72,25 @@ contains
     end function forces_that_can_grow
   end function find_indeterminate_forces
 
+  !> A block of F_g = F + gamma A A'.
+  pure function regular_flexibility(scaled, rows, columns) result(block)
+    type(scaled_problem), intent(in) :: scaled   !! in its own units
+    integer, intent(in) :: rows(:), columns(:)   !! pairs
+    real(wp), allocatable :: block(:, :), closing(:, :), other(:, :)   ! the block; A of rows and columns
+
+    block = scaled%flexibility_scale*scaled%flexibility%block(rows, columns)
+    closing = scaled%motion%rows(rows)
+    other = scaled%motion%rows(columns)
+    call add_product(scaled%gamma, closing, transpose(other), block)
+  end function regular_flexibility
+
   !> Pairs with equal rows in F and A share their force equally.
   pure subroutine share_equally(problem, indeterminate, force)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: indeterminate(:)    !! [n]
     real(wp), intent(inout) :: force(:)        !! [n]
     integer, allocatable :: alike(:), left(:)
-    integer :: k
+    integer :: j, k
 
     left = pack([(k, k=1, size(force))], indeterminate)
     do while (size(left) > 0)
@@ -90,27 +104,28 @@ contains
     !> Have two pairs the same flexibility and the same motion?
     pure logical function are_alike(i, k) result(alike)
       integer, intent(in) :: i, k
-      real(wp) :: zero
+      real(wp) :: opening(size(force), 2)   ! of all pairs by a unit force at one or the other
 
-      zero = negligible*max(problem%flexibility(i, i), problem%flexibility(k, k))
-      alike = all(abs(problem%motion(i, :) - problem%motion(k, :)) <= negligible)
-      if (alike) alike = all(abs(problem%flexibility(:, i) - problem%flexibility(:, k)) <= zero)
+      alike = all(abs(problem%motion%rows([i]) - problem%motion%rows([k])) <= negligible)
+      if (.not. alike) return
+      opening = problem%flexibility%block([(j, j=1, size(force))], [i, k])
+      alike = all(abs(opening(:, 1) - opening(:, 2)) <= negligible*max(opening(i, 1), opening(k, 2)))
     end function are_alike
   end subroutine share_equally
 
   !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions:
   !! they do where their forces, none of them a pull, would carry a load along the motion either way.
   function find_free_motions(motion, touching, pressed) result(free)
-    real(wp), intent(in) :: motion(:, :)   !! A, largest entry of each column one [n, m]
+    type(motion_matrix), intent(in) :: motion   !! A, largest entry of each column one [n, m]
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]
     real(wp), allocatable :: closing(:, :), loose(:, :)
     integer :: j, pair(size(pressed))
 
-    allocate (free(size(motion, 2)), source=.false.)
+    allocate (free(motion%motions()), source=.false.)
     pair = [(j, j=1, size(pair))]
-    loose = null_space(motion(pack(pair, pressed), :), null_component)
-    closing = matmul(motion(pack(pair, touching .and. .not. pressed), :), loose)
+    loose = loose_motions(motion, pack(pair, pressed), null_component)
+    closing = matmul(motion%rows(pack(pair, touching .and. .not. pressed)), loose)
     do j = 1, size(free)
       if (all(abs(loose(j, :)) <= null_component)) cycle
       free(j) = .not. (can_carry(closing, loose(j, :)) .and. can_carry(closing, -loose(j, :)))

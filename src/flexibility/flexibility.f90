@@ -11,8 +11,7 @@ module epcont_flexibility_flexibility
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: add_flexibility, body_flexibility, complete_flexibility, find_flexibility, gap_opening, &
-    pair_forces, see_motions
+  public :: bodies_of_pairs, body_flexibility, find_flexibility, gap_opening, pair_forces, see_motions
 
   !> One body's part of F, between the pairs that it gives way at.
   type :: body_flexibility
@@ -97,28 +96,28 @@ contains
     end function border_part
   end subroutine find_flexibility
 
-  !> Add a body's part to F.
-  pure subroutine add_flexibility(part, flexibility)
-    type(body_flexibility), intent(in) :: part   !! one body's
-    real(wp), intent(inout) :: flexibility(:, :)   !! lower triangle [length/force] [pairs, pairs]
-    integer :: k
+  !> The bodies that each pair has nodes of; 0 ends them [any, pairs].
+  pure function bodies_of_pairs(model) result(body)
+    type(model_type), intent(in) :: model   !! the scene
+    integer, allocatable :: body(:, :)
+    integer :: found(maxval([model%row_start(2:) - model%row_start(:model%pairs), 0]), model%pairs)
+    integer :: i, k, last, most
 
-    do k = 1, size(part%pair)
-      associate (row => part%pair(k:), column => part%pair(k))
-        flexibility(row, column) = flexibility(row, column) + part%matrix(k:, k)
-      end associate
+    found = 0
+    most = 0
+    do k = 1, model%pairs
+      last = 0
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        associate (b => model%body(model%row_node(i)))
+          if (any(found(:last, k) == b)) cycle
+          last = last + 1
+          found(last, k) = b
+        end associate
+      end do
+      most = max(most, last)
     end do
-  end subroutine add_flexibility
-
-  !> Copy the lower triangle of F, when all parts have been added, to the upper one.
-  pure subroutine complete_flexibility(flexibility)
-    real(wp), intent(inout) :: flexibility(:, :)   !! [length/force] [pairs, pairs]
-    integer :: k
-
-    do k = 2, size(flexibility, 2)
-      flexibility(:k - 1, k) = flexibility(k, :k - 1)
-    end do
-  end subroutine complete_flexibility
+    body = found(:most, :)
+  end function bodies_of_pairs
 
   !> Opening of the gaps by displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)

@@ -4,11 +4,12 @@ module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, no_effect, solved_to
+  use epcont_contact_flexibility_matrix, only: flexibility_matrix, new_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
-  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, complete_flexibility, &
-    find_flexibility, gap_opening, pair_forces, see_motions
+  use epcont_flexibility_flexibility, only: bodies_of_pairs, body_flexibility, find_flexibility, &
+    gap_opening, pair_forces, see_motions
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed, solver_frontal
@@ -34,8 +35,8 @@ module epcont_linear_linear_problem
     type(iteration_plan), private :: plan
     type(scene_materials) :: materials
     type(contact_problem) :: problem
-    !> Flexibility of the bodies that cannot yield, where others can [length/force] [pairs, pairs]
-    real(wp), allocatable, private :: lasting_flexibility(:, :)
+    !> Flexibility of the bodies that cannot yield, where others can; else without levels
+    type(flexibility_matrix), private :: lasting_flexibility
     type(scene_state), allocatable, private :: last  !! found by refinement, from which the next begins
     !> Opening of gaps by what supports travel [length] [pairs]
     real(wp), allocatable, private :: travel_gap(:)
@@ -71,7 +72,8 @@ contains
     integer, intent(out) :: failed_body            !! first body that could not be factored; 0: all could
     class(stopwatch), intent(inout) :: watch    !! takes the time
 
-    associate (yields => scene%numbering%body%can_yield, first => .not. allocated(self%problem%flexibility))
+    associate (yields => scene%numbering%body%can_yield, &
+               first => .not. allocated(self%problem%flexibility%level))
       call factor_bodies(yields .or. first)
       self%law%changed = .false.
       call watch%lap(stage_factor)
@@ -79,14 +81,16 @@ contains
       call self%settle(scene)
       call watch%lap(stage_displacements)
       if (first) then
-        allocate (self%problem%flexibility(scene%model%pairs, scene%model%pairs), source=0.0_wp)
+        self%problem%flexibility = new_flexibility(bodies_of_pairs(scene%model), scene%model%bodies)
         call add_flexibilities(.not. yields)
-        if (any(yields)) self%lasting_flexibility = self%problem%flexibility
+        if (any(yields) .and. .not. all(yields)) self%lasting_flexibility = self%problem%flexibility
+      else if (all(yields)) then
+        call self%problem%flexibility%clear()
       else if (any(yields)) then
         self%problem%flexibility = self%lasting_flexibility
       end if
       call add_flexibilities(yields)
-      call complete_flexibility(self%problem%flexibility)
+      call self%problem%flexibility%complete()
     end associate
     call watch%lap(stage_flexibility)
 
@@ -130,7 +134,7 @@ contains
       do b = 1, scene%model%bodies
         if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, self%body(b), own)
         !$omp ordered
-        if (chosen(b)) call add_flexibility(own, self%problem%flexibility)
+        if (chosen(b)) call self%problem%flexibility%add(own%pair, own%matrix)
         !$omp end ordered
       end do
       !$omp end parallel do
@@ -344,7 +348,7 @@ contains
     moving = share*state%contact%force
     rest = state%contact%force - moving
     self%problem%load_gap = gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap - &
-                            matmul(self%problem%flexibility, moving)
+                            self%problem%flexibility%times(moving)
     self%problem%resultant = load_factor*self%resultant - matmul(rest, self%problem%motion)
     call solve_contact(self%problem, state%contact, guess, self%plan%by_blocks)
     if (state%contact%state /= contact_solved) return

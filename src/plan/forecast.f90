@@ -30,9 +30,12 @@ module epcont_plan_forecast
   !! (`tests/plan`).
   integer(i8), parameter :: of_process = 7700000, of_node = 980, of_point = 250, of_node_of_point = 50, &
       of_yielding_point = 400
-  !> Matrices over all pairs that are there at once while the contact is solved: F of the bodies that cannot
-  !! yield, F, its scaled copy, and factors of those that touch, here half of them to all.
-  real(wp), parameter :: pair_matrices = 4.2_wp
+  !> Matrices over all pairs that are there at once while the contact is solved, of many bodies over those of
+  !! a few that follow each other: F, factors of those that touch, here half of them to all, and F of the
+  !! bodies that cannot yield where others can.
+  real(wp), parameter :: pair_matrices = 2.6_wp
+  !> Pairs whose rows are held together, at least (`least_level` of `contact/flexibility_matrix.f90`).
+  integer(i8), parameter :: least_level = 64
   !> And over pairs and free motions.
   integer(i8), parameter :: motion_matrices = 8
   !> Unit loads along free motions whose strains are there at once, of one body, when the figures are
@@ -84,12 +87,14 @@ contains
     type(iteration_plan), intent(in) :: plan   !! of its iteration
     type(forecast_type) :: expected
     integer(i8), allocatable :: own_pairs(:)
-    integer(i8) :: done_with, entries, factor, flexibility, last, pairs, passing, saved, unit_loads
+    integer(i8) :: coupled, done_with, entries, factor, flexibility, last, pairs, passing, saved, unit_loads
     real(wp) :: operations
     integer :: b
 
     pairs = model%pairs
     own_pairs = pairs_of_bodies()
+    ! Entries of F, by levels.
+    coupled = min(pairs**2, sum(own_pairs**2) + 2*least_level*pairs)
     entries = 0       ! of the factors
     saved = 0         ! bytes, by factors in single precision
     flexibility = 0   ! entries that are wanted for that of one body
@@ -131,13 +136,13 @@ contains
         end if
       end associate
     end do
-    entries = entries + max(int(pair_matrices*real(pairs, wp)**2, i8), flexibility + 2*pairs**2, passing) + &
+    entries = entries + max(int(pair_matrices*coupled, i8), flexibility + coupled, passing) + &
               motion_matrices*pairs*motions%count
     expected%double_bytes = real_bytes*entries + beside_matrices() + unit_loads
     expected%bytes = expected%double_bytes - saved
     ! A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice,
     ! and the sets on the way to it are smaller, or little of them is factored.
-    operations = merge(2.0_wp/3.0_wp, 2.0_wp, plan%by_blocks)*real(pairs, wp)**3
+    operations = merge(2.0_wp/3.0_wp, 2.0_wp, plan%by_blocks)*real(coupled, wp)**1.5_wp
     expected%operations = expected%operations + operations
     expected%operations_again = expected%operations_again + operations
 

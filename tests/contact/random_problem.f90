@@ -1,6 +1,7 @@
 !> Random contact problems for the tests, the same in every run, and the conditions their answers must meet.
 module random_problem
   use epcont_base_kinds, only: i8, wp
+  use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution
   implicit none
   private
@@ -56,7 +57,7 @@ contains
     problem%motion = matrix(random, n, m, whole)
     if (random%chance(0.5_wp)) problem%motion = abs(problem%motion)
     if (m > 0 .and. random%chance(0.5_wp)) problem%motion(:, 1) = 1.0_wp
-    problem%flexibility = semidefinite(random, n, whole)
+    problem%flexibility = dense_flexibility(semidefinite(random, n, whole))
     problem%initial_gap = gaps(random, n, whole)
     allocate (problem%load_gap(n), source=0.0_wp)
     if (random%chance(0.3_wp)) problem%load_gap = pack(matrix(random, n, 1, whole), .true.)
@@ -132,14 +133,14 @@ contains
     from = 1 + random%below(n)
     to = 1 + random%below(n)
     if (random%chance(0.2_wp)) then
-      problem%flexibility(to, :) = problem%flexibility(from, :)
-      problem%flexibility(:, to) = problem%flexibility(:, from)
+      problem%flexibility%level(1)%within(to, :) = problem%flexibility%level(1)%within(from, :)
+      problem%flexibility%level(1)%within(:, to) = problem%flexibility%level(1)%within(:, from)
       problem%motion(to, :) = problem%motion(from, :)
       problem%load_gap(to) = problem%load_gap(from)
       if (random%chance(0.7_wp)) problem%initial_gap(to) = problem%initial_gap(from)
     else if (random%chance(0.1_wp)) then
-      problem%flexibility(to, :) = 0.0_wp
-      problem%flexibility(:, to) = 0.0_wp
+      problem%flexibility%level(1)%within(to, :) = 0.0_wp
+      problem%flexibility%level(1)%within(:, to) = 0.0_wp
     end if
   end subroutine spoil
 
@@ -152,18 +153,18 @@ contains
     real(wp), allocatable :: gap_error(:), load_error(:)
     real(wp) :: gap_size, force_size, load_size
 
-    gap_error = problem%initial_gap + problem%load_gap + matmul(problem%flexibility, solution%force) &
+    gap_error = problem%initial_gap + problem%load_gap + matmul(problem%flexibility%level(1)%within, solution%force) &
                 - matmul(problem%motion, solution%approach) - solution%gap
     load_error = matmul(solution%force, problem%motion) - problem%resultant
     force_size = largest(solution%force)
     gap_size = maxval([largest(problem%initial_gap), largest(problem%load_gap), tiny(1.0_wp), &
-                       largest(pack(problem%flexibility, .true.))*force_size, &
+                       largest(pack(problem%flexibility%level(1)%within, .true.))*force_size, &
                        largest(pack(problem%motion, .true.))*largest(solution%approach)])
     ! Nothing has a length: no gap, no flexibility. What rounding leaves of zero has no measure.
     if (max(largest(problem%initial_gap), largest(problem%load_gap), &
-            largest(pack(problem%flexibility, .true.))) <= 0.0_wp) gap_size = huge(1.0_wp)
-    if (any(problem%flexibility /= 0.0_wp)) then
-      force_size = max(force_size, gap_size/largest(pack(problem%flexibility, .true.)))
+            largest(pack(problem%flexibility%level(1)%within, .true.))) <= 0.0_wp) gap_size = huge(1.0_wp)
+    if (any(problem%flexibility%level(1)%within /= 0.0_wp)) then
+      force_size = max(force_size, gap_size/largest(pack(problem%flexibility%level(1)%within, .true.)))
     end if
     force_size = max(force_size, tiny(1.0_wp))
     load_size = max(largest(problem%resultant), force_size*largest(pack(problem%motion, .true.)), tiny(1.0_wp))
@@ -200,7 +201,7 @@ contains
     type(contact_problem) :: other
 
     other = problem
-    other%flexibility = problem%flexibility*(gap_factor/force_factor)
+    other%flexibility = dense_flexibility(problem%flexibility%level(1)%within*(gap_factor/force_factor))
     other%initial_gap = problem%initial_gap*gap_factor
     other%load_gap = problem%load_gap*gap_factor
     other%resultant = problem%resultant*force_factor

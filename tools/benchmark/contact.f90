@@ -8,6 +8,7 @@ program bench_contact
   use, intrinsic :: iso_fortran_env, only: int32
   use epcont_base_kinds, only: wp
   use epcont_system_large_pages, only: prepare_heap
+  use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution
   use epcont_contact_solver, only: solve_contact
   use epcont_linalg_dense, only: add_product
@@ -29,7 +30,7 @@ program bench_contact
   do k = 0, repeats
     call cpu_time(begun)
     if (rule == 'DGEMM') then
-      call add_product(1.0_wp, problem%flexibility, problem%flexibility, product)
+      call add_product(1.0_wp, problem%flexibility%level(1)%within, problem%flexibility%level(1)%within, product)
     else
       call solve_contact(problem, solution, start, rule /= 'CONRY')
     end if
@@ -56,15 +57,17 @@ contains
   subroutine read_problem(path, problem)
     character(*), intent(in) :: path
     type(contact_problem), intent(out) :: problem
+    real(wp), allocatable :: flexibility(:, :)
     integer(int32) :: m, n
     integer :: unit
 
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', action='read')
     read (unit) n, m
-    allocate (problem%flexibility(n, n), problem%motion(n, m), problem%initial_gap(n), problem%resultant(m))
+    allocate (flexibility(n, n), problem%motion(n, m), problem%initial_gap(n), problem%resultant(m))
     allocate (problem%load_gap(n), source=0.0_wp)
-    read (unit) problem%flexibility, problem%motion, problem%initial_gap, problem%resultant
+    read (unit) flexibility, problem%motion, problem%initial_gap, problem%resultant
     close (unit)
+    problem%flexibility = dense_flexibility(flexibility)
   end subroutine read_problem
 
   subroutine write_forces(path, solution)
@@ -85,8 +88,8 @@ contains
     real(wp) :: rho, omega
 
     rho = maxval(abs(solution%force))
-    omega = rho*maxval(abs(problem%flexibility))
-    associate (gap => problem%initial_gap + matmul(problem%flexibility, solution%force) &
+    omega = rho*maxval(abs(problem%flexibility%level(1)%within))
+    associate (gap => problem%initial_gap + matmul(problem%flexibility%level(1)%within, solution%force) &
                - matmul(problem%motion, solution%approach))
       violation = maxval(abs(min(solution%force/rho, gap/omega)))
     end associate

@@ -12,12 +12,13 @@ program bench_ours
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_system_large_pages, only: prepare_heap
+  use epcont_contact_flexibility_matrix, only: new_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved
   use epcont_contact_solver, only: solve_contact
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_base_diagnostic, only: diagnostics
-  use epcont_flexibility_flexibility, only: add_flexibility, body_flexibility, complete_flexibility, &
-    find_flexibility, gap_opening, pair_forces, see_motions
+  use epcont_flexibility_flexibility, only: bodies_of_pairs, body_flexibility, find_flexibility, &
+    gap_opening, pair_forces, see_motions
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_build_build, only: build_model
@@ -138,12 +139,12 @@ contains
       call bodies%body(b)%factor()
       spent(factor) = spent(factor) + lap()
     end do
-    problem%flexibility = reshape([(0.0_wp, b=1, model%pairs**2)], [model%pairs, model%pairs])
+    problem%flexibility = new_flexibility(bodies_of_pairs(model), model%bodies)
     do b = 1, model%bodies
       call find_flexibility(model, numbering, b, bodies%body(b), part)
-      call add_flexibility(part, problem%flexibility)
+      call problem%flexibility%add(part%pair, part%matrix)
     end do
-    call complete_flexibility(problem%flexibility)
+    call problem%flexibility%complete()
     spent(flexibility) = lap()
     problem%load_gap = gap_opening(model, bodies%displacements(scene, model%load, 1.0_wp))
     spent(load_gap) = lap()

@@ -1,0 +1,142 @@
+!> A, the closing of the gaps by unit rigid motions, column by column without zeros: a motion moves one body,
+!> and of many bodies each has few pairs.
+module epcont_contact_motion_matrix
+  use epcont_base_kinds, only: wp
+  implicit none
+  private
+  public :: motion_matrix, new_motion_matrix
+
+  !> Motion j closes the gaps of the pairs pair(start(j):start(j+1)-1).
+  type :: motion_matrix
+    integer :: pairs = 0                    !! of the problem
+    integer, allocatable :: start(:)        !! [motions + 1]
+    integer, allocatable :: pair(:)         !! ascending in each motion [entries]
+    real(wp), allocatable :: closing(:)     !! [entries]
+  contains
+    procedure :: motions
+    procedure :: times
+    procedure :: carried
+    procedure :: rows
+    procedure :: only
+  end type motion_matrix
+
+contains
+
+  !> A in units of each motion.
+  pure type(motion_matrix) function new_motion_matrix(motion, unit) result(new)
+    real(wp), intent(in) :: motion(:, :)   !! [pairs, motions]
+    real(wp), intent(in) :: unit(:)        !! that each column is measured in [motions]
+    integer :: j, k, last
+
+    new%pairs = size(motion, 1)
+    allocate (new%start(size(motion, 2) + 1), new%pair(count(motion /= 0.0_wp)))
+    allocate (new%closing(size(new%pair)))
+    last = 0
+    new%start(1) = 1
+    do j = 1, size(motion, 2)
+      do k = 1, new%pairs
+        if (motion(k, j) == 0.0_wp) cycle
+        last = last + 1
+        new%pair(last) = k
+        new%closing(last) = motion(k, j)/unit(j)
+      end do
+      new%start(j + 1) = last + 1
+    end do
+  end function new_motion_matrix
+
+  !> How many there are.
+  pure integer function motions(self)
+    class(motion_matrix), intent(in) :: self
+
+    motions = size(self%start) - 1
+  end function motions
+
+  !> A q, the closing of the gaps by motions; or |A| |q|, what it is the sum of.
+  pure function times(self, approach, magnitudes) result(closing)
+    class(motion_matrix), intent(in) :: self
+    real(wp), intent(in) :: approach(:)    !! q [motions]
+    logical, intent(in), optional :: magnitudes   !! true: of A and q
+    real(wp) :: closing(self%pairs)
+    real(wp) :: by
+    integer :: i, j
+    logical :: absolute
+
+    absolute = .false.
+    if (present(magnitudes)) absolute = magnitudes
+    closing = 0.0_wp
+    do j = 1, size(approach)
+      by = approach(j)
+      if (absolute) by = abs(by)
+      if (by == 0.0_wp) cycle
+      do i = self%start(j), self%start(j + 1) - 1
+        if (absolute) then
+          closing(self%pair(i)) = closing(self%pair(i)) + by*abs(self%closing(i))
+        else
+          closing(self%pair(i)) = closing(self%pair(i)) + by*self%closing(i)
+        end if
+      end do
+    end do
+  end function times
+
+  !> A'R, what forces carry along each motion [motions].
+  pure function carried(self, force) result(load)
+    class(motion_matrix), intent(in) :: self
+    real(wp), intent(in) :: force(:)   !! R [pairs]
+    real(wp) :: load(size(self%start) - 1)
+    integer :: i, j
+
+    do j = 1, size(load)
+      load(j) = 0.0_wp
+      do i = self%start(j), self%start(j + 1) - 1
+        load(j) = load(j) + self%closing(i)*force(self%pair(i))
+      end do
+    end do
+  end function carried
+
+  !> Closing of some pairs' gaps, zeros and all, by all motions or some [pairs, motions].
+  pure function rows(self, pairs, motions) result(closing)
+    class(motion_matrix), intent(in) :: self
+    integer, intent(in) :: pairs(:)              !! each once
+    integer, intent(in), optional :: motions(:)
+    real(wp), allocatable :: closing(:, :)
+    integer, allocatable :: chosen(:)
+    integer :: i, j, k
+    integer :: row(self%pairs)   ! of each pair; 0: none
+
+    if (present(motions)) then
+      chosen = motions
+    else
+      chosen = [(j, j=1, size(self%start) - 1)]
+    end if
+    row = 0
+    row(pairs) = [(k, k=1, size(pairs))]
+    allocate (closing(size(pairs), size(chosen)), source=0.0_wp)
+    do j = 1, size(chosen)
+      do i = self%start(chosen(j)), self%start(chosen(j) + 1) - 1
+        if (row(self%pair(i)) > 0) closing(row(self%pair(i)), j) = self%closing(i)
+      end do
+    end do
+  end function rows
+
+  !> With some of the motions only.
+  pure type(motion_matrix) function only(self, kept) result(fewer)
+    class(motion_matrix), intent(in) :: self
+    integer, intent(in) :: kept(:)   !! motions
+    integer, allocatable :: entry(:)
+    integer :: i, j, last
+
+    fewer%pairs = self%pairs
+    allocate (fewer%start(size(kept) + 1), entry(size(self%pair)))
+    last = 0
+    fewer%start(1) = 1
+    do j = 1, size(kept)
+      do i = self%start(kept(j)), self%start(kept(j) + 1) - 1
+        last = last + 1
+        entry(last) = i
+      end do
+      fewer%start(j + 1) = last + 1
+    end do
+    fewer%pair = self%pair(entry(:last))
+    fewer%closing = self%closing(entry(:last))
+  end function only
+end module epcont_contact_motion_matrix

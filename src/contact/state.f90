@@ -1,0 +1,110 @@
+!> The solution of the contact equations for a set of pairs in contact, and the test of its signs.
+module epcont_contact_state
+  use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: cancelled
+  use epcont_contact_basis, only: contact_basis, new_basis, respond
+  use epcont_contact_scaling, only: gaps_by_forces, scaled_problem
+  implicit none
+  private
+  public :: contact_state, fresh_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
+
+  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can
+  !! be asked where the flexibility is badly conditioned (1e10: tests/contact/hard_problem), and what is asked
+  !! of a guess, from which better sets may be found.
+  real(wp), parameter, public :: guess_tolerance = 1.0e-12_wp
+
+  !> A set with its solution at full load; without forces where the basis is not sound.
+  type, extends(contact_basis) :: contact_state
+    real(wp), allocatable :: force(:)           !! zero outside the basis [n]
+    real(wp), allocatable :: gap(:)             !! zero up to rounding in the basis [n]
+    real(wp), allocatable :: approach(:)        !! [m]
+  end type contact_state
+
+contains
+
+  !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every
+  !! motion.
+  type(contact_state) function fresh_state(scaled, closed) result(state)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    logical, intent(in) :: closed(:)   !! [n]
+
+    state%contact_basis = new_basis(scaled, closed)
+    if (.not. state%sound) state%contact_basis = new_basis(scaled, closed .or. scaled%first_touching)
+    call solve_set(state, scaled, scaled%gap, scaled%resultant, refinements=1)
+  end function fresh_state
+
+  !> Forces, gaps and motions with the pairs of the basis closed and the others free of force.
+  pure subroutine solve_set(state, scaled, opening, load, refinements)
+    type(contact_state), intent(inout) :: state   !! its basis is solved with
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    real(wp), intent(in) :: opening(:)            !! gaps without forces [n]
+    real(wp), intent(in) :: load(:)               !! [m]
+    integer, intent(in) :: refinements            !! steps that follow the solution
+    real(wp), allocatable :: force(:, :), approach(:, :)
+    real(wp) :: unbalanced(size(load), 1)         ! what is not carried yet
+    integer :: step
+
+    state%gap = opening
+    state%force = spread(0.0_wp, 1, size(opening))
+    state%approach = spread(0.0_wp, 1, size(load))
+    if (.not. state%sound) return
+    unbalanced(:, 1) = load
+    associate (pairs => state%pairs)
+      do step = 0, refinements
+        call respond(state%contact_basis, reshape(state%gap(pairs), [size(pairs), 1]), unbalanced, &
+                     force, approach)
+        state%force(pairs) = state%force(pairs) + force(:, 1)
+        state%approach = state%approach + approach(:, 1)
+        state%gap = gaps_under(scaled, opening, state%force, state%approach)
+        unbalanced(:, 1) = load - scaled%motion%carried(state%force)
+      end do
+    end associate
+  end subroutine solve_set
+
+  !> w = g + F R - A q.
+  pure function gaps_under(scaled, opening, force, approach) result(gap)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    real(wp), intent(in) :: opening(:)            !! g [n]
+    real(wp), intent(in) :: force(:)              !! R [n]
+    real(wp), intent(in) :: approach(:)           !! q [m]
+    real(wp), allocatable :: gap(:)
+
+    gap = opening - scaled%motion%times(approach) + gaps_by_forces(scaled, force)
+  end function gaps_under
+
+  !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
+  pure function basic_values(state) result(values)
+    type(contact_state), intent(in) :: state   !! set and solution
+    real(wp), allocatable :: values(:)
+
+    values = state%gap
+    values(state%pairs) = state%force(state%pairs)
+  end function basic_values
+
+  !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the
+  !! largest force and gap.
+  pure logical function has_right_signs(scaled, state, tolerance) result(right)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    type(contact_state), intent(in) :: state   !! set and solution
+    real(wp), intent(in) :: tolerance   !! one of the above
+    real(wp) :: force_tolerance, gap_noise
+
+    force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
+    gap_noise = cancelled*maxval([abs(scaled%gap), 0.0_wp])
+    right = state%sound .and. all(state%force >= -force_tolerance) .and. &
+        all(state%gap >= -(force_tolerance + gap_noise))
+    if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
+    ! The largest force, at a stop that hardly gives way, says nothing of gaps that it has no part in.
+    right = all(state%gap >= -(tolerance*max(terms_of_gaps(scaled, state), 1.0_wp) + gap_noise))
+  end function has_right_signs
+
+  !> The sum of the magnitudes that each gap is the sum of.
+  pure function terms_of_gaps(scaled, state) result(terms)
+    type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
+    type(contact_state), intent(in) :: state   !! set and solution
+    real(wp), allocatable :: terms(:)
+
+    terms = scaled%gap_terms + scaled%motion%times(state%approach, magnitudes=.true.) &
+            + gaps_by_forces(scaled, state%force, magnitudes=.true.)
+  end function terms_of_gaps
+end module epcont_contact_state
