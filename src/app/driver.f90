@@ -88,7 +88,8 @@ contains
       end if
       run%outcome = judge(run)
       status = run%outcome%status
-      call write_results(run, stem, arguments%asks('--tables'), arguments%asks('--vtk'), error)
+      call write_results(run, stem, arguments%asks('--tables'), arguments%asks('--brief'), &
+                         arguments%asks('--vtk'), error)
       written = .true.
       call watch%lap(stage_writing)
       call watch%erase()

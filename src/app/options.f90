@@ -26,6 +26,9 @@ module epcont_app_options
                      'factor of 2, beyond yield where it takes about as many solves as are told.'), &
     option_type('--tables', 'write node and element tables, whatever the deck asks for', 'all', &
                 more='Without it they are written where the deck has DISPLACEMENT, SPCFORCES or STRESS.'), &
+    option_type('--brief', 'write the listing and the summary alone, none of the other tables', &
+                more='For many small decks. Tables of nodes and elements that are asked for stand in the '// &
+                     'listing then.'), &
     option_type('--vtk', 'write DECK.vtu and DECK.contact.vtu, for ParaView'), &
     option_type('--memory', 'refuse decks that need more memory (default 16)', 'GB'), &
     option_type('--progress', 'tell of every solve on standard error, terminal or not', &

@@ -14,6 +14,8 @@ module epcont_plan_run_time
 
   !> Operations of products of matrices in a second, where that was not measured: one core with AVX2.
   real(wp), parameter :: likely_rate = 3.0e10_wp
+  !> Of the first contact problem, as often again: sets on the way to its answer, and the accuracy of that.
+  real(wp), parameter :: contact_more = 2.0_wp
   !> What each entry of a factor takes beside operations: memory from the system, assembly, small fronts [s].
   real(wp), parameter :: of_entry = 4.0e-9_wp
   !> Over what comes before the first solve: what a solve takes beside its factors (strains, states,
@@ -49,7 +51,8 @@ contains
     type(run_time) :: time
 
     time%begun = begun
-    time%solve = expected%operations/rate + of_entry*expected%entries + solve_part*begun
+    time%solve = (expected%operations + contact_more*expected%contact)/rate + &
+                 of_entry*expected%entries + solve_part*begun
     time%next = expected%operations_again/rate + of_entry*expected%entries_again + solve_part*begun
     time%finish = end_part*begun + of_files + of_row*rows
     if (plan%yields) time%solves = plan%load_steps*solves_at_a_load(plan)

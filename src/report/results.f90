@@ -47,11 +47,11 @@ module epcont_report_results
 contains
 
   !> The listing and the tables; those of nodes and elements where the deck, or `all_tables`, asks for them.
-  !! With `vtk` also files for ParaView.
-  subroutine write_results(run, stem, all_tables, vtk, error)
+  !! `brief`: in the listing alone, and of tables the summary alone. With `vtk` also files for ParaView.
+  subroutine write_results(run, stem, all_tables, brief, vtk, error)
     type(run_results), intent(in) :: run                  !! what is known of the run
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
-    logical, intent(in) :: all_tables, vtk                !! asked for on the command line
+    logical, intent(in) :: all_tables, brief, vtk         !! asked for on the command line
     type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
     type(figure_type), allocatable :: figures(:)
     type(table_type) :: listing
@@ -65,16 +65,21 @@ contains
     call write_listing()
     call write_table('summary')
     if (.not. run%outcome%has_answer) return
-    call write_table('contact')
-    call write_table('zones')
-    if (run%model%pairs > 0) call write_table('bodies')
-    call write_table('history')
-    if (all_tables .and. size(run%answer%pivot) > 0) call write_table('pivots')
-    if (nodes) call write_table('nodes')
-    if (elements) call write_table('elements')
+    if (.not. brief) call write_tables()
     if (vtk .and. .not. allocated(error)) call write_vtk(run, stem, error)
 
   contains
+
+    !> All tables but the summary.
+    subroutine write_tables()
+      call write_table('contact')
+      call write_table('zones')
+      if (run%model%pairs > 0) call write_table('bodies')
+      call write_table('history')
+      if (all_tables .and. size(run%answer%pivot) > 0) call write_table('pivots')
+      if (nodes) call write_table('nodes')
+      if (elements) call write_table('elements')
+    end subroutine write_tables
 
     !> A table in a file of its own, where all has gone well so far.
     subroutine write_table(name)

@@ -269,6 +269,47 @@ class Misbehaving(Case):
             wanted = (self.place / "alone" / f"d07{suffix}").read_bytes()
             self.assertEqual([], [name for name in names if (self.place / "out" / (name[:-4] + suffix)).read_bytes() != wanted])
 
+    def test_one_table(self):
+        """All figures of the summaries as columns, of valid and other answers; files beside it are listings alone, the same as without."""
+        names = [f"d{k:02d}.dat" for k in range(20)]
+        self.decks(*names, "z_rejected.dat")
+        apart = self.deck("apart.dat", ROOT / "input" / "faults" / "pulled_apart.dat")
+        self.run_it(1, *names, "z_rejected.dat", apart, "-o", "out", "--one-table", "--program", self.fake)
+        rows = self.table()
+        self.run_it(0, "d07.dat", "-o", "alone")
+        summary = [line.split(",")[:2] for line in (self.place / "alone" / "d07.summary.csv").read_text().splitlines()[1:]]
+        self.assertGreater(len(summary), 30)
+        own = {"status": "status", "warnings": "warnings", "max_pressure": "p_max", "max_pressure_is": "p_max_is"}
+        self.assertEqual([value for _, value in summary], [rows[7][own.get(key, f"summary_{key}")] for key, _ in summary])
+        self.assertEqual(["rejected", "no equilibrium"], [row["status"] for row in rows[-2:]])
+        self.assertEqual({""}, {value for key, value in rows[-2].items() if key.startswith("summary_")})
+        self.assertEqual("0", rows[-1]["summary_notes"])
+        self.assertEqual(sorted([name[:-4] + ".lst" for name in names] + ["apart.lst", "batch.csv"]),
+                         sorted(path.name for path in (self.place / "out").iterdir() if path.is_file()))
+        self.assertEqual((self.place / "alone" / "d07.lst").read_bytes(), (self.place / "out" / "d07.lst").read_bytes())
+
+    def test_one_table_and_many_do_not_mix(self):
+        self.decks("a.dat", "b.dat")
+        for options in ((), ("--one-table",), ()):
+            (self.place / "calls").unlink(missing_ok=True)
+            self.run_it(0, "a.dat", "b.dat", "-o", "out", "--resume", "--program", self.fake, *options)
+            self.assertEqual(["a.dat", "b.dat"], self.calls())
+
+    def test_a_deck_that_changes_while_others_run(self):
+        """What it holds is noted as it was run."""
+        from batching.decks import Deck, fingerprint, inputs_of, look_at
+        deck = Deck(str(self.deck("a.dat")))
+        look_at(deck)
+        self.assertEqual(fingerprint(deck.path), (deck.digest, deck.size))
+        self.assertEqual(deck.digest, inputs_of(deck))
+        (self.place / "a.dat").write_text(SMALL.read_text() + "$\n")
+        self.assertEqual(fingerprint(deck.path)[0], inputs_of(deck))
+        self.assertNotEqual(deck.digest, inputs_of(deck))
+        (self.place / "b.dat").write_text("INCLUDE 'a.dat'\n")
+        including = Deck(str(self.place / "b.dat"))
+        look_at(including)
+        self.assertEqual("", including.digest)   # what it includes may change unseen
+
     def test_warnings_are_no_faults(self):
         said = "a.dat:3:9-16: warning: a remark\n  GRID 1\n  ^^^^\na.dat:5:1-4: unknown card\n  GRIT 1\na.dat:9: later\n"
         self.assertEqual("a.dat:5:1-4: unknown card", first_fault(said))

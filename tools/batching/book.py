@@ -13,7 +13,7 @@ import json
 import os
 
 from .decks import Deck, Refused, fingerprint
-from .outcome import ANSWERED, COLUMNS, KILLED, NOT_RUN, number
+from .outcome import ANSWERED, COLUMNS, KILLED, NOT_RUN, SUMMARY, number
 
 ENDED = {"place", "row", "inputs", "at", "version", "listing"}   # what a line that tells of an end has
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
@@ -108,10 +108,11 @@ class Book:
     def write_table(self, plan, ends):
         rows, first = self.rows(plan, ends), plan["decks"][0].rows
         columns = COLUMNS[:1] + (list(first[0][1]) if first else []) + COLUMNS[1:]
+        columns += dict.fromkeys(key for row in rows for key in row if key.startswith(SUMMARY) and key not in columns)
         text = io.StringIO()
-        table = csv.DictWriter(text, columns, lineterminator="\n")
-        table.writerow({name: no_formula(name) for name in columns})
-        table.writerows({name: no_formula(value) for name, value in row.items()} for row in rows)
+        table = csv.writer(text, lineterminator="\n")
+        table.writerow(map(no_formula, columns))
+        table.writerows([no_formula(row.get(name, "")) for name in columns] for row in rows)
         write_whole(self.table_path, text.getvalue())
         return rows
 
@@ -187,7 +188,7 @@ def write_whole(path, text):
 
 def no_formula(value):
     """What a spreadsheet would take for a formula is a text to it with an apostrophe before it; numbers stay as they are."""
-    if not isinstance(value, str) or not value.lstrip().startswith(("=", "+", "-", "@")) or number(value) is not None:
+    if not isinstance(value, str) or not value or value[0].isalnum() or not value.lstrip().startswith(("=", "+", "-", "@")) or number(value) is not None:
         return value
     return "'" + value
 

@@ -33,6 +33,8 @@ class Deck:
     place: str = ""                              # its results below the folder of the batch, without their suffix
     rows: list = field(default_factory=list)     # of a list that is a table: [number, further columns] of each row of the deck
     size: int = 0                                # bytes, with what it includes
+    digest: str = ""                             # of what it holds, where nothing is included
+    stamp: tuple = ()                            # of its file when that was read
 
 
 def read_list(path):
@@ -133,6 +135,27 @@ def included(text):
         if match:
             yield match[2]
         at = lower.find(b"include", at + 1)
+
+
+def stamp_of(path):
+    try:
+        found = os.stat(path)
+    except (OSError, ValueError):
+        return ()
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+def look_at(deck):
+    """Read a deck for the first time: its size, and what it holds."""
+    deck.stamp = stamp_of(deck.path)
+    digest, deck.size = fingerprint(deck.path)
+    alone = deck.stamp and deck.size == deck.stamp[1] + len(f"{deck.stamp[1]} ")   # it includes nothing
+    deck.digest = digest if alone else ""
+
+
+def inputs_of(deck):
+    """What a deck holds now; read again unless its file is as it was."""
+    return deck.digest if deck.digest and stamp_of(deck.path) == deck.stamp else fingerprint(deck.path)[0]
 
 
 def fingerprint(path):

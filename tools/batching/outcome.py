@@ -8,16 +8,21 @@ import tables
 
 COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "nodes", "p_max", "p_max_is", "approach", "p_max_error",
            "certificate", "certificate_part", "warnings", "first_warning"]
+#: With --one-table: what stands before a figure of the summary, and those that have a column already.
+SUMMARY = "summary_"
+TAKEN = ("status", "warnings", "max_pressure", "max_pressure_is")
 ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "singular stiffness", "contact not found", "ill-conditioned",
             "not certified"}   # words of a whole listing
 NOT_RUN = "not run"
 KILLED = "killed"              # from outside: whoever has the right may run the deck again
 NO_FAULT = re.compile(r": warning: |: \d+ warnings?(?: \(\d+ shown\))?$")
+NODES = re.compile(r"^  (\d+) nodes?,", re.MULTILINE)
+CERTIFICATE = re.compile(r"^CERTIFICATE .*tolerance (\S+?)\).*\n((?:  .*\n)+)", re.MULTILINE)
 FIGURE = re.compile(r"^  (\S.*?)  +(< )?([+-]?\d[\d.E+-]*)$")
 
 
-def row_of(deck, stem, ended):
-    """The row of a deck whose run has ended (`ended`: see running.Ended)."""
+def row_of(deck, stem, ended, one_table=False):
+    """The row of a deck whose run has ended (`ended`: see running.Ended); with `one_table` all figures of its summary are in it."""
     row = dict.fromkeys(COLUMNS, "")
     row.update(deck=deck.path, exit_status=ended.code if ended.code >= 0 else "",
                seconds=f"{ended.seconds:.3f}", memory_MB=f"{ended.memory / 1024:.1f}" if ended.memory else "")
@@ -25,6 +30,8 @@ def row_of(deck, stem, ended):
     row["status"], row["message"] = judge(ended, listing, summary)
     if row["status"] in ANSWERED:
         row.update(figures(listing, summary))
+        if one_table:
+            row.update((f"{SUMMARY}{key}", value) for key, value in summary.items() if key not in TAKEN)
     return row
 
 
@@ -76,7 +83,7 @@ def first_fault(said):
 def figures(listing, summary):
     """The columns that need a listing."""
     found = {}
-    nodes = re.search(r"^  (\d+) nodes?,", listing, re.MULTILINE)
+    nodes = NODES.search(listing, max(0, listing.find("\nPLAN")))
     if nodes:
         found["nodes"] = nodes[1]
     found["p_max"], found["p_max_is"] = summary.get("max_pressure", ""), summary.get("max_pressure_is", "")
@@ -85,7 +92,9 @@ def figures(listing, summary):
     if error is not None and pressure:
         found["p_max_error"] = f"{error / pressure:.3g}"
     found["certificate"], found["certificate_part"] = worst_of_certificate(listing, summary)
-    found["warnings"], found["first_warning"] = summary.get("warnings", ""), first_warning(listing)
+    found["warnings"], found["first_warning"] = summary.get("warnings", ""), ""
+    if found["warnings"] != "0":
+        found["first_warning"] = first_warning(listing)
     return found
 
 
@@ -98,7 +107,7 @@ def first_warning(listing):
 
 def worst_of_certificate(listing, summary):
     """The figure that takes most of what it may, and how much of it: above 1 it does not hold."""
-    block = re.search(r"^CERTIFICATE .*tolerance (\S+?)\).*\n((?:  .*\n)+)", listing, re.MULTILINE)
+    block = CERTIFICATE.search(listing, max(0, listing.rfind("\nCERTIFICATE ")))
     if not block:
         return "", ""
     lines = [match.groups() for match in map(FIGURE.match, block[2].splitlines()) if match]
@@ -118,6 +127,11 @@ def number(text):
 
 
 def read_summary(path):
+    """Values by key. Few values are words that a comma could be in; the others need no reader of tables, which is slow."""
+    text = read_text(path)
+    if '"' not in text:
+        rows = [line.split(",") for line in text.splitlines()[1:]]
+        return {row[0]: row[1] for row in rows if len(row) > 1}
     try:
         return tables.summary(path)
     except (OSError, csv.Error):
@@ -126,8 +140,8 @@ def read_summary(path):
 
 def read_text(path):
     try:
-        with open(path, encoding="latin-1") as file:
-            return file.read()
+        with open(path, "rb") as file:
+            return file.read().decode("latin-1")
     except OSError:
         return ""
 

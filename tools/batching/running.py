@@ -14,12 +14,12 @@ import time
 from dataclasses import dataclass
 
 from .book import size_of
-from .decks import fingerprint
-from .outcome import forget, row_of
+from .decks import inputs_of
+from .outcome import ANSWERED, forget, row_of
 
 GRACE = 5.0             # s between asking a run to end and ending it
 SMALL = 100000          # bytes of a deck that may share a process: some 700 nodes
-TOGETHER = 16           # decks in a process, at most
+TOGETHER = 48           # decks in a process, at most
 MOST_SAID = 1 << 16     # of messages read
 IN_ORDER = (0, 1, 2, 4)   # exit statuses of answers and refused decks; beyond them files may be missing
 IGNORED = (signal.SIGPIPE, signal.SIGXFSZ)   # by Python; not for its children
@@ -75,11 +75,13 @@ class Runner:
 
     def start(self, decks):
         settings, folder = self.settings, os.path.dirname(self.book.stem(decks[0])) or "."
-        inputs = [fingerprint(deck.path)[0] for deck in decks]
+        inputs = [inputs_of(deck) for deck in decks]
         for deck in decks:
             self.journal.add({"place": deck.place, "alone": len(decks) == 1})
             forget(self.book.stem(deck))
         command = [settings["program"], *(deck.path for deck in decks), "-o", folder, "--quiet"]
+        if settings.get("one_table"):
+            command.append("--brief")
         if settings["memory"]:
             command += ["--memory", f"{settings['memory']:g}"]
         said, begun = os.memfd_create("said"), time.monotonic()
@@ -133,7 +135,7 @@ class Runner:
 
     def settle(self, run, ended):
         """Enter what has ended; what shared a process and is not valid is to be run alone."""
-        shared = len(run.decks) > 1
+        shared, one_table = len(run.decks) > 1, self.settings.get("one_table", False)
         if shared and ended.code not in IN_ORDER:
             self.again.extend([deck] for deck in run.decks)
             return
@@ -141,10 +143,12 @@ class Runner:
             ended = Ended(0, "", ended.seconds / len(run.decks), ended.memory)
         for deck, inputs in zip(run.decks, run.inputs):
             stem = self.book.stem(deck)
-            row = row_of(deck, stem, ended)
+            row = row_of(deck, stem, ended, one_table)
             if shared and row["status"] != "valid":
                 self.again.append([deck])
             else:
+                if one_table and row["status"] in ANSWERED:
+                    os.unlink(stem + ".summary.csv")
                 self.journal.add({"place": deck.place, "row": row, "inputs": inputs, "at": time.time(),
                                   "version": self.settings["version"], "listing": size_of(stem + ".lst")})
 
