@@ -18,6 +18,8 @@ module epcont_report_summary
 
   character(len=*), parameter :: none = ''
 
+  integer, parameter :: room_at_first = 64   !! figures
+
   type :: figure_type
     character(len=40) :: key = ''      !! in the file
     character(len=26) :: value = ''
@@ -33,18 +35,21 @@ contains
   function summarise(run) result(figures)
     type(run_results), intent(in) :: run   !! what is known of the run
     type(figure_type), allocatable :: figures(:)
-    integer :: k
+    integer :: k, last
 
-    allocate (figures(0))
+    allocate (figures(room_at_first))
+    last = 0
     call put_word('status', run%outcome%word, 'status')
     call put_word('warnings', text_of(run%faults%warnings + run%outcome%found%warnings), '')
     call put_word('notes', text_of(run%faults%notes + run%outcome%found%notes), '')
-    if (.not. run%outcome%has_answer) return
-    call put_answer()
-    call put_certificate()
-    call put_iteration()
-    call put_mesh_errors()
-    call put_sensitivity()
+    if (run%outcome%has_answer) then
+      call put_answer()
+      call put_certificate()
+      call put_iteration()
+      call put_mesh_errors()
+      call put_sensitivity()
+    end if
+    figures = figures(:last)
 
   contains
 
@@ -198,7 +203,7 @@ contains
       figure%listed = listed_number(kind, value, 0.0_wp)
       if (present(listed)) figure%listed = listed
       if (present(note)) figure%note = note
-      figures = [figures, figure]
+      call append(figure)
     end subroutine put
 
     !> Add a word.
@@ -206,8 +211,22 @@ contains
       character(len=*), intent(in) :: key, word
       character(len=*), intent(in) :: name   !! in the listing; empty: it is not there
 
-      figures = [figures, figure_type(key, word, '', name, word)]
+      call append(figure_type(key, word, '', name, word))
     end subroutine put_word
+
+    !> Room doubles, since many bodies have many figures.
+    subroutine append(figure)
+      type(figure_type), intent(in) :: figure
+      type(figure_type), allocatable :: more(:)
+
+      if (last == size(figures)) then
+        allocate (more(2*last))
+        more(:last) = figures
+        call move_alloc(more, figures)
+      end if
+      last = last + 1
+      figures(last) = figure
+    end subroutine append
 
     !> Add an error of the mesh; the listing has it where it is known, or why it is not.
     subroutine put_error(key, unit, name, error, value, limit)
