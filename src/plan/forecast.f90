@@ -109,8 +109,7 @@ contains
     saved = 0         ! bytes, by factors in single precision
     flexibility = 0   ! entries that are wanted for that of one body
     unit_loads = 0    ! bytes of those that one body feels
-    ! And entries that fronts leave to each other, free for others when one body has been factored.
-    passing = 0
+    passing = 0       ! and entries that its fronts leave to each other, free when it has been factored
     do b = 1, size(numbering%body)
       associate (body => numbering%body(b))
         if (body%solver == solver_frontal) then
