@@ -33,7 +33,7 @@ module epcont_accuracy_element_errors
   contains
     procedure :: compare
     procedure :: find_stress
-    procedure :: product
+    procedure :: energy
   end type element_errors
 
 contains
@@ -145,19 +145,19 @@ contains
 
   !> What the stress of the answer is off by, times what the strain of a field is off by: of the answer itself
   !! the square of its error [energy].
-  pure real(wp) function product(self, field)
+  pure real(wp) function energy(self, field)
     class(element_errors), intent(in) :: self
     integer, intent(in) :: field   !! 0: the answer
     integer :: k, v
 
-    product = 0.0_wp
+    energy = 0.0_wp
     v = components*field
     do k = 1, self%places
-      product = product &
+      energy = energy &
                 + (self%stress(1, k)*self%error(v + 1, k) + self%stress(2, k)*self%error(v + 2, k)) &
                 + (self%stress(3, k)*self%error(v + 3, k) + self%stress(4, k)*self%error(v + 4, k))
     end do
-  end function product
+  end function energy
 
   !> The stress of a strain, elastic; in a sheet the component zz of both is none.
   pure subroutine put_elastic_stress(cross, shear, strain, stress)

@@ -112,7 +112,7 @@ contains
                    kind => scene%model%kinds(scene%model%kind(e)))
           call errors%compare(kind, linear%operator%volume(first), strain, own, smooth)
           call errors%find_stress(kind, law, first, answer%point)
-          field%element(e) = errors%product(0)
+          field%element(e) = errors%energy(0)
           if (size(u, 2) > 0) call sums%add(errors, law)
         end associate
       end do

@@ -70,7 +70,7 @@ contains
     call put(2, errors%own_places, errors%own, self%strain(1, 1, 2), self%stress(1, 1, 2))
     self%elements = self%elements + 1
     do f = 1, errors%fields
-      self%product(self%elements, f) = errors%product(f)
+      self%product(self%elements, f) = errors%energy(f)
     end do
     if (self%elements == size(self%product, 1)) call self%sum_up()
 
