@@ -83,8 +83,8 @@ contains
   !> A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice,
   !! and the sets on the way to it are smaller, or little of them is factored.
   pure real(wp) function contact_operations(coupled, by_blocks) result(operations)
-    integer(i8), intent(in) :: coupled   !! entries of F
-    logical, intent(in) :: by_blocks   !! RULE BLOCK, else CONRY
+    integer(i8), intent(in) :: coupled   !! entries of F; pairs squared, where each counts for each
+    logical, intent(in) :: by_blocks     !! RULE BLOCK, else CONRY
 
     operations = merge(2.0_wp/3.0_wp, 2.0_wp, by_blocks)*real(coupled, wp)**1.5_wp
   end function contact_operations
