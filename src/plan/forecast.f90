@@ -19,6 +19,7 @@ module epcont_plan_forecast
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
     real(wp) :: operations_again = 0.0_wp   !! of these, what each solve but the first has, beyond yield
     real(wp) :: contact = 0.0_wp        !! of these, what the simplex has
+    integer :: motions = 0              !! that are free
     integer(i8) :: entries = 0          !! of the factors
     integer(i8) :: entries_again = 0    !! of these, what is factored for each solve
   end type forecast_type
@@ -150,6 +151,7 @@ contains
               motion_matrices*pairs*motions%count
     expected%double_bytes = real_bytes*entries + beside_matrices() + unit_loads
     expected%bytes = expected%double_bytes - saved
+    expected%motions = motions%count
     expected%contact = contact_operations(coupled, plan%by_blocks)
     expected%operations = expected%operations + expected%contact
     expected%operations_again = expected%operations_again + expected%contact
