@@ -19,6 +19,7 @@ module epcont_plan_forecast
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
     real(wp) :: operations_again = 0.0_wp   !! of these, what each solve but the first has, beyond yield
     real(wp) :: contact = 0.0_wp        !! of these, what the simplex has
+    integer :: motions = 0              !! that are free
     integer(i8) :: entries = 0          !! of the factors
     integer(i8) :: entries_again = 0    !! of these, what is factored for each solve
   end type forecast_type
@@ -83,8 +84,8 @@ contains
   !> A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice,
   !! and the sets on the way to it are smaller, or little of them is factored.
   pure real(wp) function contact_operations(coupled, by_blocks) result(operations)
-    integer(i8), intent(in) :: coupled   !! entries of F
-    logical, intent(in) :: by_blocks   !! RULE BLOCK, else CONRY
+    integer(i8), intent(in) :: coupled   !! entries of F; pairs squared, where each counts for each
+    logical, intent(in) :: by_blocks     !! RULE BLOCK, else CONRY
 
     operations = merge(2.0_wp/3.0_wp, 2.0_wp, by_blocks)*real(coupled, wp)**1.5_wp
   end function contact_operations
@@ -150,6 +151,7 @@ contains
               motion_matrices*pairs*motions%count
     expected%double_bytes = real_bytes*entries + beside_matrices() + unit_loads
     expected%bytes = expected%double_bytes - saved
+    expected%motions = motions%count
     expected%contact = contact_operations(coupled, plan%by_blocks)
     expected%operations = expected%operations + expected%contact
     expected%operations_again = expected%operations_again + expected%contact
