@@ -30,7 +30,7 @@ module epcont_contact_basis
   use epcont_linalg_saddle, only: factor_saddle, pass_on, substitute, substitute_back
   implicit none
   private
-  public :: contact_basis, new_basis, are_independent, change_set, respond
+  public :: contact_basis, new_basis, renew_basis, move_basis, are_independent, change_set, respond
 
   !> Part of a set from which on its factor is kept. With 1/2, where pairs that come as the candidates are
   !! doubled stand behind edges that go, block pivoting takes half as long again; without keeping anything it
@@ -52,7 +52,9 @@ module epcont_contact_basis
     integer, allocatable :: pairs(:)     !! S, level by level [s]
     integer :: motions = 0               !! m
     integer, allocatable :: pair_row(:), motion_row(:)   !! of them in the factor [s], [m]
+    integer, allocatable :: kept(:)      !! which of the given motions these are [m]
     real(wp) :: gamma = 0.0_wp           !! weight of A A' in F_g
+    real(wp) :: scale = 0.0_wp           !! of F
     type(basis_level), allocatable :: level(:)
   end type contact_basis
 
@@ -74,6 +76,34 @@ contains
     end if
     call gather_pairs(basis)
   end function new_basis
+
+  !> Factor the equations of the chosen pairs, if that is not what the basis has: then F must be the same.
+  subroutine renew_basis(basis, scaled, chosen)
+    type(contact_basis), intent(inout) :: basis   !! none, or of any set
+    type(scaled_problem), intent(in) :: scaled   !! in its own units
+    logical, intent(in) :: chosen(:)             !! [n]
+    logical :: same
+
+    same = basis%sound .and. allocated(basis%level)
+    if (same) same = size(basis%pairs) == count(chosen) .and. size(basis%kept) == size(scaled%kept)
+    if (same) same = all(chosen(basis%pairs)) .and. all(basis%kept == scaled%kept) .and. &
+                     abs(basis%gamma - scaled%gamma) <= 0.0_wp .and. &
+                     abs(basis%scale - scaled%flexibility_scale) <= 0.0_wp
+    if (same) return
+    if (allocated(basis%level)) deallocate (basis%level)
+    basis = new_basis(scaled, chosen)
+  end subroutine renew_basis
+
+  !> Hand a basis over; none is left.
+  subroutine move_basis(from, to)
+    type(contact_basis), intent(inout) :: from   !! may be none
+    type(contact_basis), intent(out) :: to       !! the same
+    type(basis_level), allocatable :: level(:)
+
+    call move_alloc(from%level, level)
+    to = from
+    call move_alloc(level, to%level)
+  end subroutine move_basis
 
   !> Does clearly no force of the chosen pairs depend on others, whatever the motions are?
   logical function are_independent(scaled, chosen) result(independent)
@@ -160,6 +190,8 @@ contains
     integer :: l
 
     basis%gamma = scaled%gamma
+    basis%scale = scaled%flexibility_scale
+    basis%kept = scaled%kept
     basis%motions = size(scaled%motion_level)
     if (allocated(basis%level)) deallocate (basis%level)
     allocate (basis%level(size(scaled%flexibility%level)))
