@@ -47,7 +47,8 @@ contains
   !> What the figures of an answer are worth.
   subroutine assess(scene, linear, line, answer, accuracy)
     type(planned_scene), intent(in) :: scene       !! that was solved
-    type(linear_problem), intent(in) :: linear     !! of the last solve
+    !> Of the last solve; the basis of its contact is taken over
+    type(linear_problem), intent(inout), target :: linear
     type(contact_line), intent(in) :: line         !! of the pairs
     type(answer_type), intent(in) :: answer        !! with its pressures and zones
     type(accuracy_type), intent(out) :: accuracy   !! of its figures

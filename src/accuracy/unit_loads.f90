@@ -9,7 +9,7 @@
 module epcont_accuracy_unit_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, solved_to
-  use epcont_contact_basis, only: contact_basis, new_basis, respond
+  use epcont_contact_basis, only: contact_basis, move_basis, renew_basis, respond
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_scaling, only: drop_motions, gaps_by_forces, scale_problem, scaled_problem
   use epcont_element_kinematics, only: directions
@@ -57,7 +57,8 @@ contains
   !> Unit loads on a scene whose contact has been found.
   function find_unit_loads(scene, linear, answer) result(loads)
     type(planned_scene), intent(in) :: scene     !! that was solved
-    type(linear_problem), intent(in), target :: linear   !! of the last solve; it must remain
+    !> Of the last solve; the basis of its contact is taken over, and its flexibility must remain
+    type(linear_problem), intent(inout), target :: linear
     type(answer_type), intent(in) :: answer      !! with some contact
     type(unit_loads) :: loads
     type(rigid_start) :: start
@@ -73,7 +74,8 @@ contains
                             0*loads%problem%gap(pressed), start)
       call drop_motions(loads%problem, start%redundant)
     end if
-    loads%basis = new_basis(loads%problem, answer%contact%force > 0.0_wp)
+    call move_basis(linear%basis, loads%basis)
+    call renew_basis(loads%basis, loads%problem, answer%contact%force > 0.0_wp)
     call find_shares()
     allocate (loads%force(scene%model%pairs, scene%motions%count + size(loads%share, 2)), source=0.0_wp)
     if (loads%basis%sound) call put_unit_forces()

@@ -25,12 +25,11 @@ module epcont_contact_basis
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_base_tolerances, only: lost_digits
+  use epcont_contact_level_factor, only: factor_levels, level_factor, motions_of, solve_levels
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_linalg_dense, only: pivoted_cholesky
-  use epcont_linalg_saddle, only: factor_saddle, pass_on, substitute, substitute_back
   implicit none
   private
-  public :: contact_basis, new_basis, are_independent, change_set, respond
+  public :: contact_basis, new_basis, renew_basis, move_basis, are_independent, change_set, respond
 
   !> Part of a set from which on its factor is kept. With 1/2, where pairs that come as the candidates are
   !! doubled stand behind edges that go, block pivoting takes half as long again; without keeping anything it
@@ -39,21 +38,16 @@ module epcont_contact_basis
   !> Firmness is told apart to this part of the largest.
   real(wp), parameter :: firmness_steps = 1.0e6_wp
 
-  !> Pairs and motions of one level, and their columns of the factor.
-  type :: basis_level
-    integer, allocatable :: pair(:)      !! of S, in the order of the factor
-    integer, allocatable :: motion(:)    !! none, where they are held
-    real(wp), allocatable :: factor(:, :)   !! own rows and those of the next level [>= own + next, >= own]
-  end type basis_level
-
   !> A set of pairs in contact whose forces are unique, and the factor that gives them.
   type :: contact_basis
     logical :: sound = .false.           !! the forces are unique, and the pairs hold every motion
     integer, allocatable :: pairs(:)     !! S, level by level [s]
     integer :: motions = 0               !! m
     integer, allocatable :: pair_row(:), motion_row(:)   !! of them in the factor [s], [m]
+    integer, allocatable :: kept(:)      !! which of the given motions these are [m]
     real(wp) :: gamma = 0.0_wp           !! weight of A A' in F_g
-    type(basis_level), allocatable :: level(:)
+    real(wp) :: scale = 0.0_wp           !! of F
+    type(level_factor), allocatable :: level(:)
   end type contact_basis
 
 contains
@@ -66,14 +60,42 @@ contains
     logical :: definite
 
     call choose_pairs(basis, scaled, chosen, held)
-    call factor_levels(basis, scaled, 0, lost_digits*scaled%softest, definite)
+    call factor_levels(basis%level, scaled, 0, lost_digits*scaled%softest, definite, basis%sound)
     if (.not. definite) then
       ! The order of pivots, which takes longer, tells who depends on whom.
       call choose_pairs(basis, scaled, chosen, held)
-      call factor_levels(basis, scaled, 0, 0.0_wp, definite, scaled%rank_tolerance)
+      call factor_levels(basis%level, scaled, 0, 0.0_wp, definite, basis%sound, scaled%rank_tolerance)
     end if
     call gather_pairs(basis)
   end function new_basis
+
+  !> Factor the equations of the chosen pairs, if that is not what the basis has: then F must be the same.
+  subroutine renew_basis(basis, scaled, chosen)
+    type(contact_basis), intent(inout) :: basis   !! none, or of any set
+    type(scaled_problem), intent(in) :: scaled   !! in its own units
+    logical, intent(in) :: chosen(:)             !! [n]
+    logical :: same
+
+    same = basis%sound .and. allocated(basis%level)
+    if (same) same = size(basis%pairs) == count(chosen) .and. size(basis%kept) == size(scaled%kept)
+    if (same) same = all(chosen(basis%pairs)) .and. all(basis%kept == scaled%kept) .and. &
+                     abs(basis%gamma - scaled%gamma) <= 0.0_wp .and. &
+                     abs(basis%scale - scaled%flexibility_scale) <= 0.0_wp
+    if (same) return
+    if (allocated(basis%level)) deallocate (basis%level)
+    basis = new_basis(scaled, chosen)
+  end subroutine renew_basis
+
+  !> Hand a basis over; none is left.
+  subroutine move_basis(from, to)
+    type(contact_basis), intent(inout) :: from   !! may be none
+    type(contact_basis), intent(out) :: to       !! the same
+    type(level_factor), allocatable :: level(:)
+
+    call move_alloc(from%level, level)
+    to = from
+    call move_alloc(level, to%level)
+  end subroutine move_basis
 
   !> Does clearly no force of the chosen pairs depend on others, whatever the motions are?
   logical function are_independent(scaled, chosen) result(independent)
@@ -82,7 +104,7 @@ contains
     type(contact_basis) :: basis
 
     call choose_pairs(basis, scaled, chosen, held=.true.)
-    call factor_levels(basis, scaled, 0, lost_digits*scaled%softest, independent)
+    call factor_levels(basis%level, scaled, 0, lost_digits*scaled%softest, independent, basis%sound)
   end function are_independent
 
   !> Levels with the chosen pairs.
@@ -124,7 +146,7 @@ contains
       call change_level(basis%level(l), scaled%flexibility%level(l)%pair)
     end do
     if (size(basis%level) > 1) kept = 0
-    call factor_levels(basis, scaled, kept, scaled%rank_tolerance, definite)
+    call factor_levels(basis%level, scaled, kept, scaled%rank_tolerance, definite, basis%sound)
     if (.not. definite) then
       basis%sound = .false.
       do l = 1, size(basis%level)
@@ -137,7 +159,7 @@ contains
 
     !> The set in one level; `kept` rows of its factor remain.
     subroutine change_level(level, own)
-      type(basis_level), intent(inout) :: level
+      type(level_factor), intent(inout) :: level
       integer, intent(in) :: own(:)   !! all its pairs
       integer, allocatable :: added(:)
       logical :: missing(size(closed))
@@ -160,6 +182,8 @@ contains
     integer :: l
 
     basis%gamma = scaled%gamma
+    basis%scale = scaled%flexibility_scale
+    basis%kept = scaled%kept
     basis%motions = size(scaled%motion_level)
     if (allocated(basis%level)) deallocate (basis%level)
     allocate (basis%level(size(scaled%flexibility%level)))
@@ -168,16 +192,6 @@ contains
       basis%level(l)%motion = motions_of(scaled, l)
     end do
   end subroutine begin_levels
-
-  !> The motions of a level.
-  pure function motions_of(scaled, l) result(motions)
-    type(scaled_problem), intent(in) :: scaled
-    integer, intent(in) :: l
-    integer, allocatable :: motions(:)
-    integer :: j
-
-    motions = pack([(j, j=1, size(scaled%motion_level))], scaled%motion_level == l)
-  end function motions_of
 
   !> The pairs of all levels, and the rows that pairs and motions have in the factor.
   pure subroutine gather_pairs(basis)
@@ -201,135 +215,6 @@ contains
     end do
   end subroutine gather_pairs
 
-  !> Factor the equations, level by level; sound: the pairs hold all motions.
-  subroutine factor_levels(basis, scaled, kept, least, definite, rank_tolerance)
-    type(contact_basis), intent(inout) :: basis
-    type(scaled_problem), intent(in) :: scaled
-    integer, intent(in) :: kept                 !! rows of the first level that are factored already
-    real(wp), intent(in) :: least               !! of pivots of forces that are unique
-    logical, intent(out) :: definite            !! all are
-    real(wp), intent(in), optional :: rank_tolerance   !! pairs with pivots up to this are left out
-    integer :: info, l
-
-    basis%sound = .true.
-    do l = 1, size(basis%level)
-      call assemble_level()
-      if (present(rank_tolerance)) then
-        call leave_out_dependent()
-        call assemble_level()
-      end if
-      associate (level => basis%level(l), n => size(basis%level(l)%pair), m => size(basis%level(l)%motion))
-        call factor_saddle(size(level%factor, 1), level%factor, kept, n, m, rows_below(), info)
-        definite = (info == 0 .or. info > n) .and. all(pivots(level%factor, n) >= least)
-      end associate
-      if (.not. definite) return
-      basis%sound = basis%sound .and. info == 0
-      if (info > 0) exit
-    end do
-
-  contains
-
-    pure function pivots(factor, n)
-      real(wp), intent(in) :: factor(:, :)
-      integer, intent(in) :: n
-      real(wp) :: pivots(n)
-      integer :: k
-
-      pivots = [(factor(k, k)**2, k=1, n)]
-    end function pivots
-
-    !> Rows of the next level.
-    pure integer function rows_below() result(rows)
-      rows = 0
-      if (l < size(basis%level)) rows = size(basis%level(l + 1)%pair) + size(basis%level(l + 1)%motion)
-    end function rows_below
-
-    !> The rows of a level that are not kept, less what is due to the level before.
-    subroutine assemble_level()
-      integer :: m, n, rows
-
-      if (l < size(basis%level)) then
-        call assemble(basis%level(l), basis%level(l + 1)%pair, size(basis%level(l + 1)%motion), &
-                      scaled, l, kept)
-      else
-        call assemble(basis%level(l), [integer ::], 0, scaled, l, kept)
-      end if
-      if (l == 1) return
-      n = size(basis%level(l - 1)%pair)
-      m = size(basis%level(l - 1)%motion)
-      rows = size(basis%level(l)%pair) + size(basis%level(l)%motion)
-      if (n + m == 0 .or. rows == 0) return
-      associate (before => basis%level(l - 1)%factor, own => basis%level(l)%factor)
-        call pass_on(size(before, 1), before(n + m + 1, 1), n, m, rows, size(own, 1), own)
-      end associate
-    end subroutine assemble_level
-
-    !> Pairs in the order of their pivots, but for those whose pivots are none.
-    subroutine leave_out_dependent()
-      real(wp), allocatable :: copy(:, :)
-      integer, allocatable :: order(:), row(:)
-      integer :: k, n, own, rank
-
-      n = size(basis%level(l)%pair)
-      copy = basis%level(l)%factor(:n, :n)
-      call pivoted_cholesky(copy, rank_tolerance, order, rank)
-      basis%level(l)%pair = basis%level(l)%pair(order(:rank))
-      if (l == 1) return
-      associate (before => basis%level(l - 1))
-        own = size(before%pair) + size(before%motion)
-        row = [order(:rank), (n + k, k=1, size(basis%level(l)%motion))]
-        before%factor(own + 1:own + size(row), :) = before%factor(own + row, :)
-      end associate
-    end subroutine leave_out_dependent
-  end subroutine factor_levels
-
-  !> Entries of a level's columns, lower triangle, from the row behind the kept ones on.
-  pure subroutine assemble(level, next_pair, next_m, scaled, l, kept)
-    type(basis_level), intent(inout) :: level
-    integer, intent(in) :: next_pair(:), next_m   !! of the next level, and its motions
-    type(scaled_problem), intent(in) :: scaled
-    integer, intent(in) :: l, kept   !! the level's number, and its rows that are kept
-    real(wp), allocatable :: closing(:, :)   ! A of own and next pairs, by own and next motions
-    integer :: at(size(level%pair)), next_at(size(next_pair))   ! places in their levels
-    integer :: below, j, m, n, t, top
-
-    n = size(level%pair)
-    m = size(level%motion)
-    below = n + m + size(next_pair)
-    call make_room(level%factor, below + next_m, n + m)
-    closing = scaled%motion%rows([level%pair, next_pair], [motions_of(scaled, l), motions_of(scaled, l + 1)])
-    at = scaled%flexibility%place(level%pair)
-    next_at = scaled%flexibility%place(next_pair)
-    associate (f => level%factor, given => scaled%flexibility%level(l), scale => scaled%flexibility_scale)
-      do j = 1, n
-        top = max(j, kept + 1)
-        f(top:n, j) = scale*given%within(at(top:n), at(j))
-        if (j == top) f(j, j) = f(j, j) + scaled%own_flexibility
-        f(n + m + 1:below, j) = scale*given%beyond(next_at, at(j))
-        do t = 1, size(closing, 2)
-          if (closing(j, t) == 0.0_wp) cycle
-          f(top:n, j) = f(top:n, j) + scaled%gamma*closing(j, t)*closing(top:n, t)
-          f(n + m + 1:below, j) = f(n + m + 1:below, j) + scaled%gamma*closing(j, t)*closing(n + 1:, t)
-        end do
-        f(n + 1:n + m, j) = -closing(j, :m)
-        f(below + 1:below + next_m, j) = -closing(j, m + 1:m + next_m)
-      end do
-      f(n + 1:below + next_m, n + 1:n + m) = 0.0_wp
-    end associate
-  end subroutine assemble
-
-  !> An array of this size at least.
-  pure subroutine make_room(array, rows, columns)
-    real(wp), allocatable, intent(inout) :: array(:, :)
-    integer, intent(in) :: rows, columns
-
-    if (allocated(array)) then
-      if (size(array, 1) >= rows .and. size(array, 2) >= columns) return
-      deallocate (array)
-    end if
-    allocate (array(rows, columns))
-  end subroutine make_room
-
   !> Forces and motions for right-hand sides h and p; call only if the basis is sound.
   pure subroutine respond(basis, opening, load, force, approach)
     type(contact_basis), intent(in) :: basis   !! a sound one
@@ -347,27 +232,4 @@ contains
     approach = x(basis%motion_row, :) - basis%gamma*load
   end subroutine respond
 
-  !> Forward through the levels, and back.
-  pure subroutine solve_levels(level, x)
-    type(basis_level), intent(in) :: level(:)
-    real(wp), allocatable, intent(inout) :: x(:, :)   !! [rows, any]
-    integer, dimension(size(level)) :: n, m, before   ! pairs, motions, rows before
-    integer :: below(size(level))                     ! rows of the next
-    integer :: l
-
-    n = [(size(level(l)%pair), l=1, size(level))]
-    m = [(size(level(l)%motion), l=1, size(level))]
-    before = [(sum(n(:l - 1)) + sum(m(:l - 1)), l=1, size(level))]
-    below = [n(2:) + m(2:), 0]
-    do l = 1, size(level)
-      if (n(l) + m(l) == 0) cycle
-      call substitute(size(level(l)%factor, 1), level(l)%factor, n(l) + m(l), below(l), size(x, 2), &
-                      size(x, 1), x(before(l) + 1, 1))
-    end do
-    do l = size(level), 1, -1
-      if (n(l) + m(l) == 0) cycle
-      call substitute_back(size(level(l)%factor, 1), level(l)%factor, [n(l), m(l)], below(l), size(x, 2), &
-                           size(x, 1), x(before(l) + 1, 1))
-    end do
-  end subroutine solve_levels
 end module epcont_contact_basis

@@ -15,7 +15,7 @@ module epcont_contact_block_pivoting
   use epcont_contact_basis, only: change_set
   use epcont_contact_problem, only: contact_solution, contact_solved
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_contact_state, only: contact_state, fresh_state, guess_tolerance, has_right_signs, solve_set
+  use epcont_contact_state, only: contact_state, guess_tolerance, has_right_signs, renew_state, solve_set
   implicit none
   private
   public :: find_by_blocks
@@ -42,7 +42,7 @@ contains
   subroutine find_by_blocks(scaled, solution, state, found)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_solution), intent(inout) :: solution   !! steps, and pairs exchanged
-    type(contact_state), intent(out) :: state   !! the set found, fresh
+    type(contact_state), intent(inout) :: state   !! with any basis; the set found, fresh
     logical, intent(out) :: found   !! else `state` is of no use
     logical, dimension(size(scaled%gap)) :: closed, wrong   ! the set; pairs of it and others of wrong sign
     integer :: stride     ! of the candidates
@@ -72,7 +72,7 @@ contains
     subroutine test_afresh(tolerance)
       real(wp), intent(in) :: tolerance
 
-      state = fresh_state(scaled, closed)
+      call renew_state(state, scaled, closed)
       found = size(state%pairs) == count(closed)
       if (found) found = has_right_signs(scaled, state, tolerance)
     end subroutine test_afresh
@@ -82,6 +82,7 @@ contains
       real(wp), intent(in) :: tolerance   !! of the test
       logical :: ended
 
+      if (allocated(state%level)) deallocate (state%level)
       call exchange_blocks(ended)
       if (ended) call test_afresh(tolerance)
     end subroutine look_for_set
@@ -94,7 +95,6 @@ contains
       real(wp) :: firmness(size(closed))
       integer :: repairs, step
 
-      if (allocated(state%level)) deallocate (state%level)
       ended = .false.
       fewest = huge(fewest)
       firmness = 0.0_wp

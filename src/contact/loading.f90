@@ -87,8 +87,7 @@ contains
     !> The tableau of the set, with the responses of the basic variables to unit nonbasic ones: gaps of the
     !! pairs in contact, forces of the others.
     subroutine begin_tableau()
-      real(wp), allocatable :: opening(:, :), load(:, :), force(:, :), approach(:, :), motion(:, :)
-      real(wp), allocatable :: responding(:, :)   ! openings of all pairs by forces of the basis
+      real(wp), allocatable, dimension(:, :) :: opening, load, force, approach, motion, responding
       integer :: i
 
       associate (pairs => state%pairs)
@@ -99,7 +98,7 @@ contains
         place([-basic, load_factor]) = [(-i, i=1, n + 1)]
         value = start
         pending = 0
-        motion = scaled%motion%rows([(i, i=1, n)])
+        motion = scaled%motion%dense()
         settled(:, :n) = scaled%flexibility_scale*scaled%flexibility%dense()
         opening = settled(pairs, :n)
         responding = settled(:, pairs)

@@ -17,6 +17,7 @@ module epcont_contact_motion_matrix
     procedure :: times
     procedure :: carried
     procedure :: rows
+    procedure :: dense
     procedure :: only
   end type motion_matrix
 
@@ -117,6 +118,15 @@ contains
       end do
     end do
   end function rows
+
+  !> All of it [pairs, motions].
+  pure function dense(self)
+    class(motion_matrix), intent(in) :: self
+    real(wp), allocatable :: dense(:, :)
+    integer :: k
+
+    dense = self%rows([(k, k=1, self%pairs)])
+  end function dense
 
   !> With some of the motions only.
   pure type(motion_matrix) function only(self, kept) result(fewer)

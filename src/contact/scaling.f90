@@ -68,7 +68,7 @@ contains
       omega = or_else(rho*largest, max(largest_of(scaled%gap), largest_of(scaled%unloaded_gap)))
       omega = or_else(omega, 1.0_wp)
 
-      scaled%flexibility_scale = rho/omega
+      scaled%flexibility_scale = merge(1.0_wp/or_else(largest, 1.0_wp), rho/omega, largest > 0.0_wp)
       scaled%gap = scaled%gap/omega
       scaled%gap_terms = scaled%gap_terms/omega
       scaled%unloaded_gap = scaled%unloaded_gap/omega

@@ -15,8 +15,8 @@ module epcont_contact_simplex
   use epcont_contact_loading, only: follow_load
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: gaps_by_forces, measure, scaled_problem
-  use epcont_contact_state, only: basic_values, contact_state, fresh_state, guess_tolerance, &
-    has_right_signs, solve_set
+  use epcont_contact_state, only: basic_values, contact_state, guess_tolerance, has_right_signs, &
+    renew_state, solve_set
   implicit none
   private
   public :: find_contacts
@@ -33,7 +33,7 @@ contains
   subroutine find_contacts(scaled, solution, state, ray)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_solution), intent(inout) :: solution   !! state, and the record of the pivots
-    type(contact_state), intent(out) :: state   !! the set found, fresh
+    type(contact_state), intent(inout) :: state   !! with any basis; the set found, fresh
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
     real(wp), allocatable :: lifted(:)   ! basic variable of each pair at t = 0 [n]
     logical, allocatable :: closed(:)
@@ -76,7 +76,7 @@ contains
     subroutine take_set(closed)
       logical, intent(in) :: closed(:)   !! [n]
 
-      state = fresh_state(scaled, closed)
+      call renew_state(state, scaled, closed)
       lifted = max(basic_values(state), 0.0_wp)
     end subroutine take_set
 
@@ -108,7 +108,8 @@ contains
       if (.not. found) return
       closed = scaled%first_touching
       closed(better%pairs) = .true.
-      better = fresh_state(scaled, closed)
+      deallocate (better%level)   ! of another flexibility
+      call renew_state(better, scaled, closed)
       found = has_right_signs(scaled, better, solved_to)
       if (.not. found) return
       solution%pivots = trial%pivots

@@ -4,7 +4,7 @@ module epcont_contact_solver
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component, &
     solved_to
-  use epcont_contact_basis, only: new_basis
+  use epcont_contact_basis, only: contact_basis, move_basis, new_basis
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_flexibility_matrix, only: dense_flexibility
@@ -24,21 +24,22 @@ contains
 
   !> Find forces, gaps and motions of a contact problem, or why there are none. Where motions are neutral, so
   !! that nothing tells their values, they are those nearest to zero that leave no gap below it.
-  recursive subroutine solve_contact(problem, solution, start, by_blocks)
+  recursive subroutine solve_contact(problem, solution, start, by_blocks, basis)
     type(contact_problem), intent(in), target :: problem   !! in the deck's units
     type(contact_solution), intent(out) :: solution   !! its state says whether there is one
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
     logical, intent(in), optional :: by_blocks  !! RULE BLOCK; not given: CONRY
+    !> Of the last answer with this F, or none; then of this one
+    type(contact_basis), intent(inout), optional :: basis
     type(scaled_problem) :: scaled
     type(rigid_start) :: rigid
     type(motion_matrix) :: motion   ! A of all motions, scaled [n, m]
-    integer :: k
 
     scaled = scale_problem(problem)
     motion = scaled%motion
     if (present(start)) scaled%guess = start
     call clear()
-    call find_rigid_start(motion%rows([(k, k=1, motion%pairs)]), scaled%resultant, scaled%unloaded_gap, rigid)
+    call find_rigid_start(motion%dense(), scaled%resultant, scaled%unloaded_gap, rigid)
     if (.not. rigid%balanced) then
       solution%state = contact_no_equilibrium
       solution%escape = rigid%escape/scaled%motion_size
@@ -60,6 +61,7 @@ contains
       type(contact_state) :: state
 
       trial = solution
+      if (present(basis)) call move_basis(basis, state%contact_basis)
       call find_by_blocks(scaled, trial, state, trial%by_blocks)
       solution%block_steps = trial%block_steps
       if (.not. trial%by_blocks) return
@@ -72,7 +74,9 @@ contains
     subroutine solve_by_simplex()
       type(contact_state) :: state
       real(wp), allocatable :: loose(:, :), ray(:)
+      integer :: k
 
+      if (present(basis)) call move_basis(basis, state%contact_basis)
       call find_contacts(scaled, solution, state, ray)
       select case (solution%state)
       case (contact_overlap)
@@ -122,6 +126,7 @@ contains
       end if
       solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, state%force > zero)
       call share_equally(scaled, solution%indeterminate, state%force)
+      if (present(basis)) call move_basis(state%contact_basis, basis)
       ! In the deck's units.
       solution%force = state%force*scaled%force_unit
       solution%gap = state%gap*scaled%gap_unit
@@ -192,7 +197,10 @@ contains
         fewer%contact_basis = new_basis(scaled, pressed)
         if (.not. fewer%sound) return   ! a motion is held by rounding
         call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
-        state = fewer
+        call move_basis(fewer%contact_basis, state%contact_basis)
+        state%force = fewer%force
+        state%gap = fewer%gap
+        state%approach = fewer%approach
       end do
     end subroutine cut_rounding
   end subroutine solve_contact

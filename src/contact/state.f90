@@ -2,11 +2,11 @@
 module epcont_contact_state
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled
-  use epcont_contact_basis, only: contact_basis, new_basis, respond
+  use epcont_contact_basis, only: contact_basis, new_basis, renew_basis, respond
   use epcont_contact_scaling, only: gaps_by_forces, scaled_problem
   implicit none
   private
-  public :: contact_state, fresh_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
+  public :: contact_state, renew_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
 
   !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can
   !! be asked where the flexibility is badly conditioned (1e10: tests/contact/hard_problem), and what is asked
@@ -24,14 +24,15 @@ contains
 
   !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every
   !! motion.
-  type(contact_state) function fresh_state(scaled, closed) result(state)
+  subroutine renew_state(state, scaled, closed)
+    type(contact_state), intent(inout) :: state   !! its basis, if it is of that set, is taken as it is
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     logical, intent(in) :: closed(:)   !! [n]
 
-    state%contact_basis = new_basis(scaled, closed)
+    call renew_basis(state%contact_basis, scaled, closed)
     if (.not. state%sound) state%contact_basis = new_basis(scaled, closed .or. scaled%first_touching)
     call solve_set(state, scaled, scaled%gap, scaled%resultant, refinements=1)
-  end function fresh_state
+  end subroutine renew_state
 
   !> Forces, gaps and motions with the pairs of the basis closed and the others free of force.
   pure subroutine solve_set(state, scaled, opening, load, refinements)

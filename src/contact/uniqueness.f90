@@ -30,8 +30,7 @@ contains
     logical, allocatable :: indeterminate(:)
     type(contact_basis) :: basis
     !> M [idle, idle], and what z makes of the forces of the pressed pairs
-    real(wp), allocatable :: answer(:, :), coupling(:, :)
-    real(wp), allocatable :: change(:, :), loose(:, :), motion(:, :)
+    real(wp), allocatable, dimension(:, :) :: coupling, answer, change, loose, motion
     integer, allocatable :: growing(:), idle(:)
     real(wp) :: zero   !! part of M that is rounding
     integer :: k

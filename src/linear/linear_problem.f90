@@ -4,6 +4,7 @@ module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, no_effect, solved_to
+  use epcont_contact_basis, only: contact_basis
   use epcont_contact_flexibility_matrix, only: flexibility_matrix, new_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
@@ -38,6 +39,7 @@ module epcont_linear_linear_problem
     !> Flexibility of the bodies that cannot yield, where others can; else without levels
     type(flexibility_matrix), private :: lasting_flexibility
     type(scene_state), allocatable, private :: last  !! found by refinement, from which the next begins
+    type(contact_basis) :: basis   !! of the last contact with this flexibility
     !> Opening of gaps by what supports travel [length] [pairs]
     real(wp), allocatable, private :: travel_gap(:)
     real(wp), allocatable, private :: resultant(:)   !! of all loads along the free motions [motions]
@@ -104,6 +106,7 @@ contains
       logical, allocatable :: shared(:)
       integer :: i, threads
 
+      if (allocated(self%basis%level)) deallocate (self%basis%level)   ! of the flexibility before
       body = pack([(i, i=1, size(chosen))], chosen)
       body = body(heaviest_first(scene%numbering%body(body)%operations))
       operations = scene%numbering%body(body)%operations
@@ -175,7 +178,7 @@ contains
                               load_factor*self%travel_gap
       self%problem%resultant = load_factor*self%resultant
       call watch%lap(stage_displacements)
-      call solve_contact(self%problem, state%contact, start, self%plan%by_blocks)
+      call solve_contact(self%problem, state%contact, start, self%plan%by_blocks, self%basis)
       call watch%lap(stage_contact)
       if (state%contact%state /= contact_solved) return
       call self%add_forces(scene, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
@@ -350,7 +353,7 @@ contains
     self%problem%load_gap = gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap - &
                             self%problem%flexibility%times(moving)
     self%problem%resultant = load_factor*self%resultant - matmul(rest, self%problem%motion)
-    call solve_contact(self%problem, state%contact, guess, self%plan%by_blocks)
+    call solve_contact(self%problem, state%contact, guess, self%plan%by_blocks, self%basis)
     if (state%contact%state /= contact_solved) return
     added = state%contact%force - moving
     state%contact%force = rest + state%contact%force
