@@ -96,6 +96,8 @@ contains
     forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
     length = ratio(abs(stored), forces)
     associate (u => answer%displacement, reaction => answer%reaction)
+      ! Where stops take all loads at once, nothing moves but by rounding of what the forces would push in.
+      if (maxval(abs(u)) <= roundings*epsilon(1.0_wp)*least_indentation()) length = least_indentation()
       ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there
       ! is.
       if (forces == 0.0_wp) length = maxval(abs(u))
@@ -116,6 +118,21 @@ contains
     found%balanced = all(within_limits(found) .or. figure_name == off_the_curve)
 
   contains
+
+    !> The largest contact force over the largest depth and modulus: how far it pushes in, at least.
+    pure real(wp) function least_indentation() result(length)
+      real(wp) :: stiffest   ! [force/length]
+      integer :: e
+
+      stiffest = 0.0_wp
+      do e = 1, model%elements
+        associate (nodes => model%connectivity(:model%node_count(e), e))
+          stiffest = max(stiffest, model%young(model%section(e))*model%depth(e, maxval(model%x(1, nodes))))
+        end associate
+      end do
+      length = 0.0_wp
+      if (stiffest > 0.0_wp) length = maxval([answer%contact%force, 0.0_wp])/stiffest
+    end function least_indentation
 
     !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance
     !! from the curve and what roundings and rigid motions strain go into the certificate.

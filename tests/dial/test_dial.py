@@ -99,10 +99,13 @@ class Dial(unittest.TestCase):
         self.assertLess(memory[1], 0.8*memory[0])
 
     def test_double_where_single_leaves_nothing(self):
-        """In one solve, and in an iteration whose changes fall no more, but by chance."""
+        """In one solve, and in an iteration whose changes fall no more, but by chance: which the kernels of the BLAS decide."""
         for deck in ("tube/tube_near_incompressible", "tube/tube_limit"):
             run, listing, _ = self.run_deck(deck, "PRECIS,SINGLE")
             self.assertEqual(0, run.returncode)
+            if deck == "tube/tube_limit" and "(factors in double: " not in listing:
+                self.assertLess(self.figure(listing, FIGURE), 0.01)
+                continue
             self.assertIn("    (factors in double: in single precision they left an error of more than 0.01000, or no answer)\n", listing)
             self.assertIn("; tolerance 1.000E-09)\n", listing)
             self.assertNotIn(FIGURE, listing)
