@@ -5,7 +5,6 @@
 !> the others are sums of these.
 module epcont_accuracy_body_loads
   use epcont_accuracy_element_errors, only: most_fields
-  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
   use epcont_element_kinematics, only: directions
@@ -14,7 +13,7 @@ module epcont_accuracy_body_loads
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads, pairs_of_bodies
+  public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads
 
   !> A load that others make up for, but for this part of its largest force on any body, is a sum of these:
   !! figures of a stack of 30 bodies change by 3e-6; with three times as much by 5e-4.
@@ -36,27 +35,6 @@ module epcont_accuracy_body_loads
   end type load_batch
 
 contains
-
-  !> The pairs that have a node in each body.
-  pure function pairs_of_bodies(model) result(pairs)
-    type(model_type), intent(in) :: model   !! the scene
-    type(incidence) :: pairs
-    integer, allocatable :: body(:, :)      !! of each pair; 0 ends them [any, pairs]
-    integer :: i, k, m
-
-    allocate (body(maxval([1, model%row_start(2:) - model%row_start(:model%pairs)]), model%pairs), source=0)
-    do k = 1, model%pairs
-      m = 0
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        associate (b => model%body(model%row_node(i)))
-          if (any(body(:m, k) == b)) cycle
-          m = m + 1
-          body(m, k) = b
-        end associate
-      end do
-    end do
-    pairs = new_incidence(body, model%bodies)
-  end function pairs_of_bodies
 
   !> The loads that a body feels.
   pure function new_body_loads(pair, unit_force, told, unit) result(loads)

@@ -3,12 +3,12 @@
 !> feels few that it tells apart (`body_loads.f90`).
 module epcont_accuracy_error_fields
   use epcont_accuracy_body_loads, only: body_loads, choose_fields, find_displacements, load_batch, &
-    new_body_loads, pairs_of_bodies
+    new_body_loads
   use epcont_accuracy_element_errors, only: element_errors, new_element_errors
   use epcont_accuracy_field_sums, only: field_sums, new_field_sums
   use epcont_accuracy_patches, only: patch_table
   use epcont_accuracy_recovery, only: body_samples, place_samples, recover
-  use epcont_base_incidence, only: incidence
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: components
@@ -52,7 +52,7 @@ contains
 
     allocate (field%smooth(components, table%places), field%element(scene%model%elements), &
               field%along(2, size(unit)), field%missing(size(unit)), source=0.0_wp)
-    pairs = pairs_of_bodies(scene%model)
+    pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
     unit = [(maxval(abs(unit_force(:, told(k)))), k=1, size(told))]
     energy = 0.0_wp
     do b = 1, size(scene%numbering%body)

@@ -11,7 +11,7 @@ module epcont_flexibility_flexibility
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: bodies_of_pairs, body_flexibility, find_flexibility, gap_opening, pair_forces, see_motions
+  public :: body_flexibility, find_flexibility, gap_opening, pair_forces, see_motions
 
   !> One body's part of F, between the pairs that it gives way at.
   type :: body_flexibility
@@ -95,29 +95,6 @@ contains
       flexibility = matmul(response, solved)
     end function border_part
   end subroutine find_flexibility
-
-  !> The bodies that each pair has nodes of; 0 ends them [any, pairs].
-  pure function bodies_of_pairs(model) result(body)
-    type(model_type), intent(in) :: model   !! the scene
-    integer, allocatable :: body(:, :)
-    integer :: found(maxval([model%row_start(2:) - model%row_start(:model%pairs), 0]), model%pairs)
-    integer :: i, k, last, most
-
-    found = 0
-    most = 0
-    do k = 1, model%pairs
-      last = 0
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        associate (b => model%body(model%row_node(i)))
-          if (any(found(:last, k) == b)) cycle
-          last = last + 1
-          found(last, k) = b
-        end associate
-      end do
-      most = max(most, last)
-    end do
-    body = found(:most, :)
-  end function bodies_of_pairs
 
   !> Opening of the gaps by displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)

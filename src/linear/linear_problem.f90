@@ -9,7 +9,7 @@ module epcont_linear_linear_problem
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
-  use epcont_flexibility_flexibility, only: bodies_of_pairs, body_flexibility, find_flexibility, &
+  use epcont_flexibility_flexibility, only: body_flexibility, find_flexibility, &
     gap_opening, pair_forces, see_motions
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
@@ -83,7 +83,7 @@ contains
       call self%settle(scene)
       call watch%lap(stage_displacements)
       if (first) then
-        self%problem%flexibility = new_flexibility(bodies_of_pairs(scene%model), scene%model%bodies)
+        self%problem%flexibility = new_flexibility(scene%model%bodies_of_pairs(), scene%model%bodies)
         call add_flexibilities(.not. yields)
         if (any(yields) .and. .not. all(yields)) self%lasting_flexibility = self%problem%flexibility
       else if (all(yields)) then

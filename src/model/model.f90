@@ -82,6 +82,7 @@ module epcont_model_model
     procedure :: is_rigid
     procedure :: can_yield
     procedure :: has_flat_curve
+    procedure :: bodies_of_pairs
     procedure :: opening
     procedure :: single_pairs
     procedure :: name_of
@@ -234,6 +235,29 @@ contains
 
     is_held = self%held(component, self%leader(component, node))
   end function is_held
+
+  !> The bodies that each pair has nodes of; 0 ends them [any, pairs].
+  pure function bodies_of_pairs(self) result(body)
+    class(model_type), intent(in) :: self
+    integer, allocatable :: body(:, :)
+    integer :: found(maxval([self%row_start(2:) - self%row_start(:self%pairs), 0]), self%pairs)
+    integer :: i, k, last, most
+
+    found = 0
+    most = 0
+    do k = 1, self%pairs
+      last = 0
+      do i = self%row_start(k), self%row_start(k + 1) - 1
+        associate (b => self%body(self%row_node(i)))
+          if (any(found(:last, k) == b)) cycle
+          last = last + 1
+          found(last, k) = b
+        end associate
+      end do
+      most = max(most, last)
+    end do
+    body = found(:most, :)
+  end function bodies_of_pairs
 
   !> How far displacements open the gap of a pair.
   pure function opening(self, pair, displacement)

@@ -1,6 +1,7 @@
 !> Memory and work that a scene will take, from the numbering alone.
 module epcont_plan_forecast
   use epcont_base_error, only: error_type, raise, status_usage
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: short_real
   use epcont_model_controls, only: method_inistr, precision_double, solver_frontal
@@ -97,13 +98,15 @@ contains
     type(numbering_type), intent(in) :: numbering   !! of its equations
     type(iteration_plan), intent(in) :: plan   !! of its iteration
     type(forecast_type) :: expected
+    type(incidence) :: of_bodies              ! pairs that have nodes in each
     integer(i8), allocatable :: own_pairs(:)
     integer(i8) :: coupled, done_with, entries, factor, flexibility, last, pairs, passing, saved, unit_loads
     real(wp) :: operations
     integer :: b
 
     pairs = model%pairs
-    own_pairs = pairs_of_bodies()
+    of_bodies = new_incidence(model%bodies_of_pairs(), model%bodies)
+    own_pairs = of_bodies%start(2:) - of_bodies%start(:model%bodies)
     ! Entries of F, by levels.
     coupled = min(pairs**2, sum(own_pairs**2) + 2*least_level*pairs)
     entries = 0       ! of the factors
@@ -157,24 +160,6 @@ contains
     expected%operations_again = expected%operations_again + expected%contact
 
   contains
-
-    !> Pairs that have nodes in each body.
-    pure function pairs_of_bodies() result(own)
-      integer(i8) :: own(model%bodies)
-      integer :: last(model%bodies)   ! pair that was counted
-      integer :: i, k
-
-      own = 0
-      last = 0
-      do k = 1, model%pairs
-        do i = model%row_start(k), model%row_start(k + 1) - 1
-          associate (b => model%body(model%row_node(i)))
-            if (last(b) < k) own(b) = own(b) + 1
-            last(b) = k
-          end associate
-        end do
-      end do
-    end function pairs_of_bodies
 
     !> What a run holds besides its matrices [bytes].
     pure integer(i8) function beside_matrices() result(bytes)

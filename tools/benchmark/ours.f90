@@ -17,7 +17,7 @@ program bench_ours
   use epcont_contact_solver, only: solve_contact
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_base_diagnostic, only: diagnostics
-  use epcont_flexibility_flexibility, only: bodies_of_pairs, body_flexibility, find_flexibility, &
+  use epcont_flexibility_flexibility, only: body_flexibility, find_flexibility, &
     gap_opening, pair_forces, see_motions
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_material_scene_materials, only: find_materials, scene_materials
@@ -139,7 +139,7 @@ contains
       call bodies%body(b)%factor()
       spent(factor) = spent(factor) + lap()
     end do
-    problem%flexibility = new_flexibility(bodies_of_pairs(model), model%bodies)
+    problem%flexibility = new_flexibility(model%bodies_of_pairs(), model%bodies)
     do b = 1, model%bodies
       call find_flexibility(model, numbering, b, bodies%body(b), part)
       call problem%flexibility%add(part%pair, part%matrix)
