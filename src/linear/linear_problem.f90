@@ -19,6 +19,7 @@ module epcont_linear_linear_problem
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
   use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, &
     stopwatch
+  use epcont_system_threads, only: use_one_thread_each
   implicit none
   private
   public :: linear_problem, new_linear_problem
@@ -114,6 +115,7 @@ contains
       threads = threads_for(operations, shared, self%plan%threads)
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
       do i = 1, size(body)
+        call use_one_thread_each()
         call self%body(body(i))%assemble(scene, self%operator, self%law, body(i))
         call self%body(body(i))%factor()
       end do
@@ -135,6 +137,7 @@ contains
       threads = threads_for(operations, spread(.false., 1, size(chosen)), self%plan%threads)
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic) ordered private(own)
       do b = 1, scene%model%bodies
+        call use_one_thread_each()
         if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, self%body(b), own)
         !$omp ordered
         if (chosen(b)) call self%problem%flexibility%add(own%pair, own%matrix)

@@ -6,7 +6,7 @@ module epcont_system_threads
   !$ use omp_lib, only: omp_get_max_threads, omp_set_num_threads
   implicit none
   private
-  public :: granted_threads, stated_threads, threads_now, use_threads
+  public :: granted_threads, stated_threads, threads_now, use_one_thread_each, use_threads
 
   !> For the BLAS; as many as there are for OpenMP.
   integer, parameter, public :: one_thread(2) = [1, 0]
@@ -78,6 +78,12 @@ contains
     end if
     !$ if (threads(2) > 0) call omp_set_num_threads(threads(2))
   end subroutine use_threads
+
+  !> Within a parallel region: whatever each of its threads calls has one. Of a list in OMP_NUM_THREADS the
+  !! second number would count there, and a BLAS that uses OpenMP would take it.
+  subroutine use_one_thread_each()
+    !$ call omp_set_num_threads(1)
+  end subroutine use_one_thread_each
 
   !> What OpenBLAS says; 0: it is another BLAS.
   integer function blas_number(name)
