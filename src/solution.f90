@@ -88,30 +88,16 @@ contains
     class(observer), intent(inout) :: watch
     type(linear_problem), allocatable :: linear
     type(contact_line) :: line
-    type(answer_type) :: found                      ! before refinement
-    type(certificate_type) :: found_certificate
-    integer :: step
 
-    call solve_in_precision()
-    if (answer%failed_body > 0 .or. allocated(answer%against_double)) return
-    if (answer%contact%state /= contact_solved) return
-
+    call solve_as_planned()
+    if (is_without_displacements()) return
     line = find_contact_line(scene%model)
-    call evaluate()
-    do step = 1, most_refinements
-      if (.not. answer%converged .or. certificate%balanced .and. answer%lost() <= lost_digits .and. &
-          (step == 1 .or. answer%last_correction <= lost_digits)) exit
-      if (step == 1) then
-        found = answer
-        found_certificate = certificate
-      end if
-      call linear%sharpen(scene, answer%load_factor, answer%scene_state, answer%last_correction, watch)
-      call evaluate()
-    end do
-    ! Gaps far below a travel are rounding, and contact found from them is out of balance.
-    if (step > 1 .and. certificate%has_spoilt(found_certificate)) then
-      answer = found
-      certificate = found_certificate
+    call evaluate_refined()
+    if (answer%precision /= precision_double .and. answer%converged .and. &
+        .not. (certificate%valid .and. certificate%scene%sound())) then
+      call solve_in_double()
+      if (is_without_displacements()) return
+      call evaluate_refined()
     end if
     call assess(scene, linear, line, answer, accuracy)
     ! An open pair does not press.
@@ -119,6 +105,36 @@ contains
     call watch%lap(stage_accuracy)
 
   contains
+
+    !> Is there nothing to look at?
+    pure logical function is_without_displacements() result(without)
+      without = answer%failed_body > 0 .or. allocated(answer%against_double) .or. &
+                answer%contact%state /= contact_solved
+    end function is_without_displacements
+
+    !> What was found, refined where rounding has left too much, and its certificate.
+    subroutine evaluate_refined()
+      type(answer_type) :: found                      ! before refinement
+      type(certificate_type) :: found_certificate
+      integer :: step
+
+      call evaluate()
+      do step = 1, most_refinements
+        if (.not. answer%converged .or. certificate%balanced .and. answer%lost() <= lost_digits .and. &
+            (step == 1 .or. answer%last_correction <= lost_digits)) exit
+        if (step == 1) then
+          found = answer
+          found_certificate = certificate
+        end if
+        call linear%sharpen(scene, answer%load_factor, answer%scene_state, answer%last_correction, watch)
+        call evaluate()
+      end do
+      ! Gaps far below a travel are rounding, and contact found from them is out of balance.
+      if (step > 1 .and. certificate%has_spoilt(found_certificate)) then
+        answer = found
+        certificate = found_certificate
+      end if
+    end subroutine evaluate_refined
 
     !> Stresses, pressures and zones of the state that was found, and their certificate.
     subroutine evaluate()
@@ -146,40 +162,42 @@ contains
     end subroutine evaluate
 
     !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved
-    !! by others in double.
-    subroutine solve_in_precision()
-      type(iteration_plan) :: now
-
-      now = scene%iteration
+    !! by others in double. So is what the certificate refuses.
+    subroutine solve_as_planned()
       associate (plan => scene%iteration)
-        call follow_or_step(now)
+        call follow_or_step(plan%precision)
         if (plan%precision /= precision_double .and. &
-            .not. (answer%converged .and. answer%rounding_error <= plan%rounding_error)) then
-          if (allocated(plan%against_double)) then
-            answer%against_double = plan%against_double
-            return
-          end if
-          now%precision = precision_double
-          now%load_steps = plan%load_steps
-          call follow_or_step(now)
-        end if
+            .not. (answer%converged .and. answer%rounding_error <= plan%rounding_error)) &
+          call solve_in_double()
       end associate
-      answer%precision = now%precision
-      answer%load_steps = now%load_steps
-    end subroutine solve_in_precision
+    end subroutine solve_as_planned
+
+    !> Solve anew by factors in double, unless there is no memory for them.
+    subroutine solve_in_double()
+      if (allocated(scene%iteration%against_double)) then
+        answer%against_double = scene%iteration%against_double
+      else
+        call follow_or_step(precision_double)
+      end if
+    end subroutine solve_in_double
 
     !> Follow the loads; where the method was chosen here and has found neither an answer nor a limit load, in
     !! more steps.
-    subroutine follow_or_step(plan)
-      type(iteration_plan), intent(inout) :: plan   !! its load steps become those that were taken
+    subroutine follow_or_step(precision)
+      integer, intent(in) :: precision   !! of the factors
+      type(iteration_plan) :: plan
 
+      plan = scene%iteration
+      plan%precision = precision
       call follow_loads(scene, plan, linear, answer%followed_loads, watch)
-      if (.not. (plan%chosen_here .and. plan%yields)) return
-      if (answer%converged .or. answer%runs_away .or. answer%lacks_memory) return
       ! What the first solve does not find, steps do not; single precision is followed by double.
-      if (size(answer%history) <= 1 .or. plan%precision /= precision_double) return
-      plan%load_steps = more_steps*plan%load_steps
-      call follow_loads(scene, plan, linear, answer%followed_loads, watch)
+      if (plan%chosen_here .and. plan%yields .and. precision == precision_double .and. .not. &
+          (answer%converged .or. answer%runs_away .or. answer%lacks_memory .or. size(answer%history) <= 1)) then
+        plan%load_steps = more_steps*plan%load_steps
+        call follow_loads(scene, plan, linear, answer%followed_loads, watch)
+      end if
+      answer%precision = precision
+      answer%load_steps = plan%load_steps
     end subroutine follow_or_step
   end subroutine analyse
 end module epcont_solution
