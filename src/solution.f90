@@ -191,8 +191,9 @@ contains
       plan%precision = precision
       call follow_loads(scene, plan, linear, answer%followed_loads, watch)
       ! What the first solve does not find, steps do not; single precision is followed by double.
-      if (plan%chosen_here .and. plan%yields .and. precision == precision_double .and. .not. &
-          (answer%converged .or. answer%runs_away .or. answer%lacks_memory .or. size(answer%history) <= 1)) then
+      if (plan%chosen_here .and. plan%yields .and. precision == precision_double .and. &
+          size(answer%history) > 1 .and. &
+          .not. (answer%converged .or. answer%runs_away .or. answer%lacks_memory)) then
         plan%load_steps = more_steps*plan%load_steps
         call follow_loads(scene, plan, linear, answer%followed_loads, watch)
       end if

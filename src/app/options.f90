@@ -23,7 +23,8 @@ module epcont_app_options
     option_type('--check', 'read and check the decks, then stop'), &
     option_type('--plan', 'print what would be solved and what it takes, then stop', &
                 more='The time that the run would take on this machine goes to standard error: within a '// &
-                     'factor of 2, beyond yield where it takes about as many solves as are told.'), &
+                     'factor of 2 where contact is found in few steps, and beyond yield in about as many '// &
+                     'solves as are told.'), &
     option_type('--tables', 'write node and element tables, whatever the deck asks for', 'all', &
                 more='Without it they are written where the deck has DISPLACEMENT, SPCFORCES or STRESS.'), &
     option_type('--brief', 'write the listing and the summary alone, none of the other tables', &

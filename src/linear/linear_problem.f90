@@ -27,10 +27,8 @@ module epcont_linear_linear_problem
   !> Where two steps of refinement change the strains by more than this part of what the two before did,
   !! rounding is reached, or single precision leaves too little to begin with.
   real(wp), parameter :: slowest_rate = 0.5_wp
-
-  !> Part of the contact forces that a step of refinement finds anew at first: what the flexibility of a
-  !! slender body rounds of them is as much smaller (gaps of strips 200 times as long as high: 3e-14, where
-  !! all of the forces leave 3e-10).
+  !> Part of the contact forces that a step of refinement finds anew at first: what they round, and so open,
+  !! in slender bodies is as much smaller (strips 200:1: gaps of 3e-14, where all of the forces leave 3e-10).
   real(wp), parameter :: least_share = 1.0e-4_wp
 
   type, extends(factored_bodies) :: linear_problem
@@ -273,8 +271,7 @@ contains
   end subroutine sharpen
 
   !> What single precision has left: the change of displacements, strains and contact forces, of the largest
-  !! of each, by two steps of refinement, of which the second must change less: else the factors do not tell
-  !! the error either, and it is 1.
+  !! of each, by two steps of refinement; 1 where the second does not change less: then nothing tells.
   subroutine rounding_error(self, scene, load_factor, state, error)
     class(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene    !! that it was made for

@@ -115,7 +115,7 @@ class Dial(unittest.TestCase):
 
     def test_double_where_single_is_not_certified(self):
         """A wavy contact of 201 pairs: what single precision leaves is below TOL, but bodies pass through each other by it."""
-        text = (pathlib.Path(__file__).parent / "single_strip.dat").read_text()
+        text = (pathlib.Path(__file__).parent / "single_strip.bdf").read_text()
         run, listing, pressures = self.run_text(text, "PRECIS,SINGLE")
         _, _, exact = self.run_text(text, "PRECIS,DOUBLE")
         self.assertEqual(0, run.returncode, run.stderr)
