@@ -11,13 +11,13 @@ module epcont_accuracy_element_errors
   use epcont_element_kinematics, only: components
   use epcont_material_elasticity, only: cross_modulus
   use epcont_material_material_law, only: material_law, point_state
+  use epcont_plan_forecast, only: loads_at_once
   implicit none
   private
   public :: element_errors, new_element_errors
 
-  !> Fields that are compared at once, besides the answer: strains under all loads that a body feels may take
-  !! more memory than its factor.
-  integer, parameter, public :: most_fields = 15
+  !> Fields that are compared at once, besides the answer.
+  integer, parameter, public :: most_fields = loads_at_once
   integer, parameter :: most_width = components*(1 + most_fields)
 
   type :: element_errors

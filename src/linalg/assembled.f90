@@ -8,7 +8,7 @@
 module epcont_linalg_assembled
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_dense, only: lower_inverse
+  use epcont_linalg_dense, only: cholesky_inverse
   use epcont_linalg_staircase, only: multiply_staircase, solve_staircase
   implicit none
   private
@@ -198,7 +198,7 @@ contains
     if (size(at) == self%trailing .and. size(order) == self%trailing) then
       if (all(at == [(k, k=1, size(at))]) .and. all(rows%start == [(k, k=1, size(rows%start))])) then
         call self%get_trailing_factor(compliance)
-        call lower_inverse(compliance)
+        call cholesky_inverse(compliance)
         do k = 1, size(order)
           compliance(k:, k) = rows%weight(k)*rows%weight(k:)*compliance(k:, k)
         end do

@@ -7,7 +7,7 @@ module epcont_linalg_dense
   use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
   implicit none
   private
-  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky, lower_inverse
+  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky
   public :: lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
 
 contains
@@ -56,25 +56,13 @@ contains
     if (info > 0) info = info + done
   end subroutine extend_cholesky
 
-  !> Replace a Cholesky factor L by the inverse of LL', whole.
+  !> Replace a Cholesky factor L by the inverse of LL'.
   pure subroutine cholesky_inverse(a)
-    !> Lower triangle: L; then both triangles of the inverse [n, n]
-    real(wp), contiguous, intent(inout) :: a(:, :)
-    integer :: j
-
-    call lower_inverse(a)
-    do j = 2, size(a, 2)
-      a(:j - 1, j) = a(j, :j - 1)
-    end do
-  end subroutine cholesky_inverse
-
-  !> The same, the lower triangle alone.
-  pure subroutine lower_inverse(a)
     real(wp), contiguous, intent(inout) :: a(:, :)   !! lower triangle: L, then the inverse [n, n]
     integer :: info
 
     if (size(a) > 0) call dpotri('L', size(a, 1), a, size(a, 1), info)
-  end subroutine lower_inverse
+  end subroutine cholesky_inverse
 
   !> Cholesky factor of a semidefinite matrix, largest pivot first: a(order, order) = LL' to rounding.
   pure subroutine pivoted_cholesky(a, tolerance, order, rank)

@@ -42,9 +42,9 @@ module epcont_plan_forecast
   !> And over pairs and free motions.
   integer(i8), parameter :: motion_matrices = 8
   !> Unit loads along free motions whose strains are there at once, of one body, when the figures are
-  !! assessed (`most_fields` of `accuracy/element_errors.f90`), and what each takes of a node and of an
-  !! element [bytes].
-  integer, parameter :: loads_at_once = 15
+  !! assessed: all that a body feels may take more memory than its factor. And what each takes of a node and
+  !! of an element [bytes].
+  integer, parameter, public :: loads_at_once = 15
   integer(i8), parameter :: load_of_node = 64, load_of_element = 32
 
 contains
