@@ -126,7 +126,7 @@ contains
       accuracy%sensitivity = find_sensitivity( &
         loads%problem, loads%basis, answer%contact%force, &
         abs(linear%problem%initial_gap) + abs(linear%problem%load_gap) &
-        + matmul(abs(linear%problem%motion), abs(answer%contact%approach)), answer%condition)
+        + linear%problem%motion%times(answer%contact%approach, magnitudes=.true.), answer%condition)
       ! What the last step of refinement has not changed is right.
       accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
       off = errors()

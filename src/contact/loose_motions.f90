@@ -6,7 +6,7 @@
 !> look for.
 module epcont_contact_loose_motions
   use epcont_base_kinds, only: wp
-  use epcont_contact_motion_matrix, only: motion_matrix
+  use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linalg_dense, only: null_space
   implicit none
   private

@@ -9,6 +9,7 @@
 module epcont_contact_problem
   use epcont_base_kinds, only: wp
   use epcont_contact_flexibility_matrix, only: flexibility_matrix
+  use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
   public :: contact_problem, contact_solution, pivot_record
@@ -27,7 +28,7 @@ module epcont_contact_problem
 
   type :: contact_problem
     type(flexibility_matrix) :: flexibility     !! F, opening of pair i by a unit force at pair j
-    real(wp), allocatable :: motion(:, :)       !! A, closing of the gaps by unit rigid motions [n, m]
+    type(motion_matrix) :: motion               !! A, closing of the gaps by unit rigid motions [n, m]
     real(wp), allocatable :: initial_gap(:)     !! g0, negative: an overlap [length] [n]
     real(wp), allocatable :: load_gap(:)        !! gl, opening by the loads without contact [length] [n]
     real(wp), allocatable :: resultant(:)       !! P, load of the bodies along their free motions [m]

@@ -13,8 +13,8 @@ module epcont_contact_scaling
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible
   use epcont_contact_flexibility_matrix, only: flexibility_matrix
-  use epcont_contact_motion_matrix, only: motion_matrix, new_motion_matrix
   use epcont_contact_problem, only: contact_problem
+  use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
   public :: scaled_problem, scale_problem, drop_motions, measure, gaps_by_forces
@@ -50,11 +50,10 @@ contains
     type(contact_problem), intent(in), target :: problem   !! in the deck's units; it must remain
     real(wp) :: driving   !! largest gap that asks for forces
     real(wp) :: largest   !! max|F|: on the diagonal, as F is semidefinite
-    integer :: j, m
+    integer :: j
 
-    m = size(problem%resultant)
-    scaled%kept = [(j, j=1, m)]
-    scaled%motion_size = [(largest_of(problem%motion(:, j)), j=1, m)]
+    scaled%kept = [(j, j=1, size(problem%resultant))]
+    scaled%motion_size = problem%motion%sizes()
     scaled%motion_size = or_else(or_else(scaled%motion_size, largest_of(scaled%motion_size)), 1.0_wp)
     scaled%gap = problem%initial_gap + problem%load_gap
     scaled%gap_terms = abs(problem%initial_gap) + abs(problem%load_gap)
@@ -75,7 +74,7 @@ contains
       scaled%resultant = problem%resultant/scaled%motion_size/rho
     end associate
     scaled%flexibility => problem%flexibility
-    scaled%motion = new_motion_matrix(problem%motion, scaled%motion_size)
+    scaled%motion = problem%motion%over(scaled%motion_size)
     call measure(scaled)
 
   contains

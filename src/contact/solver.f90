@@ -9,13 +9,13 @@ module epcont_contact_solver
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_loose_motions, only: loose_motions
-  use epcont_contact_motion_matrix, only: motion_matrix
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
     contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
   use epcont_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
+  use epcont_flexibility_motion_matrix, only: dense_motions, motion_matrix
   implicit none
   private
   public :: solve_contact
@@ -166,7 +166,8 @@ contains
       springs%flexibility = dense_flexibility(matmul(opening, transpose(opening)))
       springs%initial_gap = state%gap + matmul(opening, change)
       springs%load_gap = 0*state%gap
-      allocate (springs%motion(size(state%gap), 0), springs%resultant(0))
+      springs%motion = dense_motions(opening(:, :0))
+      allocate (springs%resultant(0))
       call solve_contact(springs, held)
       if (held%state /= contact_solved) return
       change = change + matmul(held%force, opening)

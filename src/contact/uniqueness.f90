@@ -5,8 +5,8 @@ module epcont_contact_uniqueness
   use epcont_contact_basis, only: are_independent, contact_basis, new_basis, respond
   use epcont_contact_equilibrium, only: can_carry
   use epcont_contact_loose_motions, only: loose_motions
-  use epcont_contact_motion_matrix, only: motion_matrix
   use epcont_contact_scaling, only: scaled_problem
+  use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linalg_dense, only: add_product, null_space, pivoted_cholesky
   implicit none
   private

@@ -4,6 +4,7 @@ module epcont_flexibility_flexibility
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, solved_to
   use epcont_element_kinematics, only: directions
+  use epcont_flexibility_motion_matrix, only: motion_matrix, new_motion_matrix
   use epcont_linalg_assembled, only: sparse_rows
   use epcont_linalg_dense, only: cholesky_solve
   use epcont_model_model, only: model_type
@@ -132,13 +133,13 @@ contains
   subroutine see_motions(model, motions, closing, resultant)
     type(model_type), intent(in) :: model   !! the scene
     type(free_motions), intent(in) :: motions   !! free ones
-    real(wp), allocatable, intent(out) :: closing(:, :)   !! A [pairs, motions]
+    type(motion_matrix), intent(out) :: closing   !! A
     real(wp), allocatable, intent(out) :: resultant(:)    !! P [motions]
     real(wp) :: all_loads(motions%count), load(directions), moved(directions)
     integer :: c, i, m
 
-    allocate (closing(model%pairs, motions%count), resultant(motions%count), source=0.0_wp)
     call close_gaps()
+    allocate (resultant(motions%count), source=0.0_wp)
     all_loads = 0.0_wp
     do i = 1, model%nodes
       load = [(merge(0.0_wp, model%load(c, i), model%held(c, model%leader(c, i))), c=1, directions)]
@@ -156,8 +157,13 @@ contains
     !> Of each pair by the motions of the bodies that have its nodes.
     subroutine close_gaps()
       real(wp) :: moved(directions, maxval([0, model%row_start(2:) - model%row_start(:model%pairs)]))
-      integer :: i, j, k, m, n
+      integer, allocatable :: pair(:), motion(:)   ! of each entry of A
+      real(wp), allocatable :: by(:)
+      integer :: entries, i, j, k, m, n
 
+      n = sum(motions%first(model%body(model%row_node) + 1) - motions%first(model%body(model%row_node)))
+      allocate (pair(n), motion(n), by(n))
+      entries = 0
       do k = 1, model%pairs
         associate (node => model%row_node(model%row_start(k):model%row_start(k + 1) - 1), &
                    weight => model%row_weight(model%row_start(k):model%row_start(k + 1) - 1))
@@ -168,13 +174,17 @@ contains
               do j = 1, n
                 moved(:, j) = motions%displacement(model, node(j), m)
               end do
-              closing(k, m) = -model%opening(k, moved(:, :n))
-              if (abs(closing(k, m)) <= solved_to*sum(abs(weight)*norm2(moved(:, :n), dim=1))) &
-                closing(k, m) = 0.0_wp
+              entries = entries + 1
+              pair(entries) = k
+              motion(entries) = m
+              by(entries) = -model%opening(k, moved(:, :n))
+              if (abs(by(entries)) <= solved_to*sum(abs(weight)*norm2(moved(:, :n), dim=1))) &
+                by(entries) = 0.0_wp
             end do
           end do
         end associate
       end do
+      closing = new_motion_matrix(model%pairs, motions%count, pair(:entries), motion(:entries), by(:entries))
     end subroutine close_gaps
   end subroutine see_motions
 end module epcont_flexibility_flexibility

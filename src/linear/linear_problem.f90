@@ -352,7 +352,7 @@ contains
     rest = state%contact%force - moving
     self%problem%load_gap = gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap - &
                             self%problem%flexibility%times(moving)
-    self%problem%resultant = load_factor*self%resultant - matmul(rest, self%problem%motion)
+    self%problem%resultant = load_factor*self%resultant - self%problem%motion%carried(rest)
     call solve_contact(self%problem, state%contact, guess, self%plan%by_blocks, self%basis)
     if (state%contact%state /= contact_solved) return
     added = state%contact%force - moving
@@ -364,8 +364,7 @@ contains
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: load_factor
     type(scene_state), intent(inout) :: state
-    real(wp), allocatable :: opening(:), travel(:)   ! of gaps by deformation, by what supports travel
-    real(wp), allocatable :: moved(:)                ! closing of a gap by each free motion [length]
+    real(wp), allocatable, dimension(:) :: opening, travel, moved, moves   ! of gaps by strain, motions
     real(wp) :: gap, terms                           ! what the gap is the sum of, added up
     integer :: i, k, node
 
@@ -381,13 +380,14 @@ contains
     end do
     opening = gap_opening(scene%model, state%deformation)
     travel = load_factor*self%travel_gap
+    moved = self%problem%motion%times(state%contact%approach)
+    moves = self%problem%motion%times(state%contact%approach, magnitudes=.true.)
     do k = 1, scene%model%pairs
       if (state%contact%force(k) > 0.0_wp) cycle
       ! Where a rigid stop takes the load, what the flexibility says of this gap is rounding of two
       ! deformations that cancel: a pair that seemed to touch may be open, as the displacements have it.
-      moved = self%problem%motion(k, :)*state%contact%approach
-      gap = self%problem%initial_gap(k) + (opening(k) + travel(k)) - sum(moved)
-      terms = abs(self%problem%initial_gap(k)) + abs(travel(k)) + sum(abs(moved))
+      gap = self%problem%initial_gap(k) + (opening(k) + travel(k)) - moved(k)
+      terms = abs(self%problem%initial_gap(k)) + abs(travel(k)) + moves(k)
       do i = scene%model%row_start(k), scene%model%row_start(k + 1) - 1
         terms = terms + abs(scene%model%row_weight(i)) &
                         *maxval(abs(state%deformation(:, scene%model%row_node(i))))

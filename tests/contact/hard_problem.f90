@@ -3,6 +3,7 @@ module hard_problem
   use epcont_base_kinds, only: wp
   use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_problem, only: contact_problem
+  use epcont_flexibility_motion_matrix, only: dense_motions
   use random_problem, only: generator
   implicit none
   private
@@ -26,7 +27,7 @@ contains
 
     place = [((2*i - n - 1.0_wp)/n, i=1, n)]
     problem%flexibility = dense_flexibility(kernel(n))
-    problem%motion = reshape([(1.0_wp, i=1, n)], [n, 1])
+    problem%motion = dense_motions(reshape([(1.0_wp, i=1, n)], [n, 1]))
     problem%initial_gap = place**2*(0.5_wp + random%uniform())
     allocate (problem%load_gap(n), source=0.0_wp)
     problem%resultant = [0.02_wp + 0.2_wp*random%uniform()]
@@ -47,17 +48,17 @@ contains
         problem%flexibility%level(1)%within(:, k) = problem%flexibility%level(1)%within(:, k)*1.0e-3_wp
       end do
     case ('three motions')   ! along the normal, a rotation, and half of the pairs by themselves
-      problem%motion = reshape([[(1.0_wp, i=1, n)], place, merge(1.0_wp, 0.0_wp, place > 0)], [n, 3])
-      problem%resultant = matmul(transpose(problem%motion), [(random%uniform()/n, i=1, n)])
+      problem%motion = dense_motions(reshape([[(1.0_wp, i=1, n)], place, merge(1.0_wp, 0.0_wp, place > 0)], [n, 3]))
+      problem%resultant = problem%motion%carried([(random%uniform()/n, i=1, n)])
     case ('held')
-      problem%motion = reshape([real(wp) ::], [n, 0])
+      problem%motion = dense_motions(reshape([real(wp) ::], [n, 0]))
       problem%resultant = [real(wp) ::]
       problem%initial_gap = problem%initial_gap - 0.3_wp
     case ('rough')
       problem%initial_gap = problem%initial_gap + [(0.05_wp*random%uniform(), i=1, n)]
     case ('flat, turning')   ! pressed and turned, all gaps zero
       problem%initial_gap = 0.0_wp
-      problem%motion = reshape([[(1.0_wp, i=1, n)], place], [n, 2])
+      problem%motion = dense_motions(reshape([[(1.0_wp, i=1, n)], place], [n, 2]))
       problem%resultant = [1.0_wp, 0.4_wp*(2*random%uniform() - 1)*maxval(place)]
     case ('smooth')
       call load_half(place, 3.0_wp, problem)

@@ -3,6 +3,7 @@ module many_bodies
   use epcont_base_kinds, only: wp
   use epcont_contact_flexibility_matrix, only: new_flexibility
   use epcont_contact_problem, only: contact_problem
+  use epcont_flexibility_motion_matrix, only: dense_motions
   use random_problem, only: generator
   implicit none
   private
@@ -49,17 +50,17 @@ contains
     integer, intent(in) :: body(:, :), bodies
     logical, intent(in) :: awkward   !! with rigid bodies and pairs that depend on each other
     type(contact_problem) :: problem
-    real(wp), allocatable :: force(:), root(:, :)
+    real(wp), allocatable :: force(:), motion(:, :), root(:, :)
     integer, allocatable :: own(:)
     integer :: b, i, k, n
 
     n = size(body, 2)
     problem%flexibility = new_flexibility(body, bodies)
-    allocate (problem%motion(n, bodies), problem%load_gap(n), source=0.0_wp)
+    allocate (motion(n, bodies), problem%load_gap(n), source=0.0_wp)
     do b = 1, bodies
       own = pack([(k, k=1, n)], [(any(body(:, k) == b), k=1, n)])
       do i = 1, size(own)
-        problem%motion(own(i), b) = merge(1.0_wp, -1.0_wp, body(1, own(i)) == b)*(0.5_wp + random%uniform())
+        motion(own(i), b) = merge(1.0_wp, -1.0_wp, body(1, own(i)) == b)*(0.5_wp + random%uniform())
       end do
       if (awkward .and. random%chance(0.2_wp)) cycle
       allocate (root(size(own), size(own)))
@@ -73,6 +74,7 @@ contains
     call problem%flexibility%complete()
     problem%initial_gap = [(merge(0.0_wp, 0.3_wp*random%uniform(), random%chance(0.5_wp)), k=1, n)]
     force = [(random%uniform(), k=1, n)]
-    problem%resultant = matmul(force, problem%motion)
+    problem%motion = dense_motions(motion)
+    problem%resultant = problem%motion%carried(force)
   end function scene_of
 end module many_bodies

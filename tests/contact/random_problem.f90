@@ -3,6 +3,7 @@ module random_problem
   use epcont_base_kinds, only: i8, wp
   use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution
+  use epcont_flexibility_motion_matrix, only: dense_motions
   implicit none
   private
   public :: generator, new_problem, residual_of, is_escape, rescaled
@@ -51,17 +52,19 @@ contains
     type(generator), intent(inout) :: random
     integer, intent(in) :: n, m
     type(contact_problem) :: problem
+    real(wp), allocatable :: motion(:, :)
     logical :: whole
 
     whole = random%chance(0.4_wp)   ! small integers make ties
-    problem%motion = matrix(random, n, m, whole)
-    if (random%chance(0.5_wp)) problem%motion = abs(problem%motion)
-    if (m > 0 .and. random%chance(0.5_wp)) problem%motion(:, 1) = 1.0_wp
+    motion = matrix(random, n, m, whole)
+    if (random%chance(0.5_wp)) motion = abs(motion)
+    if (m > 0 .and. random%chance(0.5_wp)) motion(:, 1) = 1.0_wp
+    problem%motion = dense_motions(motion)
     problem%flexibility = dense_flexibility(semidefinite(random, n, whole))
     problem%initial_gap = gaps(random, n, whole)
     allocate (problem%load_gap(n), source=0.0_wp)
     if (random%chance(0.3_wp)) problem%load_gap = pack(matrix(random, n, 1, whole), .true.)
-    problem%resultant = resultant(random, problem%motion, whole)
+    problem%resultant = resultant(random, motion, whole)
     call spoil(random, problem)
   end function new_problem
 
@@ -126,6 +129,7 @@ contains
   subroutine spoil(random, problem)
     type(generator), intent(inout) :: random
     type(contact_problem), intent(inout) :: problem
+    real(wp), allocatable :: motion(:, :)
     integer :: from, n, to
 
     n = size(problem%initial_gap)
@@ -135,7 +139,9 @@ contains
     if (random%chance(0.2_wp)) then
       problem%flexibility%level(1)%within(to, :) = problem%flexibility%level(1)%within(from, :)
       problem%flexibility%level(1)%within(:, to) = problem%flexibility%level(1)%within(:, from)
-      problem%motion(to, :) = problem%motion(from, :)
+      motion = problem%motion%dense()
+      motion(to, :) = motion(from, :)
+      problem%motion = dense_motions(motion)
       problem%load_gap(to) = problem%load_gap(from)
       if (random%chance(0.7_wp)) problem%initial_gap(to) = problem%initial_gap(from)
     else if (random%chance(0.1_wp)) then
@@ -154,12 +160,12 @@ contains
     real(wp) :: gap_size, force_size, load_size
 
     gap_error = problem%initial_gap + problem%load_gap + matmul(problem%flexibility%level(1)%within, solution%force) &
-                - matmul(problem%motion, solution%approach) - solution%gap
-    load_error = matmul(solution%force, problem%motion) - problem%resultant
+                - problem%motion%times(solution%approach) - solution%gap
+    load_error = problem%motion%carried(solution%force) - problem%resultant
     force_size = largest(solution%force)
     gap_size = maxval([largest(problem%initial_gap), largest(problem%load_gap), tiny(1.0_wp), &
                        largest(pack(problem%flexibility%level(1)%within, .true.))*force_size, &
-                       largest(pack(problem%motion, .true.))*largest(solution%approach)])
+                       largest(problem%motion%closing)*largest(solution%approach)])
     ! Nothing has a length: no gap, no flexibility. What rounding leaves of zero has no measure.
     if (max(largest(problem%initial_gap), largest(problem%load_gap), &
             largest(pack(problem%flexibility%level(1)%within, .true.))) <= 0.0_wp) gap_size = huge(1.0_wp)
@@ -167,7 +173,7 @@ contains
       force_size = max(force_size, gap_size/largest(pack(problem%flexibility%level(1)%within, .true.)))
     end if
     force_size = max(force_size, tiny(1.0_wp))
-    load_size = max(largest(problem%resultant), force_size*largest(pack(problem%motion, .true.)), tiny(1.0_wp))
+    load_size = max(largest(problem%resultant), force_size*largest(problem%motion%closing), tiny(1.0_wp))
     residual = maxval([abs(gap_error)/gap_size, -solution%gap/gap_size, -solution%force/force_size, &
                        solution%gap/gap_size*(solution%force/force_size), abs(load_error)/load_size, 0.0_wp])
   end function residual_of
@@ -190,7 +196,7 @@ contains
 
     size_of_motion = maxval(abs(motion))
     escape = dot_product(problem%resultant, motion) > 0.0_wp .and. &
-             all(matmul(problem%motion, motion) <= 1.0e-9_wp*size_of_motion)
+             all(problem%motion%times(motion) <= 1.0e-9_wp*size_of_motion)
   end function is_escape
 
   !> The same problem with forces and lengths in other units.

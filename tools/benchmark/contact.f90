@@ -11,6 +11,7 @@ program bench_contact
   use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution
   use epcont_contact_solver, only: solve_contact
+  use epcont_flexibility_motion_matrix, only: dense_motions
   use epcont_linalg_dense, only: add_product
   use statistics, only: argument, median
   implicit none
@@ -57,17 +58,18 @@ contains
   subroutine read_problem(path, problem)
     character(*), intent(in) :: path
     type(contact_problem), intent(out) :: problem
-    real(wp), allocatable :: flexibility(:, :)
+    real(wp), allocatable :: flexibility(:, :), motion(:, :)
     integer(int32) :: m, n
     integer :: unit
 
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', action='read')
     read (unit) n, m
-    allocate (flexibility(n, n), problem%motion(n, m), problem%initial_gap(n), problem%resultant(m))
+    allocate (flexibility(n, n), motion(n, m), problem%initial_gap(n), problem%resultant(m))
     allocate (problem%load_gap(n), source=0.0_wp)
-    read (unit) flexibility, problem%motion, problem%initial_gap, problem%resultant
+    read (unit) flexibility, motion, problem%initial_gap, problem%resultant
     close (unit)
     problem%flexibility = dense_flexibility(flexibility)
+    problem%motion = dense_motions(motion)
   end subroutine read_problem
 
   subroutine write_forces(path, solution)
@@ -90,10 +92,10 @@ contains
     rho = maxval(abs(solution%force))
     omega = rho*maxval(abs(problem%flexibility%level(1)%within))
     associate (gap => problem%initial_gap + matmul(problem%flexibility%level(1)%within, solution%force) &
-               - matmul(problem%motion, solution%approach))
+               - problem%motion%times(solution%approach))
       violation = maxval(abs(min(solution%force/rho, gap/omega)))
     end associate
-    associate (carried => matmul(solution%force, problem%motion))
+    associate (carried => problem%motion%carried(solution%force))
       violation = max(violation, maxval(abs(carried - problem%resultant))/maxval(abs(problem%resultant)))
     end associate
   end function violation

@@ -193,7 +193,7 @@ contains
     force = model%load + bodies%settlement
     open (newunit=unit, file=path, access='stream', form='unformatted', status='replace', action='write')
     write (unit) n, size(row), model%pairs, size(n_equation), motions%count, row, column, value
-    write (unit) n_start, n_equation, n_weight, problem%initial_gap + problem%load_gap, problem%motion, problem%resultant
+    write (unit) n_start, n_equation, n_weight, problem%initial_gap + problem%load_gap, problem%motion%dense(), problem%resultant
     write (unit) merge(1, 0, solution%touching), gathered(equation, n, force), taken(equation, n, displacement)
     close (unit)
   end subroutine write_system

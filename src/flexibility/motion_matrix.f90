@@ -1,10 +1,11 @@
 !> A, the closing of the gaps by unit rigid motions, column by column without zeros: a motion moves one body,
 !> and of many bodies each has few pairs.
-module epcont_contact_motion_matrix
+module epcont_flexibility_motion_matrix
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: motion_matrix, new_motion_matrix
+  public :: motion_matrix, dense_motions, new_motion_matrix
 
   !> Motion j closes the gaps of the pairs pair(start(j):start(j+1)-1).
   type :: motion_matrix
@@ -14,6 +15,8 @@ module epcont_contact_motion_matrix
     real(wp), allocatable :: closing(:)     !! [entries]
   contains
     procedure :: motions
+    procedure :: sizes
+    procedure :: over
     procedure :: times
     procedure :: carried
     procedure :: rows
@@ -23,27 +26,30 @@ module epcont_contact_motion_matrix
 
 contains
 
-  !> A in units of each motion.
-  pure type(motion_matrix) function new_motion_matrix(motion, unit) result(new)
-    real(wp), intent(in) :: motion(:, :)   !! [pairs, motions]
-    real(wp), intent(in) :: unit(:)        !! that each column is measured in [motions]
-    integer :: j, k, last
+  !> A from its entries; those that are zero are left out.
+  pure type(motion_matrix) function new_motion_matrix(pairs, motions, pair, motion, closing) result(new)
+    integer, intent(in) :: pairs, motions           !! rows and columns
+    integer, intent(in) :: pair(:), motion(:)       !! row and column of each entry; rows ascend [entries]
+    real(wp), intent(in) :: closing(:)              !! each once [entries]
+    type(incidence) :: entries   ! of each motion
 
-    new%pairs = size(motion, 1)
-    allocate (new%start(size(motion, 2) + 1), new%pair(count(motion /= 0.0_wp)))
-    allocate (new%closing(size(new%pair)))
-    last = 0
-    new%start(1) = 1
-    do j = 1, size(motion, 2)
-      do k = 1, new%pairs
-        if (motion(k, j) == 0.0_wp) cycle
-        last = last + 1
-        new%pair(last) = k
-        new%closing(last) = motion(k, j)/unit(j)
-      end do
-      new%start(j + 1) = last + 1
-    end do
+    new%pairs = pairs
+    entries = new_incidence(reshape(merge(motion, 0, closing /= 0.0_wp), [1, size(motion)]), motions)
+    new%start = entries%start
+    new%pair = pair(entries%group)
+    new%closing = closing(entries%group)
   end function new_motion_matrix
+
+  !> The same from a matrix with all of its zeros.
+  pure type(motion_matrix) function dense_motions(matrix) result(new)
+    real(wp), intent(in) :: matrix(:, :)   !! A [pairs, motions]
+    integer :: j, k
+
+    associate (n => size(matrix, 1), m => size(matrix, 2))
+      new = new_motion_matrix(n, m, [((k, j=1, m), k=1, n)], [((j, j=1, m), k=1, n)], &
+                              pack(transpose(matrix), .true.))
+    end associate
+  end function dense_motions
 
   !> How many there are.
   pure integer function motions(self)
@@ -51,6 +57,32 @@ contains
 
     motions = size(self%start) - 1
   end function motions
+
+  !> Largest entry of each motion, without its sign; 0 of none [motions].
+  pure function sizes(self)
+    class(motion_matrix), intent(in) :: self
+    real(wp) :: sizes(size(self%start) - 1)
+    integer :: j
+
+    sizes = [(maxval([abs(self%closing(self%start(j):self%start(j + 1) - 1)), 0.0_wp]), j=1, size(sizes))]
+  end function sizes
+
+  !> The same in units of each motion.
+  pure type(motion_matrix) function over(self, unit) result(new)
+    class(motion_matrix), intent(in) :: self
+    real(wp), intent(in) :: unit(:)        !! that each column is measured in [motions]
+    integer :: j
+
+    new%pairs = self%pairs
+    new%start = self%start
+    new%pair = self%pair
+    new%closing = self%closing
+    do j = 1, size(unit)
+      associate (own => new%closing(new%start(j):new%start(j + 1) - 1))
+        own = own/unit(j)
+      end associate
+    end do
+  end function over
 
   !> A q, the closing of the gaps by motions; or |A| |q|, what it is the sum of.
   pure function times(self, approach, magnitudes) result(closing)
@@ -149,4 +181,4 @@ contains
     fewer%pair = self%pair(entry(:last))
     fewer%closing = self%closing(entry(:last))
   end function only
-end module epcont_contact_motion_matrix
+end module epcont_flexibility_motion_matrix
