@@ -4,6 +4,7 @@
 module epcont_accuracy_accuracy
   use epcont_accuracy_error_fields, only: compare_fields, error_fields
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
+  use epcont_accuracy_passed_loads, only: dense_loads
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_surface_line, only: first_element, new_surface_line, smooth_pressures, surface_line
   use epcont_accuracy_unit_loads, only: contact_sensitivity, find_sensitivity, find_unit_loads, unit_loads
@@ -63,9 +64,9 @@ contains
     pressed = any(answer%contact%force > 0.0_wp)
     carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
     if (carried) then
-      loads = find_unit_loads(scene, linear, answer)
+      call find_unit_loads(scene, linear, answer, loads)
     else
-      allocate (loads%force(scene%model%pairs, 0), loads%moved(0))
+      call dense_loads(reshape([real(wp) ::], [scene%model%pairs, 0]), loads%passed)
     end if
     motions = scene%motions%count
     point_load = find_point_loads()
@@ -84,7 +85,7 @@ contains
     !> The error of the mesh in the energy norm, and the elements that have the most of it.
     subroutine assess_mesh()
       table = new_patch_table(scene%model)
-      call compare_fields(scene, linear, answer, table, loads%force, loads%moved, field)
+      call compare_fields(scene, linear, answer, table, loads%passed, field)
       accuracy%element = field%element
       associate (error => sum(field%element))
         if (error > 0.0_wp) accuracy%energy_norm = sqrt(error/(error + abs(field%energy)))
@@ -120,7 +121,7 @@ contains
     !> Approaches and forces, and what errors may do to pairs.
     subroutine assess_sums()
       !> Error of each approach, of the sum of forces, of what bodies bear
-      real(wp) :: off(size(loads%force, 2))
+      real(wp) :: off(loads%passed%loads)
       integer :: j
 
       accuracy%sensitivity = find_sensitivity( &
@@ -131,7 +132,7 @@ contains
       accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
       off = errors()
       do j = 1, motions
-        if (all(loads%moved /= j)) cycle
+        if (.not. loads%told(j)) cycle
         accuracy%approach(j) = off(j)
         accuracy%approach_unbounded(j) = point_load(j)
       end do
@@ -146,12 +147,16 @@ contains
 
     !> Errors of approaches, then of sums of forces.
     pure function errors() result(off)
-      real(wp) :: off(size(loads%force, 2))
+      real(wp) :: off(loads%passed%loads)
       !> What a force at each pair adds of what contact at nodes alone lets the bodies come too near, and of
       !! what its ends leave open [length] [pairs]
       real(wp), dimension(scene%model%pairs) :: near, at_ends
+      real(wp), dimension(loads%passed%loads) :: near_sum, end_sum   !! of these, under each load
       real(wp) :: at_end
+      real(wp) :: shifted(motions, size(answer%zones))
       integer :: j, z
+
+      shifted = shifted_loads(scene%model, line, scene%motions, answer)
 
       near = 0.0_wp
       at_ends = 0.0_wp
@@ -166,30 +171,32 @@ contains
                            + wave_height*zone%wave_height + zone%too_near
         end associate
       end do
+      ! Of a tilt of either sign the ends count, not the sum.
+      near_sum = loads%passed%weighed(near)
+      end_sum = loads%passed%weighed(at_ends, magnitudes=.true.)
       off = 0.0_wp
-      do j = 1, size(loads%moved)
-        associate (force => loads%force(:, loads%moved(j)))
-          ! Of a tilt of either sign the ends count, not the sum.
-          off(loads%moved(j)) = error_along(j, dot_product(near, force), dot_product(at_ends, abs(force)))
+      do j = 1, size(off)
+        if (loads%told(j)) off(j) = error_along(j, near_sum(j), end_sum(j))
+      end do
+      do j = 1, size(loads%share, 2)
+        associate (shared => loads%passed%weighed(loads%share(:, j)))
+          off(motions + j) = off(motions + j) + sum(abs(matmul(shared(:motions), shifted)))
         end associate
       end do
-      off(motions + 1:) = off(motions + 1:) + &
-        sum(abs(matmul(matmul(transpose(loads%share), loads%force(:, :motions)), &
-                       shifted_loads(scene%model, line, scene%motions, answer))), dim=2)
     end function errors
 
     !> Error of an approach, or of a sum of contact forces: the product of the errors of the scene and of its
     !! answer to a unit load along the motion, or to closing gaps, signed, with what contact at nodes alone
     !! lets the bodies come too near.
     pure real(wp) function error_along(j, near, at_ends) result(error)
-      integer, intent(in) :: j               !! in `loads%moved`
+      integer, intent(in) :: j               !! the load
       real(wp), intent(in) :: near, at_ends  !! what contact at nodes alone, and its ends, add
       real(wp) :: short, vague
 
       vague = merge(1.0_wp, unresolved, all(accuracy%zone%resolved))
       short = max(abs(field%along(1, j) - near), uncancelled*field%along(2, j))
       ! Of what pairs or bodies share no part cancels another.
-      if (loads%moved(j) > max(1, motions)) short = of_shares*(field%along(2, j) + abs(near))
+      if (j > max(1, motions)) short = of_shares*(field%along(2, j) + abs(near))
       ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its
       ! field is too small. Of unlike elements that bear the largest weight counts.
       error = vague*(at_ends + maxval(accuracy%zone%weights%product)*short/ &

@@ -5,6 +5,7 @@
 !> the others are sums of these.
 module epcont_accuracy_body_loads
   use epcont_accuracy_element_errors, only: most_fields
+  use epcont_accuracy_passed_loads, only: passed_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
   use epcont_element_kinematics, only: directions
@@ -21,47 +22,32 @@ module epcont_accuracy_body_loads
 
   !> Of unit loads those that a body feels, and that no batch of fields has told of yet.
   type :: body_loads
-    integer, allocatable :: pair(:)        !! those with a node in the body [its pairs]
-    integer, allocatable :: load(:)        !! by their numbers [loads]
+    integer, allocatable :: pair(:)        !! those in contact with a node in the body [its pairs]
+    integer, allocatable :: load(:)        !! their columns in what is passed on [loads]
     !> Contact forces, in the unit of each load [loads, its pairs]
     real(wp), allocatable :: force(:, :)
   end type body_loads
 
   !> Some loads, and the few of them that make up for all.
   type :: load_batch
-    integer, allocatable :: load(:)        !! by their numbers [loads]
+    integer, allocatable :: load(:)        !! as in `body_loads` [loads]
     real(wp), allocatable :: force(:, :)   !! of those that are solved for [body's pairs, fields]
     real(wp), allocatable :: share(:, :)   !! of each field in each load [fields, loads]
   end type load_batch
 
 contains
 
-  !> The loads that a body feels.
-  pure function new_body_loads(pair, unit_force, told, unit) result(loads)
+  !> The loads that a body feels, of those that are asked for.
+  function new_body_loads(pair, passed) result(loads)
     integer, intent(in) :: pair(:)              !! those of the body
-    real(wp), intent(in) :: unit_force(:, :)    !! contact forces under each load [pairs, any]
-    integer, intent(in) :: told(:)              !! columns of the loads that are asked for [loads]
-    real(wp), intent(in) :: unit(:)             !! largest force under each [force] [loads]
+    type(passed_loads), intent(in) :: passed    !! forces there
     type(body_loads) :: loads
-    integer :: felt(size(told))
-    integer :: j, k, n
+    integer :: k
 
-    n = 0
-    do j = 1, size(told)
-      do k = 1, size(pair)
-        if (unit_force(pair(k), told(j)) /= 0.0_wp) exit
-      end do
-      if (k > size(pair)) cycle
-      n = n + 1
-      felt(n) = j
-    end do
-    loads%pair = pair
-    loads%load = felt(:n)
-    allocate (loads%force(n, size(pair)))
-    do j = 1, n
-      do k = 1, size(pair)
-        loads%force(j, k) = unit_force(pair(k), told(felt(j)))/unit(felt(j))
-      end do
+    loads%pair = pack(pair, passed%level_of(pair) > 0)
+    call passed%find_at(loads%pair, loads%load, loads%force)
+    do k = 1, size(loads%pair)
+      loads%force(:, k) = loads%force(:, k)/passed%unit(loads%load)
     end do
   end function new_body_loads
 

@@ -6,6 +6,7 @@ module epcont_accuracy_error_fields
     new_body_loads
   use epcont_accuracy_element_errors, only: element_errors, new_element_errors
   use epcont_accuracy_field_sums, only: field_sums, new_field_sums
+  use epcont_accuracy_passed_loads, only: passed_loads
   use epcont_accuracy_patches, only: patch_table
   use epcont_accuracy_recovery, only: body_samples, place_samples, recover
   use epcont_base_incidence, only: incidence, new_incidence
@@ -31,19 +32,18 @@ module epcont_accuracy_error_fields
 contains
 
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
-  subroutine compare_fields(scene, linear, answer, table, unit_force, told, field)
+  subroutine compare_fields(scene, linear, answer, table, passed, field)
     type(planned_scene), intent(in) :: scene     !! that was solved
     type(linear_problem), intent(in) :: linear   !! of the last solve
     class(scene_state), intent(in) :: answer     !! to it
     type(patch_table), intent(in) :: table       !! of its elements
-    real(wp), intent(in) :: unit_force(:, :)     !! contact forces under each unit load [pairs, any]
-    integer, intent(in) :: told(:)               !! columns of the loads that are asked for [loads]
+    type(passed_loads), intent(in) :: passed     !! contact forces under unit loads
     type(error_fields), intent(out) :: field     !! what is off
     type(incidence) :: pairs
     type(body_loads) :: loads
     type(load_batch) :: batch
-    real(wp) :: unit(size(told))                 ! largest force under each load
-    real(wp) :: energy(2, size(told))            ! of each load's error, and of its own strain
+    real(wp) :: sum_of(4, size(passed%unit))     ! what `field_sums` has of all bodies, of each column
+    real(wp) :: total(4, passed%loads)           ! of each load
     real(wp), allocatable :: u(:, :, :)          ! under the fields of a batch [directions, fields, places]
     real(wp), allocatable :: strain(:, :)        ! of the answer and all fields in an element [width, points]
     integer :: e, first, nodes, points           ! the element, its first point, how many it has
@@ -51,21 +51,21 @@ contains
     integer :: b, k
 
     allocate (field%smooth(components, table%places), field%element(scene%model%elements), &
-              field%along(2, size(unit)), field%missing(size(unit)), source=0.0_wp)
+              field%missing(passed%loads), source=0.0_wp)
     pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
-    unit = [(maxval(abs(unit_force(:, told(k)))), k=1, size(told))]
-    energy = 0.0_wp
+    sum_of = 0.0_wp
     do b = 1, size(scene%numbering%body)
       if (size(scene%numbering%body(b)%element) == 0) cycle
-      loads = new_body_loads(pairs%of(b), unit_force, told, unit)
+      loads = new_body_loads(pairs%of(b), passed)
       do
         call choose_fields(loads, batch)
         call compare_on_body(scene%numbering%body(b)%element, table%of_body%of(b))
         if (size(loads%load) == 0) exit
       end do
     end do
-    where (energy(1, :) > 0.0_wp) field%missing = energy(1, :)/sum(energy, dim=1)
-    field%along = spread(unit, 1, 2)*field%along
+    total = passed%add_up(sum_of*spread(passed%unit, 1, 4)**spread([1, 1, 2, 2], 2, size(passed%unit)))
+    field%along = total(:2, :)
+    where (total(3, :) > 0.0_wp) field%missing = total(3, :)/(total(3, :) + total(4, :))
     do k = 1, scene%model%points
       field%energy = field%energy + linear%operator%volume(k)* &
                      dot_product(answer%strain(:, k), answer%point_stress(:, k))
@@ -119,8 +119,8 @@ contains
       field%smooth(:, place) = smooth(:components, :)
       if (size(u, 2) == 0) return
       call sums%finish()
-      field%along(:, batch%load) = field%along(:, batch%load) + sums%along
-      energy(:, batch%load) = energy(:, batch%load) + sums%energy
+      sum_of(:2, batch%load) = sum_of(:2, batch%load) + sums%along
+      sum_of(3:, batch%load) = sum_of(3:, batch%load) + sums%energy
     end subroutine compare_on_body
 
     !> Turn to an element.

@@ -7,6 +7,7 @@
 !> (Skeel 1979). Its largest entry is the 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs
 !> are few, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_accuracy_unit_loads
+  use epcont_accuracy_passed_loads, only: dense_loads, pass_on_loads, passed_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, solved_to
   use epcont_contact_basis, only: contact_basis, move_basis, renew_basis, respond
@@ -27,8 +28,6 @@ module epcont_accuracy_unit_loads
   !> Pairs up to which all of M is made: the estimate may stop at one of two nearly equal rows, as rounding
   !! has it.
   integer, parameter :: few_pairs = 200
-  !> Unit loads that contact forces are found of at once.
-  integer, parameter :: loads_at_once = 64
   integer, parameter :: most_products = 5
 
   type :: contact_sensitivity
@@ -42,8 +41,8 @@ module epcont_accuracy_unit_loads
   type :: unit_loads
     type(scaled_problem) :: problem
     type(contact_basis) :: basis              !! of the pairs in contact
-    real(wp), allocatable :: force(:, :)      !! at the pairs, under each [pairs, loads]
-    integer, allocatable :: moved(:)          !! the loads that say something
+    type(passed_loads) :: passed              !! what they make the pairs bear
+    logical, allocatable :: told(:)           !! which say something [loads]
     !> Of pairs in the sum of all, then in each resultant on a body that may be off by itself; what two bodies
     !! exert on each other is one [pairs, any]
     real(wp), allocatable :: share(:, :)
@@ -55,12 +54,12 @@ module epcont_accuracy_unit_loads
 contains
 
   !> Unit loads on a scene whose contact has been found.
-  function find_unit_loads(scene, linear, answer) result(loads)
+  subroutine find_unit_loads(scene, linear, answer, loads)
     type(planned_scene), intent(in) :: scene     !! that was solved
     !> Of the last solve; the basis of its contact is taken over, and its flexibility must remain
     type(linear_problem), intent(inout), target :: linear
     type(answer_type), intent(in) :: answer      !! with some contact
-    type(unit_loads) :: loads
+    type(unit_loads), intent(out) :: loads       !! and what they do
     type(rigid_start) :: start
     integer, allocatable :: pressed(:)
     integer :: j
@@ -77,11 +76,18 @@ contains
     call move_basis(linear%basis, loads%basis)
     call renew_basis(loads%basis, loads%problem, answer%contact%force > 0.0_wp)
     call find_shares()
-    allocate (loads%force(scene%model%pairs, scene%motions%count + size(loads%share, 2)), source=0.0_wp)
-    if (loads%basis%sound) call put_unit_forces()
-    loads%force(:, scene%motions%count + 1:) = closing_forces(loads%problem, loads%basis, loads%share)
-    loads%moved = pack([(j, j=1, size(loads%force, 2))], any(loads%force /= 0.0_wp, dim=1) .and. &
-                       [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))])
+    associate (known => closing_forces(loads%problem, loads%basis, loads%share))
+      if (loads%basis%sound) then
+        call pass_on_loads(loads%basis, scene%motions%count, loads%problem%motion_size(loads%problem%kept), &
+                           known, loads%passed)
+      else
+        call dense_loads(reshape([(0.0_wp, j=1, scene%model%pairs*scene%motions%count), known], &
+                                 [scene%model%pairs, scene%motions%count + size(known, 2)]), loads%passed)
+      end if
+    end associate
+    loads%told = [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))] .and. &
+                 loads%passed%weighed(spread(1.0_wp, 1, scene%model%pairs), magnitudes=.true.) > 0.0_wp
+    call loads%passed%ask_for(loads%told)
 
   contains
 
@@ -132,27 +138,7 @@ contains
         is_free = is_free .and. norm2(rest) <= least_difference
       end do
     end function is_free
-
-    !> Contact forces under unit loads; zero for motions that are not kept. Some at a time: of many bodies
-    !! those under all take as much memory as their flexibility.
-    subroutine put_unit_forces()
-      real(wp), allocatable :: opening(:, :), load(:, :), carried(:, :), approach(:, :)
-      integer :: first, j, n
-
-      associate (pairs => loads%basis%pairs, kept => loads%problem%kept)
-        do first = 1, size(kept), loads_at_once
-          n = min(loads_at_once, size(kept) - first + 1)
-          if (allocated(opening)) deallocate (opening, load)
-          allocate (opening(size(pairs), n), load(size(kept), n), source=0.0_wp)
-          do j = 1, n
-            load(first - 1 + j, j) = 1.0_wp/loads%problem%motion_size(kept(first - 1 + j))
-          end do
-          call respond(loads%basis, opening, load, carried, approach)
-          loads%force(pairs, kept(first:first - 1 + n)) = carried
-        end do
-      end associate
-    end subroutine put_unit_forces
-  end function find_unit_loads
+  end subroutine find_unit_loads
 
   !> Contact forces when the gap of each pair shrinks by its weight; none where motions give way to that
   !! [force/length] [pairs, any].
