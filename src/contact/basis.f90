@@ -29,7 +29,8 @@ module epcont_contact_basis
   use epcont_contact_scaling, only: scaled_problem
   implicit none
   private
-  public :: contact_basis, new_basis, renew_basis, move_basis, are_independent, change_set, respond
+  public :: contact_basis, new_basis, renew_basis, move_basis, are_independent, change_set, factor_all, &
+    respond
 
   !> Part of a set from which on its factor is kept. With 1/2, where pairs that come as the candidates are
   !! doubled stand behind edges that go, block pivoting takes half as long again; without keeping anything it
@@ -106,6 +107,19 @@ contains
     call choose_pairs(basis, scaled, chosen, held=.true.)
     call factor_levels(basis%level, scaled, 0, lost_digits*scaled%softest, independent, basis%sound)
   end function are_independent
+
+  !> Factor the equations of all pairs, each with a flexibility of its own that makes its force unique.
+  subroutine factor_all(basis, scaled)
+    type(contact_basis), intent(inout) :: basis   !! none yet, or that of all pairs
+    type(scaled_problem), intent(in) :: scaled    !! in its own units
+    logical :: definite
+
+    if (.not. allocated(basis%level)) then
+      call choose_pairs(basis, scaled, spread(.true., 1, size(scaled%gap)))
+      call gather_pairs(basis)
+    end if
+    call factor_levels(basis%level, scaled, 0, 0.0_wp, definite, basis%sound)
+  end subroutine factor_all
 
   !> Levels with the chosen pairs.
   subroutine choose_pairs(basis, scaled, chosen, held)

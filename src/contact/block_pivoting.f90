@@ -1,18 +1,19 @@
 !> RULE BLOCK: block principal pivoting. All pairs of wrong sign change sides at once.
 !>
 !> A set of contacts is solved with a Cholesky factor; of its pairs those that pull open, of the others those
-!> that overlap close (Kostreva 1978; Judice and Pires 1994). As this may run in circles, the least number of
-!> wrong pairs is kept: when it has not fallen in `patience` steps, only the last wrong pair changes sides
-!> (Murty 1974) until it falls. Without an earlier set it begins with few candidates, every 2**k-th pair, and
-!> makes them twice as many whenever none of them is wrong: so the large sets are nearly right when they are
-!> met.
+!> that overlap close (Kostreva 1978; Judice and Pires 1994). Without an earlier set it begins with few
+!> candidates, every 2**k-th pair, and makes them twice as many whenever none of them is wrong: so the large
+!> sets are nearly right when they are met. This may run in circles, and of many bodies it opens all pairs of
+!> one: where the number of wrong pairs has not fallen in `patience` steps, or sets do not hold the motions,
+!> the interior path leads to a set, from which it goes on.
 !>
-!> Only what is definite is solved here. Where forces or motions of a set are not unique, or the steps are
-!> used up, it says so, and RULE CONRY has the problem.
+!> Only what is definite is solved here. Where forces of a set are not unique, or that is not enough, it says
+!> so, and RULE CONRY has the problem.
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: solved_to
   use epcont_contact_basis, only: change_set
+  use epcont_contact_interior_path, only: follow_interior_path
   use epcont_contact_problem, only: contact_solution, contact_solved
   use epcont_contact_scaling, only: scaled_problem
   use epcont_contact_state, only: contact_state, guess_tolerance, has_right_signs, renew_state, solve_set
@@ -25,12 +26,12 @@ module epcont_contact_block_pivoting
   !! decides. With 1e-11 sets are left that it refuses (tests/contact/test_block_pivoting, test_answers);
   !! 1e-15 does as well.
   real(wp), parameter :: exchange_tolerance = 1.0e-13_wp
-  !> Steps without fewer wrong pairs before single pairs are exchanged.
+  !> Steps without fewer wrong pairs before exchanges are given up.
   integer, parameter :: patience_limit = 10
   !> Steps from a guess, and from nothing where that fails. A full step costs less than 1/50 of what RULE
   !! CONRY takes.
   integer, parameter :: step_limit = 100
-  !> Sets that do not hold the motions before the problem is given up.
+  !> Sets that do not hold the motions before exchanges are given up.
   integer, parameter :: repair_limit = 3
   !> Candidates of the first sets, at least.
   integer, parameter :: fewest_candidates = 32
@@ -64,6 +65,13 @@ contains
       end do
       call look_for_set(solved_to)
     end if
+    if (.not. found) then
+      stride = 1
+      if (allocated(state%level)) deallocate (state%level)
+      call follow_interior_path(scaled, closed, solution%block_steps)
+      call test_afresh(solved_to)
+      if (.not. found) call look_for_set(solved_to)
+    end if
     if (found) solution%state = contact_solved
 
   contains
@@ -87,8 +95,8 @@ contains
       if (ended) call test_afresh(tolerance)
     end subroutine look_for_set
 
-    !> Exchange until no pair is wrong, or no more steps are left. Not `ended` if there were sets without an
-    !! own solution.
+    !> Exchange until no pair is wrong, or that leads nowhere. Not `ended` if there were sets without an own
+    !! solution.
     subroutine exchange_blocks(ended)
       logical, intent(out) :: ended
       type(contact_state) :: trial
@@ -105,8 +113,9 @@ contains
         if (trial%sound) then
           call solve_set(trial, scaled, scaled%gap, scaled%resultant, refinements=0)
           call find_wrong(trial)
-          if (.not. any(wrong)) exit
-          call choose_exchange()
+          patience = merge(patience_limit, patience - 1, count(wrong) < fewest)
+          if (patience < 0 .or. .not. any(wrong)) exit
+          fewest = min(fewest, count(wrong))
           solution%pivots = solution%pivots + count(wrong)
           firmness = part_of_largest(trial%force) + part_of_largest(-trial%gap)
           closed = closed .neqv. wrong
@@ -138,18 +147,6 @@ contains
         fewest = huge(fewest)
       end do
     end subroutine find_wrong
-
-    !> All wrong pairs, or the last alone where exchanges of all have led nowhere.
-    subroutine choose_exchange()
-      if (count(wrong) < fewest) then
-        fewest = count(wrong)
-        patience = patience_limit
-      else if (patience > 0) then
-        patience = patience - 1
-      else
-        wrong(:findloc(wrong, .true., dim=1, back=.true.) - 1) = .false.
-      end if
-    end subroutine choose_exchange
   end subroutine find_by_blocks
 
   !> Positive values as parts of the largest.

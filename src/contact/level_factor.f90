@@ -133,7 +133,7 @@ contains
       do j = 1, n
         top = max(j, kept + 1)
         f(top:n, j) = scale*given%within(at(top:n), at(j))
-        if (j == top) f(j, j) = f(j, j) + scaled%own_flexibility
+        if (j == top) f(j, j) = f(j, j) + scaled%own_flexibility(level%pair(j))
         f(n + m + 1:below, j) = scale*given%beyond(next_at, at(j))
         do t = 1, size(closing, 2)
           if (closing(j, t) == 0.0_wp) cycle

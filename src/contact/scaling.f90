@@ -23,7 +23,7 @@ module epcont_contact_scaling
   type :: scaled_problem
     type(flexibility_matrix), pointer :: flexibility => null()   !! F, as given
     real(wp) :: flexibility_scale = 1.0_wp       !! rho/omega, by which entries of F are multiplied
-    real(wp) :: own_flexibility = 0.0_wp        !! that each pair has besides F
+    real(wp), allocatable :: own_flexibility(:) !! that each pair has besides F [n]
     type(motion_matrix) :: motion               !! A [n, m]
     integer, allocatable :: motion_level(:)     !! last level of the pairs that each motion closes [m]
     real(wp), allocatable :: gap(:)             !! g, gaps under load before contact acts [n]
@@ -74,6 +74,7 @@ contains
       scaled%resultant = problem%resultant/scaled%motion_size/rho
     end associate
     scaled%flexibility => problem%flexibility
+    scaled%own_flexibility = 0*scaled%gap
     scaled%motion = problem%motion%over(scaled%motion_size)
     call measure(scaled)
 
@@ -139,7 +140,7 @@ contains
     real(wp) :: gap(size(force))
 
     gap = scaled%flexibility%times(scaled%flexibility_scale*force, magnitudes)
-    if (scaled%own_flexibility > 0.0_wp) gap = gap + scaled%own_flexibility*force
+    gap = gap + scaled%own_flexibility*force
   end function gaps_by_forces
 
   !> Largest absolute value; 0 of none.

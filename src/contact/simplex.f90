@@ -100,8 +100,8 @@ contains
 
       softer = scaled
       if (allocated(softer%guess)) deallocate (softer%guess)
-      softer%own_flexibility = attempt*own_flexibility*scaled%flexibility_scale &
-                               *maxval([scaled%flexibility%diagonal(), 0.0_wp])
+      softer%own_flexibility = spread(attempt*own_flexibility*scaled%flexibility_scale &
+                                      *maxval([scaled%flexibility%diagonal(), 0.0_wp]), 1, size(closed))
       call measure(softer)
       trial%pivots = solution%pivots
       call find_by_blocks(softer, trial, better, found)

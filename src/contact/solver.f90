@@ -24,13 +24,14 @@ contains
 
   !> Find forces, gaps and motions of a contact problem, or why there are none. Where motions are neutral, so
   !! that nothing tells their values, they are those nearest to zero that leave no gap below it.
-  recursive subroutine solve_contact(problem, solution, start, by_blocks, basis)
+  recursive subroutine solve_contact(problem, solution, start, by_blocks, basis, any_forces)
     type(contact_problem), intent(in), target :: problem   !! in the deck's units
     type(contact_solution), intent(out) :: solution   !! its state says whether there is one
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
     logical, intent(in), optional :: by_blocks  !! RULE BLOCK; not given: CONRY
     !> Of the last answer with this F, or none; then of this one
     type(contact_basis), intent(inout), optional :: basis
+    logical, intent(in), optional :: any_forces   !! true: it is not asked whether there are other forces
     type(scaled_problem) :: scaled
     type(rigid_start) :: rigid
     type(motion_matrix) :: motion   ! A of all motions, scaled [n, m]
@@ -124,8 +125,10 @@ contains
         call choose_neutral(state, solution%approach)
         call find_touching(state, terms, solution%touching)
       end if
-      solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, state%force > zero)
-      call share_equally(scaled, solution%indeterminate, state%force)
+      if (.not. present(any_forces)) then
+        solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, state%force > zero)
+        call share_equally(scaled, solution%indeterminate, state%force)
+      end if
       if (present(basis)) call move_basis(state%contact_basis, basis)
       ! In the deck's units.
       solution%force = state%force*scaled%force_unit
@@ -154,25 +157,26 @@ contains
       type(contact_solution) :: held
       real(wp), allocatable :: loose(:, :), opening(:, :)   ! neutral motions, and the gaps that they open
       real(wp), allocatable :: change(:)                    ! of these motions
+      integer, allocatable :: pair(:)   ! those whose gaps they open
       integer :: k
 
-      loose = loose_motions(motion, pack([(k, k=1, size(state%gap))], state%force > 0.0_wp), negligible)
-      allocate (opening(size(state%gap), size(loose, 2)))
-      do k = 1, size(loose, 2)
-        opening(:, k) = -motion%times(loose(:, k))
-      end do
+      pair = [(k, k=1, size(state%gap))]
+      loose = loose_motions(motion, pack(pair, state%force > 0.0_wp), negligible)
+      opening = -motion%of_each(loose, pair)
       where (abs(opening) <= negligible) opening = 0.0_wp
+      pair = pack(pair, any(opening /= 0.0_wp, dim=2))
+      opening = opening(pair, :)
       change = -matmul(approach, loose)
       springs%flexibility = dense_flexibility(matmul(opening, transpose(opening)))
-      springs%initial_gap = state%gap + matmul(opening, change)
-      springs%load_gap = 0*state%gap
+      springs%initial_gap = state%gap(pair) + matmul(opening, change)
+      springs%load_gap = 0*springs%initial_gap
       springs%motion = dense_motions(opening(:, :0))
       allocate (springs%resultant(0))
-      call solve_contact(springs, held)
+      call solve_contact(springs, held, any_forces=.true.)
       if (held%state /= contact_solved) return
       change = change + matmul(held%force, opening)
       approach = approach + matmul(loose, change)
-      state%gap = state%gap + matmul(opening, change)
+      state%gap(pair) = state%gap(pair) + matmul(opening, change)
     end subroutine choose_neutral
 
     !> Forces and motions without what rounding has left of none. A force that is cut off may have been less

@@ -3,7 +3,7 @@ module epcont_contact_uniqueness
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, null_component
   use epcont_contact_basis, only: are_independent, contact_basis, new_basis, respond
-  use epcont_contact_equilibrium, only: can_carry
+  use epcont_contact_equilibrium, only: can_carry, find_rigid_start, rigid_start
   use epcont_contact_loose_motions, only: loose_motions
   use epcont_contact_scaling, only: scaled_problem
   use epcont_flexibility_motion_matrix, only: motion_matrix
@@ -124,10 +124,27 @@ contains
     allocate (free(motion%motions()), source=.false.)
     pair = [(j, j=1, size(pair))]
     loose = loose_motions(motion, pack(pair, pressed), null_component)
-    closing = matmul(motion%rows(pack(pair, touching .and. .not. pressed)), loose)
+    closing = motion%of_each(loose, pack(pair, touching .and. .not. pressed))
     do j = 1, size(free)
       if (all(abs(loose(j, :)) <= null_component)) cycle
-      free(j) = .not. (can_carry(closing, loose(j, :)) .and. can_carry(closing, -loose(j, :)))
+      if (.not. free(j)) call give_way(loose(j, :))
+      if (.not. free(j)) call give_way(-loose(j, :))
     end do
+
+  contains
+
+    !> Where nothing resists a load, all that moves along the way that it takes is free: of a pile that no
+    !! load presses one way moves most.
+    subroutine give_way(load)
+      real(wp), intent(in) :: load(:)   !! along the loose motions
+      type(rigid_start) :: start
+
+      call find_rigid_start(closing, load, spread(0.0_wp, 1, size(closing, 1)), start)
+      if (start%balanced) return
+      associate (way => matmul(loose, start%escape))
+        free(j) = .true.
+        free = free .or. abs(way) > null_component*maxval(abs(way))
+      end associate
+    end subroutine give_way
   end function find_free_motions
 end module epcont_contact_uniqueness

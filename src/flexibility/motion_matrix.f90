@@ -18,6 +18,7 @@ module epcont_flexibility_motion_matrix
     procedure :: sizes
     procedure :: over
     procedure :: times
+    procedure :: of_each
     procedure :: carried
     procedure :: rows
     procedure :: dense
@@ -110,6 +111,22 @@ contains
       end do
     end do
   end function times
+
+  !> A Q, the closing of some pairs' gaps by each of several motions [pairs, any].
+  pure function of_each(self, approach, pairs) result(closing)
+    class(motion_matrix), intent(in) :: self
+    real(wp), intent(in) :: approach(:, :)   !! Q [motions, any]
+    integer, intent(in) :: pairs(:)
+    real(wp), allocatable :: closing(:, :)
+    real(wp) :: all_pairs(self%pairs)
+    integer :: k
+
+    allocate (closing(size(pairs), size(approach, 2)))
+    do k = 1, size(approach, 2)
+      all_pairs = self%times(approach(:, k))
+      closing(:, k) = all_pairs(pairs)
+    end do
+  end function of_each
 
   !> A'R, what forces carry along each motion [motions].
   pure function carried(self, force) result(load)
