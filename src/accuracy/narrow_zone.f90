@@ -193,7 +193,8 @@ contains
         do k = 1, model%pairs
           if (force(k) <= 0.0_wp .or. strongest(k) == k) cycle
           body = model%body(model%pair_node(:, k))
-          way = merge(1.0_wp, -1.0_wp, model%body(model%pair_node(2, strongest(k))) == body(2))
+          ! The normal is the other way round where what stands on the other line there stood on it here.
+          way = merge(1.0_wp, -1.0_wp, any(model%body(model%pair_node(:, strongest(k))) == body))
           change = force(k)*abs(model%normal(:, k) - way*model%normal(:, strongest(k)))
           total = total + norm2(change)
           do b = 1, model%bodies

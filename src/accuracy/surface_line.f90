@@ -66,6 +66,7 @@ contains
         associate (other => line%neighbour(k, pair))
           if (other == 0) cycle
           long(k) = line%distance(other, pair)
+          if (long(k) == 0.0_wp) cycle   ! at a joint two pairs have one place
           slope(k) = (model%initial_gap(other) - model%initial_gap(pair))/long(k)
         end associate
       end do

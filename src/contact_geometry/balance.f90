@@ -103,7 +103,7 @@ contains
           width = dot_product(much, along**2)
           if (width <= 0.0_wp .or. abs(lever) <= rounded_off*sqrt(width)) return
           weight = weight - lever/width*much*along
-          model%pair_node(1, pair) = node(minloc(weight, dim=1))
+          model%pair_node(1, pair) = node(minloc(weight, dim=1, mask=node /= model%pair_node(2, pair)))
         end associate
       end associate
     end subroutine move_weights

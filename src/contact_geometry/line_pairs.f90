@@ -27,18 +27,19 @@ contains
     type(faces_type), intent(out) :: faces         !! what nodes of the slave face
     type(mortar_row), allocatable :: rows(:)
     type(node_face), allocatable :: tips(:)        ! nodes of the master, and what they face of the slave
+    integer, allocatable :: ends(:)                ! of them, those at joints that rows are for
     logical :: covered(size(contact%slave%element)), without(model%nodes)
     integer :: k
 
     call find_faces(contact, model%boundary, faces)
-    call find_mortar_rows(contact, model%boundary, faces, model%has_rings(), rows, covered)
+    call find_mortar_rows(model, contact, faces, rows, covered, ends)
     call find_tips()
     contact%stands_on = tips%segment
     contact%came_near = pack(contact%came_near, [(any(tips%node == contact%came_near(k)), &
         k=1, size(contact%came_near))])
     contact%first = model%pairs + 1
     contact%first_of_master = contact%first + size(faces%row)
-    call append_pairs(faces%row, rows)
+    call append_pairs(faces%row, rows(:size(faces%row)))
     call append_pairs(tips, rows_of_tips())
     contact%last = model%pairs
     without = .false.
@@ -50,13 +51,13 @@ contains
 
   contains
 
-    !> Corners of the master that stand on a side of the slave which does not face the master all along (where
-    !! two masters lie flush, the side's own nodes hold both), and nodes that came near.
+    !> Corners of the master that stand on a side of the slave which does not face the master all along, ends
+    !! at joints, and nodes that came near.
     subroutine find_tips()
       type(facing_type) :: on(2)
       type(looking_point) :: from
       integer :: i, side, which
-      logical :: near
+      logical :: counts, near
 
       allocate (tips(0))
       do side = 1, size(contact%master%element)
@@ -67,34 +68,62 @@ contains
           on = find_facing(contact%slave, model%boundary, from, contact%search)
           do i = 1, 2
             if (.not. on(i)%found) cycle
-            if (covered(on(i)%segment) .and. .not. near) cycle
-            if (.not. (stands_at_node(on(i)) .or. has_face(tips, from%node, on(i)%normal, same_face))) &
+            counts = near .or. .not. covered(on(i)%segment)
+            counts = any(ends == from%node) .or. counts .and. .not. is_held(from, on(i))
+            if (counts .and. .not. has_face(tips, from%node, on(i)%normal, same_face)) &
               tips = [tips, node_face(facing_type=on(i), node=from%node)]
           end do
         end do
       end do
     end subroutine find_tips
 
-    !> Does a place on the slave lie at a node that has a pair there, of whichever of its sides? (At a corner
-    !! rounding tells which of them is faced.)
-    pure logical function stands_at_node(on)
+    !> Does a corner lie on a node of the slave that has a pair there, of whichever of its sides? (At a corner
+    !! rounding tells which of them is faced.) At a joint that is the pair of the other end.
+    pure logical function is_held(corner, on)
+      type(looking_point), intent(in) :: corner
       type(facing_type), intent(in) :: on
+      integer :: k
 
+      is_held = .false.
+      if (maxval(on%share) < 1.0_wp - beyond) return
       associate (node => contact%slave%segment(maxloc(on%share, dim=1), on%segment))
-        stands_at_node = maxval(on%share) >= 1.0_wp - beyond .and. &
-                         has_face(faces%row, node, -on%normal, opposite)
+        do k = 1, size(faces%row)
+          is_held = faces%row(k)%node == node .and. dot_product(faces%row(k)%normal, -on%normal) > opposite &
+                    .and. .not. is_at_joint(faces%row(k), corner)
+          if (is_held) return
+        end do
       end associate
-    end function stands_at_node
+    end function is_held
 
-    !> Shared by the nodes of the slave's side as its shape functions say.
+    !> Does a node face an end of the master where a corner of it lies that is not that end?
+    pure logical function is_at_joint(row, corner)
+      type(node_face), intent(in) :: row
+      type(looking_point), intent(in) :: corner
+
+      associate (side => row%segment, end => maxloc(row%share, dim=1))
+        is_at_joint = row%share(end) == 1.0_wp .and. contact%master%segment(end, side) /= corner%node .and. &
+                      norm2(contact%master%x(:, end, side) - corner%x) <= &
+                      beyond*contact%master%chord_length(side)
+      end associate
+    end function is_at_joint
+
+    !> Shared by the nodes of the slave's side as its shape functions say. At a joint what counts for the node
+    !! itself is what its row says of the master: the rest is taken off.
     pure function rows_of_tips() result(row)
       type(mortar_row) :: row(size(tips))
-      integer :: i
+      integer :: i, joint
 
       do i = 1, size(tips)
         associate (share => tips(i)%share)
           row(i)%node = pack(contact%slave%segment(:, tips(i)%segment), share /= 0.0_wp)
           row(i)%weight = pack(share, share /= 0.0_wp)
+        end associate
+        joint = findloc(ends, tips(i)%node, dim=1)
+        if (joint == 0) cycle
+        associate (own => rows(size(faces%row) + joint))
+          if (all(own%node == tips(i)%node)) cycle
+          row(i)%node = [row(i)%node, own%node]
+          row(i)%weight = [row(i)%weight, merge(1.0_wp, 0.0_wp, own%node == tips(i)%node) - own%weight]
         end associate
       end do
     end function rows_of_tips
@@ -108,7 +137,7 @@ contains
 
       start(1) = model%row_start(model%pairs + 1)
       do i = 1, size(b)
-        a(i) = row(i)%node(maxloc(row(i)%weight, dim=1))
+        a(i) = row(i)%node(maxloc(row(i)%weight, dim=1, mask=row(i)%node /= b(i)%node))
         start(i + 1) = start(i) + size(row(i)%node) + 1
       end do
       associate (before => model%pairs, entries => start(1) - 1)

@@ -6,15 +6,16 @@
 !> N_master)/(integral of N_i). A uniform pressure passes exactly between lines that do not match, and where
 !> they do match each node is against its twin alone. (Wohlmuth, A mortar finite element method using dual
 !> spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000.) A side whose slave nodes do not all
-!> face the other line, or not all along, counts at its nodes' own places.
+!> face the other line, or not all along, counts at its nodes' own places. At a joint of the other line, where
+!> ends of two bodies lie flush, a side is two: the ends may step, or the line bend there, so each has a row.
 module epcont_contact_geometry_mortar
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_area, rounded_off
   use epcont_contact_geometry_faces, only: faces_type
-  use epcont_geometry_boundary_line, only: beyond, boundary_line, facing_type
+  use epcont_geometry_boundary_line, only: beyond, facing_type
   use epcont_geometry_facing, only: find_facing, looking_point, rise_of
   use epcont_geometry_plane, only: right_of, unit
-  use epcont_model_model, only: line_contact
+  use epcont_model_model, only: line_contact, model_type
   implicit none
   private
   public :: find_mortar_rows, mortar_row
@@ -42,11 +43,13 @@ module epcont_contact_geometry_mortar
     !> Normals whose cosine is less, on either side of a node, meet at a corner there: more than 9 degrees.
     smooth = 0.988_wp
 
-  !> A side of the slave, with the integration points of its pieces, one piece behind the other.
+  !> A side of the slave, or what of it is between joints, with the integration points of its pieces, one
+  !> piece behind the other.
   type :: side_points
     logical :: covered = .true.                !! it faces the other line all along
+    integer :: row(3) = 0                      !! of its nodes, or of its ends at joints; 0: none
     real(wp), allocatable :: along(:)          !! place on the side, from 0 to 1 [points]
-    real(wp), allocatable :: share(:, :)       !! shape functions of the side's nodes [3, points]
+    real(wp), allocatable :: share(:, :)       !! shape functions of its nodes [3, points]
     real(wp), allocatable :: weight(:)         !! length, in rings times radius [points]
     type(facing_type), allocatable :: facing(:)
     real(wp) :: integral(3) = 0.0_wp           !! of the shape functions, or dual functions, of the nodes
@@ -55,35 +58,39 @@ module epcont_contact_geometry_mortar
 
 contains
 
-  !> Rows of master nodes and weights, one for each slave node that has a pair. Rows of no side count at their
-  !! own places.
-  subroutine find_mortar_rows(contact, obstacles, faces, ring, rows, covered)
+  !> Rows of master nodes and weights, one for each slave node that has a pair, then those of joints. Rows of
+  !! no side count at their own places.
+  subroutine find_mortar_rows(model, contact, faces, rows, covered, ends)
+    type(model_type), intent(in) :: model          !! the scene, without these pairs
     type(line_contact), intent(in) :: contact      !! the contact of lines
-    type(boundary_line), intent(in) :: obstacles   !! the outlines of all bodies
     type(faces_type), intent(in) :: faces          !! what the slave's nodes face
-    logical, intent(in) :: ring                    !! x is a radius
     type(mortar_row), allocatable, intent(out) :: rows(:)   !! [rows]
     logical, intent(out) :: covered(:)             !! sides that face the master all along [sides]
-    type(side_points) :: points(size(covered))
-    real(wp) :: area(size(faces%row))
-    logical :: alone(size(faces%row))
-    integer :: row, s
+    integer, allocatable, intent(out) :: ends(:)   !! nodes of the master that the rows of joints are for
+    type(side_points), allocatable :: points(:)
+    real(wp), allocatable :: area(:)               ! [rows]
+    logical, allocatable :: alone(:)               ! [rows]
+    integer :: i, row, s
 
-    area = 0.0_wp
-    do s = 1, size(points)
+    allocate (points(size(covered)))
+    do s = 1, size(covered)
       points(s) = cut_side()
       points(s)%covered = points(s)%covered .and. is_even()
-      call set_integrals()
-      associate (own => pack(faces%row_of(:, s), faces%row_of(:, s) > 0))
-        area(own) = area(own) + pack(points(s)%integral, faces%row_of(:, s) > 0)
-      end associate
     end do
     covered = points%covered
+    call cut_at_joints()
+    allocate (area(size(faces%row) + size(ends)), source=0.0_wp)
+    do i = 1, size(points)
+      call set_integrals(points(i))
+      associate (own => pack(points(i)%row, points(i)%row > 0))
+        area(own) = area(own) + pack(points(i)%integral, points(i)%row > 0)
+      end associate
+    end do
     alone = .not. area > 0.0_wp
     where (alone) area = area + 1.0_wp
     rows = [(mortar_row([integer ::], [real(wp) ::]), row=1, size(area))]
-    do s = 1, size(points)
-      call add_side()
+    do i = 1, size(points)
+      call add_side(points(i))
     end do
     do row = 1, size(rows)
       if (alone(row)) call add(faces%row(row)%facing_type, 1.0_wp)
@@ -114,11 +121,11 @@ contains
       do p = 1, size(points%along)
         call contact%slave%at(s, points%along(p), points%share(:, p), from%x, tangent)
         points%weight(p) = points%weight(p)*norm2(tangent)
-        if (ring) &
+        if (model%has_rings()) &
           points%weight(p) = points%weight(p)*dot_product(points%share(:, p), contact%slave%x(1, :, s))
         from%outward = unit(right_of(tangent))
         from%along = 0.5_wp*tangent
-        face = find_facing(contact%master, obstacles, from, contact%search)
+        face = find_facing(contact%master, model%boundary, from, contact%search)
         points%facing(p) = face(1)
         points%covered = points%covered .and. face(1)%found .and. &
                          dot_product(face(1)%normal, from%outward) < -parallel
@@ -172,23 +179,124 @@ contains
         do p = 1, size(facing), gauss_points   ! piece by piece
           is_even = is_even .and. abs(dot_product(at_end, facing(p + 2:p:-1)%gap) - before) <= most
           before = dot_product(at_end, facing(p:p + 2)%gap)
-          if (p > 1) is_even = is_even .and. facing(p - 1)%cosine(facing(p)) > smooth
+          if (p == 1) cycle
+          is_even = is_even .and. facing(p - 1)%cosine(facing(p)) > smooth
+          ! At a joint only chords are cut.
+          if (contact%slave%segment(3, s) > 0) is_even = is_even .and. goes_on(facing(p - 1), facing(p))
         end do
         is_even = is_even .and. abs(faces%row(row(2))%gap - before) <= most
       end associate
     end function is_even
 
+    !> Are two places on one side of the other line, or on sides that join? If not, there is a joint between,
+    !! unless its ends cannot but move alike.
+    pure logical function goes_on(one, other)
+      type(facing_type), intent(in) :: one, other
+      integer :: c, node(2)
+
+      goes_on = one%segment == other%segment .or. &
+                any(contact%master%neighbour(:, one%segment) == other%segment)
+      if (goes_on) return
+      node = [end_at(one), end_at(other)]
+      goes_on = .true.
+      do c = 1, 2
+        associate (one => model%leader(c, node(1)), other => model%leader(c, node(2)))
+          goes_on = goes_on .and. (one == other .or. all(model%held(c, [one, other])) .and. &
+                                   model%prescribed(c, one) == model%prescribed(c, other))
+        end associate
+      end do
+    end function goes_on
+
+    !> The end of the other line's side that a place is nearer to.
+    pure integer function end_at(place) result(node)
+      type(facing_type), intent(in) :: place
+
+      node = contact%master%segment(maxloc(place%share(:2), dim=1), place%segment)
+    end function end_at
+
+    !> Cut sides at joints, and give each stretch the rows of its ends.
+    subroutine cut_at_joints()
+      type(side_points), allocatable :: whole(:)
+      integer :: first, i, p
+
+      call move_alloc(points, whole)
+      allocate (points(size(whole) + sum([(joints_within(whole(s)), s=1, size(whole))])), ends(0))
+      i = 0
+      do s = 1, size(whole)
+        first = 1
+        do p = gauss_points, size(whole(s)%along) - 1, gauss_points
+          if (.not. has_joint(whole(s), p)) cycle
+          i = i + 1
+          points(i) = stretch(whole(s), first, p)
+          first = p + 1
+        end do
+        i = i + 1
+        points(i) = stretch(whole(s), first, size(whole(s)%along))
+      end do
+    end subroutine cut_at_joints
+
+    pure integer function joints_within(side)
+      type(side_points), intent(in) :: side
+      integer :: p
+
+      joints_within = count([(has_joint(side, p), p=gauss_points, size(side%along) - 1, gauss_points)])
+    end function joints_within
+
+    !> Is there a joint behind a point, the last of a piece?
+    pure logical function has_joint(side, p)
+      type(side_points), intent(in) :: side
+      integer, intent(in) :: p
+
+      has_joint = side%covered
+      if (has_joint) has_joint = .not. goes_on(side%facing(p), side%facing(p + 1))
+    end function has_joint
+
+    !> The part of side s from its point `first` to its point `last`.
+    type(side_points) function stretch(side, first, last) result(part)
+      type(side_points), intent(in) :: side
+      integer, intent(in) :: first, last
+      real(wp) :: begins, ends_at, place(last - first + 1)
+
+      part = side
+      part%row = faces%row_of(:, s)
+      if (.not. side%covered) return
+      if (first > 1 .or. last < size(side%along)) then
+        part%along = side%along(first:last)
+        part%weight = side%weight(first:last)
+        part%facing = side%facing(first:last)
+        begins = dot_product(at_end, part%along(3:1:-1))
+        ends_at = dot_product(at_end, part%along(size(part%along) - 2:))
+        place = (part%along - begins)/(ends_at - begins)
+        part%share = reshape([1.0_wp - place, place, 0.0_wp*place], [3, size(place)], order=[2, 1])
+      end if
+      call give_row(part%row(1), part%facing(1), first > 1)
+      call give_row(part%row(2), part%facing(size(part%facing)), last < size(side%along))
+    end function stretch
+
+    !> The row of the end of a stretch: of its node, if that faces the same end of the joint; else a new one.
+    subroutine give_row(row, facing, cut)
+      integer, intent(inout) :: row
+      type(facing_type), intent(in) :: facing   !! of the point next to it
+      logical, intent(in) :: cut                !! a joint is there
+
+      if (.not. cut) then
+        if (goes_on(faces%row(row)%facing_type, facing)) return
+      end if
+      ends = [ends, end_at(facing)]
+      row = size(faces%row) + size(ends)
+    end subroutine give_row
+
     !> Integrals of the shape functions of a side's nodes, and where it is covered the dual functions.
-    subroutine set_integrals()
+    pure subroutine set_integrals(own)
+      type(side_points), intent(inout) :: own
       real(wp) :: dual(3, 3), mass(3, 3)
       integer :: j, k, p
 
-      associate (own => points(s), n => points(s)%share, w => points(s)%weight, &
-                 integral => points(s)%integral)
+      associate (n => own%share, w => own%weight, integral => own%integral)
         integral = [(sum(w*n(k, :)), k=1, 3)]
         if (.not. own%covered) return
         mass = reshape([((sum(w*n(j, :)*n(k, :)), j=1, 3), k=1, 3)], [3, 3])
-        if (contact%slave%segment(3, s) == 0) mass(3, 3) = sum(integral)
+        if (own%row(3) == 0) mass(3, 3) = sum(integral)
         integral = max(integral, no_area*sum(integral))
         dual = spread(integral, 2, 3)*inverse(mass)
         allocate (own%dual(3, size(w)))
@@ -199,18 +307,19 @@ contains
     end subroutine set_integrals
 
     !> Add what a side makes of the rows of its nodes: one that is covered by its points, others at the nodes.
-    subroutine add_side()
+    subroutine add_side(own)
+      type(side_points), intent(in) :: own
       integer :: k, p
 
       do k = 1, 3
-        row = faces%row_of(k, s)
+        row = own%row(k)
         if (row == 0) cycle
-        if (covered(s)) then
-          do p = 1, size(points(s)%weight)
-            call add(points(s)%facing(p), points(s)%dual(k, p))
+        if (own%covered) then
+          do p = 1, size(own%weight)
+            call add(own%facing(p), own%dual(k, p))
           end do
         else
-          call add(faces%row(row)%facing_type, points(s)%integral(k))
+          call add(faces%row(row)%facing_type, own%integral(k))
         end if
       end do
     end subroutine add_side

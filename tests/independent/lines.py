@@ -4,8 +4,8 @@ Of all sides whose normals lead to a point and look against it, with no body bet
 one too. Where normals nearly meet in one point they do. The master line's displacement is fitted on each slave side that faces it all along by the slave's shape functions, least
 squares; a slave node's gap is against the fits of its sides, averaged as their lengths (in rings areas) that belong to the node, moved
 along the line until forces balance. Sides
-that do not face it all along count at their nodes' own places, and there corners of the master have pairs of their own. Every side is
-looked at; standard library only.
+that do not face it all along count at their nodes' own places, and there corners of the master have pairs of their own. Where two ends of the
+master lie flush a side is two, and each end has a pair. Every side is looked at; standard library only.
 """
 from collections import Counter
 from dataclasses import dataclass
@@ -49,6 +49,13 @@ class LinePair:
     normal: list
     gap: float
     stands_on: tuple = ()
+
+    def weights(self):
+        return {**{name: -share for name, share in self.shares.items()}, self.node: 1.0 - self.shares.get(self.node, 0.0)}
+
+    def other(self):
+        """The node that shares the most."""
+        return max((name for name in self.shares if name != self.node), key=self.shares.get)
 
 
 def eye_of(segment, k):
@@ -160,14 +167,16 @@ def alike(one, other):
 
 
 class Contact:
-    """What the nodes of the slave face, within `reach`, of the master; `near`: nodes of the master that are said to have come near."""
+    """What the nodes of the slave face, within `reach`, of the master; `near`: nodes of the master that are said to have come near. `motion`:
+    what moves (node, direction), itself or another one, or by how much."""
 
-    def __init__(self, slave, master, ring, reach, near=()):
-        self.slave, self.master, self.ring, self.reach = slave, master, ring, reach
+    def __init__(self, slave, master, ring, motion, reach, near=()):
+        self.slave, self.master, self.ring, self.motion, self.reach = slave, master, ring, motion, reach
         self.rows = []       # (node, what it faces)
         self.of = {}         # the row of a node of a side
         self.look_from_slave()
         self.shares, self.covered = [[] for _ in self.rows], {}
+        self.ends = {}       # the rows of ends of the master at joints
         for segment in slave.segments:
             self.average(segment)
         self.pairs = [LinePair(node, mean(share or [(1.0, place.weights())]), place.normal, place.gap)
@@ -212,36 +221,79 @@ class Contact:
                 seen.append((s, values, weight, self.master.face(eye, self.reach)[0], eye.outward))
             pieces.append((low, high, seen))
         points = [point for *_, seen in pieces for point in seen]
-        covered = self.covered[id(segment)] = len(faced) == len(rows) and is_covered(segment, faced, pieces, points)
+        joints = [k for k in range(1, len(pieces)) if None not in (pieces[k - 1][2][-1][3], pieces[k][2][0][3])
+                  and not self.goes_on(pieces[k - 1][2][-1][3], pieces[k][2][0][3])]
+        covered = self.covered[id(segment)] = (len(faced) == len(rows) and is_covered(segment, faced, pieces, points)
+                                               and not (joints and len(rows) > 2))
+        if not covered:
+            for i, row in enumerate(rows):
+                if row is not None:
+                    self.shares[row].append((sum(point[2] * point[1][i] for point in points), self.rows[row][1].weights()))
+            return
+        for first, last in zip([0, *joints], [*joints, len(pieces)]):
+            self.average_between(rows, pieces[first:last], first > 0, last < len(pieces), bool(joints))
+
+    def average_between(self, rows, pieces, cut_before, cut_behind, cut):
+        """The same of a side, or of what of it is between joints, that faces the other line all along."""
+        points = [point for *_, seen in pieces for point in seen]
+        begin, end = pieces[0][0], pieces[-1][1]
+        if cut:
+            points = [(s, [(end - s) / (end - begin), (s - begin) / (end - begin)], *rest) for s, _, *rest in points]
+        rows = [self.row_of_end(rows[0], points[0][3], cut_before), *rows[1:-1], self.row_of_end(rows[-1], points[-1][3], cut_behind)]
         areas = [sum(point[2] * point[1][i] for point in points) for i in range(len(rows))]
-        if covered:
-            fits = fitted(points, len(rows))
-            areas = [max(area, AT_AXIS * sum(areas)) for area in areas]
-        for i, row in enumerate(rows):
-            if row is not None:
-                self.shares[row].append((areas[i], fits[i] if covered else self.rows[row][1].weights()))
+        for row, area, fit in zip(rows, areas, fitted(points, len(rows))):
+            self.shares[row].append((max(area, AT_AXIS * sum(areas)), fit))
+
+    def row_of_end(self, row, place, cut):
+        if not cut and self.goes_on(self.rows[row][1], place):
+            return row
+        self.ends[end_of(place)] = len(self.shares)
+        self.shares.append([])
+        return len(self.shares) - 1
+
+    def goes_on(self, one, other):
+        """Are two places of the master on one side, on sides that join, or at ends that cannot but move alike?"""
+        if one.segment is other.segment or any(self.master.beside(one.segment, end) is other.segment for end in (0, 1)):
+            return True
+        return all(self.motion(end_of(one), c) == self.motion(end_of(other), c) for c in (0, 1))
 
     def look_from_master(self, near):
-        """Corners of the master on sides of the slave that are not covered, and nodes that came near."""
+        """Corners of the master on sides of the slave that are not covered, its ends at joints, and nodes that came near."""
         self.tips = []
         for segment in self.master.segments:
             last = len(segment.nodes) - 1
             for k, node in enumerate(segment.nodes):
                 if node in near or k in (0, last) and segment.tip[k > 0]:
                     for place in self.slave.face(eye_of(segment, k), self.reach):
-                        if place and (node in near or not self.covered[id(place.segment)]) and not self.has(node, place):
+                        if place and (node in self.ends or node in near or not self.covered[id(place.segment)]) and not self.has(node, place):
                             self.tips.append((node, place))
         for node, place in self.tips:
-            self.pairs.append(LinePair(node, place.weights(), place.normal, place.gap, tuple(place.segment.nodes)))
+            shares = place.weights()
+            if node in self.ends:   # of the master what its row says, instead of the node
+                own = mean(self.shares[self.ends[node]])
+                shares.update({name: (name == node) - share for name, share in own.items() if own.keys() != {node}})
+            self.pairs.append(LinePair(node, shares, place.normal, place.gap, tuple(place.segment.nodes)))
 
     def has(self, node, place):
         """Does it stand at a node with a pair there, or has it one?"""
         most = max(range(len(place.values)), key=lambda i: place.values[i])
-        if place.values[most] >= 1 - BEYOND:
+        if place.values[most] >= 1 - BEYOND and node not in self.ends:
             row = self.of.get((id(place.segment), place.segment.nodes[most]))
-            if row is not None and dot(self.rows[row][1].normal, place.normal) < -ONE_CURVE:
+            if row is not None and dot(self.rows[row][1].normal, place.normal) < -ONE_CURVE and not self.beside_joint(self.rows[row][1], node):
                 return True
         return any(name == node and alike(place, other) for name, other in self.tips)
+
+    def beside_joint(self, place, node):
+        """Is the place an end of the master where the node lies that is not that end?"""
+        if max(place.values) < 1.0 or end_of(place) == node:
+            return False
+        there = [one.x[k] for one in self.master.segments for k in (0, -1) if one.nodes[k] == node]
+        return any(hypot(*(a - b for a, b in zip(x, at_place(place)))) <= BEYOND * place.segment.chord for x in there)
+
+
+def end_of(place):
+    """The end of its side that a place is nearer to."""
+    return place.segment.nodes[0] if place.values[0] >= place.values[-1] else place.segment.nodes[-1]
 
 
 def is_covered(segment, faced, pieces, points):
@@ -321,8 +373,8 @@ def ends_of(segments):
     return {node for segment in segments for node in (segment.nodes[0], segment.nodes[-1])}
 
 
-def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g, told=None):
-    """Of each contact the list of its LinePairs. `held`: (node, direction), ties followed; `name`: of the node of an id; `told`: names of
+def pairs_of_lines(deck, parameter, sides, x, held, motion, name=lambda g: g, told=None):
+    """Of each contact the list of its LinePairs. `held`: (node, direction), ties followed; `motion`: what moves each; `name`: of the node of an id; `told`: names of
     nodes, as often as the program has pairs of them: they tell what came near as loads moved it."""
     found = outline(sides, x, held, real(parameter.get("CORNER", ""), None)) if deck.of("BCONP") else {}
     lines = {int(card[1]): line_of([name(g) for g in ids(card[2:])], found) for card in deck.of("BLSEG")} if found else {}
@@ -334,12 +386,12 @@ def pairs_of_lines(deck, parameter, sides, x, held, name=lambda g: g, told=None)
         slave, master = (Line(list({id(one): one for k in members for one in named[k][which]}.values()), list(found.values())) for which in (0, 1))
         ring = sides[frozenset((slave.segments[0].nodes[0], slave.segments[0].nodes[-1]))].thickness is None
         reach = real(parameter.get("SEARCH", ""), SEARCH * max(one.chord for one in slave.segments + master.segments))
-        contact = Contact(slave, master, ring, reach)
+        contact = Contact(slave, master, ring, motion, reach)
         while not contact.pairs:
             if reach > size:
                 raise DeckError(f"BCONP {at(cards[members[0]], 1)} pairs nothing")
             reach *= FURTHER
-            contact = Contact(slave, master, ring, reach)
+            contact = Contact(slave, master, ring, motion, reach)
         contacts.append(contact)
     if told is not None:
         came_near(contacts, Counter(told), size)
@@ -403,4 +455,4 @@ def came_near(contacts, told, size):
                 for place in other.face(eye_of(one, i), size)[:1] if place]
         if gaps:
             reach = max(contact.reach, max(gaps) * (1 + EQUAL))
-            contacts[k] = Contact(contact.slave, contact.master, contact.ring, reach, late[1][2])
+            contacts[k] = Contact(contact.slave, contact.master, contact.ring, contact.motion, reach, late[1][2])

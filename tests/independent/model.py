@@ -155,6 +155,11 @@ class Model:
                 if card[i]:
                     self.support += [(int(card[i]), int(digit)) for digit in card[i + 1] if digit in "12"]
 
+    def motion(self, row, c):
+        """What moves a node along a direction: a freedom, or how far it is held."""
+        lead = self.leader.get((row, c), (row, c))
+        return self.held[2 * lead[0] + lead[1]] if self.is_held[2 * lead[0] + lead[1]] else lead
+
     def pairs(self):
         """Of each pair: id, the two nodes that tables name, normal, gap, and its row of the gap matrix."""
         frames = self.deck.frames()
@@ -170,11 +175,10 @@ class Model:
         held = {(int(f) // 2, int(f) % 2) for f in np.flatnonzero(self.is_held)}
         everywhere = {(row, c) for row in range(len(self.node)) for c in (0, 1) if self.leader.get((row, c), (row, c)) in held}
         self.stands_on = [()] * len(found)
-        for contact in pairs_of_lines(self.deck, self.parameter, self.boundary, self.x, everywhere, self.row.get):
+        for contact in pairs_of_lines(self.deck, self.parameter, self.boundary, self.x, everywhere, self.motion, self.row.get):
             self.contacts.append(range(len(found), len(found) + len(contact)))
             for pair in contact:
-                weights = {pair.node: 1.0, **{row: -share for row, share in pair.shares.items()}}
-                found.append((self.node[pair.node], (max(pair.shares, key=pair.shares.get), pair.node), pair.normal, pair.gap, weights))
+                found.append((self.node[pair.node], (pair.other(), pair.node), pair.normal, pair.gap, pair.weights()))
                 self.stands_on.append(pair.stands_on)
         self.held_directions = held
         self.pair_weights = [pair[4] for pair in found]

@@ -159,7 +159,7 @@ def on_symmetry(node, n, others, x, held, leader, near):
 
 def stands(x, weights, node):
     """Where the node of a pair stands on the other line. `weights`: of all nodes of the pair."""
-    return [-sum(w * x[other][c] for other, w in weights.items() if other != node) for c in (0, 1)]
+    return [(1.0 - weights[node]) * x[node][c] - sum(w * x[other][c] for other, w in weights.items() if other != node) for c in (0, 1)]
 
 
 def chains(sides, x, stands_on, feet):

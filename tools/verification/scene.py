@@ -85,7 +85,7 @@ class Scene:
         self.contacts.append(list(self.pair))
         everywhere = {(node, c) for node in self.x for c in (0, 1) if self.leads(node, c) in self.held}
         names = None if told is None else [node_of(pair) for pair in told if pair not in self.pair]
-        for contact in pairs_of_lines(self.deck, self.parameter, self.side, self.x, everywhere, told=names):
+        for contact in pairs_of_lines(self.deck, self.parameter, self.side, self.x, everywhere, self.motion, told=names):
             named = [(self.name(pair, told or {}), pair) for pair in contact]
             self.contacts.append([name for name, _ in named])
         rank = {name: k for k, name in enumerate(told or {})}
@@ -114,14 +114,18 @@ class Scene:
             freedom = self.leader[freedom]
         return freedom
 
+    def motion(self, node, c):
+        """What moves a node along a direction: a freedom, or how far it is held."""
+        lead = self.leads(node, c)
+        return self.given.get(lead, lead)
+
     def name(self, pair, told):
         """The node; of several pairs of a node (node, number), as their normals are told."""
         free = [name for name in told if node_of(name) == pair.node and name not in self.pair]
         name = max(free, key=lambda name: sum(a * b for a, b in zip(told[name], pair.normal)), default=pair.node)
         while name in self.pair:
             name = (pair.node, 2 if name == pair.node else name[1] + 1)
-        self.pair[name] = Pair(pair.gap, pair.normal, {pair.node: 1.0, **{other: -share for other, share in pair.shares.items()}}, pair.node,
-                               (max(pair.shares, key=pair.shares.get), pair.node), pair.stands_on)
+        self.pair[name] = Pair(pair.gap, pair.normal, pair.weights(), pair.node, (pair.other(), pair.node), pair.stands_on)
         return name
 
     def loads(self):
