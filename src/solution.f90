@@ -61,7 +61,7 @@ contains
     type(error_type), allocatable, intent(out) :: error   !! there is not enough memory
     type(error_type), allocatable :: in_double
     integer :: count
-    logical :: entered
+    logical :: entered, failed
 
     do count = 1, most_solves
       call check_memory(self%expected%bytes, limit, error)
@@ -70,7 +70,12 @@ contains
       if (allocated(in_double)) self%iteration%against_double = in_double%message
       self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
       call watch%expect(self%iteration, self%model%controls%most_iterations, self%expected)
-      call analyse(self%planned_scene, self%answer, self%certificate, self%accuracy, watch)
+      call analyse(self%planned_scene, self%answer, self%certificate, self%accuracy, watch, failed)
+      if (failed) then
+        self%apart = .true.
+        call self%make_plan(watch)
+        cycle
+      end if
       if (self%answer%failed_body > 0 .or. count == most_solves) exit
       call enter_nodes_that_came_near(self%model, self%answer%displacement, &
           self%answer%contact%touching, entered)
@@ -80,17 +85,21 @@ contains
   end subroutine solve
 
   !> Solve the scene as it is.
-  subroutine analyse(scene, answer, certificate, accuracy, watch)
+  subroutine analyse(scene, answer, certificate, accuracy, watch, failed)
     type(planned_scene), intent(in) :: scene
     type(answer_type), intent(out) :: answer
     type(certificate_type), intent(out) :: certificate
     type(accuracy_type), intent(out) :: accuracy
     class(observer), intent(inout) :: watch
+    logical, intent(out) :: failed      !! joined bodies are to be solved apart
     type(linear_problem), allocatable :: linear
     type(contact_line) :: line
 
     call solve_as_planned()
-    if (is_without_displacements()) return
+    failed = linear%joined%failed
+    if (failed .or. is_without_displacements()) return
+    if (scene%numbering%joined) failed = .not. linear%joined%are_unique(scene, linear%factored_bodies)
+    if (failed) return
     line = find_contact_line(scene%model)
     call evaluate_refined()
     if (answer%precision /= precision_double .and. answer%converged .and. &

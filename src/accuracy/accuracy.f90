@@ -3,6 +3,7 @@
 !> zone; what rounding may have done to the contact forces; pairs that may as well be open.
 module epcont_accuracy_accuracy
   use epcont_accuracy_error_fields, only: compare_fields, error_fields
+  use epcont_accuracy_joined_sensitivity, only: find_joined_sensitivity
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
   use epcont_accuracy_passed_loads, only: dense_loads
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
@@ -124,10 +125,14 @@ contains
       real(wp) :: off(loads%passed%loads)
       integer :: j
 
-      accuracy%sensitivity = find_sensitivity( &
-        loads%problem, loads%basis, answer%contact%force, &
-        abs(linear%problem%initial_gap) + abs(linear%problem%load_gap) &
-        + linear%problem%motion%times(answer%contact%approach, magnitudes=.true.), answer%condition)
+      if (scene%numbering%joined) then
+        accuracy%sensitivity = find_joined_sensitivity(scene, linear, answer)
+      else
+        accuracy%sensitivity = find_sensitivity( &
+          loads%problem, loads%basis, answer%contact%force, &
+          abs(linear%problem%initial_gap) + abs(linear%problem%load_gap) &
+          + linear%problem%motion%times(answer%contact%approach, magnitudes=.true.), answer%condition)
+      end if
       ! What the last step of refinement has not changed is right.
       accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
       off = errors()
@@ -288,8 +293,14 @@ contains
     pure function find_weak() result(weak)
       logical, allocatable :: weak(:)
       real(wp) :: off(scene%model%pairs)   !! error of the pressure [stress]
+      real(wp), allocatable :: compliance(:)
       integer :: k, z
 
+      if (scene%numbering%joined) then
+        compliance = linear%joined%compliance()
+      else
+        compliance = linear%problem%flexibility%diagonal()
+      end if
       off = 0.0_wp
       do z = 1, size(accuracy%zone)
         off(answer%zones(z)%pairs) = max(0.0_wp, accuracy%zone(z)%pressure)
@@ -302,7 +313,7 @@ contains
       ! Now of the force; what its pair gives way by under it alone is the least.
       off = off*line%tributary + accuracy%sensitivity%rounding*maxval(answer%contact%force)
       weak = merge(answer%contact%force <= off, &
-                   answer%contact%gap <= linear%problem%flexibility%diagonal()*off, &
+                   answer%contact%gap <= compliance*off, &
                    answer%contact%touching)
     end function find_weak
   end subroutine assess

@@ -14,7 +14,7 @@ module epcont_accuracy_body_loads
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads
+  public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads, take_fields
 
   !> A load that others make up for, but for this part of its largest force on any body, is a sum of these:
   !! figures of a stack of 30 bodies change by 3e-6; with three times as much by 5e-4.
@@ -90,6 +90,21 @@ contains
     call from_directions(chosen(:fields), share)
     call divide(loads, left <= made_up_for**2, chosen(:fields), share, batch)
   end subroutine choose_fields
+
+  !> Take the first loads out of those that are left, each a field of its own.
+  pure subroutine take_fields(loads, batch)
+    type(body_loads), intent(inout) :: loads   !! those that are left
+    type(load_batch), intent(out) :: batch     !! fields that make up for themselves
+    real(wp), allocatable :: share(:, :)
+    integer :: j, n
+
+    n = min(size(loads%load), most_fields)
+    allocate (share(size(loads%load), n), source=0.0_wp)
+    do j = 1, n
+      share(j, j) = 1.0_wp
+    end do
+    call divide(loads, [(j <= n, j=1, size(loads%load))], [(j, j=1, n)], share, batch)
+  end subroutine take_fields
 
   !> From sums of directions to sums of the fields that gave them.
   pure subroutine from_directions(chosen, share)

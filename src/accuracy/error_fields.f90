@@ -3,7 +3,7 @@
 !> feels few that it tells apart (`body_loads.f90`).
 module epcont_accuracy_error_fields
   use epcont_accuracy_body_loads, only: body_loads, choose_fields, find_displacements, load_batch, &
-    new_body_loads
+    new_body_loads, take_fields
   use epcont_accuracy_element_errors, only: element_errors, new_element_errors
   use epcont_accuracy_field_sums, only: field_sums, new_field_sums
   use epcont_accuracy_passed_loads, only: passed_loads
@@ -39,7 +39,7 @@ contains
     type(patch_table), intent(in) :: table       !! of its elements
     type(passed_loads), intent(in) :: passed     !! contact forces under unit loads
     type(error_fields), intent(out) :: field     !! what is off
-    type(incidence) :: pairs
+    type(incidence) :: elements, pairs           ! of each body
     type(body_loads) :: loads
     type(load_batch) :: batch
     real(wp) :: sum_of(4, size(passed%unit))     ! what `field_sums` has of all bodies, of each column
@@ -48,18 +48,25 @@ contains
     real(wp), allocatable :: strain(:, :)        ! of the answer and all fields in an element [width, points]
     integer :: e, first, nodes, points           ! the element, its first point, how many it has
     integer :: own(most_nodes)                   ! its places, among those of the body
+    integer, allocatable :: element(:)           ! of the body
     integer :: b, k
 
     allocate (field%smooth(components, table%places), field%element(scene%model%elements), &
               field%missing(passed%loads), source=0.0_wp)
     pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
     sum_of = 0.0_wp
-    do b = 1, size(scene%numbering%body)
-      if (size(scene%numbering%body(b)%element) == 0) cycle
+    if (scene%numbering%joined) elements = scene%model%elements_of_bodies()
+    do b = 1, scene%model%bodies
+      if (scene%numbering%joined) then
+        element = elements%of(b)
+      else
+        element = scene%numbering%body(b)%element
+      end if
+      if (size(element) == 0) cycle
       loads = new_body_loads(pairs%of(b), passed)
       do
-        call choose_fields(loads, batch)
-        call compare_on_body(scene%numbering%body(b)%element, table%of_body%of(b))
+        call find_fields(table%of_body%of(b))
+        call compare_on_body(element, table%of_body%of(b))
         if (size(loads%load) == 0) exit
       end do
     end do
@@ -73,6 +80,23 @@ contains
 
   contains
 
+    !> The next batch of loads, and displacements under its fields; joined bodies have those of all loads.
+    subroutine find_fields(place)
+      integer, intent(in) :: place(:)   !! of the body
+      integer :: f
+
+      if (.not. scene%numbering%joined) then
+        call choose_fields(loads, batch)
+        call find_displacements(scene, linear, b, loads%pair, batch, table%node(place), u)
+        return
+      end if
+      call take_fields(loads, batch)
+      u = passed%displacement(:, batch%load, table%node(place))
+      do f = 1, size(u, 2)
+        u(:, f, :) = u(:, f, :)/passed%unit(batch%load(f))
+      end do
+    end subroutine find_fields
+
     !> What the elements of a body add, under a batch of loads.
     subroutine compare_on_body(element, place)
       integer, intent(in) :: element(:), place(:)   !! those of the body
@@ -82,7 +106,6 @@ contains
       real(wp), allocatable :: sample(:, :), smooth(:, :)   ! of the answer and all fields [width, any]
       integer :: i, width
 
-      call find_displacements(scene, linear, b, loads%pair, batch, table%node(place), u)
       errors = new_element_errors(size(u, 2))
       sums = new_field_sums(batch%share, size(element))
       samples = place_samples(scene%model, element)

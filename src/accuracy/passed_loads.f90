@@ -42,6 +42,8 @@ module epcont_accuracy_passed_loads
     !> Largest force under a load on its way, the least of all that a column is of; 0: nothing is asked of
     !! them [force] [columns]
     real(wp), allocatable :: unit(:)
+    !> Of joined bodies, where all are on one level: under each load [length] [directions, loads, nodes]
+    real(wp), allocatable :: displacement(:, :, :)
   contains
     procedure :: way
     procedure :: add_up

@@ -60,36 +60,96 @@ contains
     type(linear_problem), intent(inout), target :: linear
     type(answer_type), intent(in) :: answer      !! with some contact
     type(unit_loads), intent(out) :: loads       !! and what they do
-    type(rigid_start) :: start
-    integer, allocatable :: pressed(:)
     integer :: j
 
-    loads%problem = scale_problem(linear%problem)
-    if (any(answer%contact%motion_free)) then
-      ! Of motions that no pressed pair resists as many are held as are independent, which says nothing of the
-      ! others.
-      pressed = pack([(j, j=1, scene%model%pairs)], answer%contact%force > 0.0_wp)
-      call find_rigid_start(loads%problem%motion%rows(pressed), 0*loads%problem%resultant, &
-                            0*loads%problem%gap(pressed), start)
-      call drop_motions(loads%problem, start%redundant)
-    end if
-    call move_basis(linear%basis, loads%basis)
-    call renew_basis(loads%basis, loads%problem, answer%contact%force > 0.0_wp)
     call find_shares()
-    associate (known => closing_forces(loads%problem, loads%basis, loads%share))
-      if (loads%basis%sound) then
-        call pass_on_loads(loads%basis, scene%motions%count, loads%problem%motion_size(loads%problem%kept), &
-                           known, loads%passed)
-      else
-        call dense_loads(reshape([(0.0_wp, j=1, scene%model%pairs*scene%motions%count), known], &
-                                 [scene%model%pairs, scene%motions%count + size(known, 2)]), loads%passed)
-      end if
-    end associate
+    if (scene%numbering%joined) then
+      call put_on_system()
+    else
+      call put_on_pairs()
+    end if
     loads%told = [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))] .and. &
                  loads%passed%weighed(spread(1.0_wp, 1, scene%model%pairs), magnitudes=.true.) > 0.0_wp
     call loads%passed%ask_for(loads%told)
 
   contains
+
+    !> All loads on the pairs, by the contact's own factor of those that press. Of motions that none of these
+    !! resists as many are held as are independent, which says nothing of the others.
+    subroutine put_on_pairs()
+      type(rigid_start) :: start
+      integer, allocatable :: pressed(:)
+
+      loads%problem = scale_problem(linear%problem)
+      if (any(answer%contact%motion_free)) then
+        pressed = pack([(j, j=1, scene%model%pairs)], answer%contact%force > 0.0_wp)
+        call find_rigid_start(loads%problem%motion%rows(pressed), 0*loads%problem%resultant, &
+                              0*loads%problem%gap(pressed), start)
+        call drop_motions(loads%problem, start%redundant)
+      end if
+      call move_basis(linear%basis, loads%basis)
+      call renew_basis(loads%basis, loads%problem, answer%contact%force > 0.0_wp)
+      associate (known => closing_forces(loads%problem, loads%basis, loads%share))
+        if (loads%basis%sound) then
+          call pass_on_loads(loads%basis, scene%motions%count, &
+                             loads%problem%motion_size(loads%problem%kept), known, loads%passed)
+        else
+          call dense_loads(reshape([(0.0_wp, j=1, scene%model%pairs*scene%motions%count), known], &
+                                   [scene%model%pairs, scene%motions%count + size(known, 2)]), loads%passed)
+        end if
+      end associate
+    end subroutine put_on_pairs
+
+    !> All loads on joined bodies.
+    subroutine put_on_system()
+      real(wp) :: load(scene%motions%count, scene%motions%count + size(loads%share, 2))
+      real(wp), dimension(scene%model%pairs, size(load, 2)) :: force, opening
+      real(wp) :: u(directions, size(load, 2), scene%model%nodes)
+      integer :: k
+
+      load = 0.0_wp
+      opening = 0.0_wp
+      force = 0.0_wp
+      do j = 1, scene%motions%count
+        load(j, j) = 1.0_wp
+      end do
+      opening(:, scene%motions%count + 1:) = -loads%share
+      do k = 1, 2
+        call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
+      end do
+      loads%basis%sound = .true.
+      do j = scene%motions%count + 1, size(load, 2)
+        if (give_way(opening(:, j))) force(:, j) = 0.0_wp
+      end do
+      call dense_loads(force, loads%passed)
+      loads%passed%displacement = u
+    end subroutine put_on_system
+
+    !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. The motions' part is taken
+    !! off by Gram and Schmidt's way, twice, against rounding.
+    logical function give_way(opening)
+      real(wp), intent(in) :: opening(:)
+      real(wp), allocatable :: closing(:, :), rest(:)
+      integer, allocatable :: pressed(:)
+      real(wp) :: length
+      integer :: i, k, turn
+
+      pressed = pack([(k, k=1, size(opening))], answer%contact%force > 0.0_wp)
+      rest = opening(pressed)
+      closing = linear%problem%motion%rows(pressed)
+      do k = 1, size(closing, 2)
+        length = norm2(closing(:, k))
+        do turn = 1, 2
+          do i = 1, k - 1
+            closing(:, k) = closing(:, k) - dot_product(closing(:, i), closing(:, k))*closing(:, i)
+          end do
+        end do
+        if (norm2(closing(:, k)) <= solved_to*length) closing(:, k) = 0.0_wp
+        if (any(closing(:, k) /= 0.0_wp)) closing(:, k) = closing(:, k)/norm2(closing(:, k))
+        rest = rest - dot_product(closing(:, k), rest)*closing(:, k)
+      end do
+      give_way = norm2(rest) <= solved_to*norm2(opening(pressed))
+    end function give_way
 
     !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
     subroutine find_shares()

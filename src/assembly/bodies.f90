@@ -1,11 +1,12 @@
 !> The bodies with a linear law, factored, and displacements under nodal forces.
 module epcont_assembly_bodies
-  use epcont_assembly_stiffness, only: body_stiffness
+  use epcont_assembly_stiffness, only: body_stiffness, spring_set
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
   use epcont_material_linear_law, only: linear_law
   use epcont_plan_planned_scene, only: planned_scene
+  use epcont_system_threads, only: use_one_thread_each
   implicit none
   private
   public :: factored_bodies, half_solved_body, new_bodies, prescribe, weak_pivot
@@ -26,11 +27,13 @@ module epcont_assembly_bodies
   type :: factored_bodies
     type(strain_operator) :: operator
     type(linear_law) :: law                    !! of the next factors, or the last
-    type(body_stiffness), allocatable :: body(:)
+    type(spring_set) :: spring                 !! of joined bodies; of the next factor, or the last
+    type(body_stiffness), allocatable :: body(:)   !! as they are numbered
     integer :: factorizations = 0              !! done so far, of bodies that have equations
     !> Forces of prescribed displacements on free freedoms [directions, nodes]
     real(wp), allocatable :: settlement(:, :)
   contains
+    procedure :: factor_system
     procedure :: settle
     procedure :: displacements
     procedure :: add_forces
@@ -49,10 +52,28 @@ contains
     type(factored_bodies) :: bodies
 
     bodies%operator = new_strain_operator(scene%model)
-    allocate (bodies%body(scene%model%bodies))
+    allocate (bodies%body(size(scene%numbering%body)))
     bodies%body%single = single
     allocate (bodies%settlement(directions, scene%model%nodes), source=0.0_wp)
   end function new_bodies
+
+  !> Factor bodies that are joined, as far as law or springs have changed.
+  subroutine factor_system(self, scene, threads)
+    class(factored_bodies), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene   !! that they are of
+    integer, intent(in) :: threads             !! that share the fronts
+
+    !$omp parallel num_threads(threads) if (threads > 1)
+    call use_one_thread_each()
+    !$omp single
+    call self%body(1)%assemble(scene, self%operator, self%law, self%spring, 1)
+    call self%body(1)%factor()
+    !$omp end single
+    !$omp end parallel
+    self%factorizations = self%factorizations + 1
+    self%law%changed = .false.
+    self%spring%changed = .false.
+  end subroutine factor_system
 
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
   pure subroutine settle(self, scene)
@@ -95,13 +116,16 @@ contains
     do b = 1, size(self%body)
       condition = max(condition, self%body(b)%matrix%condition())
     end do
+    if (scene%numbering%joined) condition = condition*self%spring%norm/self%body(1)%matrix%norm
   end subroutine estimate_condition
 
-  !> The weakest pivot of all bodies.
+  !> The weakest pivot of all bodies. Of joined ones none is: springs make pivots small, and steps follow
+  !! until nothing changes.
   pure type(weak_pivot) function weakest(self)
     class(factored_bodies), intent(in) :: self
     integer :: b
 
+    if (allocated(self%spring%stiffness)) return
     b = minloc(self%body%smallest_ratio, dim=1)
     if (self%body(b)%smallest_ratio < weakest%ratio) weakest = weak_pivot(self%body(b)%smallest_ratio, b)
   end function weakest

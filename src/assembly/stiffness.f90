@@ -19,7 +19,14 @@ module epcont_assembly_stiffness
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: body_stiffness
+  public :: body_stiffness, spring_set
+
+  !> Springs of joined bodies.
+  type :: spring_set
+    real(wp), allocatable :: stiffness(:)   !! [force/length] [springs]
+    logical, allocatable :: changed(:)      !! it is not that of the last stiffness [springs]
+    real(wp) :: norm = 0.0_wp               !! of the stiffness without any, in the 1-norm [force/length]
+  end type spring_set
 
   type :: body_stiffness
     class(assembled_matrix), allocatable :: matrix   !! K_bb, then its factor
@@ -42,11 +49,12 @@ contains
 
   !> Assemble the elements of a body, and factor what is complete on the way. Where only some elements have
   !! changed since it was factored, nothing is touched that does not depend on them.
-  subroutine assemble(self, scene, operator, law, b)
+  subroutine assemble(self, scene, operator, law, spring, b)
     class(body_stiffness), intent(inout) :: self
     type(planned_scene), intent(in) :: scene         !! with the numbers of its equations
     type(strain_operator), intent(in) :: operator    !! strains of nodal displacements
     type(linear_law), intent(in) :: law              !! stresses of strains, and where that has changed since
+    type(spring_set), intent(in) :: spring           !! of joined bodies
     integer, intent(in) :: b                         !! the body
     logical, allocatable :: stale(:)                 ! the equation is to be filled [-border:equations]
 
@@ -67,7 +75,7 @@ contains
       if (body%solver == solver_frontal) then
         call fill_fronts()
       else
-        call fill(1, 1, size(body%element))
+        call fill(1, 1, size(body%part))
       end if
     end associate
 
@@ -89,7 +97,7 @@ contains
           !$omp end task
         end do
         !$omp taskwait
-        call fill(size(unit), fronts%first_element(size(unit)), size(scene%numbering%body(b)%element))
+        call fill(size(unit), fronts%first_element(size(unit)), size(scene%numbering%body(b)%part))
       end associate
     end subroutine fill_fronts
 
@@ -108,27 +116,51 @@ contains
       end associate
     end subroutine fill_below
 
-    !> Fill a part of the matrix with its elements.
+    !> Fill a part of the matrix with its elements and springs.
     subroutine fill(part, first, last)
       integer, intent(in) :: part, first, last
-      real(wp) :: k(most_freedoms**2)
-      integer :: e, n, number(most_freedoms)
+      integer :: e
 
       call self%matrix%open(part)
       do e = first, last
-        associate (element => scene%numbering%body(b)%element(e))
-          number = scene%numbering%of_element(scene%model, element)
-          n = directions*scene%model%node_count(element)
-          if (.not. any(stale(number(:n)))) cycle
-          call operator%element_stiffness(scene%model, element, law, n, k)
-          call scene%numbering%axes%turn_stiffness(scene%model%connectivity(:, element), n, k)
-          if (self%single) k(:n**2) = k(:n**2)/self%unit
-          call self%matrix%add(n, number, k)
-          if (size(self%schur) > 0) call add_to_border(n, number, k, self)
+        associate (element => scene%numbering%body(b)%part(e))
+          if (element <= scene%model%elements) then
+            call add_element(element)
+          else
+            call add_spring(element - scene%model%elements)
+          end if
         end associate
       end do
       call self%matrix%close(part)
     end subroutine fill
+
+    subroutine add_element(element)
+      integer, intent(in) :: element
+      real(wp) :: k(most_freedoms**2)
+      integer :: n, number(most_freedoms)
+
+      number = scene%numbering%of_element(scene%model, element)
+      n = directions*scene%model%node_count(element)
+      if (.not. any(stale(number(:n)))) return
+      call operator%element_stiffness(scene%model, element, law, n, k)
+      call scene%numbering%axes%turn_stiffness(scene%model%connectivity(:, element), n, k)
+      if (self%single) k(:n**2) = k(:n**2)/self%unit
+      call self%matrix%add(n, number, k)
+      if (size(self%schur) > 0) call add_to_border(n, number, k, self)
+    end subroutine add_element
+
+    subroutine add_spring(k)
+      integer, intent(in) :: k
+
+      associate (row => scene%numbering%body(b)%spring)
+        associate (number => row%equation(row%start(k):row%start(k + 1) - 1), &
+                   weight => row%weight(row%start(k):row%start(k + 1) - 1))
+          if (spring%stiffness(k) <= 0.0_wp .or. .not. any(stale(number))) return
+          call self%matrix%add(size(number), number, spring%stiffness(k)* &
+                               spread(weight, 2, size(weight))*spread(weight, 1, size(weight)))
+        end associate
+      end associate
+    end subroutine add_spring
 
     !> A matrix of zeros, of the kind that the plan has chosen.
     subroutine begin()
@@ -138,7 +170,7 @@ contains
       type(single_panel_matrix), allocatable :: single_panels
 
       associate (body => scene%numbering%body(b))
-        associate (once => .not. body%can_yield, &
+        associate (once => .not. (body%can_yield .or. scene%numbering%joined), &
                    trailing => merge(body%contact_equations, 0, body%contact_last))
           if (self%single) self%unit = unit_of(body%element)
           if (body%solver == solver_frontal .and. self%single) then
@@ -162,7 +194,7 @@ contains
       end associate
     end subroutine begin
 
-    !> The equations of elements that have changed.
+    !> The equations of elements and springs that have changed.
     subroutine find_stale()
       integer :: e, i, number(most_freedoms)
 
@@ -174,6 +206,12 @@ contains
           do i = 1, size(number)
             stale(number(i)) = number(i) > 0
           end do
+        end do
+      end associate
+      if (.not. allocated(spring%changed)) return
+      associate (row => scene%numbering%body(b)%spring)
+        do e = 1, size(spring%changed)
+          if (spring%changed(e)) stale(row%equation(row%start(e):row%start(e + 1) - 1)) = .true.
         end do
       end associate
     end subroutine find_stale

@@ -12,7 +12,7 @@ module epcont_contact_problem
   use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
-  public :: contact_problem, contact_solution, pivot_record
+  public :: contact_problem, contact_solution, new_solution, pivot_record
 
   !> What is true of the problem.
   integer, parameter, public :: contact_solved = 0   !! forces, gaps and approach satisfy all conditions
@@ -58,10 +58,25 @@ module epcont_contact_problem
     !> Motions that nothing determines; `approach` is one choice of many [m]
     logical, allocatable :: motion_free(:)
     logical :: by_blocks = .false.           !! the set was found by RULE BLOCK, not by CONRY
-    integer :: block_steps = 0   !! sets that RULE BLOCK has solved, also where CONRY had to take over
+    logical :: joined = .false.              !! the set was found by RULE JOINED
+    !> Sets that RULE BLOCK has solved, also where CONRY had to take over; or steps of RULE JOINED
+    integer :: block_steps = 0
     integer :: pivots = 0                    !! pairs exchanged by the rule that found the set
     integer :: degenerate_pivots = 0         !! of these, without change of any variable
     integer :: restarts = 0                  !! fresh starts, after a set failed the test at full load
     type(pivot_record), allocatable :: history(:)  !! the first pivots of CONRY, at most `history_limit`
   end type contact_solution
+
+contains
+
+  !> No contact at all, to be filled in.
+  pure type(contact_solution) function new_solution(pairs, motions) result(solution)
+    integer, intent(in) :: pairs, motions   !! n, m
+
+    allocate (solution%force(pairs), solution%gap(pairs), solution%approach(motions), &
+              solution%escape(motions), source=0.0_wp)
+    allocate (solution%touching(pairs), solution%overlapping(pairs), solution%indeterminate(pairs), &
+              solution%motion_free(motions), source=.false.)
+    allocate (solution%history(0))
+  end function new_solution
 end module epcont_contact_problem

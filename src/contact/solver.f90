@@ -10,7 +10,7 @@ module epcont_contact_solver
   use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_loose_motions, only: loose_motions
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
-    contact_solution, contact_solved, contact_stalled
+    contact_solution, contact_solved, contact_stalled, new_solution
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
   use epcont_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
@@ -39,7 +39,8 @@ contains
     scaled = scale_problem(problem)
     motion = scaled%motion
     if (present(start)) scaled%guess = start
-    call clear()
+    solution = new_solution(size(scaled%gap), size(scaled%resultant))
+    solution%gap = scaled%gap*scaled%gap_unit
     call find_rigid_start(motion%dense(), scaled%resultant, scaled%unloaded_gap, rigid)
     if (.not. rigid%balanced) then
       solution%state = contact_no_equilibrium
@@ -92,19 +93,6 @@ contains
         call settle(state, solution)
       end select
     end subroutine solve_by_simplex
-
-    !> An answer of no contact at all, to be filled in.
-    subroutine clear()
-      integer :: m, n
-
-      n = size(scaled%gap)
-      m = size(scaled%resultant)
-      allocate (solution%force(n), solution%approach(m), solution%escape(m), source=0.0_wp)
-      solution%gap = scaled%gap*scaled%gap_unit
-      allocate (solution%touching(n), solution%overlapping(n), solution%indeterminate(n), source=.false.)
-      allocate (solution%motion_free(m), source=.false.)
-      allocate (solution%history(0))
-    end subroutine clear
 
     !> The answer in the deck's units, and what the conditions leave open in it.
     subroutine settle(state, solution)

@@ -194,7 +194,7 @@ module epcont_deck_catalogue
   !> All PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &
     'PLANE; word STRAIN STRESS; every PSHELL with blank MID2', &
-    'RULE; word AUTO CONRY BLOCK; contact entry rule; default AUTO', &
+    'RULE; word AUTO CONRY BLOCK JOINED; contact entry rule; default AUTO', &
     'GAPGEOM; word NO YES; YES adds the distance of the nodes to each gap; default NO', &
     'UNITS; word; printed with the results; nothing is converted', &
     'METHOD; word AUTO SECANT MODSEC INISTR NEWTON; plastic iteration; default AUTO', &

@@ -12,7 +12,7 @@ module epcont_flexibility_flexibility
   use epcont_plan_numbering, only: numbering_type
   implicit none
   private
-  public :: body_flexibility, find_flexibility, gap_opening, pair_forces, see_motions
+  public :: body_flexibility, find_flexibility, gap_opening, pair_forces, see_motions, terms_of_openings
 
   !> One body's part of F, between the pairs that it gives way at.
   type :: body_flexibility
@@ -109,6 +109,21 @@ contains
           model%row_start(k + 1) - 1)))
     end do
   end function gap_opening
+
+  !> What these openings are the sum of: magnitudes along x or y, whichever is larger [length] [pairs].
+  pure function terms_of_openings(model, displacement) result(terms)
+    type(model_type), intent(in) :: model   !! the scene
+    real(wp), intent(in) :: displacement(:, :)  !! [directions, nodes]
+    real(wp) :: terms(model%pairs)
+    integer :: i, k
+
+    terms = 0.0_wp
+    do k = 1, model%pairs
+      do i = model%row_start(k), model%row_start(k + 1) - 1
+        terms(k) = terms(k) + abs(model%row_weight(i))*maxval(abs(displacement(:, model%row_node(i))))
+      end do
+    end do
+  end function terms_of_openings
 
   !> Forces of the pairs on the nodes: N' R [force] [directions, nodes].
   pure function pair_forces(model, force) result(nodal)

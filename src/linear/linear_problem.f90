@@ -10,8 +10,9 @@ module epcont_linear_linear_problem
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: body_flexibility, find_flexibility, &
-    gap_opening, pair_forces, see_motions
-  use epcont_linear_scene_state, only: scene_state
+    gap_opening, pair_forces, see_motions, terms_of_openings
+  use epcont_linear_joined_contact, only: joined_contact, new_joined
+  use epcont_linear_scene_state, only: force_change, relative_change, scene_state
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed, solver_frontal
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -39,6 +40,7 @@ module epcont_linear_linear_problem
     type(flexibility_matrix), private :: lasting_flexibility
     type(scene_state), allocatable, private :: last  !! found by refinement, from which the next begins
     type(contact_basis) :: basis   !! of the last contact with this flexibility
+    type(joined_contact) :: joined   !! instead, where bodies are one system
     !> Opening of gaps by what supports travel [length] [pairs]
     real(wp), allocatable, private :: travel_gap(:)
     real(wp), allocatable, private :: resultant(:)   !! of all loads along the free motions [motions]
@@ -73,6 +75,10 @@ contains
     integer, intent(out) :: failed_body            !! first body that could not be factored; 0: all could
     class(stopwatch), intent(inout) :: watch    !! takes the time
 
+    if (scene%numbering%joined) then
+      call factor_joined()
+      return
+    end if
     associate (yields => scene%numbering%body%can_yield, &
                first => .not. allocated(self%problem%flexibility%level))
       call factor_bodies(yields .or. first)
@@ -97,6 +103,16 @@ contains
 
   contains
 
+    !> Factor bodies that are one system. The contact may have another set factored.
+    subroutine factor_joined()
+      logical :: sound
+
+      if (self%factorizations == 0) call new_joined( &
+        scene, self%problem%motion, self%resultant, self%plan%threads, self%factored_bodies, self%joined)
+      call self%joined%factor(scene, self%factored_bodies, sound, watch)
+      failed_body = merge(0, 1, sound)
+    end subroutine factor_joined
+
     !> Assemble and factor some bodies, side by side where that pays.
     subroutine factor_bodies(chosen)
       logical, intent(in) :: chosen(:)     !! [bodies]
@@ -114,7 +130,7 @@ contains
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
       do i = 1, size(body)
         call use_one_thread_each()
-        call self%body(body(i))%assemble(scene, self%operator, self%law, body(i))
+        call self%body(body(i))%assemble(scene, self%operator, self%law, self%spring, body(i))
         call self%body(body(i))%factor()
       end do
       !$omp end parallel do
@@ -155,7 +171,10 @@ contains
     type(scene_state), intent(inout) :: state      !! what is found
     class(stopwatch), intent(inout) :: watch       !! takes the time
 
-    if (self%plan%precision == precision_mixed) then
+    if (scene%numbering%joined) then
+      call self%joined%solve(scene, self%factored_bodies, self%problem%initial_gap + &
+                             load_factor*self%travel_gap, load_factor, state, watch)
+    else if (self%plan%precision == precision_mixed) then
       call refine()
     else
       call solve_once()
@@ -244,6 +263,7 @@ contains
     real(wp) :: strained   ! by a correction: the displacements tell what the step has done
 
     change = huge(1.0_wp)
+    if (scene%numbering%joined) return   ! its steps end where nothing changes
     balanced = state
     call correct(self, scene, load_factor, balanced, strained)
     call watch%lap(stage_displacements)
@@ -291,21 +311,6 @@ contains
     error = max(error, relative_change(state%deformation, refined%deformation, of=state%deformation), &
                 force_change(state%contact, refined%contact, of=state%contact))
   end subroutine rounding_error
-
-  !> Largest change of a displacement, over the largest.
-  pure real(wp) function relative_change(before, after, of) result(change)
-    real(wp), intent(in) :: before(:, :), after(:, :), of(:, :)
-
-    change = maxval(abs(after - before))/max(maxval(abs(of)), tiny(1.0_wp))
-  end function relative_change
-
-  !> Largest change of a contact force, over the largest; 0 where there is none.
-  pure real(wp) function force_change(before, after, of) result(change)
-    type(contact_solution), intent(in) :: before, after, of
-
-    change = 0.0_wp
-    if (any(of%force > 0.0_wp)) change = maxval(abs(after%force - before%force))/maxval(of%force)
-  end function force_change
 
   !> One step of refinement: the deformation under the forces that are out of balance is added.
   pure subroutine correct(self, scene, load_factor, state, change)
@@ -364,37 +369,21 @@ contains
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: load_factor
     type(scene_state), intent(inout) :: state
-    real(wp), allocatable, dimension(:) :: opening, travel, moved, moves   ! of gaps by strain, motions
-    real(wp) :: gap, terms                           ! what the gap is the sum of, added up
-    integer :: i, k, node
+    real(wp), dimension(scene%model%pairs) :: gap, terms   ! what gaps are the sum of
 
     state%point_stress = self%law%stress(state%strain)
     state%displacement = state%deformation + load_factor*scene%model%travel
-    do node = 1, scene%model%nodes
-      associate (b => scene%model%body(node))
-        do k = scene%motions%first(b), scene%motions%first(b + 1) - 1
-          state%displacement(:, node) = state%displacement(:, node) &
-            + state%contact%approach(k)*scene%motions%displacement(scene%model, node, k)
-        end do
-      end associate
-    end do
-    opening = gap_opening(scene%model, state%deformation)
-    travel = load_factor*self%travel_gap
-    moved = self%problem%motion%times(state%contact%approach)
-    moves = self%problem%motion%times(state%contact%approach, magnitudes=.true.)
-    do k = 1, scene%model%pairs
-      if (state%contact%force(k) > 0.0_wp) cycle
+    call scene%motions%add(scene%model, state%contact%approach, state%displacement)
+    associate (contact => state%contact, travel => load_factor*self%travel_gap, motion => self%problem%motion)
+      gap = self%problem%initial_gap + (gap_opening(scene%model, state%deformation) + travel) - &
+            motion%times(contact%approach)
+      terms = abs(self%problem%initial_gap) + abs(travel) + &
+              motion%times(contact%approach, magnitudes=.true.) + &
+              terms_of_openings(scene%model, state%deformation)
       ! Where a rigid stop takes the load, what the flexibility says of this gap is rounding of two
       ! deformations that cancel: a pair that seemed to touch may be open, as the displacements have it.
-      gap = self%problem%initial_gap(k) + (opening(k) + travel(k)) - moved(k)
-      terms = abs(self%problem%initial_gap(k)) + abs(travel(k)) + moves(k)
-      do i = scene%model%row_start(k), scene%model%row_start(k + 1) - 1
-        terms = terms + abs(scene%model%row_weight(i)) &
-                        *maxval(abs(state%deformation(:, scene%model%row_node(i))))
-      end do
-      if (state%contact%touching(k) .and. gap <= no_effect*terms) cycle
-      state%contact%touching(k) = .false.
-      state%contact%gap(k) = max(gap, 0.0_wp)
-    end do
+      contact%touching = contact%force > 0.0_wp .or. contact%touching .and. gap <= no_effect*terms
+      where (.not. contact%touching) contact%gap = max(gap, 0.0_wp)
+    end associate
   end subroutine complete
 end module epcont_linear_linear_problem

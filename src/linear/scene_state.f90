@@ -5,7 +5,7 @@ module epcont_linear_scene_state
   use epcont_material_material_law, only: point_state
   implicit none
   private
-  public :: scene_state
+  public :: force_change, relative_change, scene_state
 
   type :: scene_state
     real(wp), allocatable :: displacement(:, :)   !! [length] [directions, nodes]
@@ -35,4 +35,19 @@ contains
     call move_alloc(from%point, self%point)
     self%contact = from%contact
   end subroutine take
+
+  !> Largest change of a displacement, over the largest.
+  pure real(wp) function relative_change(before, after, of) result(change)
+    real(wp), intent(in) :: before(:, :), after(:, :), of(:, :)
+
+    change = maxval(abs(after - before))/max(maxval(abs(of)), tiny(1.0_wp))
+  end function relative_change
+
+  !> Largest change of a contact force, over the largest; 0 where there is none.
+  pure real(wp) function force_change(before, after, of) result(change)
+    type(contact_solution), intent(in) :: before, after, of
+
+    change = 0.0_wp
+    if (any(of%force > 0.0_wp)) change = maxval(abs(after%force - before%force))/maxval(of%force)
+  end function force_change
 end module epcont_linear_scene_state

@@ -3,7 +3,7 @@
 !> Components come first in all arrays. Nodes, elements and pairs are known by their position; their ids
 !> of the deck serve for output alone.
 module epcont_model_model
-  use epcont_base_incidence, only: incidence
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_element_element_kind, only: element_kind
@@ -83,6 +83,8 @@ module epcont_model_model
     procedure :: can_yield
     procedure :: has_flat_curve
     procedure :: bodies_of_pairs
+    procedure :: elements_of_bodies
+    procedure :: nodes_of_pairs
     procedure :: opening
     procedure :: single_pairs
     procedure :: name_of
@@ -258,6 +260,27 @@ contains
     end do
     body = found(:most, :)
   end function bodies_of_pairs
+
+  !> Elements of each body.
+  pure type(incidence) function elements_of_bodies(self) result(elements)
+    class(model_type), intent(in) :: self
+
+    elements = new_incidence(reshape(self%body(self%connectivity(1, :)), [1, self%elements]), self%bodies)
+  end function elements_of_bodies
+
+  !> Nodes of each pair's row, zeros behind them [any, pairs].
+  pure function nodes_of_pairs(self) result(node)
+    class(model_type), intent(in) :: self
+    integer :: node(maxval([self%row_start(2:) - self%row_start(:self%pairs), 0]), self%pairs)
+    integer :: k
+
+    node = 0
+    do k = 1, self%pairs
+      associate (own => self%row_node(self%row_start(k):self%row_start(k + 1) - 1))
+        node(:size(own), k) = own
+      end associate
+    end do
+  end function nodes_of_pairs
 
   !> How far displacements open the gap of a pair.
   pure function opening(self, pair, displacement)

@@ -23,6 +23,7 @@ module epcont_plan_contact_axes
     !> Unit, along which the first freedom of a turned node is [directions, turned nodes]
     real(wp), allocatable :: normal(:, :)
   contains
+    procedure :: ask_nothing
     procedure :: along
     procedure :: back
     procedure :: turn_stiffness
@@ -89,6 +90,15 @@ contains
       end if
     end subroutine want
   end function new_contact_axes
+
+  !> No gap asks for anything, and all freedoms are along x and y.
+  pure subroutine ask_nothing(self)
+    class(contact_axes), intent(inout) :: self
+
+    self%turn = 0
+    self%wanted = .false.
+    self%normal = self%normal(:, :0)
+  end subroutine ask_nothing
 
   !> The components of a vector along the freedoms of a node. What rounding leaves across the normal is none:
   !! so contact forces act on freedoms that are wanted alone.

@@ -38,13 +38,15 @@ module epcont_plan_dissection
 
 contains
 
-  !> Dissect a body along x, y, their diagonals, and one more coordinate. The nodes that are wanted last are a
-  !! front of their own, the last.
-  function dissect(model, further, nodes, wanted_last) result(found)
+  !> Dissect a body, or bodies that pairs join, along x, y, their diagonals, and one more coordinate. The
+  !! nodes that are wanted last are a front of their own, the last.
+  function dissect(model, further, nodes, wanted_last, pairs) result(found)
     type(model_type), intent(in) :: model      !! its nodes, connectivity, and elements around nodes are used
     real(wp), intent(in) :: further(:)         !! the one more coordinate [all nodes]
-    integer, intent(in) :: nodes(:)            !! of the body
+    integer, intent(in) :: nodes(:)            !! of the body, or bodies
     logical, intent(in) :: wanted_last(:)      !! [all nodes]
+    !> Of each node those that join it to others; not given: elements alone do [all nodes]
+    type(incidence), intent(in), optional :: pairs
     type(dissection) :: found
     type(parted_graph) :: graph                ! of the nodes that are not wanted last
     real(wp), allocatable :: coordinate(:, :)  ! of these [axes, nodes]
@@ -61,7 +63,7 @@ contains
       end associate
       order(i) = i
     end do
-    graph = new_parted_graph(neighbours(model, free))
+    graph = new_parted_graph(neighbours(model, free, pairs))
     noted = 0
     fronts = 0
     call dissect_set(1, size(order))
@@ -208,9 +210,10 @@ contains
   end function dissect
 
   !> The neighbours of each of some nodes among them, all by their places in the list.
-  pure function neighbours(model, node) result(beside)
+  function neighbours(model, node, pairs) result(beside)
     type(model_type), intent(in) :: model
     integer, intent(in) :: node(:)
+    type(incidence), intent(in), optional :: pairs   !! of each node, those of one are neighbours too
     type(incidence) :: beside
     integer :: place(0:size(model%x, 2)), seen(0:size(node)), i, j, k, n
 
@@ -218,6 +221,7 @@ contains
     place(node) = [(i, i=1, size(node))]
     associate (start => model%around%start, element => model%around%group)
       n = sum(start(node + 1) - start(node))*(size(model%connectivity, 1) - 1)
+      if (present(pairs)) n = n + sum(model%row_start(pairs%group + 1) - model%row_start(pairs%group) - 1)
       allocate (beside%start(size(node) + 1), beside%group(n))
       n = 0
       seen = 0
@@ -226,17 +230,30 @@ contains
         seen([0, i]) = i
         do j = start(node(i)), start(node(i) + 1) - 1
           do k = 1, size(model%connectivity, 1)
-            associate (other => place(model%connectivity(k, element(j))))
-              if (seen(other) == i) cycle
-              seen(other) = i
-              n = n + 1
-              beside%group(n) = other
-            end associate
+            call add(place(model%connectivity(k, element(j))))
+          end do
+        end do
+        if (.not. present(pairs)) cycle
+        do j = pairs%start(node(i)), pairs%start(node(i) + 1) - 1
+          do k = model%row_start(pairs%group(j)), model%row_start(pairs%group(j) + 1) - 1
+            call add(place(model%row_node(k)))
           end do
         end do
       end do
     end associate
     beside%start(size(node) + 1) = n + 1
+
+  contains
+
+    !> One more of node i, unless it has been seen.
+    subroutine add(other)
+      integer, intent(in) :: other
+
+      if (seen(other) == i) return
+      seen(other) = i
+      n = n + 1
+      beside%group(n) = other
+    end subroutine add
   end function neighbours
 
   !> A value that so many of the keys are not above, within a sixteenth of all, as far as equal keys allow.

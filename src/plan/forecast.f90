@@ -47,6 +47,12 @@ module epcont_plan_forecast
   integer, parameter, public :: loads_at_once = 15
   integer(i8), parameter :: load_of_node = 64, load_of_element = 32
 
+  !> Of joined bodies, each set of contacts and the steps with it: factors made anew, over the first, and what
+  !! an entry of the factor takes in operations of the same time; a half of both, as `contact` counts.
+  real(wp), parameter :: of_sets = 1.0_wp, of_solves = 150.0_wp
+  !> Sums of forces that errors are told of, mostly: of all, and along x and y on two bodies.
+  integer, parameter :: usual_sums = 4
+
 contains
 
   !> Refuse a scene that is above the limit, or for which the system has not enough memory.
@@ -92,7 +98,7 @@ contains
   end function contact_operations
 
   !> What a scene will take.
-  pure function forecast(model, motions, numbering, plan) result(expected)
+  function forecast(model, motions, numbering, plan) result(expected)
     type(model_type), intent(in) :: model   !! the scene
     type(free_motions), intent(in) :: motions   !! free ones
     type(numbering_type), intent(in) :: numbering   !! of its equations
@@ -104,6 +110,10 @@ contains
     real(wp) :: operations
     integer :: b
 
+    if (plan%joined) then
+      call foresee_joined()
+      return
+    end if
     pairs = model%pairs
     of_bodies = new_incidence(model%bodies_of_pairs(), model%bodies)
     own_pairs = of_bodies%start(2:) - of_bodies%start(:model%bodies)
@@ -160,6 +170,22 @@ contains
     expected%operations_again = expected%operations_again + expected%contact
 
   contains
+
+    !> What joined bodies take: one factor, and a part of it again with each set of contacts; solves, which
+    !! wait for memory; and all unit loads at once, of motions and of sums of forces.
+    subroutine foresee_joined()
+      associate (fronts => numbering%body(1)%fronts, loads => motions%count + usual_sums)
+        expected%entries = fronts%entries(kept=.true.)
+        expected%entries_again = expected%entries
+        expected%bytes = real_bytes*expected%entries + beside_matrices() + &
+                         load_of_node*model%nodes*loads
+        expected%double_bytes = expected%bytes
+        expected%motions = motions%count
+        expected%contact = of_sets*fronts%operations() + of_solves*expected%entries
+        expected%operations = fronts%operations() + expected%contact
+        expected%operations_again = expected%operations
+      end associate
+    end subroutine foresee_joined
 
     !> What a run holds besides its matrices [bytes].
     pure integer(i8) function beside_matrices() result(bytes)

@@ -36,11 +36,29 @@ module epcont_plan_free_motion
     real(wp), allocatable, private :: coefficient(:, :)
     integer, allocatable, private :: before(:)
   contains
+    procedure :: add
     procedure :: displacement
     procedure :: turn
   end type free_motions
 
 contains
+
+  !> Add rigid motions to displacements.
+  pure subroutine add(self, model, motion, displacement)
+    class(free_motions), intent(in) :: self
+    type(model_type), intent(in) :: model              !! the scene
+    real(wp), intent(in) :: motion(:)                  !! how far each goes [count]
+    real(wp), intent(inout) :: displacement(:, :)      !! [length] [directions, nodes]
+    integer :: k, node
+
+    do node = 1, model%nodes
+      associate (b => model%body(node))
+        do k = self%first(b), self%first(b + 1) - 1
+          displacement(:, node) = displacement(:, node) + motion(k)*self%displacement(model, node, k)
+        end do
+      end associate
+    end do
+  end subroutine add
 
   !> Displacement of a node in unit motion k.
   pure function displacement(self, model, node, k) result(u)

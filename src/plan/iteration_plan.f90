@@ -49,6 +49,7 @@ module epcont_plan_iteration_plan
     character(len=:), allocatable :: against_double
     integer :: threads = 1                 !! that bodies may be worked on by, side by side
     logical :: by_blocks = .false.         !! contact by RULE BLOCK, else CONRY
+    logical :: joined = .false.            !! or by RULE JOINED: then neither
     logical :: rule_chosen_here = .false.  !! the deck leaves that to us
     logical :: from_first_pivot = .false.  !! each contact problem, not from the last set of contacts
     real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
@@ -57,8 +58,9 @@ module epcont_plan_iteration_plan
 contains
 
   !> What this scene gets.
-  pure function plan_iteration(model) result(plan)
+  pure function plan_iteration(model, joined) result(plan)
     type(model_type), intent(in) :: model   !! the scene
+    logical, intent(in) :: joined           !! its bodies are one system
     type(iteration_plan) :: plan
     logical :: by_newton
     integer :: e
@@ -66,9 +68,11 @@ contains
     associate (asked => model%controls)
       plan%rule_chosen_here = asked%rule == rule_auto
       plan%by_blocks = asked%rule == rule_block .or. (plan%rule_chosen_here .and. model%pairs >= many_pairs)
+      plan%joined = joined
       plan%from_first_pivot = asked%original
       plan%yields = any([(model%can_yield(e), e=1, model%elements)])
       plan%precision = plan_precision(asked, plan%yields)
+      if (joined) plan%precision = precision_double
       plan%rounding_error = largest_error
       if (asked%accuracy > 0.0_wp) plan%rounding_error = min(largest_error, part_of_accuracy*asked%accuracy)
       if (plan%yields) plan%load_steps = asked%load_steps

@@ -5,12 +5,14 @@ module epcont_plan_numbering
   use epcont_base_sorting, only: sorted_order
   use epcont_element_element_kind, only: most_nodes
   use epcont_element_kinematics, only: directions
+  use epcont_linalg_assembled, only: sparse_rows
   use epcont_linalg_front_layout, only: front_layout, new_front_layout
   use epcont_linalg_panel_layout, only: new_panel_layout, panel_layout
   use epcont_model_controls, only: solver_auto, solver_band, solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_contact_axes, only: contact_axes, new_contact_axes
   use epcont_plan_dissection, only: dissect, dissection
+  use epcont_plan_joined_numbering, only: number_joined, spring_rows
   implicit none
   private
   public :: body_numbering, numbering_type, number_equations
@@ -28,6 +30,8 @@ module epcont_plan_numbering
   type :: body_numbering
     integer, allocatable :: node(:)        !! its nodes, in the order of the equations
     integer, allocatable :: element(:)     !! its elements
+    integer, allocatable :: part(:)        !! front by front, elements, and springs, numbered behind them
+    type(sparse_rows) :: spring            !! of joined bodies, each a row
     integer :: equations = 0               !! in the band
     integer :: contact_equations = 0       !! of these, those that gaps depend on
     logical :: contact_last = .true.       !! the contact equations are the last ones
@@ -42,11 +46,12 @@ module epcont_plan_numbering
   end type body_numbering
 
   type :: numbering_type
+    logical :: joined = .false.            !! all bodies are one system, which pairs join
     type(contact_axes) :: axes             !! along which the freedoms are, and what gaps want of them
     !> Equation of each freedom in its body: positive in the band, negative in the border, 0 held; that of a
     !! tied freedom is its leader's, and never positive. [directions, nodes]
     integer, allocatable :: equation(:, :)
-    type(body_numbering), allocatable :: body(:)
+    type(body_numbering), allocatable :: body(:)   !! [bodies], or one where they are joined
   contains
     procedure :: of_element
   end type numbering_type
@@ -68,13 +73,14 @@ module epcont_plan_numbering
 contains
 
   !> Number all bodies, each for the solver that the deck asks for, or that which is faster.
-  function number_equations(model) result(numbering)
+  function number_equations(model, joined) result(numbering)
     type(model_type), intent(in) :: model   !! the scene
+    logical, intent(in) :: joined           !! all bodies as one
     type(numbering_type) :: numbering
     type(incidence) :: elements, nodes
     integer, allocatable :: own(:)             ! nodes of the body that is being numbered
-    logical, allocatable :: fixed(:, :)        ! the freedom has a support, or SUPORT [directions, nodes]
-    logical, allocatable :: free(:, :)         ! it has an equation of its own, perhaps in the border
+    !> The freedom has a support, or SUPORT; an equation of its own, perhaps in the border [directions, nodes]
+    logical, allocatable, dimension(:, :) :: fixed, free
     logical, allocatable :: stands_last(:)     ! gaps depend on all free freedoms of the node [nodes]
     integer :: b, i
 
@@ -84,9 +90,11 @@ contains
     numbering%axes = new_contact_axes(model, fixed)
     stands_last = numbering%axes%pair > 0 .and. .not. any(free .and. .not. numbering%axes%wanted, dim=1)
     nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
-    elements = new_incidence(reshape(model%body(model%connectivity(1, :)), [1, model%elements]), model%bodies)
-    allocate (numbering%body(model%bodies))
-    do b = 1, model%bodies
+    elements = model%elements_of_bodies()
+    numbering%joined = joined
+    allocate (numbering%body(merge(1, model%bodies, joined)))
+    if (joined) call number_all(numbering%body(1))
+    do b = 1, merge(0, model%bodies, joined)
       own = nodes%of(b)
       associate (body => numbering%body(b))
         body%element = elements%of(b)
@@ -98,10 +106,44 @@ contains
         else
           call number_band(body)
         end if
+        body%part = body%element
       end associate
     end do
 
   contains
+
+    !> Number all bodies as one. No gap is asked for any part of the inverse.
+    subroutine number_all(all)
+      type(body_numbering), intent(inout) :: all
+      integer, allocatable :: first(:)
+
+      call numbering%axes%ask_nothing()
+      call number_joined(model, numbering%equation, all%node, first)
+      all%spring = spring_rows(model, numbering%equation)
+      all%element = [(i, i=1, model%elements)]
+      all%equations = first(size(first)) - 1
+      all%first_contact = all%equations + 1
+      all%can_yield = any(model%can_yield(all%element))
+      all%solver = solver_frontal
+      all%fronts = new_front_layout(first, numbers_of(all%element), &
+                                    incidence(all%spring%start, all%spring%equation))
+      all%operations = all%fronts%operations()
+      all%part = all%fronts%element
+      all%element = pack(all%part, all%part <= model%elements)
+    end subroutine number_all
+
+    !> Equations of some elements [any, elements].
+    function numbers_of(element) result(numbers)
+      integer, intent(in) :: element(:)
+      integer, allocatable :: numbers(:, :)
+      integer :: i, number(most_freedoms)
+
+      allocate (numbers(directions*maxval(model%node_count(element)), size(element)))
+      do i = 1, size(element)
+        number = numbering%of_element(model, element(i))
+        numbers(:, i) = number(:size(numbers, 1))
+      end do
+    end function numbers_of
 
     !> Number a body for nested fronts, the freedoms that gaps depend on in the last of them, the others of
     !! the contact nodes where the dissection has these. It is parted along x, y, their diagonals and the
@@ -112,8 +154,8 @@ contains
       type(level_order) :: outward
       type(dissection) :: found
       real(wp) :: distance(model%nodes)
-      integer, allocatable :: first(:), numbers(:, :), roots(:)
-      integer :: i, number(most_freedoms), others
+      integer, allocatable :: first(:), roots(:)
+      integer :: i, others
 
       roots = pack(own, numbering%axes%pair(own) > 0)
       if (size(roots) == 0) roots = own(:1)
@@ -137,12 +179,8 @@ contains
         first(i) = first(i - 1) + others
       end do
       first(size(first)) = body%equations + 1
-      allocate (numbers(directions*maxval(model%node_count(body%element)), size(body%element)))
-      do i = 1, size(body%element)
-        number = numbering%of_element(model, body%element(i))
-        numbers(:, i) = number(:size(numbers, 1))
-      end do
-      body%fronts = new_front_layout(pack(first, [first(2:) > first(:size(first) - 1), .true.]), numbers)
+      body%fronts = new_front_layout(pack(first, [first(2:) > first(:size(first) - 1), .true.]), &
+                                     numbers_of(body%element))
       body%operations = body%fronts%operations() + of_inversion*real(body%contact_equations, wp)**3
       ! What is assembled together stands together in memory.
       body%element = body%element(body%fronts%element)

@@ -252,8 +252,9 @@ contains
         text = '  '//plural(contact%pivots, 'pivot')//', '//text_of(contact%degenerate_pivots)// &
                ' degenerate'//when(contact%block_steps > 0, ' (CONRY, after '// &
                                    plural(contact%block_steps, 'set')//' of block pivoting)')
-        if (contact%by_blocks) text = '  block pivoting: '//plural(contact%block_steps, 'set')//', '// &
-            plural(contact%pivots, 'exchange')//' of pairs'
+        if (contact%by_blocks .or. contact%joined) &
+          text = '  '//when(contact%joined, 'joined bodies: ', 'block pivoting: ')// &
+                 plural(contact%block_steps, 'set')//', '//plural(contact%pivots, 'exchange')//' of pairs'
         call listing%line(text//when(size(run%answer%history) > 1, ', in the last solve'))
         if (size(contact%history) > 0) call put_table(run, 'pivots', listing)
         if (size(contact%history) > 0 .and. contact%pivots > size(contact%history)) &
@@ -387,8 +388,7 @@ contains
     end subroutine list_wanted
   end subroutine write_results
 
-  !> Remove what an earlier run has left: what is there is of one run, also where this one is stopped, or has
-  !! nothing to say.
+  !> Remove what an earlier run has left, also where this one is stopped, or has nothing to say.
   subroutine remove_results(stem)
     character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
     integer :: i

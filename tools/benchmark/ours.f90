@@ -81,7 +81,7 @@ contains
     call build_model(deck, model, faults)
     if (faults%errors > 0) error stop 'this deck has faults'
     call find_free_motions(model, motions, loose)
-    plan = plan_iteration(model)
+    plan = plan_iteration(model, .false.)
     operator = new_strain_operator(model)
     call find_materials(model, materials)
     law = elastic_law(materials)
@@ -97,7 +97,7 @@ contains
 
     spent = 0.0_wp
     begun = now()
-    numbering = number_equations(model)
+    numbering = number_equations(model, .false.)
     spent(ordering) = lap()
     scene%model = model
     scene%numbering = numbering
@@ -131,9 +131,9 @@ contains
         alone = lap()
         spent(assembly) = spent(assembly) + alone
         spent(factor) = spent(factor) - alone
-        call bodies%body(b)%assemble(scene, operator, law, b)
+        call bodies%body(b)%assemble(scene, operator, law, bodies%spring, b)
       else
-        call bodies%body(b)%assemble(scene, operator, law, b)
+        call bodies%body(b)%assemble(scene, operator, law, bodies%spring, b)
         spent(assembly) = spent(assembly) + lap()
       end if
       call bodies%body(b)%factor()

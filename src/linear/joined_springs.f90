@@ -1,0 +1,97 @@
+!> How stiff the springs of joined bodies are, measured on their elements.
+module epcont_linear_joined_springs
+  use epcont_assembly_bodies, only: factored_bodies
+  use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: directions
+  use epcont_plan_numbering, only: most_freedoms
+  use epcont_plan_planned_scene, only: planned_scene
+  implicit none
+  private
+  public :: find_springs
+
+  !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, mostly
+  !! 1E-4; more would cost digits of the factor, of which steps bring back as many each.
+  real(wp), parameter, public :: of_pairs = 1.0e3_wp
+  !> And of a SUPORT freedom, over that of its node: so weak that steps hardly feel it where pairs hold the
+  !! body, so strong that a pivot is left where nothing does.
+  real(wp), parameter :: of_suport = 1.0e-9_wp
+
+contains
+
+  !> Springs of SUPORT freedoms, in the factor from now on, and of pairs, in it where these press. What
+  !! nothing resists is held as firmly as its node.
+  subroutine find_springs(scene, bodies, redundant, gamma)
+    type(planned_scene), intent(in) :: scene          !! numbered as one system
+    class(factored_bodies), intent(inout) :: bodies   !! with a law
+    logical, intent(in) :: redundant(:)               !! nothing resists the motion [motions]
+    real(wp), allocatable, intent(out) :: gamma(:)    !! [force/length] [pairs]
+    real(wp) :: stiffness(scene%model%nodes)
+    integer :: k, springs
+
+    call measure(scene, bodies, stiffness, bodies%spring%norm)
+    gamma = [(of_pairs*softer_side(k), k=1, scene%model%pairs)]
+    springs = size(scene%numbering%body(1)%spring%start) - 1
+    allocate (bodies%spring%stiffness(springs), source=0.0_wp)
+    allocate (bodies%spring%changed(springs), source=.true.)
+    do k = 1, scene%motions%count
+      associate (c => scene%motions%component(k), node => scene%motions%node(k))
+        bodies%spring%stiffness(scene%model%pairs + count(scene%model%reference(:, :node - 1)) + &
+                                count(scene%model%reference(:c, node))) = &
+          stiffness(node)*merge(1.0_wp, of_suport, redundant(k))
+      end associate
+    end do
+
+  contains
+
+    !> Stiffness of the softer body at a pair, of those that give way at all; 0: none does.
+    pure real(wp) function softer_side(pair) result(softer)
+      integer, intent(in) :: pair
+      real(wp) :: side
+      integer :: i
+
+      softer = huge(1.0_wp)
+      associate (first => scene%model%row_start(pair), last => scene%model%row_start(pair + 1) - 1)
+      associate (node => scene%model%row_node(first:last), weight => scene%model%row_weight(first:last))
+        do i = 1, size(node)
+          side = sum(abs(weight)*stiffness(node), mask=scene%model%body(node) == scene%model%body(node(i)) &
+                     .and. .not. all(scene%model%held(:, node), dim=1))
+          if (side > 0.0_wp) softer = min(softer, side)
+        end do
+      end associate
+      end associate
+      if (softer >= huge(1.0_wp)) softer = 0.0_wp
+    end function softer_side
+  end subroutine find_springs
+
+  !> What elements give to the diagonal of the stiffness at each node; a leader has as much as the stiffest of
+  !! its followers. And the largest sum of magnitudes of a row.
+  subroutine measure(scene, bodies, stiffness, norm)
+    type(planned_scene), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    real(wp), intent(out) :: stiffness(:)   !! [force/length] [nodes]
+    real(wp), intent(out) :: norm           !! [force/length]
+    real(wp) :: k(most_freedoms**2), row(directions, scene%model%nodes)
+    integer :: c, e, i, n
+
+    stiffness = 0.0_wp
+    row = 0.0_wp
+    do e = 1, scene%model%elements
+      n = directions*scene%model%node_count(e)
+      call bodies%operator%element_stiffness(scene%model, e, bodies%law, n, k)
+      do i = 1, n
+        associate (node => scene%model%connectivity((i + 1)/directions, e), c => 2 - mod(i, 2))
+          stiffness(node) = stiffness(node) + k(1 + (i - 1)*(n + 1))/directions
+          row(c, node) = row(c, node) + sum(abs(k((i - 1)*n + 1:i*n)))
+        end associate
+      end do
+    end do
+    norm = maxval(row)
+    do i = 1, scene%model%nodes
+      do c = 1, directions
+        associate (leader => scene%model%leader(c, i))
+          stiffness(leader) = max(stiffness(leader), stiffness(i))
+        end associate
+      end do
+    end do
+  end subroutine measure
+end module epcont_linear_joined_springs
