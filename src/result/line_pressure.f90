@@ -41,8 +41,9 @@ contains
       real(wp) :: there
       integer :: corner(2), first, i, k, last, middle
 
-      area = node_areas(contact%master)
-      allocate (received(model%nodes), source=0.0_wp)
+      call find_areas(contact%master, area)
+      allocate (received, mold=area)
+      received = 0.0_wp
       do k = contact%first, contact%first_of_master - 1
         do i = model%row_start(k) + 1, model%row_start(k + 1) - 1
           received(model%row_node(i)) = received(model%row_node(i)) - model%row_weight(i)*force(k)
@@ -75,14 +76,14 @@ contains
     end function compared
 
     !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it, 0 where
-    !! that is rounding or curvature [length**2] [nodes].
-    pure function node_areas(line) result(area)
+    !! that is rounding or curvature [length**2] [nodes from the line's first number to its last].
+    pure subroutine find_areas(line, area)
       class(boundary_line), intent(in) :: line
-      real(wp) :: area(model%nodes)
+      real(wp), allocatable, intent(out) :: area(:)
       real(wp) :: share(3)
       integer :: i, k
 
-      area = 0.0_wp
+      allocate (area(minval(line%segment, mask=line%segment > 0):maxval(line%segment)), source=0.0_wp)
       do i = 1, size(line%element)
         associate (side => line%segment(:, i))
           share = shares_of_nodes(model, line%element(i), side)
@@ -91,6 +92,6 @@ contains
           end do
         end associate
       end do
-    end function node_areas
+    end subroutine find_areas
   end function compare_sides
 end module epcont_result_line_pressure
