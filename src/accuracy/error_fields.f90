@@ -42,6 +42,7 @@ contains
     type(incidence) :: pairs
     type(body_loads) :: loads
     type(load_batch) :: batch
+    type(body_samples) :: samples
     real(wp) :: sum_of(4, size(passed%unit))     ! what `field_sums` has of all bodies, of each column
     real(wp) :: total(4, passed%loads)           ! of each load
     real(wp), allocatable :: u(:, :, :)          ! under the fields of a batch [directions, fields, places]
@@ -76,7 +77,6 @@ contains
     !> What the elements of a body add, under a batch of loads.
     subroutine compare_on_body(element, place)
       integer, intent(in) :: element(:), place(:)   !! those of the body
-      type(body_samples) :: samples
       type(element_errors) :: errors
       type(field_sums) :: sums
       real(wp), allocatable :: sample(:, :), smooth(:, :)   ! of the answer and all fields [width, any]
@@ -85,7 +85,7 @@ contains
       call find_displacements(scene, linear, b, loads%pair, batch, table%node(place), u)
       errors = new_element_errors(size(u, 2))
       sums = new_field_sums(batch%share, size(element))
-      samples = place_samples(scene%model, element)
+      call place_samples(scene%model, element, samples)
       width = errors%width
       if (allocated(strain)) deallocate (strain)
       allocate (strain(width, most_points), sample(width, size(samples%x, 2)), smooth(width, size(place)))
