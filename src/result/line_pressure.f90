@@ -41,7 +41,9 @@ contains
       real(wp) :: there
       integer :: corner(2), first, i, k, last, middle
 
-      call find_areas(contact%master, area)
+      associate (row => model%row_node(model%row_start(contact%first):model%row_start(contact%last + 1) - 1))
+        call find_areas(contact%master, [row, pack(contact%master%segment, contact%master%segment > 0)], area)
+      end associate
       allocate (received, mold=area)
       received = 0.0_wp
       do k = contact%first, contact%first_of_master - 1
@@ -76,14 +78,15 @@ contains
     end function compared
 
     !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it, 0 where
-    !! that is rounding or curvature [length**2] [nodes from the line's first number to its last].
-    pure subroutine find_areas(line, area)
+    !! that is rounding or curvature [length**2] [nodes from the first to the last of some].
+    pure subroutine find_areas(line, nodes, area)
       class(boundary_line), intent(in) :: line
+      integer, intent(in) :: nodes(:)   !! that there must be room for
       real(wp), allocatable, intent(out) :: area(:)
       real(wp) :: share(3)
       integer :: i, k
 
-      allocate (area(minval(line%segment, mask=line%segment > 0):maxval(line%segment)), source=0.0_wp)
+      allocate (area(minval(nodes):maxval(nodes)), source=0.0_wp)
       do i = 1, size(line%element)
         associate (side => line%segment(:, i))
           share = shares_of_nodes(model, line%element(i), side)
