@@ -103,15 +103,14 @@ contains
       logical, intent(in) :: chosen(:)     !! [bodies]
       real(wp), allocatable :: operations(:)
       integer, allocatable :: body(:)
-      logical, allocatable :: shared(:)
       integer :: i, threads
 
       if (allocated(self%basis%level)) deallocate (self%basis%level)   ! of the flexibility before
       body = pack([(i, i=1, size(chosen))], chosen)
       body = body(heaviest_first(scene%numbering%body(body)%operations))
       operations = scene%numbering%body(body)%operations
-      shared = scene%numbering%body(body)%solver == solver_frontal
-      threads = threads_for(operations, shared, self%plan%threads)
+      threads = threads_for(operations, scene%numbering%body(body)%solver == solver_frontal, &
+                            self%plan%threads)
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
       do i = 1, size(body)
         call use_one_thread_each()
@@ -129,18 +128,16 @@ contains
     subroutine add_flexibilities(chosen)
       logical, intent(in) :: chosen(:)     !! [bodies]
       type(body_flexibility) :: own
-      type(incidence) :: pairs   ! of each body
-      real(wp), allocatable :: operations(:)
+      type(incidence) :: pair   ! of each body
       integer :: b, threads
 
-      pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
-      operations = merge(scene%numbering%body%operations, 0.0_wp, chosen)
-      threads = threads_for(operations, spread(.false., 1, size(chosen)), self%plan%threads)
+      pair = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
+      threads = threads_for(merge(scene%numbering%body%operations, 0.0_wp, chosen), &
+                            spread(.false., 1, size(chosen)), self%plan%threads)
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic) ordered private(own)
       do b = 1, scene%model%bodies
         call use_one_thread_each()
-        if (chosen(b)) &
-          call find_flexibility(scene%model, scene%numbering, b, pairs%of(b), self%body(b), own)
+        if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, pair%of(b), self%body(b), own)
         !$omp ordered
         if (chosen(b)) call self%problem%flexibility%add(own%pair, own%matrix)
         !$omp end ordered
@@ -375,10 +372,9 @@ contains
     state%point_stress = self%law%stress(state%strain)
     state%displacement = state%deformation + load_factor*scene%model%travel
     do node = 1, scene%model%nodes
-      associate (b => scene%model%body(node))
+      associate (b => scene%model%body(node), u => state%displacement(:, node))
         do k = scene%motions%first(b), scene%motions%first(b + 1) - 1
-          state%displacement(:, node) = state%displacement(:, node) &
-            + state%contact%approach(k)*scene%motions%displacement(scene%model, node, k)
+          u = u + state%contact%approach(k)*scene%motions%displacement(scene%model, node, k)
         end do
       end associate
     end do
