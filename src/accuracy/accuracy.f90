@@ -104,6 +104,7 @@ contains
     !> Largest pressures and half-widths.
     subroutine assess_zones()
       real(wp) :: energy   !! error of the mesh over all of it, but for that of point loads
+      logical :: yielded
       integer :: z
 
       surface = new_surface_line(scene%model, line, &
@@ -111,7 +112,8 @@ contains
       energy = 0.0_wp
       if (accuracy%energy_norm > 0.0_wp) energy = accuracy%energy_norm**2* &
         max(0.0_wp, sum(accuracy%element, mask=.not. beside_point_loads())/sum(accuracy%element))
-      accuracy%zone = [(estimate_zone(scene%model, surface, answer, energy, answer%zones(z)), &
+      yielded = any(answer%plastic)
+      accuracy%zone = [(estimate_zone(scene%model, surface, answer, yielded, energy, answer%zones(z)), &
                         z=1, size(answer%zones))]
       do z = 1, size(answer%zones)
         accuracy%zone(z)%too_near = too_near(scene%model, surface, answer%contact%force, accuracy%zone(z), &
@@ -158,10 +160,8 @@ contains
       real(wp), dimension(scene%model%pairs) :: near, at_ends
       real(wp), dimension(loads%passed%loads) :: near_sum, end_sum   !! of these, under each load
       real(wp) :: at_end
-      real(wp) :: shifted(motions, size(answer%zones))
       integer :: j, z
 
-      shifted = shifted_loads(scene%model, line, scene%motions, answer)
 
       near = 0.0_wp
       at_ends = 0.0_wp
@@ -183,11 +183,13 @@ contains
       do j = 1, size(off)
         if (loads%told(j)) off(j) = error_along(j, near_sum(j), end_sum(j))
       end do
-      do j = 1, size(loads%share, 2)
-        associate (shared => loads%passed%weighed(loads%share(:, j)))
-          off(motions + j) = off(motions + j) + sum(abs(matmul(shared(:motions), shifted)))
-        end associate
-      end do
+      associate (shifted => shifted_loads(scene%model, line, scene%motions, answer))
+        do j = 1, size(loads%share, 2)
+          associate (shared => loads%passed%weighed(loads%share(:, j)))
+            off(motions + j) = off(motions + j) + sum(abs(matmul(shared(:motions), shifted)))
+          end associate
+        end do
+      end associate
     end function errors
 
     !> Error of an approach, or of a sum of contact forces: the product of the errors of the scene and of its

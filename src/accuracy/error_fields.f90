@@ -42,6 +42,7 @@ contains
     type(incidence) :: elements, pairs           ! of each body
     type(body_loads) :: loads
     type(load_batch) :: batch
+    type(body_samples) :: samples
     real(wp) :: sum_of(4, size(passed%unit))     ! what `field_sums` has of all bodies, of each column
     real(wp) :: total(4, passed%loads)           ! of each load
     real(wp), allocatable :: u(:, :, :)          ! under the fields of a batch [directions, fields, places]
@@ -100,7 +101,6 @@ contains
     !> What the elements of a body add, under a batch of loads.
     subroutine compare_on_body(element, place)
       integer, intent(in) :: element(:), place(:)   !! those of the body
-      type(body_samples) :: samples
       type(element_errors) :: errors
       type(field_sums) :: sums
       real(wp), allocatable :: sample(:, :), smooth(:, :)   ! of the answer and all fields [width, any]
@@ -108,7 +108,7 @@ contains
 
       errors = new_element_errors(size(u, 2))
       sums = new_field_sums(batch%share, size(element))
-      samples = place_samples(scene%model, element)
+      call place_samples(scene%model, element, samples)
       width = errors%width
       if (allocated(strain)) deallocate (strain)
       allocate (strain(width, most_points), sample(width, size(samples%x, 2)), smooth(width, size(place)))

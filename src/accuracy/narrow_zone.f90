@@ -86,26 +86,27 @@ contains
 
   !> What the force of a narrow zone does along each motion, more or less, where it is half a side aside, of
   !! two pairs a quarter: where in its sides contact is, nothing tells [force*length or force] [motions,
-  !! zones].
+  !! narrow zones].
   pure function shifted_loads(model, line, motions, answer) result(load)
     type(model_type), intent(in) :: model        !! the scene
     class(contact_line), intent(in) :: line      !! of its pairs
     type(free_motions), intent(in) :: motions    !! of its bodies
     type(answer_type), intent(in) :: answer      !! with forces and zones
-    real(wp) :: load(motions%count, size(answer%zones))
+    real(wp), allocatable :: load(:, :)
     real(wp) :: aside
-    integer, allocatable :: beside(:)
-    integer :: bearing, body, i, k, m, z
+    integer, allocatable :: beside(:), zones(:)
+    integer :: body, i, k, m, z
+    integer :: bearing(size(answer%zones))   ! pairs of each zone
 
-    load = 0.0_wp
-    do z = 1, size(answer%zones)
-      associate (pairs => answer%zones(z)%pairs, force => answer%contact%force)
-        bearing = bearing_pairs(model, force(pairs))
-        if (bearing > narrow) cycle
+    bearing = [(bearing_pairs(model, answer%contact%force(answer%zones(z)%pairs)), z=1, size(bearing))]
+    zones = pack([(z, z=1, size(bearing))], bearing <= narrow)
+    allocate (load(motions%count, size(zones)), source=0.0_wp)
+    do z = 1, size(zones)
+      associate (pairs => answer%zones(zones(z))%pairs, force => answer%contact%force)
         k = pairs(maxloc(line%tributary(pairs), dim=1, &   ! of equal ones the widest
                          mask=force(pairs) >= (1.0_wp - no_effect)*maxval(force(pairs))))
         beside = pack(line%neighbour(:, k), line%neighbour(:, k) > 0)
-        aside = maxval([0.0_wp, (0.5_wp*line%distance(k, beside(i))/bearing, i=1, size(beside))])
+        aside = maxval([0.0_wp, (0.5_wp*line%distance(k, beside(i))/bearing(zones(z)), i=1, size(beside))])
         do i = 1, 2   ! A is pushed against the normal, B along it
           body = model%body(model%pair_node(i, k))
           do m = motions%first(body), motions%first(body + 1) - 1
@@ -136,7 +137,12 @@ contains
     real(wp), dimension(directions, model%bodies) :: lean, resultant
     logical :: is_narrow
     integer :: b, body(2), i, k, z
+    integer :: of_contact(model%pairs)   ! of lines; 0: none
 
+    of_contact = 0
+    do i = 1, size(model%line_contact)
+      of_contact(model%line_contact(i)%first:model%line_contact(i)%last) = i
+    end do
     total = 0.0_wp
     of_body = 0.0_wp
     lean = 0.0_wp
@@ -183,6 +189,7 @@ contains
     subroutine turn_shared_places()
       real(wp) :: way
       integer, allocatable :: pairs(:)
+      integer :: bodies(4)                !! of the pair and of the strongest
       integer :: strongest(model%pairs)   !! at the place of each
 
       associate (force => answer%contact%force)
@@ -197,9 +204,9 @@ contains
           way = merge(1.0_wp, -1.0_wp, any(model%body(model%pair_node(:, strongest(k))) == body))
           change = force(k)*abs(model%normal(:, k) - way*model%normal(:, strongest(k)))
           total = total + norm2(change)
-          do b = 1, model%bodies
-            if (any(model%body([model%pair_node(:, [k, strongest(k)])]) == b)) &
-              of_body(:, b) = of_body(:, b) + change
+          bodies = model%body([model%pair_node(:, [k, strongest(k)])])
+          do b = 1, size(bodies)
+            if (all(bodies(:b - 1) /= bodies(b))) of_body(:, bodies(b)) = of_body(:, bodies(b)) + change
           end do
         end do
       end associate
@@ -210,16 +217,13 @@ contains
     pure function smooth_normal(pair) result(normal)
       integer, intent(in) :: pair
       real(wp) :: normal(directions)
-      integer :: c
 
       normal = 0.0_wp
-      do c = 1, size(model%line_contact)
-        associate (contact => model%line_contact(c), node => model%pair_node(2, pair))
-          if (pair < contact%first .or. pair > contact%last) cycle
-          if (pair < contact%first_of_master) normal = normal_at(contact%slave, node)
-          if (pair >= contact%first_of_master) normal = normal_at(contact%master, node)
-        end associate
-      end do
+      if (of_contact(pair) == 0) return
+      associate (contact => model%line_contact(of_contact(pair)), node => model%pair_node(2, pair))
+        if (pair < contact%first_of_master) normal = normal_at(contact%slave, node)
+        if (pair >= contact%first_of_master) normal = normal_at(contact%master, node)
+      end associate
     end function smooth_normal
   end subroutine find_turned
 

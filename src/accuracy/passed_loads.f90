@@ -306,6 +306,7 @@ contains
     class(passed_loads), intent(inout) :: self
     logical, intent(in) :: asked(:)   !! [loads]
     real(wp) :: largest(size(self%unit))
+    real(wp) :: most   ! under a load
     integer :: c, j, k, l
 
     do l = 1, size(self%level)
@@ -317,9 +318,10 @@ contains
     do j = 1, self%loads
       if (.not. asked(j)) cycle
       associate (columns => self%way(j))
+        most = maxval([largest(columns), 0.0_wp])
         do k = 1, size(columns)
           associate (unit => self%unit(columns(k)))
-            unit = min(merge(unit, huge(unit), unit > 0.0_wp), maxval(largest(columns)))
+            unit = min(merge(unit, most, unit > 0.0_wp), most)
           end associate
         end do
       end associate

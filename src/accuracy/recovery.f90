@@ -21,6 +21,8 @@ module epcont_accuracy_recovery
     !> Before those of each element [elements of the scene; of others nothing is said]
     integer, allocatable :: before(:)
     real(wp), allocatable :: x(:, :)       !! [length] [2, samples]
+    !> The last place that each was taken for [elements of the scene]
+    integer, allocatable :: seen(:)
   contains
     procedure :: take
   end type body_samples
@@ -33,19 +35,23 @@ module epcont_accuracy_recovery
 contains
 
   !> The samples of a body.
-  pure function place_samples(model, element) result(samples)
+  pure subroutine place_samples(model, element, samples)
     type(model_type), intent(in) :: model    !! the scene
     integer, intent(in) :: element(:)        !! those of the body
-    type(body_samples) :: samples
+    type(body_samples), intent(inout) :: samples   !! none yet, or those of another body
     integer :: e, i, k, last
 
     samples%element = element
-    allocate (samples%before(model%elements))
+    if (.not. allocated(samples%before)) then   ! once for all bodies
+      allocate (samples%before(model%elements))
+      allocate (samples%seen(model%elements), source=0)
+    end if
     last = 0
     do i = 1, size(element)
       samples%before(element(i)) = last
       last = last + model%kinds(model%kind(element(i)))%samples
     end do
+    if (allocated(samples%x)) deallocate (samples%x)
     allocate (samples%x(2, last))
     do i = 1, size(element)
       e = element(i)
@@ -60,7 +66,7 @@ contains
         end if
       end associate
     end do
-  end function place_samples
+  end subroutine place_samples
 
   !> What strains of an element are at its samples.
   pure subroutine take(self, kind, element, volume, width, strain, sample)
@@ -92,22 +98,22 @@ contains
     type(model_type), intent(in) :: model        !! the scene
     type(patch_table), intent(in) :: table       !! of its elements
     integer, intent(in) :: b                     !! the body
-    type(body_samples), intent(in) :: samples    !! of its elements
+    type(body_samples), intent(inout) :: samples   !! of its elements
     integer, intent(in) :: fields                !! how many, besides the answer's
     real(wp), intent(in) :: strain(components, 0:fields, *)   !! [.., .., samples]
     !> [.., .., its places]
     real(wp), intent(out) :: smooth(components, 0:fields, table%of_body%start(b + 1) - table%of_body%start(b))
     integer, allocatable :: fits(:)   !! of a node between corners: polynomials that reach it; of others -1
-    integer, allocatable :: patch(:), seen(:)
+    integer, allocatable :: patch(:)
     integer, allocatable :: at(:)           !! samples of a patch [any]
     real(wp), allocatable :: weight(:)      !! that they have there [any]
     integer :: first, i, last, p
     logical :: any_curved, curved   ! elements of the body, of the patch, have nodes between their corners
 
     smooth = 0.0_wp
+    samples%seen(samples%element) = 0
     allocate (fits(size(smooth, 3)), source=-1)
     allocate (at(size(samples%element)), weight(size(samples%element)))
-    allocate (seen(model%elements), source=0)
     associate (places => table%of_body%group(table%of_body%start(b):table%of_body%start(b + 1) - 1))
       call find_middles()
       do i = 1, size(places)
@@ -120,7 +126,7 @@ contains
         if (table%inside(p) .and. last - first + 1 >= merge(least_quadratic/3, least_linear, curved)) then
           call fit(table%around%group(first:last))
         else
-          call wide_patch(model, table, p, seen, patch)
+          call wide_patch(model, table, p, samples%seen, patch)
           call fit(patch)
         end if
       end do

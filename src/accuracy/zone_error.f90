@@ -57,10 +57,11 @@ module epcont_accuracy_zone_error
 contains
 
   !> What the figures of a zone are worth.
-  pure function estimate_zone(model, line, answer, energy, zone) result(error)
+  pure function estimate_zone(model, line, answer, yielded, energy, zone) result(error)
     type(model_type), intent(in) :: model        !! the scene
     type(surface_line), intent(in) :: line       !! of its pairs
     type(answer_type), intent(in) :: answer      !! with their pressures
+    logical, intent(in) :: yielded               !! something is beyond yield
     real(wp), intent(in) :: energy               !! error of the mesh over all of it
     type(contact_zone), intent(in) :: zone       !! of these pairs
     type(zone_error) :: error
@@ -81,7 +82,7 @@ contains
     largest = p(peak)
     kind = first_element(model, line%node(error%peak))
     kind = merge(model%kind(max(kind, 1)), 1, kind > 0)
-    error%weights = weights_of(model%kinds(kind)%estimated_as, model%has_rings(), any(answer%plastic))
+    error%weights = weights_of(model%kinds(kind)%estimated_as, model%has_rings(), yielded)
     if (largest <= 0.0_wp) return
     mirrored = line%mirrored([zone%first, zone%last])
     long = zone%along(n)

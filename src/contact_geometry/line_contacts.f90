@@ -7,7 +7,7 @@ module epcont_contact_geometry_line_contacts
   use epcont_contact_geometry_balance, only: balance_pairs
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_contact_geometry_free_sides, only: find_outline
-  use epcont_contact_geometry_line_pairs, only: add_pairs
+  use epcont_contact_geometry_line_pairs, only: add_pairs, end_pairs
   use epcont_contact_geometry_line_sides, only: find_line_sides
   use epcont_contact_geometry_line_warnings, only: warn_of_both_ways, warn_of_contact
   use epcont_geometry_boundary_line, only: boundary_line
@@ -62,6 +62,7 @@ contains
       call find_pairs()
       model%line_contact(c) = contact
     end do
+    if (contacts > 0) call end_pairs(model)
     if (found%errors > 0) return
     call balance_pairs(model)
     call warn_of_both_ways(model, found)
@@ -194,7 +195,7 @@ contains
     integer, intent(in) :: a(:), b(:)
     logical, allocatable :: in_a(:)
 
-    allocate (in_a(max(maxval(a), maxval(b), 0)), source=.false.)
+    allocate (in_a(minval([a, b]):maxval([a, b])), source=.false.)
     in_a(a) = .true.
     have_common = any(in_a(b))
   end function have_common
@@ -203,7 +204,7 @@ contains
   pure function once(numbers)
     integer, intent(in) :: numbers(:)
     integer, allocatable :: once(:)
-    logical :: first(size(numbers)), met(maxval(numbers))
+    logical :: first(size(numbers)), met(minval(numbers):maxval(numbers))
     integer :: k
 
     met = .false.

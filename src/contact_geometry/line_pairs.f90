@@ -11,7 +11,7 @@ module epcont_contact_geometry_line_pairs
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
-  public :: add_pairs
+  public :: add_pairs, end_pairs
 
   !> A node's normals on the two lines differ by less (cosine) where it has a pair there: 35 degrees, of
   !! coarse curves.
@@ -28,7 +28,7 @@ contains
     type(mortar_row), allocatable :: rows(:)
     type(node_face), allocatable :: tips(:)        ! nodes of the master, and what they face of the slave
     integer, allocatable :: ends(:)                ! of them, those at joints that rows are for
-    logical :: covered(size(contact%slave%element)), without(model%nodes)
+    logical :: covered(size(contact%slave%element))
     integer :: k
 
     call find_faces(contact, model%boundary, faces)
@@ -42,12 +42,10 @@ contains
     call append_pairs(faces%row, rows(:size(faces%row)))
     call append_pairs(tips, rows_of_tips())
     contact%last = model%pairs
-    without = .false.
     associate (side => contact%left_out(1, :), which => contact%left_out(2, :))
-      without([(contact%slave%segment(which(k), side(k)), k=1, size(side))]) = .true.
+      contact%nodes_left_out = count_others([(contact%slave%segment(which(k), side(k)), k=1, size(side))], &
+                                            faces%row%node)
     end associate
-    without(faces%row%node) = .false.
-    contact%nodes_left_out = count(without)
 
   contains
 
@@ -133,25 +131,63 @@ contains
     subroutine append_pairs(b, row)
       type(node_face), intent(in) :: b(:)      !! and what it faces [rows]
       type(mortar_row), intent(in) :: row(:)
-      integer :: a(size(b)), start(size(b) + 1), i, n
+      integer :: entries, i, k, pairs
 
-      start(1) = model%row_start(model%pairs + 1)
+      pairs = model%pairs + size(b)
+      entries = model%row_start(model%pairs + 1) - 1 + sum([(size(row(i)%node) + 1, i=1, size(b))])
+      if (pairs > size(model%pair_id) .or. entries > size(model%row_node)) &
+        call set_room(model, 2*pairs, 2*entries)   ! or many contacts would copy all before them
       do i = 1, size(b)
-        a(i) = row(i)%node(maxloc(row(i)%weight, dim=1, mask=row(i)%node /= b(i)%node))
-        start(i + 1) = start(i) + size(row(i)%node) + 1
+        k = model%pairs + i
+        associate (first => model%row_start(k), node => row(i)%node)
+          associate (last => first + size(node))
+            model%row_node(first:last) = [b(i)%node, node]
+            model%row_weight(first:last) = [1.0_wp, -row(i)%weight]
+            model%row_start(k + 1) = last + 1
+          end associate
+          model%pair_node(:, k) = [node(maxloc(row(i)%weight, dim=1, mask=node /= b(i)%node)), b(i)%node]
+        end associate
+        model%pair_id(k) = model%node_id(b(i)%node)
+        model%normal(:, k) = b(i)%normal
+        model%initial_gap(k) = b(i)%gap
       end do
-      associate (before => model%pairs, entries => start(1) - 1)
-        n = before + size(b)
-        model%row_start = [model%row_start(:before), start]
-        model%row_node = [model%row_node(:entries), (b(i)%node, row(i)%node, i=1, size(b))]
-        model%row_weight = [model%row_weight(:entries), (1.0_wp, -row(i)%weight, i=1, size(b))]
-        model%pair_id = [model%pair_id(:before), model%node_id(b%node)]
-        model%pair_node = reshape([model%pair_node(:, :before), (a(i), b(i)%node, i=1, size(b))], [2, n])
-        model%normal = reshape([model%normal(:, :before), (b(i)%normal, i=1, size(b))], [2, n])
-        model%initial_gap = [model%initial_gap(:before), b%gap]
-      end associate
-      model%pairs = n
+      model%pairs = pairs
     end subroutine append_pairs
   end subroutine add_pairs
+
+  !> How many nodes of a list are not in another.
+  pure integer function count_others(node, known) result(many)
+    integer, intent(in) :: node(:), known(:)   !! each once or more
+    logical :: counts(minval([node, known]):maxval([node, known]))
+
+    counts = .false.
+    counts(node) = .true.
+    counts(known) = .false.
+    many = count(counts)
+  end function count_others
+
+  !> When the last pairs have been added: no room is left behind them.
+  subroutine end_pairs(model)
+    type(model_type), intent(inout) :: model   !! the scene
+
+    call set_room(model, model%pairs, model%row_start(model%pairs + 1) - 1)
+  end subroutine end_pairs
+
+  !> Room for so many pairs, and entries of their rows of N.
+  subroutine set_room(model, pairs, entries)
+    type(model_type), intent(inout) :: model
+    integer, intent(in) :: pairs, entries
+    integer :: k
+
+    associate (n => model%pairs, last => model%row_start(model%pairs + 1) - 1)
+      model%row_node = [model%row_node(:last), (0, k=last + 1, entries)]
+      model%row_weight = [model%row_weight(:last), (0.0_wp, k=last + 1, entries)]
+      model%row_start = [model%row_start(:n + 1), (0, k=n + 1, pairs)]
+      model%pair_id = [model%pair_id(:n), (0, k=n + 1, pairs)]
+      model%pair_node = reshape([model%pair_node(:, :n), (0, 0, k=n + 1, pairs)], [2, pairs])
+      model%normal = reshape([model%normal(:, :n), (0.0_wp, 0.0_wp, k=n + 1, pairs)], [2, pairs])
+      model%initial_gap = [model%initial_gap(:n), (0.0_wp, k=n + 1, pairs)]
+    end associate
+  end subroutine set_room
 
 end module epcont_contact_geometry_line_pairs

@@ -51,7 +51,7 @@ contains
     !! node.
     pure integer function first_passed_twice(node) result(k)
       integer, intent(in) :: node(:)
-      logical :: met(model%nodes)
+      logical :: met(minval(node):maxval(node))
 
       met = .false.
       do k = 1, size(node)

@@ -8,7 +8,7 @@ module epcont_contact_geometry_nearness
   use epcont_base_tolerances, only: same_place
   use epcont_contact_geometry_balance, only: balance_pairs
   use epcont_contact_geometry_faces, only: faces_type
-  use epcont_contact_geometry_line_pairs, only: add_pairs
+  use epcont_contact_geometry_line_pairs, only: add_pairs, end_pairs
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_facing, only: find_facing, looking_point, node_of
   use epcont_geometry_plane, only: cross_product
@@ -67,6 +67,7 @@ contains
       call add_pairs(model, contact, faces)
       model%line_contact(c) = contact
     end do
+    call end_pairs(model)
     call balance_pairs(model)
     entered = model%pairs > before
 

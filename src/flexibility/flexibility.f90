@@ -24,10 +24,11 @@ module epcont_flexibility_flexibility
 contains
 
   !> One body's part of F = N K^-1 N'.
-  pure subroutine find_flexibility(model, numbering, b, stiffness, part)
+  pure subroutine find_flexibility(model, numbering, b, pairs, stiffness, part)
     type(model_type), intent(in) :: model   !! the scene
     type(numbering_type), intent(in) :: numbering   !! of its equations
     integer, intent(in) :: b                       !! the body
+    integer, intent(in) :: pairs(:)                !! with nodes in it
     type(body_stiffness), intent(in) :: stiffness  !! factored
     type(body_flexibility), intent(out) :: part   !! no pairs where the body has none
     type(sparse_rows) :: rows
@@ -46,13 +47,15 @@ contains
       integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
       type(sparse_rows), intent(out) :: rows
       real(wp) :: normal(directions)   ! along the freedoms of a node
-      integer :: c, found, i, k, last, number
+      integer :: c, entries, found, i, j, k, last, number
 
-      allocate (pair(model%pairs), rows%start(model%pairs + 1), source=1)
-      allocate (rows%equation(directions*size(model%row_node)), rows%weight(directions*size(model%row_node)))
+      entries = directions*sum(model%row_start(pairs + 1) - model%row_start(pairs))
+      allocate (pair(size(pairs)), rows%start(size(pairs) + 1), source=1)
+      allocate (rows%equation(entries), rows%weight(entries))
       last = 0
       found = 0
-      do k = 1, model%pairs
+      do j = 1, size(pairs)
+        k = pairs(j)
         do i = model%row_start(k), model%row_start(k + 1) - 1
           if (model%body(model%row_node(i)) /= b) cycle
           normal = numbering%axes%along(model%row_node(i), model%normal(:, k))

@@ -2,6 +2,7 @@
 !> iteration, and all of an elastic analysis.
 module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, no_effect, solved_to
   use epcont_contact_basis, only: contact_basis
@@ -118,15 +119,14 @@ contains
       logical, intent(in) :: chosen(:)     !! [bodies]
       real(wp), allocatable :: operations(:)
       integer, allocatable :: body(:)
-      logical, allocatable :: shared(:)
       integer :: i, threads
 
       if (allocated(self%basis%level)) deallocate (self%basis%level)   ! of the flexibility before
       body = pack([(i, i=1, size(chosen))], chosen)
       body = body(heaviest_first(scene%numbering%body(body)%operations))
       operations = scene%numbering%body(body)%operations
-      shared = scene%numbering%body(body)%solver == solver_frontal
-      threads = threads_for(operations, shared, self%plan%threads)
+      threads = threads_for(operations, scene%numbering%body(body)%solver == solver_frontal, &
+                            self%plan%threads)
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic)
       do i = 1, size(body)
         call use_one_thread_each()
@@ -144,15 +144,16 @@ contains
     subroutine add_flexibilities(chosen)
       logical, intent(in) :: chosen(:)     !! [bodies]
       type(body_flexibility) :: own
-      real(wp), allocatable :: operations(:)
+      type(incidence) :: pair   ! of each body
       integer :: b, threads
 
-      operations = merge(scene%numbering%body%operations, 0.0_wp, chosen)
-      threads = threads_for(operations, spread(.false., 1, size(chosen)), self%plan%threads)
+      pair = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
+      threads = threads_for(merge(scene%numbering%body%operations, 0.0_wp, chosen), &
+                            spread(.false., 1, size(chosen)), self%plan%threads)
       !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic) ordered private(own)
       do b = 1, scene%model%bodies
         call use_one_thread_each()
-        if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, self%body(b), own)
+        if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, pair%of(b), self%body(b), own)
         !$omp ordered
         if (chosen(b)) call self%problem%flexibility%add(own%pair, own%matrix)
         !$omp end ordered

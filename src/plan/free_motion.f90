@@ -89,28 +89,38 @@ contains
     type(free_motions), intent(out) :: motions   !! of all bodies whose SUPORT freedoms fit
     type(findings), intent(inout) :: found       !! the others are added
     type(incidence) :: nodes, parts   ! of each body
-    integer :: b, i
+    integer :: b, columns, i
 
-    allocate (motions%body(0), motions%node(0), motions%component(0), motions%before(0))
-    allocate (motions%coefficient(part_motions, 0), motions%first(model%bodies + 1))
     motions%parts = find_rigid_parts(model)
     nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
     parts = new_incidence(reshape(motions%parts%body, [1, motions%parts%count]), model%bodies)
-    allocate (motions%own_part(motions%parts%count))
+    allocate (motions%own_part(motions%parts%count), motions%first(model%bodies + 1))
+    associate (most => [(count(model%reference(:, nodes%of(b))), b=1, model%bodies)])   ! motions of each body
+      allocate (motions%body(sum(most)), motions%node(sum(most)), motions%component(sum(most)))
+      allocate (motions%coefficient(part_motions, sum(most*(parts%start(2:) - parts%start(:model%bodies)))))
+      allocate (motions%before(sum(most)))
+    end associate
+    columns = 0
     do b = 1, model%bodies
       motions%first(b) = motions%count + 1
       associate (own => parts%of(b))
         motions%own_part(own) = [(i, i=1, size(own))]
-        call examine_body(model, nodes%of(b), own, motions, found)
+        call examine_body(model, nodes%of(b), own, columns, motions, found)
       end associate
     end do
     motions%first(model%bodies + 1) = motions%count + 1
+    associate (n => motions%count)   ! fewer where some do not fit
+      motions%body = motions%body(:n)
+      motions%node = motions%node(:n)
+      motions%component = motions%component(:n)
+    end associate
   end subroutine find_free_motions
 
   !> Free motions of one body.
-  subroutine examine_body(model, nodes, own, motions, found)
+  subroutine examine_body(model, nodes, own, columns, motions, found)
     type(model_type), intent(in) :: model
     integer, intent(in) :: nodes(:), own(:)         !! of the body: its nodes and parts
+    integer, intent(inout) :: columns               !! of the coefficients so far
     type(free_motions), intent(inout) :: motions
     type(findings), intent(inout) :: found
     character(len=:), allocatable :: body
@@ -146,15 +156,16 @@ contains
                              ' motions apart', 'SUPORT nodes farther from each other')
         return
       end if
-      motions%count = motions%count + m
-      motions%body = [motions%body, spread(model%body(nodes(1)), 1, m)]
-      motions%node = [motions%node, node]
-      motions%component = [motions%component, component]
-      associate (columns => size(motions%coefficient, 2))
-        motions%before = [motions%before, (columns + size(own)*(i - 1), i=1, m)]
-        motions%coefficient = reshape([motions%coefficient, matmul(basis, unit)], &
-                                      [part_motions, columns + size(own)*m])
+      associate (first => motions%count + 1, last => motions%count + m, next => columns + size(own)*m)
+        motions%body(first:last) = model%body(nodes(1))
+        motions%node(first:last) = node
+        motions%component(first:last) = component
+        motions%before(first:last) = [(columns + size(own)*(i - 1), i=1, m)]
+        motions%coefficient(:, columns + 1:next) = &
+          reshape(matmul(basis, unit), [part_motions, size(own)*m])
+        columns = next
       end associate
+      motions%count = motions%count + m
     end if
 
   contains

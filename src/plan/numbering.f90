@@ -82,6 +82,7 @@ contains
     !> The freedom has a support, or SUPORT; an equation of its own, perhaps in the border [directions, nodes]
     logical, allocatable, dimension(:, :) :: fixed, free
     logical, allocatable :: stands_last(:)     ! gaps depend on all free freedoms of the node [nodes]
+    logical :: seen(model%nodes)               ! in a sweep, of the nodes of the body
     integer :: b, i
 
     allocate (numbering%equation(directions, model%nodes), source=0)
@@ -255,14 +256,13 @@ contains
 
     !> Breadth-first order of a body's nodes from `roots`, at each node its new neighbours by their number of
     !! elements. Nodes that elements do not join to the roots (an RBE2 does) start sweeps of their own.
-    pure type(level_order) function sweep(roots) result(order)
+    type(level_order) function sweep(roots) result(order)
       integer, intent(in) :: roots(:)
       integer, allocatable :: found(:)
-      logical :: seen(model%nodes)
       integer :: at, e, end_of_level, filled, first, k, next
 
       allocate (order%node(size(own)))
-      seen = .false.
+      seen(own) = .false.
       filled = size(roots)
       order%node(:filled) = roots
       seen(roots) = .true.

@@ -26,16 +26,19 @@ contains
     type(body_force), allocatable :: found(:)
     real(wp) :: sums(directions, model%bodies)
     logical :: has_elements(model%bodies)
-    integer :: b, i
+    integer :: b, first(model%bodies), i
 
     has_elements = .false.
     has_elements(model%body(model%connectivity(1, :))) = .true.
     sums = resultants(model, force)
     where (abs(sums) <= cancelled*sum(force)) sums = 0.0_wp
     if (model%has_rings()) sums(1, :) = 0.0_wp
+    do i = model%nodes, 1, -1
+      first(model%body(i)) = i
+    end do
     associate (bodies => pack([(b, b=1, model%bodies)], has_elements))
-      found = [(body_force(body=bodies(i), node=findloc(model%body, bodies(i), dim=1), &
-                           resultant=sums(:, bodies(i))), i=1, size(bodies))]
+      found = [(body_force(body=bodies(i), node=first(bodies(i)), resultant=sums(:, bodies(i))), &
+                i=1, size(bodies))]
     end associate
   end function find_body_forces
 

@@ -52,7 +52,8 @@ contains
   function find_contact_line(model) result(line)
     type(model_type), intent(in) :: model   !! the scene
     type(contact_line) :: line
-    type(incidence) :: at         !! each node: the pairs of the contact, of the slave where there are lines
+    type(incidence) :: at         !! each node: the pairs there
+    integer :: within(2)          !! first and last pair of the contact, of the slave where there are lines
     type(partition) :: places
     type(line_contact) :: contact
     integer, allocatable :: place(:)
@@ -66,6 +67,7 @@ contains
       allocate (line%middle(n), line%mirrored(n), source=.false.)
       places = new_partition(n)
     end associate
+    at = new_incidence(reshape(line%node, [1, model%pairs]), model%nodes)
     ! A node may have a pair in each of several contacts: neighbours are of one.
     call find_edges(1, model%single_pairs())
     do c = 1, size(model%line_contact)
@@ -85,8 +87,7 @@ contains
       real(wp) :: longest, share(3)
       integer :: beside, end, i, k, pair, own
 
-      at = new_incidence(reshape(line%node(first:last), [1, last - first + 1]), model%nodes)
-      at%group = first - 1 + at%group
+      within = [first, last]
       do pair = first, last
         longest = 0.0_wp
         sides = outer_sides(model, line%node(pair))
@@ -171,6 +172,7 @@ contains
       pair = 0
       if (node == 0) return
       there = at%of(node)
+      there = pack(there, there >= within(1) .and. there <= within(2))
       if (size(there) > 0) pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), &
           model%normal(:, there))), dim=1))
     end function pair_of_side

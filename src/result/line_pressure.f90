@@ -41,8 +41,11 @@ contains
       real(wp) :: there
       integer :: corner(2), first, i, k, last, middle
 
-      area = node_areas(contact%master)
-      allocate (received(model%nodes), source=0.0_wp)
+      associate (row => model%row_node(model%row_start(contact%first):model%row_start(contact%last + 1) - 1))
+        call find_areas(contact%master, [row, pack(contact%master%segment, contact%master%segment > 0)], area)
+      end associate
+      allocate (received, mold=area)
+      received = 0.0_wp
       do k = contact%first, contact%first_of_master - 1
         do i = model%row_start(k) + 1, model%row_start(k + 1) - 1
           received(model%row_node(i)) = received(model%row_node(i)) - model%row_weight(i)*force(k)
@@ -75,14 +78,15 @@ contains
     end function compared
 
     !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it, 0 where
-    !! that is rounding or curvature [length**2] [nodes].
-    pure function node_areas(line) result(area)
+    !! that is rounding or curvature [length**2] [nodes from the first to the last of some].
+    pure subroutine find_areas(line, nodes, area)
       class(boundary_line), intent(in) :: line
-      real(wp) :: area(model%nodes)
+      integer, intent(in) :: nodes(:)   !! that there must be room for
+      real(wp), allocatable, intent(out) :: area(:)
       real(wp) :: share(3)
       integer :: i, k
 
-      area = 0.0_wp
+      allocate (area(minval(nodes):maxval(nodes)), source=0.0_wp)
       do i = 1, size(line%element)
         associate (side => line%segment(:, i))
           share = shares_of_nodes(model, line%element(i), side)
@@ -91,6 +95,6 @@ contains
           end do
         end associate
       end do
-    end function node_areas
+    end subroutine find_areas
   end function compare_sides
 end module epcont_result_line_pressure

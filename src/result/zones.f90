@@ -1,5 +1,6 @@
 !> Zones in contact: runs of neighbouring pairs that touch, and how wide they are.
 module epcont_result_zones
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
   use epcont_base_tolerances, only: no_effect
@@ -30,14 +31,16 @@ module epcont_result_zones
 contains
 
   !> The zones, in the order of their first pairs.
-  pure function find_zones(line, touching, force, pressure) result(zones)
+  function find_zones(line, touching, force, pressure) result(zones)
     type(contact_line), intent(in) :: line          !! of the pairs
     logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
     real(wp), intent(in) :: force(:), pressure(:)   !! [force], [stress] [pairs]
     type(contact_zone), allocatable :: zones(:)
     type(partition) :: sets
+    type(incidence) :: at                         !! each node: the pairs there
     integer, allocatable :: number(:), start(:)   !! set of each pair; first pair of each zone
     integer, allocatable :: next(:)
+    logical :: met(size(touching))                !! in a run
     integer :: count, k, pair, z
 
     sets = new_partition(size(touching))
@@ -49,8 +52,13 @@ contains
       end do
     end do
     call sets%numbers(number, count)
-    start = [(findloc(number, z, dim=1), z=1, count)]
+    allocate (start(count))
+    do k = size(number), 1, -1
+      start(number(k)) = k
+    end do
     start = pack(start, touching(start))
+    at = new_incidence(reshape(line%node, [1, size(number)]), maxval([line%node, 0]))
+    met = .false.
     allocate (zones(size(start)))
     do z = 1, size(zones)
       zones(z) = zone_from(start(z))
@@ -59,7 +67,7 @@ contains
   contains
 
     !> One zone: its pairs from end to end, beginning with the end met first in the deck.
-    pure function zone_from(start) result(zone)
+    function zone_from(start) result(zone)
       integer, intent(in) :: start
       type(contact_zone) :: zone
       integer, allocatable :: run(:)
@@ -103,20 +111,25 @@ contains
     end function beside
 
     !> The touching pairs from `start` as far as they go in one direction, those at one node after each other.
-    pure function run_from(start) result(run)
+    function run_from(start) result(run)
       integer, intent(in) :: start
       integer, allocatable :: next(:), run(:)
-      integer :: k, last
+      integer :: found(size(number)), last, n
 
-      run = [start]
+      n = 1
+      found(1) = start
       do
-        last = run(size(run))
-        next = pack([(k, k=1, size(number))], number == number(last) .and. line%node == line%node(last))
-        next = [next, beside(last, .true.)]
-        next = pack(next, [(.not. any(run == next(k)), k=1, size(next))])
-        if (size(next) == 0) return
-        run = [run, next(1)]
+        last = found(n)
+        met(last) = .true.
+        next = at%of(line%node(last))
+        next = [pack(next, number(next) == number(last)), beside(last, .true.)]
+        next = pack(next, .not. met(next))
+        if (size(next) == 0) exit
+        n = n + 1
+        found(n) = next(1)
       end do
+      run = found(:n)
+      met(run) = .false.
     end function run_from
 
     !> How far beyond the last pair of a run the pressure vanishes: near the edge p**2 is linear. Not beyond

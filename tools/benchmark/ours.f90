@@ -10,6 +10,7 @@ program bench_ours
   use epcont_assembly_bodies, only: factored_bodies, new_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_error, only: error_type
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_system_large_pages, only: prepare_heap
   use epcont_contact_flexibility_matrix, only: new_flexibility
@@ -44,6 +45,7 @@ program bench_ours
   type(linear_law) :: law
   type(scene_materials) :: materials
   type(numbering_type) :: numbering
+  type(incidence) :: pairs
   type(planned_scene) :: scene   ! of both
   type(factored_bodies) :: bodies
   type(contact_problem) :: problem
@@ -140,8 +142,9 @@ contains
       spent(factor) = spent(factor) + lap()
     end do
     problem%flexibility = new_flexibility(model%bodies_of_pairs(), model%bodies)
+    pairs = new_incidence(model%bodies_of_pairs(), model%bodies)
     do b = 1, model%bodies
-      call find_flexibility(model, numbering, b, bodies%body(b), part)
+      call find_flexibility(model, numbering, b, pairs%of(b), bodies%body(b), part)
       call problem%flexibility%add(part%pair, part%matrix)
     end do
     call problem%flexibility%complete()
