@@ -20,7 +20,7 @@ module epcont_linear_joined_contact
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
     use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, contact_stalled, new_solution
   use epcont_contact_uniqueness, only: find_free_motions
-  use epcont_element_kinematics, only: directions
+  use epcont_element_kinematics, only: components, directions
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
   use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linear_joined_springs, only: find_springs, of_pairs
@@ -35,6 +35,8 @@ module epcont_linear_joined_contact
   integer, parameter :: full_steps = 25, step_limit = 200
   !> A step is cut where the slope at its end is more than this part of that where it begins.
   real(wp), parameter :: flat_enough = 0.1_wp
+  !> Strains so many times as large leave rounding that counts.
+  real(wp), parameter :: far_larger = 10.0_wp
   !> What a solve leaves of forces of size one, at most, where they open gaps.
   real(wp), parameter :: most_left = 0.1_wp
   !> What a half-plane gives way by at a force on a node of its boundary, against what is a hundred sides
@@ -160,32 +162,37 @@ contains
     real(wp), allocatable :: step(:, :), strain(:, :), unbalanced(:, :), motion(:)
     logical :: wanted(scene%model%pairs)
     real(wp) :: before, change, curvature, descent, length
-    integer :: k, taken
-    logical :: sound
+    real(wp) :: largest       ! strain that a step has added
+    integer :: taken
+    logical :: set_is_given, sound
 
     state%contact%state = contact_stalled
+    state%contact%pivots = 0
+    state%contact%block_steps = 0
     before = huge(1.0_wp)
-    associate (force => state%contact%force)
-      do taken = 1, step_limit
-        gap = fixed_gap + gap_opening(scene%model, state%deformation) - &
-              self%motion%times(state%contact%approach)
-        pull = force - self%gamma*gap
-        if (taken > 1 .or. allocated(self%last)) call choose_set()
-        call self%factor(scene, bodies, sound, watch)
-        if (.not. sound) return
-        call find_step()
-        length = 1.0_wp
-        if (taken > full_steps) length = length_of_step()
-        call take_step()
-        if (.not. (length >= 1.0_wp .and. all(wanted .eqv. self%closed))) cycle
-        if (change <= negligible .or. (change <= no_effect .and. change > 0.5_wp*before)) then
-          state%contact%state = contact_solved
-          exit
-        end if
-        before = change
-      end do
-      state%contact%gap = gap
-    end associate
+    largest = 0.0_wp
+    set_is_given = .not. allocated(self%last)
+    do taken = 1, step_limit
+      gap = fixed_gap + gap_opening(scene%model, state%deformation) - &
+            self%motion%times(state%contact%approach)
+      pull = state%contact%force - self%gamma*gap
+      if (.not. set_is_given) call choose_set()
+      set_is_given = .false.
+      call self%factor(scene, bodies, sound, watch)
+      if (.not. sound) exit
+      call find_step()
+      length = 1.0_wp
+      if (taken > full_steps) length = length_of_step()
+      call take_step()
+      if (length < 1.0_wp .or. any(wanted .neqv. self%closed)) cycle
+      if (change <= negligible .or. (change <= no_effect .and. change > 0.5_wp*before)) then
+        state%contact%state = contact_solved
+        exit
+      end if
+      before = change
+      call begin_anew()
+    end do
+    state%contact%gap = gap
 
   contains
 
@@ -197,8 +204,22 @@ contains
       self%closed = wanted
     end subroutine choose_set
 
+    !> Where strains have been far larger than they are, these have the rounding of those: with the forces
+    !! that are known by now, they are solved for from none.
+    subroutine begin_anew()
+      if (largest <= far_larger*maxval(abs(state%strain))) return
+      largest = 0.0_wp
+      set_is_given = .true.
+      state%deformation = 0.0_wp
+      state%contact%approach = 0.0_wp
+      call prescribe(scene, load_factor, state%deformation)
+      state%strain = bodies%operator%strains(scene%model, state%deformation)
+    end subroutine begin_anew
+
     !> What is out of balance is solved for.
     subroutine find_step()
+      integer :: k
+
       unbalanced = load_factor*scene%model%load - &
                    bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain))
       step = unbalanced + pair_forces(scene%model, merge(pull, 0.0_wp, self%closed))
@@ -207,6 +228,7 @@ contains
       motion = [(step(scene%motions%component(k), scene%motions%node(k)), k=1, scene%motions%count)]
       call scene%motions%add(scene%model, -motion, step)
       strain = bodies%operator%strains(scene%model, step)
+      largest = max(largest, maxval(abs(strain)))
       opening = gap_opening(scene%model, step) - self%motion%times(motion)
     end subroutine find_step
 
@@ -232,15 +254,10 @@ contains
 
     !> Up to where the function is least along the step, by regula falsi (Illinois) and halving.
     real(wp) function length_of_step() result(t)
-      real(wp), allocatable :: d(:, :)
       real(wp) :: at(2), slopes(2), begin, now   ! before and behind the zero of the slope
-      integer :: i, last, p, side
+      integer :: i, last, side
 
-      d = bodies%law%increment(strain)
-      curvature = 0.0_wp
-      do p = 1, scene%model%points
-        curvature = curvature + bodies%operator%volume(p)*dot_product(strain(:, p), d(:, p))
-      end do
+      curvature = sum(spread(bodies%operator%volume, 1, components)*strain*bodies%law%increment(strain))
       t = 1.0_wp
       begin = slope(0.0_wp)
       at = [0.0_wp, 1.0_wp]

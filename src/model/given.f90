@@ -8,6 +8,7 @@ module epcont_model_given
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, directions
   use epcont_model_arrays, only: count_from_one, element_block, scene_type
+  use epcont_model_controls, only: method_name, precision_name, rule_name, solver_name
   use epcont_model_finding, only: findings, of_scene
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: curve_fault, straighten
@@ -175,7 +176,8 @@ contains
       integer :: k
 
       associate (is => scene%controls)
-        fits = [within([is%method, is%rule, is%solver, is%precision] + 1, [5, 3, 3, 4]), &
+        fits = [within([is%method, is%rule, is%solver, is%precision] + 1, &
+                       [size(method_name), size(rule_name), size(solver_name), size(precision_name) + 1]), &
                 within([is%most_iterations, is%load_steps], [100000, 10000]), &
                 [is%tolerance, is%accuracy, is%search, is%corner] >= 0.0_wp .and. &
                 [is%tolerance < 1.0_wp, is%accuracy < 1.0_wp, is%search <= farthest, is%corner <= 180.0_wp]]

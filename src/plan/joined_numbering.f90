@@ -25,9 +25,45 @@ contains
     integer, allocatable, intent(out) :: node(:)     !! in the order of elimination [nodes]
     integer, allocatable, intent(out) :: first(:)    !! equation of each front, and one behind [fronts + 1]
     type(dissection) :: found
+    integer :: i, last, p
+
+    found = dissect(model, 2.0_wp*model%x(1, :) + model%x(2, :), [(i, i=1, model%nodes)], &
+                    followed_nodes(model), new_incidence(model%nodes_of_pairs(), model%nodes))
+    node = found%node
+    allocate (equation(directions, model%nodes), source=0)
+    allocate (first(size(found%first)), source=1)
+    last = 0
+    do p = 1, size(found%first) - 1
+      do i = found%first(p), found%first(p + 1) - 1
+        call number_node(node(i))
+      end do
+      first(p + 1) = last + 1
+    end do
+    first = pack(first, [first(2:) > first(:size(first) - 1), .true.])
+    do i = 1, model%nodes
+      equation(:, i) = [equation(1, model%leader(1, i)), equation(2, model%leader(2, i))]
+    end do
+
+  contains
+
+    !> The free freedoms of a node are next.
+    subroutine number_node(own)
+      integer, intent(in) :: own
+      integer :: c
+
+      do c = 1, directions
+        if (model%held(c, own) .or. model%leader(c, own) /= own) cycle
+        last = last + 1
+        equation(c, own) = last
+      end do
+    end subroutine number_node
+  end subroutine number_joined
+
+  !> Do others follow each node? [nodes]
+  pure function followed_nodes(model) result(leads)
+    type(model_type), intent(in) :: model
     logical :: leads(model%nodes)
-    real(wp) :: further(model%nodes)
-    integer :: c, i, last, p
+    integer :: c, i
 
     leads = .false.
     do i = 1, model%nodes
@@ -35,38 +71,13 @@ contains
         if (model%leader(c, i) /= i) leads(model%leader(c, i)) = .true.
       end do
     end do
-    further = 2.0_wp*model%x(1, :) + model%x(2, :)
-    found = dissect(model, further, [(i, i=1, model%nodes)], leads, &
-                    new_incidence(model%nodes_of_pairs(), model%nodes))
-    allocate (equation(directions, model%nodes), source=0)
-    allocate (first(size(found%first)), source=1)
-    last = 0
-    do p = 1, size(found%first) - 1
-      do i = found%first(p), found%first(p + 1) - 1
-        do c = 1, directions
-          associate (own => found%node(i))
-            if (model%held(c, own) .or. model%leader(c, own) /= own) cycle
-            last = last + 1
-            equation(c, own) = last
-          end associate
-        end do
-      end do
-      first(p + 1) = last + 1
-    end do
-    do i = 1, model%nodes
-      do c = 1, directions
-        equation(c, i) = equation(c, model%leader(c, i))
-      end do
-    end do
-    node = found%node
-    first = pack(first, [first(2:) > first(:size(first) - 1), .true.])
-  end subroutine number_joined
+  end function followed_nodes
 
   !> Springs of all pairs, then of all SUPORT freedoms, node by node.
   type(sparse_rows) function spring_rows(model, equation) result(spring)
     type(model_type), intent(in) :: model    !! the scene
     integer, intent(in) :: equation(:, :)    !! of each freedom, or 0 [directions, nodes]
-    integer :: c, i, k, last
+    integer :: i, k, last
 
     allocate (spring%start(model%pairs + count(model%reference) + 1), source=1)
     allocate (spring%equation(directions*size(model%row_node) + count(model%reference)))
@@ -74,21 +85,17 @@ contains
     last = 0
     do k = 1, model%pairs
       do i = model%row_start(k), model%row_start(k + 1) - 1
-        do c = 1, directions
-          call put(equation(c, model%row_node(i)), model%row_weight(i)*model%normal(c, k))
-        end do
+        call put(equation(1, model%row_node(i)), model%row_weight(i)*model%normal(1, k))
+        call put(equation(2, model%row_node(i)), model%row_weight(i)*model%normal(2, k))
       end do
       spring%start(k + 1) = last + 1
     end do
-    k = model%pairs
-    do i = 1, model%nodes
-      do c = 1, directions
-        if (.not. model%reference(c, i)) cycle
-        call put(equation(c, i), 1.0_wp)
-        k = k + 1
-        spring%start(k + 1) = last + 1
+    associate (at_suport => pack(equation, model%reference))
+      do i = 1, size(at_suport)
+        call put(at_suport(i), 1.0_wp)
+        spring%start(model%pairs + i + 1) = last + 1
       end do
-    end do
+    end associate
     spring%equation = spring%equation(:last)
     spring%weight = spring%weight(:last)
 
