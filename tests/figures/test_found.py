@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Decks of strangers (tests/found/*.bdf) with which the program was wrong, or said so where it need not."""
+import math
 import pathlib
 import unittest
 
@@ -21,6 +22,18 @@ def shifted(text, nodes, by):
                      else ",".join(fields) for fields in lines) + "\n"
 
 
+def turned(text, degrees):
+    """The deck with nodes and forces turned; supports are as they are."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    at = {"GRID": 3, "FORCE": 5}
+    lines = [line.split(",") for line in text.splitlines()]
+    for fields in lines:
+        if fields[0] in at:
+            x, y = (float(fields[at[fields[0]] + k]) for k in (0, 1))
+            fields[at[fields[0]]:at[fields[0]] + 2] = repr(c * x - s * y), repr(s * x + c * y)
+    return "\n".join(map(",".join, lines)) + "\n"
+
+
 class Found(scene.Extremes):
 
     def test_joint_without_gap(self):
@@ -34,6 +47,19 @@ class Found(scene.Extremes):
             on_top, = (force for (name, _), force in pressed.items() if name == top)
             self.near(on_edge + on_top, 50.0, 1e-9)
             self.near(on_edge, 17.278, 1e-4)
+
+    def test_slides_that_nothing_drives(self):
+        """Blocks pressed straight on each other stay above each other, however the scene is turned."""
+        text = turned(deck("slide_rot0p001"), -1e-3)
+        upright = self.valid(text)
+        self.assertLess(max(abs(row["ux"]) for row in upright.nodes.values()), 1e-3)
+        for degrees in (1e-4, 1e-3, 1.0, 30.0, -60.0):
+            c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+            with self.subTest(degrees=degrees):
+                for name, node in self.valid(turned(text, degrees)).nodes.items():
+                    ux, uy = (upright.nodes[name][key] for key in ("ux", "uy"))
+                    self.near(node["ux"], c * ux - s * uy, 1e-9, 1e-3)
+                    self.near(node["uy"], s * ux + c * uy, 1e-9, 1e-3)
 
 
 if __name__ == "__main__":
