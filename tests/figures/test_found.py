@@ -2,6 +2,7 @@
 """Decks of strangers (tests/found/*.bdf) with which the program was wrong, or said so where it need not."""
 import math
 import pathlib
+import re
 import unittest
 
 import scenes  # noqa: F401  (the path to scene)
@@ -60,6 +61,20 @@ class Found(scene.Extremes):
                     ux, uy = (upright.nodes[name][key] for key in ("ux", "uy"))
                     self.near(node["ux"], c * ux - s * uy, 1e-9, 1e-3)
                     self.near(node["uy"], s * ux + c * uy, 1e-9, 1e-3)
+
+    def test_stiff_on_soft(self):
+        """Ten blocks of falling or rising stiffness under one load: each bears the same pressure, or the answer is refused."""
+        for digits in (8, 12, 16):
+            for way in (1, -1):
+                young = {str(k + 1): 2.1e5 * 10.0 ** (way * digits * (k / 9 - 0.5)) for k in range(10)}
+                text = re.sub(r"MAT1,(\d+),[^,]*", lambda card: f"MAT1,{card[1]},{scene.written(young[card[1]])}", deck("g10_6"))
+                for rule in ("CONRY", "BLOCK"):
+                    with self.subTest(digits=digits, way=way, rule=rule):
+                        result = scene.solve(text.replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}"))
+                        self.assertIn(result.status, (0,) if digits <= 12 or way < 0 else (0, 4), result.message)
+                        if result.status == 0:
+                            self.near([pair["pressure"] for pair in result.table("contact")], [1e-5] * 45, 1e-4)
+                            self.assertEqual(result.message, "")
 
 
 if __name__ == "__main__":
