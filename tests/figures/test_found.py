@@ -76,6 +76,27 @@ class Found(scene.Extremes):
                             self.near([pair["pressure"] for pair in result.table("contact")], [1e-5] * 45, 1e-4)
                             self.assertEqual(result.message, "")
 
+    def test_gap_that_closes(self):
+        """A block comes straight down on a stack: that is no slide, whichever side of the corner is the nearer one by rounding."""
+        for blocks in (30, 50):
+            text = scene.Deck(2.1e5, 0.3)
+            tops = []
+            for k in range(blocks):
+                low = 5.0 * k + (k == blocks - 1)
+                rows = text.block(1, [0.0, 2.5, 5.0, 7.5, 10.0], [low, low + 2.5, low + 5.0], 100 * k + 1)
+                if tops:
+                    text.card("BLSEG", 2 * k, *rows[0])
+                    text.card("BLSEG", 2 * k + 1, *reversed(tops))
+                    text.card("BCONP", k, 2 * k, 2 * k + 1)
+                    text.hold(1, rows[-1][2])
+                    text.support(2, rows[-1][0], rows[-1][-1])
+                else:
+                    text.hold(12, *rows[0])
+                tops = rows[-1]
+            text.press(tops, 100.0)
+            with self.subTest(blocks=blocks):
+                self.assertEqual(self.valid(text).message, "")
+
 
 if __name__ == "__main__":
     unittest.main()
