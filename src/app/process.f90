@@ -128,8 +128,8 @@ contains
 
   !> One thread unless the environment says more, and threads that wait give up their core. Where OpenBLAS
   !! cannot have its memory, room for each thread but for no more than there are processors, it waits without
-  !! end, and where the stack is too small a run ends by a signal: that is refused. (The runtime of Fortran has
-  !! not begun: READ and WRITE are not to be had.)
+  !! end, and where the stack is too small a run ends by a signal: that is refused. (The runtime of Fortran
+  !! has not begun: READ and WRITE are not to be had.)
   subroutine prepare_start() bind(c, name='epcont_prepare_start')
     integer(c_int) :: ignored
     integer(c_long) :: stack(2)

@@ -137,35 +137,22 @@ contains
     end subroutine find_touching
 
     !> Move the bodies, with the pressed pairs closed, to where no gap is below none and their travels are
-    !! least (squares): where springs, all alike, would hold them. That is a contact problem. Whether a motion
-    !! closes a gap is told by how far it takes the body, not by what else it closes: of a body on a flat that
-    !! leans by little against the axes, one motion is almost along it.
+    !! least (squares): where springs, all alike, would hold them. That is a contact problem.
     subroutine choose_neutral(state, approach)
       type(contact_state), intent(inout) :: state
       real(wp), intent(inout) :: approach(:)   !! scaled [m]
       type(contact_problem) :: springs
       type(contact_solution) :: held
-      type(motion_matrix) :: closing                        ! A, by travels [n, m]
       real(wp), allocatable :: loose(:, :), opening(:, :)   ! neutral motions, and the gaps that they open
       real(wp), allocatable :: square(:, :), travel(:, :)   ! of these motions
       real(wp), allocatable :: change(:, :), given(:, :)    ! of them, in all and by a force at each gap
-      real(wp) :: length(size(approach))                    ! travel of each motion, over the scaled unit
-      real(wp) :: sum_of(size(approach))                    ! magnitudes, the approach is their sum
       integer, allocatable :: pair(:)                       ! those whose gaps they open
-      integer :: info, k
+      integer :: info
 
-      length = 1.0_wp
-      if (allocated(problem%travel)) length = norm2(problem%travel, dim=1)/scaled%motion_size
-      closing = problem%motion%over(length*scaled%motion_size)
-      pair = [(k, k=1, size(state%gap))]
-      loose = loose_motions(closing, pack(pair, state%force > 0.0_wp), negligible)
-      opening = -closing%of_each(loose, pair)
-      where (abs(opening) <= negligible) opening = 0.0_wp
-      pair = pack(pair, any(opening /= 0.0_wp, dim=2))
-      opening = opening(pair, :)
-      travel = travels(loose, length)
+      call find_neutral(state%force > 0.0_wp, loose, pair, opening)
+      travel = travels(loose)
       square = matmul(transpose(travel), travel)
-      change = -matmul(transpose(travel), travels(reshape(length*approach, [size(length), 1]), length))
+      change = -matmul(transpose(travel), travels(reshape(approach, [size(approach), 1])))
       given = transpose(opening)
       call cholesky_factor(square, info)
       if (info /= 0) return
@@ -179,16 +166,40 @@ contains
       call solve_contact(springs, held, any_forces=.true.)
       if (held%state /= contact_solved) return
       change(:, 1) = change(:, 1) + matmul(given, held%force)
-      sum_of = abs(approach) + matmul(abs(loose), abs(change(:, 1)))/length
-      approach = approach + matmul(loose, change(:, 1))/length
-      where (abs(approach) <= cancelled*sum_of) approach = 0.0_wp
+      associate (before => abs(approach) + matmul(abs(loose), abs(change(:, 1))))
+        approach = approach + matmul(loose, change(:, 1))
+        where (abs(approach) <= cancelled*before) approach = 0.0_wp
+      end associate
       state%gap(pair) = state%gap(pair) + matmul(opening, change(:, 1))
     end subroutine choose_neutral
 
+    !> Motions that pressed pairs do not hold, and the gaps that they open. Whether a motion closes a gap is
+    !! told by how far it takes the body, not by what else it closes: of a body on a flat that leans by little
+    !! against the axes, one motion is almost along it.
+    subroutine find_neutral(pressed, loose, pair, opening)
+      logical, intent(in) :: pressed(:)                          !! [n]
+      real(wp), allocatable, intent(out) :: loose(:, :)          !! [m, any]
+      integer, allocatable, intent(out) :: pair(:)               !! those whose gaps they open
+      real(wp), allocatable, intent(out) :: opening(:, :)        !! [these, any]
+      type(motion_matrix) :: closing                             ! A, by travels
+      real(wp) :: length(size(scaled%motion_size))               ! of each motion, over the scaled unit
+      integer :: k
+
+      length = 1.0_wp
+      if (allocated(problem%travel)) length = norm2(problem%travel, dim=1)/scaled%motion_size
+      closing = problem%motion%over(length*scaled%motion_size)
+      pair = [(k, k=1, size(pressed))]
+      loose = loose_motions(closing, pack(pair, pressed), negligible)
+      opening = -closing%of_each(loose, pair)
+      where (abs(opening) <= negligible) opening = 0.0_wp
+      pair = pack(pair, any(opening /= 0.0_wp, dim=2))
+      opening = opening(pair, :)
+      loose = loose/spread(length, 2, size(loose, 2))
+    end subroutine find_neutral
+
     !> How far motions take the bodies: each body's part below that of the body before [any, motions].
-    pure function travels(motions, length) result(travel)
-      real(wp), intent(in) :: motions(:, :)   !! by travels [m, any]
-      real(wp), intent(in) :: length(:)       !! of each, over the scaled unit [m]
+    pure function travels(motions) result(travel)
+      real(wp), intent(in) :: motions(:, :)   !! scaled [m, any]
       real(wp), allocatable :: travel(:, :)
       integer :: j, rows
 
@@ -200,7 +211,7 @@ contains
       allocate (travel(rows*maxval([0, problem%body]), size(motions, 2)), source=0.0_wp)
       do j = 1, size(motions, 1)
         associate (own => travel(rows*(problem%body(j) - 1) + 1:rows*problem%body(j), :))
-          own = own + matmul(problem%travel(:, j:j)/(length(j)*scaled%motion_size(j)), motions(j:j, :))
+          own = own + matmul(problem%travel(:, j:j)/scaled%motion_size(j), motions(j:j, :))
         end associate
       end do
     end function travels
