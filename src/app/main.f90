@@ -6,7 +6,7 @@ program epcont_main
   use epcont_app_help, only: help_text, man_page
   use epcont_app_process, only: c_exit, print_error, print_text, watch_exit
   use epcont_base_error, only: error_type, raise, status_usage, status_valid
-  use epcont_base_text, only: newline, shown
+  use epcont_base_text, only: newline, shown, text_of
   use epcont_base_version, only: program_name, program_version
   use epcont_deck_manual, only: manual
   use epcont_report_file, only: make_directory
@@ -36,7 +36,8 @@ contains
     status = status_valid
     call read_arguments(command_line(), arguments, error)
     if (.not. allocated(error) .and. .not. has_memory(memory_of_libraries)) &
-      call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs')
+      call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs: '// &
+                 text_of(int(memory_of_libraries/1000000))//' MB beside the program')
     if (allocated(error)) then
       call refuse(error%message)
     else if (arguments%asks('--help')) then

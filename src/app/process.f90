@@ -25,6 +25,9 @@ module epcont_app_process
   !! [bytes].
   integer(i8), parameter :: memory_of_blas = 134217728_i8, memory_beside = 32000000_i8
   integer(c_int), parameter :: processors_online = 84   !! `sysconf` of Linux
+  !> `getrlimit` of Linux, and twice what the deepest run takes of the stack [bytes].
+  integer(c_int), parameter :: stack_size = 3
+  integer(c_long), parameter :: least_stack = 262144_c_long
 
   interface
     integer(c_size_t) function c_write(descriptor, text, length) bind(c, name='write')
@@ -66,6 +69,11 @@ module epcont_app_process
       import
       integer(c_int), value :: name
     end function c_sysconf
+    integer(c_int) function c_getrlimit(resource, limit) bind(c, name='getrlimit')
+      import
+      integer(c_int), value :: resource
+      integer(c_long), intent(out) :: limit(2)   !! now, and at most; negative: none
+    end function c_getrlimit
   end interface
 
 contains
@@ -120,17 +128,40 @@ contains
 
   !> One thread unless the environment says more, and threads that wait give up their core. Where OpenBLAS
   !! cannot have its memory, room for each thread but for no more than there are processors, it waits without
-  !! end: that is refused. (The runtime of Fortran has not begun: READ and WRITE are not to be had.)
+  !! end, and where the stack is too small a run ends by a signal: that is refused. (The runtime of Fortran
+  !! has not begun: READ and WRITE are not to be had.)
   subroutine prepare_start() bind(c, name='epcont_prepare_start')
     integer(c_int) :: ignored
-    integer(i8) :: threads
+    integer(c_long) :: stack(2)
+    integer(i8) :: threads, wanted
 
     ignored = c_setenv('OMP_NUM_THREADS'//c_null_char, '1'//c_null_char, 0_c_int)
     ignored = c_setenv('OMP_WAIT_POLICY'//c_null_char, 'PASSIVE'//c_null_char, 0_c_int)
     threads = max(1_c_long, min(int(stated_threads(), c_long), c_sysconf(processors_online)))
-    if (.not. has_memory(threads*memory_of_blas + memory_beside)) call stop_now(status_usage, &
-      'less memory is free or allowed (ulimit -v) than OpenBLAS takes for OMP_NUM_THREADS')
+    wanted = threads*memory_of_blas + memory_beside
+    if (.not. has_memory(wanted)) call stop_now(status_usage, &
+      'less memory is free or allowed (ulimit -v) than OpenBLAS takes for OMP_NUM_THREADS: '// &
+      digits(wanted/1000000)//' MB beside the program')
+    if (c_getrlimit(stack_size, stack) /= 0) return
+    if (stack(1) >= 0 .and. stack(1) < least_stack) call stop_now(status_usage, &
+      'a stack of '//digits(stack(1)/1024_i8)//' kB is allowed (ulimit -s): '// &
+      digits(least_stack/1024_i8)//' kB are wanted')
   end subroutine prepare_start
+
+  !> A number of up to nine digits, without WRITE.
+  pure function digits(number) result(text)
+    integer(i8), intent(in) :: number
+    character(len=:), allocatable :: text
+    integer(i8) :: left
+
+    text = ''
+    left = number
+    do
+      text = achar(iachar('0') + int(mod(left, 10_i8)))//text
+      left = left/10
+      if (left == 0) return
+    end do
+  end function digits
 
   !> From here on the program ends by `c_exit`, or else with the exit status of its fault: the Fortran
   !! runtime and OpenBLAS have statuses of their own, which here would mean that there is an answer. A closed
@@ -155,7 +186,8 @@ contains
 
     call c_f_pointer(ended, in_order)
     if (in_order) return
-    if (status == 1) call stop_now(status_usage, 'there is not enough memory, or less is allowed (ulimit)')
+    if (status == 1) call stop_now(status_usage, &
+      'there is not enough memory, or less is allowed (ulimit -v, -s, OMP_STACKSIZE)')
     call stop_now(status_internal, 'internal error: please report it with the deck')
   end subroutine judge_exit
 

@@ -170,14 +170,16 @@ contains
       type(point_type), intent(in) :: point
       type(near_place) :: place
       type(overlap_place) :: found, slid
-      real(wp) :: off
+      real(wp) :: apart(directions), off
 
       place = search%now%nearest_place(part, point%x)
       found = meet(search, point, place)
       found%pair = pair
       slid = found
-      slid%depth = part_along(search%now, place%side, place%s, &
-                              point%motion - motion_at(search, place%side, place%s))
+      apart = point%motion - motion_at(search, place%side, place%s)
+      ! At a corner the nearest side may be the one that is not pressed: to close a gap is no slide.
+      slid%depth = min(part_along(search%now, place%side, place%s, apart), &
+                       abs(cross_product(model%normal(:, pair), apart)))
       slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
                          part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
       if (is_worse(slid, scene%slid)) scene%slid = rated(slid)

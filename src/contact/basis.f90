@@ -3,8 +3,8 @@
 !>     F_SS R_S - A_S q = -h,   A_S' R_S = p
 !>
 !> F_SS may be singular though the forces are unique (a pair between held nodes is a row of zeros).
-!> F_g = F + gamma A A' is definite whenever they are unique, and since A'R = p it changes only the
-!> motion: q comes out larger by gamma p. So what is factored is
+!> F_g = F + A gamma A' is definite whenever they are unique, and since A'R = p it changes only the
+!> motion: q comes out larger by gamma p, gamma a diagonal matrix. So what is factored is
 !>
 !>     [ F_g,SS  -A_S ]
 !>     [ -A_S'    0   ]
@@ -46,7 +46,7 @@ module epcont_contact_basis
     integer :: motions = 0               !! m
     integer, allocatable :: pair_row(:), motion_row(:)   !! of them in the factor [s], [m]
     integer, allocatable :: kept(:)      !! which of the given motions these are [m]
-    real(wp) :: gamma = 0.0_wp           !! weight of A A' in F_g
+    real(wp), allocatable :: gamma(:)    !! weight of each motion in F_g [m]
     real(wp) :: scale = 0.0_wp           !! of F
     type(level_factor), allocatable :: level(:)
   end type contact_basis
@@ -61,7 +61,7 @@ contains
     logical :: definite
 
     call choose_pairs(basis, scaled, chosen, held)
-    call factor_levels(basis%level, scaled, 0, lost_digits*scaled%softest, definite, basis%sound)
+    call factor_levels(basis%level, scaled, 0, lost_digits, definite, basis%sound)
     if (.not. definite) then
       ! The order of pivots, which takes longer, tells who depends on whom.
       call choose_pairs(basis, scaled, chosen, held)
@@ -80,7 +80,7 @@ contains
     same = basis%sound .and. allocated(basis%level)
     if (same) same = size(basis%pairs) == count(chosen) .and. size(basis%kept) == size(scaled%kept)
     if (same) same = all(chosen(basis%pairs)) .and. all(basis%kept == scaled%kept) .and. &
-                     abs(basis%gamma - scaled%gamma) <= 0.0_wp .and. &
+                     all(abs(basis%gamma - scaled%gamma) <= 0.0_wp) .and. &
                      abs(basis%scale - scaled%flexibility_scale) <= 0.0_wp
     if (same) return
     if (allocated(basis%level)) deallocate (basis%level)
@@ -105,7 +105,7 @@ contains
     type(contact_basis) :: basis
 
     call choose_pairs(basis, scaled, chosen, held=.true.)
-    call factor_levels(basis%level, scaled, 0, lost_digits*scaled%softest, independent, basis%sound)
+    call factor_levels(basis%level, scaled, 0, lost_digits, independent, basis%sound)
   end function are_independent
 
   !> Factor the equations of all pairs, each with a flexibility of its own that makes its force unique.
@@ -243,7 +243,7 @@ contains
     x(basis%motion_row, :) = -load
     call solve_levels(basis%level, x)
     force = x(basis%pair_row, :)
-    approach = x(basis%motion_row, :) - basis%gamma*load
+    approach = x(basis%motion_row, :) - spread(basis%gamma, 2, size(load, 2))*load
   end subroutine respond
 
 end module epcont_contact_basis

@@ -60,7 +60,7 @@ contains
       steps = steps + 1
       if (basis%sound) call advance()
     end do
-    closed = at%force*scaled%softest > at%gap
+    closed = at%force*scaled%softness > at%gap
     call hold_all_motions()
 
   contains
@@ -68,7 +68,7 @@ contains
     !> Forces and gaps above zero, of the size that they have where no force is none.
     subroutine begin()
       at = inner_point(0*scaled%gap, 0*scaled%gap, 0*load)
-      barrier%own_flexibility = scaled%own_flexibility + scaled%softest
+      barrier%own_flexibility = scaled%own_flexibility + maxval(scaled%softness)
       call factor_all(basis, barrier)
       if (.not. basis%sound) return
       call answer(scaled%gap, load, at)

@@ -33,7 +33,7 @@ contains
     type(level_factor), intent(inout) :: level(:)   !! with their pairs and motions
     type(scaled_problem), intent(in) :: scaled  !! the problem in its own units
     integer, intent(in) :: kept                 !! rows of the first level that are factored already
-    real(wp), intent(in) :: least               !! of pivots of forces that are unique
+    real(wp), intent(in) :: least               !! of pivots of forces that are unique, over their softness
     logical, intent(out) :: definite            !! all are
     logical, intent(out) :: sound               !! and the pairs hold all motions
     real(wp), intent(in), optional :: rank_tolerance   !! pairs with pivots up to this are left out
@@ -49,7 +49,8 @@ contains
       end if
       associate (factor => level(l)%factor, n => size(level(l)%pair), m => size(level(l)%motion))
         call factor_saddle(size(factor, 1), factor, kept, n, m, rows_below(), info)
-        definite = (info == 0 .or. info > n) .and. all(pivots(factor, n) >= least)
+        definite = (info == 0 .or. info > n) .and. &
+                   all(pivots(factor, n) >= least*scaled%softness(level(l)%pair))
       end associate
       if (.not. definite) return
       sound = info == 0
@@ -96,11 +97,13 @@ contains
     !> Pairs in the order of their pivots, but for those whose pivots are none.
     subroutine leave_out_dependent()
       real(wp), allocatable :: copy(:, :)
+      real(wp) :: unit(size(level(l)%pair))
       integer, allocatable :: order(:), row(:)
       integer :: k, n, own, rank
 
       n = size(level(l)%pair)
-      copy = level(l)%factor(:n, :n)
+      unit = sqrt(scaled%softness(level(l)%pair))
+      copy = level(l)%factor(:n, :n)/(spread(unit, 1, n)*spread(unit, 2, n))
       call pivoted_cholesky(copy, rank_tolerance, order, rank)
       level(l)%pair = level(l)%pair(order(:rank))
       if (l == 1) return
@@ -118,7 +121,8 @@ contains
     integer, intent(in) :: next_pair(:), next_m   !! of the next level, and its motions
     type(scaled_problem), intent(in) :: scaled
     integer, intent(in) :: l, kept   !! the level's number, and its rows that are kept
-    real(wp), allocatable :: closing(:, :)   ! A of own and next pairs, by own and next motions
+    integer, allocatable :: motion(:)        ! own and next ones
+    real(wp), allocatable :: closing(:, :)   ! A of own and next pairs, by these
     integer :: at(size(level%pair)), next_at(size(next_pair))   ! places in their levels
     integer :: below, j, m, n, t, top
 
@@ -126,7 +130,8 @@ contains
     m = size(level%motion)
     below = n + m + size(next_pair)
     call make_room(level%factor, below + next_m, n + m)
-    closing = scaled%motion%rows([level%pair, next_pair], [motions_of(scaled, l), motions_of(scaled, l + 1)])
+    motion = [motions_of(scaled, l), motions_of(scaled, l + 1)]
+    closing = scaled%motion%rows([level%pair, next_pair], motion)
     at = scaled%flexibility%place(level%pair)
     next_at = scaled%flexibility%place(next_pair)
     associate (f => level%factor, given => scaled%flexibility%level(l), scale => scaled%flexibility_scale)
@@ -137,8 +142,10 @@ contains
         f(n + m + 1:below, j) = scale*given%beyond(next_at, at(j))
         do t = 1, size(closing, 2)
           if (closing(j, t) == 0.0_wp) cycle
-          f(top:n, j) = f(top:n, j) + scaled%gamma*closing(j, t)*closing(top:n, t)
-          f(n + m + 1:below, j) = f(n + m + 1:below, j) + scaled%gamma*closing(j, t)*closing(n + 1:, t)
+          associate (gamma => scaled%gamma(motion(t)))
+            f(top:n, j) = f(top:n, j) + gamma*closing(j, t)*closing(top:n, t)
+            f(n + m + 1:below, j) = f(n + m + 1:below, j) + gamma*closing(j, t)*closing(n + 1:, t)
+          end associate
         end do
         f(n + 1:n + m, j) = -closing(j, :m)
         f(below + 1:below + next_m, j) = -closing(j, m + 1:m + next_m)

@@ -32,6 +32,10 @@ module epcont_contact_problem
     real(wp), allocatable :: initial_gap(:)     !! g0, negative: an overlap [length] [n]
     real(wp), allocatable :: load_gap(:)        !! gl, opening by the loads without contact [length] [n]
     real(wp), allocatable :: resultant(:)       !! P, load of the bodies along their free motions [m]
+    !> What the unit motions of each body take it by: of motions that nothing determines the least is chosen.
+    !! Not allocated: each by itself takes it by the largest gap that it closes [length] [any, m]
+    real(wp), allocatable :: travel(:, :)
+    integer, allocatable :: body(:)             !! of each motion [m]
   end type contact_problem
 
   !> One pivot. A variable is an integer: k is the force R_k, -k the gap w_k, 0 the load factor.

@@ -34,14 +34,21 @@ module epcont_contact_scaling
     real(wp) :: gap_unit = 1.0_wp               !! omega
     real(wp), allocatable :: motion_size(:)     !! largest entry of each column of the given A [all motions]
     integer, allocatable :: kept(:)             !! which of the given motions these are [m]
-    real(wp) :: softest = 1.0_wp         !! max F_kk; 1 if nothing is flexible
-    !> gamma: F and gamma A A' are of one size, and their sum F_g is definite wherever forces are unique
-    real(wp) :: gamma = 1.0_wp
-    !> A pivot of F_g up to this is rounding: a hundredth of a negligible flexibility, or that of n sums.
+    !> gamma of each motion: F and the sum of gamma a a', of its columns of A, are of one size, and their sum
+    !! F_g is definite wherever forces are unique [m]
+    real(wp), allocatable :: gamma(:)
+    !> Of each pair the flexibility that its pivots are measured by: max F_kk, 1 if nothing is flexible; of
+    !! pairs that are far stiffer what F_g itself has there [n]
+    real(wp), allocatable :: softness(:)
+    !> A pivot of F_g up to this part of that is rounding: a hundredth of a negligible one, or that of n sums.
     real(wp) :: rank_tolerance = 0.0_wp
     logical, allocatable :: first_touching(:)   !! pairs that hold every motion [n]
     logical, allocatable :: guess(:)   !! of the pairs in contact; not allocated where there is none [n]
   end type scaled_problem
+
+  !> Pairs whose flexibility is below this part of the softest's are measured by themselves: of bodies a
+  !! billion times stiffer than others forces are as unique.
+  real(wp), parameter :: far_stiffer = 1.0e-4_wp
 
 contains
 
@@ -113,24 +120,42 @@ contains
   !> What is large and what is rounding, of flexibilities and motions as they now are.
   pure subroutine measure(scaled)
     type(scaled_problem), intent(inout) :: scaled   !! the problem in its own units
-    real(wp) :: squares(size(scaled%gap))   ! of what the motions close of each gap
+    real(wp), dimension(size(scaled%gap)) :: own, squares   ! F_kk, and of what the motions close of each gap
+    real(wp) :: softest
     integer :: i, j
 
+    own = scaled%flexibility%diagonal()*scaled%flexibility_scale + scaled%own_flexibility
+    softest = or_else(largest_of(own), 1.0_wp)
     squares = 0.0_wp
     scaled%motion_level = spread(1, 1, scaled%motion%motions())
+    scaled%gamma = spread(0.0_wp, 1, scaled%motion%motions())
     do j = 1, size(scaled%motion_level)
       do i = scaled%motion%start(j), scaled%motion%start(j + 1) - 1
         associate (k => scaled%motion%pair(i))
           squares(k) = squares(k) + scaled%motion%closing(i)**2
           scaled%motion_level(j) = max(scaled%motion_level(j), scaled%flexibility%level_of(k))
+          scaled%gamma(j) = max(scaled%gamma(j), own(k))
         end associate
       end do
     end do
-    scaled%softest = or_else(largest_of(scaled%flexibility%diagonal()*scaled%flexibility_scale &
-                                        + scaled%own_flexibility), 1.0_wp)
-    scaled%gamma = scaled%softest/or_else(largest_of(squares), 1.0_wp)
-    scaled%rank_tolerance = max(negligible/100, 4*size(squares)*epsilon(1.0_wp))*scaled%softest
+    scaled%gamma = measured_by(scaled%gamma, softest)/or_else(largest_of(squares), 1.0_wp)
+    do j = 1, size(scaled%gamma)
+      do i = scaled%motion%start(j), scaled%motion%start(j + 1) - 1
+        associate (k => scaled%motion%pair(i))
+          own(k) = own(k) + scaled%gamma(j)*scaled%motion%closing(i)**2
+        end associate
+      end do
+    end do
+    scaled%softness = measured_by(own, softest)
+    scaled%rank_tolerance = max(negligible/100, 4*size(squares)*epsilon(1.0_wp))
   end subroutine measure
+
+  !> A flexibility, if it is one and far below the softest; else that.
+  elemental real(wp) function measured_by(own, softest)
+    real(wp), intent(in) :: own, softest
+
+    measured_by = merge(own, softest, own > 0.0_wp .and. own < far_stiffer*softest)
+  end function measured_by
 
   !> F R, or |F| |R|, what it is the sum of.
   pure function gaps_by_forces(scaled, force, magnitudes) result(gap)

@@ -16,6 +16,7 @@ module epcont_contact_solver
   use epcont_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
   use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
   use epcont_flexibility_motion_matrix, only: dense_motions, motion_matrix
+  use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   implicit none
   private
   public :: solve_contact
@@ -135,37 +136,85 @@ contains
       where (touching) state%gap = 0.0_wp
     end subroutine find_touching
 
-    !> Move the bodies, with the pressed pairs closed, to where no gap is below none and the motions are least
-    !! (squares, each over its scaled unit): where springs, all alike, would hold them. That is a contact
-    !! problem.
+    !> Move the bodies, with the pressed pairs closed, to where no gap is below none and their travels are
+    !! least (squares): where springs, all alike, would hold them. That is a contact problem.
     subroutine choose_neutral(state, approach)
       type(contact_state), intent(inout) :: state
       real(wp), intent(inout) :: approach(:)   !! scaled [m]
       type(contact_problem) :: springs
       type(contact_solution) :: held
       real(wp), allocatable :: loose(:, :), opening(:, :)   ! neutral motions, and the gaps that they open
-      real(wp), allocatable :: change(:)                    ! of these motions
-      integer, allocatable :: pair(:)   ! those whose gaps they open
-      integer :: k
+      real(wp), allocatable :: square(:, :), travel(:, :)   ! of these motions
+      real(wp), allocatable :: change(:, :), given(:, :)    ! of them, in all and by a force at each gap
+      integer, allocatable :: pair(:)                       ! those whose gaps they open
+      integer :: info
 
-      pair = [(k, k=1, size(state%gap))]
-      loose = loose_motions(motion, pack(pair, state%force > 0.0_wp), negligible)
-      opening = -motion%of_each(loose, pair)
-      where (abs(opening) <= negligible) opening = 0.0_wp
-      pair = pack(pair, any(opening /= 0.0_wp, dim=2))
-      opening = opening(pair, :)
-      change = -matmul(approach, loose)
-      springs%flexibility = dense_flexibility(matmul(opening, transpose(opening)))
-      springs%initial_gap = state%gap(pair) + matmul(opening, change)
+      call find_neutral(state%force > 0.0_wp, loose, pair, opening)
+      travel = travels(loose)
+      square = matmul(transpose(travel), travel)
+      change = -matmul(transpose(travel), travels(reshape(approach, [size(approach), 1])))
+      given = transpose(opening)
+      call cholesky_factor(square, info)
+      if (info /= 0) return
+      call cholesky_solve(square, change)
+      call cholesky_solve(square, given)
+      springs%flexibility = dense_flexibility(matmul(opening, given))
+      springs%initial_gap = state%gap(pair) + matmul(opening, change(:, 1))
       springs%load_gap = 0*springs%initial_gap
       springs%motion = dense_motions(opening(:, :0))
       allocate (springs%resultant(0))
       call solve_contact(springs, held, any_forces=.true.)
       if (held%state /= contact_solved) return
-      change = change + matmul(held%force, opening)
-      approach = approach + matmul(loose, change)
-      state%gap(pair) = state%gap(pair) + matmul(opening, change)
+      change(:, 1) = change(:, 1) + matmul(given, held%force)
+      associate (before => abs(approach) + matmul(abs(loose), abs(change(:, 1))))
+        approach = approach + matmul(loose, change(:, 1))
+        where (abs(approach) <= cancelled*before) approach = 0.0_wp
+      end associate
+      state%gap(pair) = state%gap(pair) + matmul(opening, change(:, 1))
     end subroutine choose_neutral
+
+    !> Motions that pressed pairs do not hold, and the gaps that they open. Whether a motion closes a gap is
+    !! told by how far it takes the body, not by what else it closes: of a body on a flat that leans by little
+    !! against the axes, one motion is almost along it.
+    subroutine find_neutral(pressed, loose, pair, opening)
+      logical, intent(in) :: pressed(:)                          !! [n]
+      real(wp), allocatable, intent(out) :: loose(:, :)          !! [m, any]
+      integer, allocatable, intent(out) :: pair(:)               !! those whose gaps they open
+      real(wp), allocatable, intent(out) :: opening(:, :)        !! [these, any]
+      type(motion_matrix) :: closing                             ! A, by travels
+      real(wp) :: length(size(scaled%motion_size))               ! of each motion, over the scaled unit
+      integer :: k
+
+      length = 1.0_wp
+      if (allocated(problem%travel)) length = norm2(problem%travel, dim=1)/scaled%motion_size
+      closing = problem%motion%over(length*scaled%motion_size)
+      pair = [(k, k=1, size(pressed))]
+      loose = loose_motions(closing, pack(pair, pressed), negligible)
+      opening = -closing%of_each(loose, pair)
+      where (abs(opening) <= negligible) opening = 0.0_wp
+      pair = pack(pair, any(opening /= 0.0_wp, dim=2))
+      opening = opening(pair, :)
+      loose = loose/spread(length, 2, size(loose, 2))
+    end subroutine find_neutral
+
+    !> How far motions take the bodies: each body's part below that of the body before [any, motions].
+    pure function travels(motions) result(travel)
+      real(wp), intent(in) :: motions(:, :)   !! scaled [m, any]
+      real(wp), allocatable :: travel(:, :)
+      integer :: j, rows
+
+      if (.not. allocated(problem%travel)) then
+        travel = motions
+        return
+      end if
+      rows = size(problem%travel, 1)
+      allocate (travel(rows*maxval([0, problem%body]), size(motions, 2)), source=0.0_wp)
+      do j = 1, size(motions, 1)
+        associate (own => travel(rows*(problem%body(j) - 1) + 1:rows*problem%body(j), :))
+          own = own + matmul(problem%travel(:, j:j)/scaled%motion_size(j), motions(j:j, :))
+        end associate
+      end do
+    end function travels
 
     !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
     !! than none: its pair need not be closed. Where rigid stops take the load, gaps may be far below the size

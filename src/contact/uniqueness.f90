@@ -31,6 +31,7 @@ contains
     type(contact_basis) :: basis
     !> M [idle, idle], and what z makes of the forces of the pressed pairs
     real(wp), allocatable, dimension(:, :) :: coupling, answer, change, loose, motion
+    real(wp), allocatable :: unit(:)   !! M is over these, and z times them [idle]
     integer, allocatable :: growing(:), idle(:)
     real(wp) :: zero   !! part of M that is rounding
     integer :: k
@@ -44,6 +45,9 @@ contains
     loose = regular_flexibility(problem, basis%pairs, idle)
     call respond(basis, loose, spread([real(wp) ::], 2, size(idle)), answer, motion)
     call add_product(1.0_wp, transpose(loose), answer, coupling)
+    unit = sqrt(problem%softness(idle))
+    coupling = coupling/(spread(unit, 1, size(idle))*spread(unit, 2, size(idle)))
+    answer = answer/spread(unit, 1, size(answer, 1))
 
     zero = amplification*problem%rank_tolerance
     growing = forces_that_can_grow()
@@ -71,16 +75,17 @@ contains
     end function forces_that_can_grow
   end function find_indeterminate_forces
 
-  !> A block of F_g = F + gamma A A'.
+  !> A block of F_g = F + A gamma A'.
   pure function regular_flexibility(scaled, rows, columns) result(block)
     type(scaled_problem), intent(in) :: scaled   !! in its own units
     integer, intent(in) :: rows(:), columns(:)   !! pairs
-    real(wp), allocatable :: block(:, :), closing(:, :), other(:, :)   ! the block; A of rows and columns
+    real(wp), allocatable :: block(:, :)     ! of F_g
+    real(wp), allocatable :: closing(:, :), other(:, :)   ! A gamma of the rows, A of the columns
 
     block = scaled%flexibility_scale*scaled%flexibility%block(rows, columns)
-    closing = scaled%motion%rows(rows)
+    closing = scaled%motion%rows(rows)*spread(scaled%gamma, 1, size(rows))
     other = scaled%motion%rows(columns)
-    call add_product(scaled%gamma, closing, transpose(other), block)
+    call add_product(1.0_wp, closing, transpose(other), block)
   end function regular_flexibility
 
   !> Pairs with equal rows in F and A share their force equally.

@@ -14,11 +14,12 @@ contains
 
   !> Operations in a second of the processor, on one thread, of products of matrices.
   real(wp) function measured_rate() result(rate)
-    real(wp) :: a(rows, rows), c(rows, rows), begun, ended, least
+    real(wp), allocatable :: a(:, :), c(:, :)   ! too large for a small stack
+    real(wp) :: begun, ended, least
     integer :: k
 
-    a = 1.0_wp/rows
-    c = 0.0_wp
+    allocate (a(rows, rows), source=1.0_wp/rows)
+    allocate (c(rows, rows), source=0.0_wp)
     least = huge(least)
     do k = 1, products
       call cpu_time(begun)

@@ -37,13 +37,11 @@ module epcont_linear_linear_problem
     type(iteration_plan), private :: plan
     type(scene_materials) :: materials
     type(contact_problem) :: problem
-    !> Flexibility of the bodies that cannot yield, where others can; else without levels
-    type(flexibility_matrix), private :: lasting_flexibility
+    type(flexibility_matrix), private :: lasting_flexibility   !! of bodies that cannot yield, if others can
     type(scene_state), allocatable, private :: last  !! found by refinement, from which the next begins
     type(contact_basis) :: basis   !! of the last contact with this flexibility
     type(joined_contact) :: joined   !! instead, where bodies are one system
-    !> Opening of gaps by what supports travel [length] [pairs]
-    real(wp), allocatable, private :: travel_gap(:)
+    real(wp), allocatable, private :: travel_gap(:)  !! opened by what supports travel [length] [pairs]
     real(wp), allocatable, private :: resultant(:)   !! of all loads along the free motions [motions]
   contains
     procedure :: set_stiffness
@@ -66,6 +64,8 @@ contains
     linear%problem%initial_gap = scene%model%initial_gap
     linear%travel_gap = gap_opening(scene%model, scene%model%travel)
     call see_motions(scene%model, scene%motions, linear%problem%motion, linear%resultant)
+    linear%problem%travel = scene%motions%travels(scene%model)
+    linear%problem%body = scene%motions%body
   end subroutine new_linear_problem
 
   !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far

@@ -39,6 +39,7 @@ module epcont_plan_free_motion
     procedure :: add
     procedure :: displacement
     procedure :: turn
+    procedure :: travels
   end type free_motions
 
 contains
@@ -82,6 +83,38 @@ contains
 
     turn = self%coefficient(part_motions, self%before(k) + self%own_part(self%parts%of_node(node)))
   end function turn
+
+  !> How far each unit motion takes its body, whatever the axes: what it moves the SUPORT node by that
+  !! measures both directions (the mean of several; where there is none, of all SUPORT nodes of the body), and
+  !! what the turn of each part moves one of these by about another [length] [any, count].
+  pure function travels(self, model) result(travel)
+    class(free_motions), intent(in) :: self
+    type(model_type), intent(in) :: model   !! the scene
+    real(wp), allocatable :: travel(:, :)
+    integer, allocatable :: node(:)
+    real(wp) :: apart
+    integer :: b, i, k, parts
+
+    allocate (travel(directions + maxval([0, self%own_part]), self%count), source=0.0_wp)
+    do b = 1, size(self%first) - 1
+      associate (own => self%node(self%first(b):self%first(b + 1) - 1))
+        if (size(own) == 0) cycle
+        node = pack(own, [(count(own == own(i)) == directions, i=1, size(own))])
+        if (size(node) == 0) node = own
+        associate (x => model%x(:, own))
+          apart = maxval([((norm2(x(:, i) - x(:, k)), i=1, k), k=1, size(own))])
+        end associate
+      end associate
+      parts = count(self%parts%body == b)
+      do k = self%first(b), self%first(b + 1) - 1
+        do i = 1, size(node)
+          travel(:directions, k) = travel(:directions, k) + self%displacement(model, node(i), k)/size(node)
+        end do
+        if (self%parts%extent(b) > 0.0_wp) travel(directions + 1:directions + parts, k) = &
+          apart/self%parts%extent(b)*self%coefficient(part_motions, self%before(k) + 1:self%before(k) + parts)
+      end do
+    end do
+  end function travels
 
   !> Find the free motions of all bodies; a body whose SUPORT freedoms do not fit is an error.
   subroutine find_free_motions(model, motions, found)

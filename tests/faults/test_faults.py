@@ -394,6 +394,22 @@ class Memory(Case):
     def test_data(self):
         self.limits(SMALL, resource.RLIMIT_DATA)
 
+    def test_messages_have_figures(self):
+        if sanitized():
+            self.skipTest("the address sanitizer maps more than any limit")
+        for kind, most, message in ((resource.RLIMIT_AS, 150000000, "less memory is free or allowed (ulimit -v) than OpenBLAS takes for "
+                                     "OMP_NUM_THREADS: 166 MB beside the program"),
+                                    (resource.RLIMIT_STACK, 65536, "a stack of 64 kB is allowed (ulimit -s): 256 kB are wanted")):
+            with self.subTest(message):
+                run = self.run_it(SMALL, "-o", self.directory, preexec_fn=lambda: resource.setrlimit(kind, (most, most)))
+                self.check(run, 3, f"epcont: {message}")
+
+    def test_small_stack(self):
+        for option in ("--brief", "--plan"):
+            with self.subTest(option):
+                self.check(self.run_it(SMALL, option, "-o", self.directory, preexec_fn=lambda: resource.setrlimit(
+                    resource.RLIMIT_STACK, (262144, 262144))), 0)
+
 
 if __name__ == "__main__":
     PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Decks of strangers (tests/found/*.bdf) with which the program was wrong, or said so where it need not."""
+import math
 import pathlib
+import re
 import unittest
 
 import scenes  # noqa: F401  (the path to scene)
@@ -21,6 +23,18 @@ def shifted(text, nodes, by):
                      else ",".join(fields) for fields in lines) + "\n"
 
 
+def turned(text, degrees):
+    """The deck with nodes and forces turned; supports are as they are."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    at = {"GRID": 3, "FORCE": 5}
+    lines = [line.split(",") for line in text.splitlines()]
+    for fields in lines:
+        if fields[0] in at:
+            x, y = (float(fields[at[fields[0]] + k]) for k in (0, 1))
+            fields[at[fields[0]]:at[fields[0]] + 2] = repr(c * x - s * y), repr(s * x + c * y)
+    return "\n".join(map(",".join, lines)) + "\n"
+
+
 class Found(scene.Extremes):
 
     def test_joint_without_gap(self):
@@ -34,6 +48,54 @@ class Found(scene.Extremes):
             on_top, = (force for (name, _), force in pressed.items() if name == top)
             self.near(on_edge + on_top, 50.0, 1e-9)
             self.near(on_edge, 17.278, 1e-4)
+
+    def test_slides_that_nothing_drives(self):
+        """Blocks pressed straight on each other stay above each other, however the scene is turned."""
+        text = turned(deck("slide_rot0p001"), -1e-3)
+        upright = self.valid(text)
+        self.assertLess(max(abs(row["ux"]) for row in upright.nodes.values()), 1e-3)
+        for degrees in (1e-4, 1e-3, 1.0, 30.0, -60.0):
+            c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+            with self.subTest(degrees=degrees):
+                for name, node in self.valid(turned(text, degrees)).nodes.items():
+                    ux, uy = (upright.nodes[name][key] for key in ("ux", "uy"))
+                    self.near(node["ux"], c * ux - s * uy, 1e-9, 1e-3)
+                    self.near(node["uy"], s * ux + c * uy, 1e-9, 1e-3)
+
+    def test_stiff_on_soft(self):
+        """Ten blocks of falling or rising stiffness under one load: each bears the same pressure, or the answer is refused."""
+        for digits in (8, 12, 16):
+            for way in (1, -1):
+                young = {str(k + 1): 2.1e5 * 10.0 ** (way * digits * (k / 9 - 0.5)) for k in range(10)}
+                text = re.sub(r"MAT1,(\d+),[^,]*", lambda card: f"MAT1,{card[1]},{scene.written(young[card[1]])}", deck("g10_6"))
+                for rule in ("CONRY", "BLOCK"):
+                    with self.subTest(digits=digits, way=way, rule=rule):
+                        result = scene.solve(text.replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}"))
+                        self.assertIn(result.status, (0,) if digits <= 12 or way < 0 else (0, 4), result.message)
+                        if result.status == 0:
+                            self.near([pair["pressure"] for pair in result.table("contact")], [1e-5] * 45, 1e-4)
+                            self.assertEqual(result.message, "")
+
+    def test_gap_that_closes(self):
+        """A block comes straight down on a stack: that is no slide, whichever side of the corner is the nearer one by rounding."""
+        for blocks in (30, 50):
+            text = scene.Deck(2.1e5, 0.3)
+            tops = []
+            for k in range(blocks):
+                low = 5.0 * k + (k == blocks - 1)
+                rows = text.block(1, [0.0, 2.5, 5.0, 7.5, 10.0], [low, low + 2.5, low + 5.0], 100 * k + 1)
+                if tops:
+                    text.card("BLSEG", 2 * k, *rows[0])
+                    text.card("BLSEG", 2 * k + 1, *reversed(tops))
+                    text.card("BCONP", k, 2 * k, 2 * k + 1)
+                    text.hold(1, rows[-1][2])
+                    text.support(2, rows[-1][0], rows[-1][-1])
+                else:
+                    text.hold(12, *rows[0])
+                tops = rows[-1]
+            text.press(tops, 100.0)
+            with self.subTest(blocks=blocks):
+                self.assertEqual(self.valid(text).message, "")
 
 
 if __name__ == "__main__":
