@@ -14,6 +14,7 @@ module epcont_accuracy_unit_loads
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_scaling, only: drop_motions, gaps_by_forces, scale_problem, scaled_problem
   use epcont_element_kinematics, only: directions
+  use epcont_flexibility_motion_matrix, only: dense_motions
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
@@ -83,7 +84,7 @@ contains
       loads%problem = scale_problem(linear%problem)
       if (any(answer%contact%motion_free)) then
         pressed = pack([(j, j=1, scene%model%pairs)], answer%contact%force > 0.0_wp)
-        call find_rigid_start(loads%problem%motion%rows(pressed), 0*loads%problem%resultant, &
+        call find_rigid_start(dense_motions(loads%problem%motion%rows(pressed)), 0*loads%problem%resultant, &
                               0*loads%problem%gap(pressed), start)
         call drop_motions(loads%problem, start%redundant)
       end if

@@ -7,11 +7,12 @@
 !> The first phase finds forces that carry the load at all, or a motion along which nothing resists it;
 !> the second, bounded since g^ >= 0, the statically determinate set of pairs that closes first.
 !>
-!> The tableau is kept row by row, and an exchange touches only rows and columns that are not zero there: of
-!> many bodies each has few pairs, and few others feel it.
+!> There is no tableau, only the inverse of its basis, from which a column or a row of it is put together when
+!> it is asked for: of many bodies each has few pairs, so A has few entries.
 module epcont_contact_equilibrium
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: dependent, negligible, null_component
+  use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
   public :: rigid_start, find_rigid_start, can_carry
@@ -28,54 +29,57 @@ contains
 
   !> Are there R >= 0 with A'R = P?
   logical function can_carry(motion, resultant) result(carried)
-    real(wp), intent(in) :: motion(:, :)    !! A, largest entry about one [n, m]
+    type(motion_matrix), intent(in) :: motion   !! A, largest entry about one [n, m]
     real(wp), intent(in) :: resultant(:)    !! P [m]
     type(rigid_start) :: start
 
-    call find_rigid_start(motion, resultant, spread(0.0_wp, 1, size(motion, 1)), start)
+    call find_rigid_start(motion, resultant, spread(0.0_wp, 1, motion%pairs), start)
     carried = start%balanced
   end function can_carry
 
   !> Which pairs touch first if the bodies are rigid, or the motion along which nothing resists the load.
   subroutine find_rigid_start(motion, resultant, gap, start)
-    real(wp), intent(in) :: motion(:, :)    !! A, largest entry about one [n, m]
+    type(motion_matrix), intent(in) :: motion   !! A, largest entry about one [n, m]
     real(wp), intent(in) :: resultant(:)    !! P [m]
     real(wp), intent(in) :: gap(:)          !! g^, >= 0 [n]
     type(rigid_start), intent(out) :: start   !! which pairs touch first, or the motion that nothing resists
-    !> Of a force in an equation of equilibrium, with the signs that make P >= 0: forces 1..n, then one
-    !! artificial force an equation. In phase 1 these carry all of the load and cost one a unit.
-    real(wp), allocatable :: entry(:, :)
-    real(wp) :: reduced_cost(size(gap) + size(resultant))
+    !> Which variable is basic in each equation: forces are 1..n, then one artificial force an equation. In
+    !! phase 1 these carry all of the load and cost one a unit.
+    integer :: basic(size(resultant))
     real(wp) :: value(size(resultant))      ! basic variables
-    integer :: basic(size(resultant))       ! which variable is basic in each equation
+    !> Row i is inverse(:, i); equations have the signs that make P >= 0
+    real(wp), allocatable :: inverse(:, :)
+    real(wp) :: cost(size(gap))             ! of a unit of each force
+    real(wp) :: price(size(resultant))      ! what a unit of load costs by the basic variables
+    type(motion_matrix) :: of_pair          ! the equations that each force is in
     integer :: i, n
 
     n = size(gap)
+    of_pair = motion%turned()
     value = abs(resultant)
     if (any(value > 0.0_wp)) value = value/maxval(value)
-    allocate (entry(n + size(resultant), size(resultant)), source=0.0_wp)
-    reduced_cost = 0.0_wp
+    allocate (inverse(size(resultant), size(resultant)), source=0.0_wp)
     do i = 1, size(resultant)
-      entry(:n, i) = sign(1.0_wp, resultant(i))*motion(:, i)
-      entry(n + i, i) = 1.0_wp
+      inverse(i, i) = 1.0_wp
       basic(i) = n + i
-      reduced_cost(:n) = reduced_cost(:n) - entry(:n, i)
     end do
+    cost = 0.0_wp
+    price = 1.0_wp
     call minimise()
     start%balanced = sum(value, mask=basic > n) <= dependent
     if (start%balanced) then
       call expel_artificials()
       ! Phase 2: forces cost their gaps; what is left of the artificials is zero and costs nothing.
-      reduced_cost(:n) = gap
-      reduced_cost(n + 1:) = 0.0_wp
+      cost = gap
+      price = 0.0_wp
       do i = 1, size(basic)
-        if (basic(i) <= n) reduced_cost = reduced_cost - gap(basic(i))*entry(:, i)
+        if (basic(i) <= n) price = price + gap(basic(i))*inverse(:, i)
       end do
       call minimise()
       start%touching = [(any(basic == i), i=1, n)]
       start%redundant = [(any(basic == n + i), i=1, size(resultant))]
     else
-      start%escape = sign(1.0_wp, resultant)*(1.0_wp - reduced_cost(n + 1:))
+      start%escape = sign(1.0_wp, resultant)*price
     end if
 
   contains
@@ -86,34 +90,63 @@ contains
     !! ends. The limit guards against rounding, and a set that is not quite the best serves as well, since the
     !! contact simplex lifts its start.
     subroutine minimise()
+      real(wp) :: reduced_cost(n), pivot(size(basic))
       integer :: column, count, row
       logical :: by_index
 
-      do count = 1, 100*size(reduced_cost)
-        by_index = count > 10*size(reduced_cost)
+      do count = 1, 100*(n + size(basic))
+        reduced_cost = cost - row_of(price)
+        reduced_cost(pack(basic, basic <= n)) = 0.0_wp
+        by_index = count > 10*(n + size(basic))
         if (by_index) then
-          column = findloc(reduced_cost(:n) < -negligible, .true., dim=1)
+          column = findloc(reduced_cost < -negligible, .true., dim=1)
         else
-          column = first_largest(-reduced_cost(:n), negligible)
+          column = first_largest(-reduced_cost, negligible)
         end if
         if (column == 0) exit
-        row = leaving_row(column, by_index)
+        pivot = column_of(column)
+        row = leaving_row(pivot, by_index)
         if (row == 0) exit
-        call exchange(row, column)
+        call exchange(row, column, pivot)
+        price = price + reduced_cost(column)*inverse(:, row)
       end do
     end subroutine minimise
 
+    !> What a combination of the equations has of each force.
+    pure function row_of(combination) result(row)
+      real(wp), intent(in) :: combination(:)   !! weights of the equations [m]
+      real(wp) :: row(n)
+
+      row = motion%times(sign(1.0_wp, resultant)*combination)
+    end function row_of
+
+    !> How far each basic variable falls as a force grows.
+    pure function column_of(pair) result(pivot)
+      integer, intent(in) :: pair
+      real(wp) :: entry, pivot(size(basic))
+      integer :: i, k
+
+      pivot = 0.0_wp
+      do k = of_pair%start(pair), of_pair%start(pair + 1) - 1
+        associate (equation => of_pair%pair(k))
+          entry = sign(1.0_wp, resultant(equation))*of_pair%closing(k)
+          do i = 1, size(pivot)
+            pivot(i) = pivot(i) + entry*inverse(equation, i)
+          end do
+        end associate
+      end do
+    end function column_of
+
     !> Least ratio; of ties, the first of the largest pivots, or the variable of least index (Bland). 0: none
     !! decreases.
-    pure integer function leaving_row(column, by_index) result(row)
-      integer, intent(in) :: column
+    pure integer function leaving_row(pivot, by_index) result(row)
+      real(wp), intent(in) :: pivot(:)   !! column of the entering force
       logical, intent(in) :: by_index
-      real(wp) :: least, pivot(size(basic)), ratio, zero
+      real(wp) :: least, ratio, zero
       integer :: i
 
       row = 0
       least = huge(least)
-      pivot = entry(column, :)
       zero = null_component*maxval([abs(pivot), 1.0_wp])
       do i = 1, size(basic)
         if (pivot(i) <= zero) cycle
@@ -130,48 +163,39 @@ contains
       end do
     end function leaving_row
 
-    !> The variable of a column becomes basic in a row.
-    subroutine exchange(row, column)
-      integer, intent(in) :: row, column
-      integer :: filled(size(reduced_cost))   ! columns that are not zero in that row
-      real(wp) :: factor
-      integer :: i, j, last
+    !> A force becomes basic in a row.
+    subroutine exchange(row, column, pivot)
+      integer, intent(in) :: row, column   !! column: the force
+      real(wp), intent(in) :: pivot(:)     !! its column
+      integer, allocatable :: filled(:)    ! entries of that row that are not zero
+      integer :: i
 
-      factor = entry(column, row)
-      value(row) = value(row)/factor
-      last = 0
-      do j = 1, size(reduced_cost)
-        if (entry(j, row) == 0.0_wp) cycle
-        entry(j, row) = entry(j, row)/factor
-        last = last + 1
-        filled(last) = j
-      end do
+      inverse(:, row) = inverse(:, row)/pivot(row)
+      value(row) = value(row)/pivot(row)
+      filled = pack([(i, i=1, size(basic))], inverse(:, row) /= 0.0_wp)
       do i = 1, size(basic)
-        factor = entry(column, i)
-        if (i == row .or. factor == 0.0_wp) cycle
-        do j = 1, last
-          entry(filled(j), i) = entry(filled(j), i) - factor*entry(filled(j), row)
-        end do
-        value(i) = max(value(i) - factor*value(row), 0.0_wp)
+        if (i == row .or. pivot(i) == 0.0_wp) cycle
+        inverse(filled, i) = inverse(filled, i) - pivot(i)*inverse(filled, row)
+        value(i) = max(value(i) - pivot(i)*value(row), 0.0_wp)
       end do
-      factor = reduced_cost(column)
-      reduced_cost(filled(:last)) = reduced_cost(filled(:last)) - factor*entry(filled(:last), row)
       basic(row) = column
     end subroutine exchange
 
     !> Replace each artificial force that is basic at zero by a true one; where none can, the equation is
     !! redundant and the artificial stays to mark it.
     subroutine expel_artificials()
+      real(wp) :: row(n)
       integer :: column, i
 
       do i = 1, size(basic)
         if (basic(i) <= n) cycle
         value(i) = 0.0_wp
-        column = first_largest(abs(entry(:n, i)), null_component*maxval(abs(entry(n + 1:, i))))
+        row = row_of(inverse(:, i))
+        column = first_largest(abs(row), null_component*maxval(abs(inverse(:, i))))
         if (column > 0) then
-          call exchange(i, column)
+          call exchange(i, column, column_of(column))
         else
-          entry(:n, i) = 0.0_wp
+          inverse(:, i) = 0.0_wp
         end if
       end do
     end subroutine expel_artificials

@@ -9,18 +9,14 @@
 !>              | beyond | within |
 !>              +--------+--------+
 !>
-!> Of one or two bodies all pairs are one level. Of many, those at the same distance from the first, counted
-!> in bodies that lie between, are one; small ones are joined.
+!> (`linalg/levels.f90`).
 module epcont_contact_flexibility_matrix
-  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
+  use epcont_linalg_levels, only: levels_of_pairs
   implicit none
   private
   public :: flexibility_matrix, dense_flexibility, new_flexibility
 
-  !> Pairs of a level, at least, so that most of the work is done by blocks. (1 000 bodies of 7 pairs each: 32
-  !! and 128 take no longer by more than a fifth.)
-  integer, parameter :: least_level = 64
   !> Rows and columns that are copied across the diagonal at once: both places fit into the nearest cache.
   integer, parameter :: tile = 32
 
@@ -52,7 +48,7 @@ contains
     integer, intent(in) :: bodies       !! in all
     integer :: k, l, next
 
-    new%level_of = joined_levels(levels_of_pairs(body, bodies))
+    new%level_of = levels_of_pairs(body, bodies)
     allocate (new%level(maxval([new%level_of, 1])), new%place(size(new%level_of)))
     do l = 1, size(new%level)
       new%level(l)%pair = pack([(k, k=1, size(new%level_of))], new%level_of == l)
@@ -79,90 +75,6 @@ contains
     new%level(1)%within = matrix
     allocate (new%level(1)%beyond(0, n))
   end function dense_flexibility
-
-  !> Of each pair: how many bodies are between its farthest and the first of those that hang together with it,
-  !! and so much more that all levels of the bodies that do come behind those of others.
-  function levels_of_pairs(body, bodies) result(level)
-    integer, intent(in) :: body(:, :), bodies
-    integer :: level(size(body, 2))
-    type(incidence) :: pairs         ! of each body
-    integer :: distance(bodies)      ! level of each body; 0: not met
-    integer :: queue(bodies)         ! bodies in the order in which they were met
-    integer :: b, first, k, last, met
-
-    pairs = new_incidence(body, bodies)
-    distance = 0
-    met = 0
-    last = 0
-    do b = 1, bodies
-      if (distance(b) > 0) cycle
-      first = met
-      call walk(from=b)
-      ! Once more from the one that is farthest away: more levels, and smaller ones.
-      distance(queue(first + 1:met)) = 0
-      k = queue(met)
-      met = first
-      call walk(from=k)
-      last = distance(queue(met))
-    end do
-    level = 1
-    do k = 1, size(level)
-      level(k) = maxval([distance(pack(body(:, k), body(:, k) > 0)), 1])
-    end do
-
-  contains
-
-    !> Meet all bodies that hang together with one, the nearest first.
-    subroutine walk(from)
-      integer, intent(in) :: from
-      integer :: at, i, j, next, pair
-
-      met = met + 1
-      queue(met) = from
-      distance(from) = last + 1
-      at = met
-      do while (at <= met)
-        do i = pairs%start(queue(at)), pairs%start(queue(at) + 1) - 1
-          pair = pairs%group(i)
-          do j = 1, size(body, 1)
-            next = body(j, pair)
-            if (next == 0) exit
-            if (distance(next) > 0) cycle
-            met = met + 1
-            queue(met) = next
-            distance(next) = distance(queue(at)) + 1
-          end do
-        end do
-        at = at + 1
-      end do
-    end subroutine walk
-  end function levels_of_pairs
-
-  !> Levels of some size, without empty ones; one alone where there would be two: nothing is zero then.
-  pure function joined_levels(level) result(joined)
-    integer, intent(in) :: level(:)   !! of each pair
-    integer :: joined(size(level))
-    integer, allocatable :: number(:), pairs(:)   ! of each level
-    integer :: gathered, k, l, last
-
-    allocate (pairs(maxval([level, 1])), source=0)
-    do k = 1, size(level)
-      pairs(level(k)) = pairs(level(k)) + 1
-    end do
-    allocate (number(size(pairs)))
-    last = 1
-    gathered = 0
-    do l = 1, size(pairs)
-      if (gathered >= least_level .and. pairs(l) > 0) then
-        last = last + 1
-        gathered = 0
-      end if
-      number(l) = last
-      gathered = gathered + pairs(l)
-    end do
-    if (last == 2) number = 1
-    joined = number(level)
-  end function joined_levels
 
   !> Begin anew with zeros.
   pure subroutine clear(self)

@@ -13,6 +13,7 @@ module epcont_contact_interior_path
   use epcont_contact_loose_motions, only: loose_motions
   use epcont_contact_scaling, only: scaled_problem
   use epcont_contact_state, only: gaps_under
+  use epcont_flexibility_motion_matrix, only: dense_motions
   implicit none
   private
   public :: follow_interior_path
@@ -104,8 +105,8 @@ contains
       loose = loose_motions(scaled%motion, pack([(k, k=1, size(closed))], closed), null_component)
       if (size(loose, 2) == 0) return
       open = pack([(k, k=1, size(closed))], .not. closed)
-      call find_rigid_start(scaled%motion%of_each(loose, open), spread(0.0_wp, 1, size(loose, 2)), &
-                            at%gap(open), rest)
+      call find_rigid_start(dense_motions(scaled%motion%of_each(loose, open)), &
+                            spread(0.0_wp, 1, size(loose, 2)), at%gap(open), rest)
       closed(pack(open, rest%touching)) = .true.
     end subroutine hold_all_motions
 

@@ -42,7 +42,7 @@ contains
     if (present(start)) scaled%guess = start
     solution = new_solution(size(scaled%gap), size(scaled%resultant))
     solution%gap = scaled%gap*scaled%gap_unit
-    call find_rigid_start(motion%dense(), scaled%resultant, scaled%unloaded_gap, rigid)
+    call find_rigid_start(motion, scaled%resultant, scaled%unloaded_gap, rigid)
     if (.not. rigid%balanced) then
       solution%state = contact_no_equilibrium
       solution%escape = rigid%escape/scaled%motion_size

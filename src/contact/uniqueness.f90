@@ -6,7 +6,7 @@ module epcont_contact_uniqueness
   use epcont_contact_equilibrium, only: can_carry, find_rigid_start, rigid_start
   use epcont_contact_loose_motions, only: loose_motions
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_flexibility_motion_matrix, only: motion_matrix
+  use epcont_flexibility_motion_matrix, only: dense_motions, motion_matrix
   use epcont_linalg_dense, only: add_product, null_space, pivoted_cholesky
   implicit none
   private
@@ -61,6 +61,7 @@ contains
     function forces_that_can_grow() result(growing)
       integer, allocatable :: growing(:), order(:)
       real(wp), allocatable :: factor(:, :), rows(:, :)
+      type(motion_matrix) :: growth
       integer :: j, rank
 
       factor = coupling
@@ -69,8 +70,9 @@ contains
       if (rank == size(order)) return
       rows = coupling(:, order(:rank))/max(maxval(abs(coupling)), zero)
       where (abs(coupling(:, order(:rank))) <= zero) rows = 0.0_wp
+      growth = dense_motions(rows)
       do j = 1, size(order)
-        if (can_carry(rows, -rows(j, :))) growing = [growing, j]
+        if (can_carry(growth, -rows(j, :))) growing = [growing, j]
       end do
     end function forces_that_can_grow
   end function find_indeterminate_forces
@@ -123,13 +125,14 @@ contains
     type(motion_matrix), intent(in) :: motion   !! A, largest entry of each column one [n, m]
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]
-    real(wp), allocatable :: closing(:, :), loose(:, :)
+    type(motion_matrix) :: closing
+    real(wp), allocatable :: loose(:, :)
     integer :: j, pair(size(pressed))
 
     allocate (free(motion%motions()), source=.false.)
     pair = [(j, j=1, size(pair))]
     loose = loose_motions(motion, pack(pair, pressed), null_component)
-    closing = motion%of_each(loose, pack(pair, touching .and. .not. pressed))
+    closing = dense_motions(motion%of_each(loose, pack(pair, touching .and. .not. pressed)))
     do j = 1, size(free)
       if (all(abs(loose(j, :)) <= null_component)) cycle
       if (.not. free(j)) call give_way(loose(j, :))
@@ -144,7 +147,7 @@ contains
       real(wp), intent(in) :: load(:)   !! along the loose motions
       type(rigid_start) :: start
 
-      call find_rigid_start(closing, load, spread(0.0_wp, 1, size(closing, 1)), start)
+      call find_rigid_start(closing, load, spread(0.0_wp, 1, closing%pairs), start)
       if (start%balanced) return
       associate (way => matmul(loose, start%escape))
         free(j) = .true.

@@ -23,6 +23,7 @@ module epcont_flexibility_motion_matrix
     procedure :: rows
     procedure :: dense
     procedure :: only
+    procedure :: turned
   end type motion_matrix
 
 contains
@@ -176,6 +177,16 @@ contains
 
     dense = self%rows([(k, k=1, self%pairs)])
   end function dense
+
+  !> A', the motions that close each pair, ascending: pairs and motions have changed places.
+  pure type(motion_matrix) function turned(self)
+    class(motion_matrix), intent(in) :: self
+    integer :: i, j
+
+    turned = new_motion_matrix(self%motions(), self%pairs, &
+                               [((j, i=self%start(j), self%start(j + 1) - 1), j=1, self%motions())], &
+                               self%pair, self%closing)
+  end function turned
 
   !> With some of the motions only.
   pure type(motion_matrix) function only(self, kept) result(fewer)

@@ -76,7 +76,7 @@ contains
     joined%threads = threads
     joined%motion = motion
     scaled = motion%over(unit_of(motion))
-    call find_rigid_start(scaled%dense(), resultant/unit_of(motion), spread(0.0_wp, 1, motion%pairs), &
+    call find_rigid_start(scaled, resultant/unit_of(motion), spread(0.0_wp, 1, motion%pairs), &
                           joined%rigid)
     if (.not. joined%rigid%balanced) return
     call find_springs(scene, bodies, joined%rigid%redundant, joined%gamma)

@@ -4,6 +4,7 @@ module epcont_plan_forecast
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: short_real
+  use epcont_linalg_levels, only: levels_of_pairs
   use epcont_model_controls, only: method_inistr, precision_double, solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
@@ -37,10 +38,11 @@ module epcont_plan_forecast
   !! a few that follow each other: F, factors of those that touch, here half of them to all, and F of the
   !! bodies that cannot yield where others can.
   real(wp), parameter :: pair_matrices = 2.6_wp
-  !> Pairs whose rows are held together, at least (`least_level` of `contact/flexibility_matrix.f90`).
-  integer(i8), parameter :: least_level = 64
-  !> And over pairs and free motions.
-  integer(i8), parameter :: motion_matrices = 8
+  !> And over pairs and free motions: forces under unit loads, and which of them are none.
+  real(wp), parameter :: motion_matrices = 1.6_wp
+  !> Sets of many bodies that are factored while the first contact is solved, to be doubled and more by what
+  !! `contact_more` of `plan/run_time.f90` adds: an interior path has 10 to 30.
+  integer, parameter :: path_sets = 8
   !> Unit loads along free motions whose strains are there at once, of one body, when the figures are
   !! assessed: all that a body feels may take more memory than its factor. And what each takes of a node and
   !! of an element [bytes].
@@ -88,13 +90,19 @@ contains
     most_memory = 2*bytes + memory_of_libraries
   end function most_memory
 
-  !> A pivot runs over the whole tableau, about one pivot a pair; by blocks the full set is factored twice,
-  !! and the sets on the way to it are smaller, or little of them is factored.
-  pure real(wp) function contact_operations(coupled, by_blocks) result(operations)
-    integer(i8), intent(in) :: coupled   !! entries of F; pairs squared, where each counts for each
+  !> By blocks, level by level (`contact/level_factor.f90`), each of which has a part in the next. A full set
+  !! of one or two bodies is factored twice, and the sets on the way to it are smaller, or little of them is
+  !! factored; of many bodies an interior path of full sets may be needed. A pivot of CONRY runs over the
+  !! whole tableau, about one pivot a pair.
+  pure real(wp) function contact_operations(level, by_blocks) result(operations)
+    integer, intent(in) :: level(:)      !! pairs of each
     logical, intent(in) :: by_blocks     !! RULE BLOCK, else CONRY
+    real(wp), dimension(size(level)) :: own, next
 
-    operations = merge(2.0_wp/3.0_wp, 2.0_wp, by_blocks)*real(coupled, wp)**1.5_wp
+    own = level
+    next = [level(2:), 0]
+    operations = merge(2, path_sets, size(level) == 1)*sum(own*(own**2/3 + own*next + next**2))
+    if (.not. by_blocks) operations = 2*sum(own)**3
   end function contact_operations
 
   !> What a scene will take.
@@ -106,6 +114,7 @@ contains
     type(forecast_type) :: expected
     type(incidence) :: of_bodies              ! pairs that have nodes in each
     integer(i8), allocatable :: own_pairs(:)
+    integer, allocatable :: level(:)          ! pairs of each
     integer(i8) :: coupled, done_with, entries, factor, flexibility, last, pairs, passing, saved, unit_loads
     real(wp) :: operations
     integer :: b
@@ -117,8 +126,9 @@ contains
     pairs = model%pairs
     of_bodies = new_incidence(model%bodies_of_pairs(), model%bodies)
     own_pairs = of_bodies%start(2:) - of_bodies%start(:model%bodies)
+    level = sizes_of(levels_of_pairs(model%bodies_of_pairs(), model%bodies))
     ! Entries of F, by levels.
-    coupled = min(pairs**2, sum(own_pairs**2) + 2*least_level*pairs)
+    coupled = sum(int(level, i8)*(level + [level(2:), 0]))
     entries = 0       ! of the factors
     saved = 0         ! bytes, by factors in single precision
     flexibility = 0   ! entries that are wanted for that of one body
@@ -161,11 +171,11 @@ contains
       end associate
     end do
     entries = entries + max(int(pair_matrices*coupled, i8), flexibility + coupled, passing) + &
-              motion_matrices*pairs*motions%count
+              int(motion_matrices*pairs*motions%count, i8)
     expected%double_bytes = real_bytes*entries + beside_matrices() + unit_loads
     expected%bytes = expected%double_bytes - saved
     expected%motions = motions%count
-    expected%contact = contact_operations(coupled, plan%by_blocks)
+    expected%contact = contact_operations(level, plan%by_blocks)
     expected%operations = expected%operations + expected%contact
     expected%operations_again = expected%operations_again + expected%contact
 
@@ -186,6 +196,18 @@ contains
         expected%operations_again = expected%operations
       end associate
     end subroutine foresee_joined
+
+    !> How many pairs are in each level.
+    pure function sizes_of(level) result(pairs)
+      integer, intent(in) :: level(:)   !! of each pair
+      integer :: pairs(maxval([level, 1]))
+      integer :: k
+
+      pairs = 0
+      do k = 1, size(level)
+        pairs(level(k)) = pairs(level(k)) + 1
+      end do
+    end function sizes_of
 
     !> What a run holds besides its matrices [bytes].
     pure integer(i8) function beside_matrices() result(bytes)
