@@ -46,7 +46,7 @@ module epcont_assembly_bodies
 contains
 
   !> Bodies with room for their factors, without a law.
-  pure function new_bodies(scene, single) result(bodies)
+  function new_bodies(scene, single) result(bodies)
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
     logical, intent(in) :: single              !! factored in single precision
     type(factored_bodies) :: bodies
