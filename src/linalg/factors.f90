@@ -7,7 +7,7 @@ module epcont_linalg_factors
     update_size
   use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
   use epcont_linalg_panel_layout, only: panel_layout
-  use epcont_system_large_pages, only: use_large_pages
+  use epcont_system_large_pages, only: use_large_pages, use_small_pages
   !$ use omp_lib, only: omp_get_num_threads
   implicit none
   private

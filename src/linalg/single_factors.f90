@@ -9,7 +9,7 @@ module epcont_linalg_single_factors
   use epcont_linalg_panel_layout, only: panel_layout
   use epcont_linalg_single_lapack, only: gemm => sgemm, gemv => sgemv, potrf => spotrf, syrk => ssyrk, &
       trsm => strsm
-  use epcont_system_large_pages, only: use_large_pages
+  use epcont_system_large_pages, only: use_large_pages, use_small_pages
   !$ use omp_lib, only: omp_get_num_threads
   implicit none
   private
