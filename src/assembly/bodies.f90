@@ -76,7 +76,7 @@ contains
   end subroutine factor_system
 
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
-  pure subroutine settle(self, scene)
+  subroutine settle(self, scene)
     class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene   !! that they are of
     real(wp), allocatable :: prescribed(:, :)

@@ -73,26 +73,36 @@ contains
   end subroutine put_element
 
   !> Strains xx, yy, zz, xy (engineering) [components, points].
-  pure function strains(self, model, displacement) result(strain)
+  function strains(self, model, displacement) result(strain)
     class(strain_operator), intent(in) :: self
     type(model_type), intent(in) :: model        !! the scene
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp), allocatable :: strain(:, :)
-    real(wp) :: now(components)
-    integer :: c, i, p
+    integer :: p
 
     allocate (strain(components, model%points))
+    !$omp parallel do num_threads(threads_over(model%points))
     do p = 1, model%points
-      now = 0.0_wp
+      strain(:, p) = strain_at(p)
+    end do
+    !$omp end parallel do
+
+  contains
+
+    pure function strain_at(p) result(strain)
+      integer, intent(in) :: p
+      real(wp) :: strain(components)
+      integer :: c, i
+
+      strain = 0.0_wp
       c = self%column(p)
       do i = 1, model%node_count(model%point_element(p))
         associate (u => displacement(:, model%connectivity(i, model%point_element(p))))
-          now = now + self%b(:, c + 1)*u(1) + self%b(:, c + 2)*u(2)
+          strain = strain + self%b(:, c + 1)*u(1) + self%b(:, c + 2)*u(2)
         end associate
         c = c + directions
       end do
-      strain(:, p) = now
-    end do
+    end function strain_at
   end function strains
 
   !> Strains of one element under several fields of displacements, put behind one that is there.

@@ -365,7 +365,7 @@ contains
     state%contact%force = rest + state%contact%force
   end subroutine correct_contact
   !> What follows from deformation, strains and contact: stresses, displacements and gaps.
-  pure subroutine complete(self, scene, load_factor, state)
+  subroutine complete(self, scene, load_factor, state)
     type(linear_problem), intent(in) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: load_factor

@@ -47,7 +47,7 @@ contains
   !! least: one where others would begin after most of it is done.
   integer function threads_over(pieces) result(threads)
     integer, intent(in) :: pieces
-    integer, parameter :: many = 10000
+    integer, parameter :: many = 20000
 
     threads = 1
     if (pieces >= many) threads = granted_threads()
