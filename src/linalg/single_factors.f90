@@ -23,4 +23,5 @@ contains
   include 'panel_kernel.inc'
   include 'columns_kernel.inc'
   include 'front_kernel.inc'
+  include 'front_solve_kernel.inc'
 end module epcont_linalg_single_factors

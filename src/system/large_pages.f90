@@ -48,8 +48,8 @@ contains
     call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*bits/8, advice_large_pages)
   end subroutine use_large_pages
 
-  !> Ask for small ones again, where large ones take long to come: those that are free in a virtual machine may
-  !! have been given back to its host, which then takes tens of times as long to find one.
+  !> Ask for small ones again, where large ones take long to come: those that are free in a virtual machine
+  !! may have been given back to its host, which then takes tens of times as long to find one.
   subroutine use_small_pages(array, bits)
     type(*), contiguous, target, intent(in) :: array(:)   !! of numbers
     integer, intent(in) :: bits                           !! that one of them takes
